@@ -209,14 +209,14 @@ U
              "loads": "force_force,pressed_pressure", "force_force_set": "force", "force_force_force": "0,6000,0",
              "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "4e6",
              "modes_band": "0,2000"}
-    LISTED = ["flat.inp:68: *NODE FILE", "flat.inp:25: *ELEMENT, TYPE=MASS", "flat.inp:24: SPRINGA element 31",
+    LISTED = ["flat.inp:17: differs: C3D4",
+              "flat.inp:68: *NODE FILE", "flat.inp:25: *ELEMENT, TYPE=MASS", "flat.inp:24: SPRINGA element 31",
               "flat.inp:56: support of nodes that no volume element has", "flat.inp:27: set of elements EVERYTHING"]
 
 
 BODY = f"{CUBE}*ELEMENT, TYPE=C3D8I, ELSET=E\n1, 1,2,3,4,5,6,7,8\n"
 STEEL = "*MATERIAL, NAME=M\n*ELASTIC\n210000., 0.3\n*DENSITY\n7.8e-9\n"
 REFUSED = [
-    (BODY.replace("4, 0., 10., 0.\n", "4, 0., 10.\n"), "wrong.inp:5: 3 numbers, expected 4"),
     (BODY.replace("4, 0., 10., 0.\n", "4, 0., ten, 0.\n"), "wrong.inp:5: 'ten' should be a number"),
     (BODY.replace("4, 0., 10., 0.\n", "4, 0., nan, 0.\n"), "wrong.inp:5: 'nan' should be a number"),
     (BODY.replace("4, 0., 10., 0.\n", "4.5, 0., 1, 0.\n"), "wrong.inp:5: a line of *NODE begins with a whole number"),
@@ -225,7 +225,7 @@ REFUSED = [
     (BODY.replace("6,7,8", "6,7"), "wrong.inp:11: 8 numbers, expected 9"),
     (BODY.replace("6,7,8", "6,7,7"), "wrong.inp:10: element 1 of type C3D8I has a node twice"),
     (BODY + "1, 1,2,3,4,5,6,7,8\n", "wrong.inp:12: element 1 stands twice"),
-    (BODY + "*NSET, NSET=N\n1, 77\n", "wrong.inp:13: node 77 is not in the file"),
+    (BODY + "*BOUNDARY\nN, 1, 3\n", "wrong.inp:13: 'N' is neither a set of nodes"),
     (BODY + "*NSET, NSET=N, GENERATE\n1, 0, 1\n", "wrong.inp:13: GENERATE: from 1 to 0 by 1 is no range"),
     (BODY + "*SURFACE, NAME=S\nE, S7\n", "wrong.inp:13: elements of type C3D8I have no face 7"),
     (BODY + STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=N\n", "wrong.inp:17: there is no *MATERIAL N"),
@@ -239,6 +239,7 @@ REFUSED = [
     (BODY + "*NGEN\n1, 3, 1\n", "wrong.inp:12: *NGEN is not read"),
     (BODY + "*SURFACE INTERACTION, NAME=I\n*FRICTION, ROUGH\n", "wrong.inp:13: *FRICTION, ROUGH: squeal has no contact"),
     (BODY + "*MATERIAL, NAME=M\n*DENSITY\n", "wrong.inp:13: *DENSITY needs 1 number at least"),
-    ("1, 2, 3\n", "wrong.inp:1: '1,': a deck begins with a keyword"),
+    ("1, 2, 3\n", "there is no *NODE"),
+    (BODY + "*ELEMENT, TYPE=C3D5\n2, 1,2,3,4,5\n", "wrong.inp:12: *ELEMENT, TYPE=C3D5: squeal has no such solid"),
     ("", "there is no *NODE"),
 ]

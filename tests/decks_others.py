@@ -117,7 +117,7 @@ class Ansys:
              "part_2_12_cylinder_axis": "0,-1,0", "part_2_12_cylinder_centre": "1e-3,2e-3,3e-3",
              "supports": "foot,support", "foot_set": "foot", "foot_fix": "xyz", "support_set": "support", "support_fix": "x",
              "motions": "support_2_motion", "support_2_motion_set": "support_2", "support_2_motion_displacement": "5e-4,0,0",
-             "support_2_motion_directions": "x", "loads": "force_force,pressed_pressure,top_face_pressure", "force_force_set": "force",
+             "support_2_motion_directions": "x", "loads": "force_force,top_face_pressure,pressed_pressure", "force_force_set": "force",
              "force_force_force": "0,0,-8", "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "2e6",
              "top_face_pressure_set": "top_face", "top_face_pressure_pressure": "1.5e6",
              "contacts": "pair_5", "pair_5_surfaces": "contact_5,target_5", "pair_5_law": "constraint", "pair_5_mu": "0.45",

@@ -13,7 +13,8 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks import abaqus_mesh, abaqus_model, ansys_model, nastran
+from squeal.decks import ansys_model, nastran
+from squeal.decks.abaqus import CARDS as ABAQUS
 from squeal.decks.convert import convert, read_deck
 from squeal.decks.units import SYSTEMS
 from squeal.tables import BadInput
@@ -299,7 +300,7 @@ def strict(folder):
 def page():
     """Every keyword that is read stands in the table of scripts/README.md."""
     text = (Path(__file__).resolve().parents[1] / "scripts/README.md").read_text().partition("## A brake from Abaqus")[2]
-    known = set(abaqus_mesh.CARDS) | set(abaqus_model.CARDS) | nastran.KNOWN
+    known = set(ABAQUS) | nastran.KNOWN
     known |= ansys_model.KNOWN | {f"C3D{n}" for n in (4, 6, 10, 15, 20)} | set(SYSTEMS)
     missing = [word for word in sorted(known) if not re.search(rf"\b{word}\b", text)]
     check("every keyword stands in scripts/README.md", not missing, missing)

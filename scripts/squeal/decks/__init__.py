@@ -3,8 +3,10 @@
   elements.py   shapes: corners, edges, faces, numbers and order of nodes of Gmsh
   deck.py       what is in a deck, whichever code it is of: nodes, blocks of elements, sets, surfaces, materials, holders
   text.py       files as bytes; tables of numbers with commas or in columns, all at once, and line by line where one is wrong
-  abaqus.py     Abaqus and CalculiX: keywords, parts and instances; abaqus_mesh.py nodes, elements, sets, surfaces;
-                abaqus_material.py materials and sections; abaqus_model.py holders, contact, loads, steps; springs.py
+  abaqus.py     Abaqus and CalculiX: keywords, parts and instances; abaqus_words.py how keywords may be written;
+                abaqus_mesh.py nodes, elements; abaqus_sets.py sets, surfaces;
+                abaqus_material.py materials and sections; abaqus_model.py holders, contact, steps; abaqus_loads.py;
+                springs.py
   nastran.py    Nastran: files; nastran_cards.py cards in fields; nastran_case.py case control, sets that act;
                 nastran_systems.py coordinate systems; nastran_mesh.py grid points and solids; nastran_model.py properties,
                 materials, supports; nastran_springs.py, nastran_loads.py, nastran_contact.py

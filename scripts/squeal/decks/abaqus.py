@@ -1,16 +1,19 @@
 """Decks of Abaqus and CalculiX: keywords with their data, parts that are placed as instances, included files."""
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy
 
 from ..tables import BadInput
-from . import abaqus_material, abaqus_mesh, abaqus_model
+from . import abaqus_loads, abaqus_material, abaqus_mesh, abaqus_model, abaqus_sets
+from .abaqus_words import KEYWORDS, PARAMETERS, label, spelled
 from .deck import NOT_NEEDED, Deck, Index, Place
-from .text import read_bytes, real
+from .text import read_bytes, real, shorter
 
 DEEPEST = 10  # files that include each other
+BLANKS = re.compile(rb"^[ \t]+(?=\*)", re.MULTILINE)  # the first letter of a line of a keyword, but for blanks, is *
 PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "ORIENTATION": 3, "TRANSFORM": 3}  # others last
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
@@ -22,6 +25,37 @@ PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY",  # say nothing of th
 POINTS = "`points` of squeal do this, on a set of the mesh"
 INSTEAD = {"COUPLING": POINTS, "RIGID BODY": POINTS, "MASS": POINTS, "ROTARY INERTIA": POINTS,
            "CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
+
+# Options that change what a card says; others are listed
+KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPUT", "PARENT"},
+         "NSET": {"NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"},
+         "ELSET": {"ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"},
+         "SURFACE": {"NAME", "TYPE", "INTERNAL"}, "TRANSFORM": {"NSET", "TYPE"},
+         "MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
+         "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
+         "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
+         "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
+                          "TIED"},
+         "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
+         "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
+         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
+         "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}, "STATIC": {"SOLVER"},
+         "COMPLEX FREQUENCY": {"FRICTION DAMPING", "SOLVER", "RIGHT EIGENVECTORS"}}
+IDLE = {"STEP": {"UNSYMM"}, "FREQUENCY": {"SIM", "ACOUSTIC COUPLING"}, "STATIC": {"STABILIZE", "DIRECT", "ADIABATIC"}}
+
+
+def listed(do):
+    """Lists the options of a card that change what it says and are not known."""
+    def done(reader, scope, card):
+        do(reader, scope, card)
+        for name in sorted(set(card.options) - KNOWN[card.keyword] - {"TYPE"}):
+            idle = name in IDLE.get(card.keyword, ())
+            reader.deck.note(card.place, f"*{card.keyword}: option {name}{f', {NOT_NEEDED}' if idle else ' is not understood'}")
+    return done
+
+
+CARDS = {keyword: listed(do) for keyword, do in (
+    abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS).items()}
 
 
 @dataclass
@@ -35,36 +69,36 @@ class Card:
     def rows(self):
         """Place and fields of each line of data."""
         for text, first in self.pieces:
-            for number, line in enumerate(text.decode("latin-1").split("\n"), first):
-                if line.strip():
-                    fields = [word.strip() for word in line.split(",")]
-                    yield Place(self.place.file, number), fields[:-1] if len(fields) > 1 and not fields[-1] else fields
+            yield from self.rows_of(text, first)
+
+    def rows_of(self, text, first):
+        """The same of one piece."""
+        for number, line in enumerate(text.decode("latin-1").split("\n"), first):
+            if line.strip():
+                fields = [word.strip() for word in line.split(",")]
+                yield Place(self.place.file, number), fields[:-1] if len(fields) > 1 and not fields[-1] else fields
 
     def need(self, name):
         """The value of an option."""
         if not self.options.get(name):
             raise self.place.wrong(f"*{self.keyword} needs {name}=")
-        return name_of(self.options[name])
-
-
-def name_of(text):
-    """Names are the same in capitals and small letters."""
-    return text.strip().strip('"').strip().upper()
+        return label(self.options[name])
 
 
 def read_header(lines, place):
     """Keyword and options of a line that begins with *, with those that go on it."""
     words = [word.strip() for word in "".join(lines).split(",")]
-    keyword = " ".join(words[0].lstrip("*").split()).upper()
-    options = {}
+    keyword = spelled(words[0].lstrip("*"), KEYWORDS)
+    options, known = {}, PARAMETERS.get(keyword, {})
     for word in filter(None, words[1:]):
         key, _, value = word.partition("=")
-        options[" ".join(key.split()).upper()] = value.strip()
+        options[spelled(key, known)] = value.strip()
     return Card(keyword, options, place)
 
 
 def split_cards(data, file):
     """Cards of a file; comments, which begin with **, divide data into pieces."""
+    data = BLANKS.sub(b"", data)
     at, line, card, cards = 0, 1, None, []
     while at < len(data):
         if data.startswith(b"*", at):
@@ -87,7 +121,8 @@ def split_cards(data, file):
         end = len(data) if end < 0 else end
         text = data[at:end]
         if card is None and text.strip():
-            raise Place(file, line).wrong(f"'{text.split()[0][:40].decode('latin-1')}': a deck begins with a keyword (*...)")
+            card = Card("", {}, Place(file, line))
+            cards.append(card)
         if card:
             card.pieces.append((text, line))
         at, line = end + 1, line + text.count(b"\n") + 1
@@ -127,7 +162,7 @@ class Scope:
         self.deck, self.prefix = deck, prefix
         self.turn = numpy.eye(3) if turn is None else turn
         self.shift = numpy.zeros(3) if shift is None else shift
-        self.nodes, self.cells, self.others = Index(), Index(), Index()
+        self.nodes, self.cells, self.others = Index(), Index(), Index(once=False)
         self.node_sets, self.cell_sets, self.surfaces, self.axes = {}, {}, {}, {}
         self.other_sets = {}  # elsets -> numbers of elements that are no volumes
         self.holders = {}  # numbers of spring elements -> (type, nodes, place)
@@ -146,7 +181,8 @@ class Reader:
         self.material = self.interaction = self.changed = None
         self.interactions, self.turned, self.spring_cards, self.pairs = {}, {}, [], []
         self.unplaced = {}  # name of a part without an instance so far -> its place
-        self.steps, self.loads = 0, {}  # keyword, set, direction of a load -> (step, loads)
+        self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, abaqus_loads.py
+        self.supports = []  # (step, Support) as they come
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
 
     def split(self, name, scope):
@@ -202,7 +238,7 @@ class Reader:
                 raise card.place.wrong(f"part {name} stands twice")
             self.parts[name], self.unplaced[name] = inside, card.place
             return
-        name, part = card.need("NAME"), name_of(card.options.get("PART", ""))
+        name, part = card.need("NAME"), label(card.options.get("PART", ""))
         if name in self.instances:
             raise card.place.wrong(f"instance {name} stands twice")
         if part and part not in self.parts:
@@ -214,7 +250,7 @@ class Reader:
     def replay(self, cards, scope):
         """Does what cards say: nodes and elements first, then sets, then what refers to them."""
         for _, card in sorted(((PHASES.get(card.keyword, 4), card) for card in cards), key=lambda pair: pair[0]):
-            do = abaqus_mesh.CARDS.get(card.keyword) or abaqus_model.CARDS.get(card.keyword)
+            do = CARDS.get(card.keyword)
             if do:
                 do(self, scope, card)
             elif card.keyword in GEOMETRY:
@@ -223,15 +259,20 @@ class Reader:
                 self.deck.note(card.place, f"*{card.keyword}: output, {NOT_NEEDED}")
             elif card.keyword in ANALYSES:
                 self.deck.note(card.place, f"*{card.keyword}: an analysis, {NOT_NEEDED}")
+            elif not card.keyword:
+                words = b" ".join(text for text, _ in card.pieces).split() or [b"*"]
+                self.deck.note(card.place, f"'{shorter(words[0])}': of no keyword, not taken")
             elif card.keyword not in PLAIN:
                 self.deck.note(card.place, f"*{card.keyword}: " + (f"not in the scene; {INSTEAD[card.keyword]}"
                                                                    if card.keyword in INSTEAD else "not understood"))
-            if card.keyword not in abaqus_material.KEEP_MATERIAL:
-                self.material = None if card.keyword != "MATERIAL" else self.material
+            if card.keyword in abaqus_material.END_MATERIAL:
+                self.material = None
 
     def finish(self):
         """What needs all of the deck."""
+        abaqus_loads.finish_loads(self)
         abaqus_model.finish(self)
+        abaqus_material.finish_sections(self.deck)
         for name, place in self.unplaced.items():
             self.deck.note(place, f"*PART {name}: no *INSTANCE places it, not in the mesh")
         if not self.steps:

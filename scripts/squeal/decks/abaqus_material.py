@@ -2,13 +2,17 @@
 
 import numpy
 
-from .abaqus_mesh import reader_cells
+from ..tables import BadInput
+from .abaqus_sets import reader_cells
+from .abaqus_words import choice, label
 from .deck import Axes, Material, Section
 from .elastic import engineering
 from .text import real
 
-KEEP_MATERIAL = {"MATERIAL", "DENSITY", "ELASTIC", "DAMPING", "EXPANSION", "PLASTIC", "CONDUCTIVITY", "SPECIFIC HEAT",
-                 "USER MATERIAL", "DEPVAR", "HYPERELASTIC", "FRICTION", "SURFACE BEHAVIOR"}
+END_MATERIAL = {"SURFACE INTERACTION", "CONNECTOR BEHAVIOR", "GASKET BEHAVIOR", "FLUID BEHAVIOR", "STEP"}  # have cards of their own
+
+STIFFNESSES = ("ISOTROPIC", "ORTHOTROPIC", "ENGINEERING CONSTANTS", "LAMINA", "ANISOTROPIC", "TRACTION", "COUPLED TRACTION",
+               "SHEAR", "SHORT FIBER", "BILAMINA")
 
 
 def numbers(card):
@@ -52,12 +56,12 @@ def do_density(reader, _, card):
 
 
 def do_elastic(reader, _, card):
-    material, kind = material_of(reader, card), " ".join(card.options.get("TYPE", "ISOTROPIC").upper().split())
+    material, kind = material_of(reader, card), choice(card.options.get("TYPE", "ISOTROPIC"), *STIFFNESSES)
     rows = numbers(card)
-    if kind in ("ISOTROPIC", "ISO"):
+    if kind == "ISOTROPIC":
         row, rest = first_row(card, 2)
         material.young, material.poisson = (row[0],), (row[1],)
-    elif kind in ("ENGINEERING CONSTANTS", "ORTHO", "ORTHOTROPIC"):
+    elif kind in ("ENGINEERING CONSTANTS", "ORTHOTROPIC"):
         values, used = [], 0
         while used < len(rows) and len(values) < 9:
             values += rows[used][1]
@@ -96,17 +100,17 @@ def read_axes(_, scope, card):
     rows = numbers(card)
     if not rows or len(rows[0][1]) not in (6, 9):
         raise card.place.wrong("*ORIENTATION needs two points, six numbers")
-    if card.options.get("DEFINITION", "COORDINATES").upper() != "COORDINATES":
+    if choice(card.options.get("DEFINITION", "COORDINATES"), "COORDINATES", "NODES", "OFFSET TO NODES") != "COORDINATES":
         raise card.place.wrong("*ORIENTATION: only DEFINITION=COORDINATES is read")
     points = numpy.array(rows[0][1]).reshape(-1, 3)
-    system = card.options.get("SYSTEM", "RECTANGULAR").upper()
+    system = choice(card.options.get("SYSTEM", "RECTANGULAR"), "RECTANGULAR", "CYLINDRICAL", "SPHERICAL", "Z RECTANGULAR", "USER")
     about, angle = (rows[1][1] + [0, 0])[:2] if len(rows) > 1 else (0, 0)
-    if system.startswith("C"):
+    if system == "CYLINDRICAL":
         if angle:
             raise rows[1][0].wrong("*ORIENTATION: a cylinder's axes that are turned about one of them are not read")
         place = scope.turn @ points[0] + scope.shift
         return Axes(True, axis_of(scope.turn @ (points[1] - points[0]), card), place, card.place)
-    if not system.startswith("R"):
+    if system != "RECTANGULAR":
         raise card.place.wrong(f"*ORIENTATION, SYSTEM={system}: only RECTANGULAR and CYLINDRICAL are read")
     origin = points[2] if len(points) > 2 else numpy.zeros(3)
     first = axis_of(points[0] - origin, card)
@@ -136,7 +140,11 @@ def axis_of(vector, card):
 
 
 def do_orientation(reader, scope, card):
-    scope.axes[card.need("NAME")] = read_axes(reader, scope, card)
+    """Axes, or the error that they are, which counts only where a material needs them."""
+    try:
+        scope.axes[card.need("NAME")] = read_axes(reader, scope, card)
+    except BadInput as error:
+        scope.axes[card.need("NAME")] = error
 
 
 def do_section(reader, scope, card):
@@ -144,13 +152,24 @@ def do_section(reader, scope, card):
     if name in scope.other_sets and name not in scope.cell_sets:
         reader.deck.note(card.place, f"*SOLID SECTION: the elements of {name} are none of squeal's")
         return
-    axes = card.options.get("ORIENTATION", "").strip('"').upper()
+    axes = label(card.options.get("ORIENTATION", ""))
     inner, local = reader.split(axes, scope)
     if axes and local not in inner.axes:
         raise card.place.wrong(f"there is no *ORIENTATION {axes}")
     cells = reader_cells(reader, scope, name, card.place)
     name = scope.prefix if scope.prefix and len(cells) == scope.cells.n else scope.full(name)
     reader.deck.sections.append(Section(name, cells, material, inner.axes[local] if axes else None, card.place))
+
+
+def finish_sections(deck):
+    """Sections have their materials, and axes where these need them."""
+    for section in deck.sections:
+        if section.material not in deck.materials:
+            raise section.place.wrong(f"there is no *MATERIAL {section.material}")
+        if isinstance(section.axes, BadInput):
+            if deck.materials[section.material].shear:
+                raise section.axes
+            section.axes = None
 
 
 CARDS = {"MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,

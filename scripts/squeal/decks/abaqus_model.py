@@ -1,28 +1,17 @@
-"""Abaqus: holders, contact, loads and steps."""
+"""Abaqus: holders, contact and steps."""
 
 import numpy
 
-from .abaqus_material import CARDS as MATERIAL_CARDS
 from .abaqus_material import first_row, numbers, other_rows
-from .abaqus_mesh import SPRINGS, check_faces, reader_cells, reader_nodes
-from .deck import NOT_NEEDED, Contact, Load, Support, Tie, Turning
+from .abaqus_mesh import SPRINGS
+from .abaqus_sets import reader_nodes, surface_of
+from .abaqus_words import choice, label
+from .deck import NOT_NEEDED, Contact, Support, Tie, Turning
 from .springs import ground_springs
 from .text import real, whole
 
 HELD = {"ENCASTRE": (0, 1, 2), "PINNED": (0, 1, 2), "XSYMM": (0,), "YSYMM": (1,), "ZSYMM": (2,), "XASYMM": (1, 2),
         "YASYMM": (0, 2), "ZASYMM": (0, 1)}
-# Options that change what a card says; others are listed
-KNOWN = {"MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
-         "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
-         "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
-         "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
-                          "TIED"},
-         "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
-         "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
-         "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
-         "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}, "STATIC": {"SOLVER"},
-         "COMPLEX FREQUENCY": {"FRICTION DAMPING", "SOLVER", "RIGHT EIGENVECTORS"}}
-IDLE = {"STEP": {"UNSYMM"}, "FREQUENCY": {"SIM", "ACOUSTIC COUPLING"}, "STATIC": {"STABILIZE", "DIRECT", "ADIABATIC"}}
 
 
 def direction(word, place, keyword, reader):
@@ -43,20 +32,23 @@ def is_turned(reader, nodes, place, keyword):
 
 
 def do_boundary(reader, scope, card):
-    if card.options.get("TYPE", "DISPLACEMENT").upper() != "DISPLACEMENT":
-        reader.deck.note(card.place, f"*BOUNDARY, TYPE={card.options['TYPE']}: not understood")
+    kind = choice(card.options.get("TYPE", "DISPLACEMENT"), "DISPLACEMENT", "VELOCITY", "ACCELERATION")
+    from_elsewhere = [word for word in ("SUBMODEL", "USER", "MASS FLOW") if word in card.options]
+    if kind != "DISPLACEMENT" or from_elsewhere:
+        reader.deck.note(card.place, f"*BOUNDARY, {from_elsewhere[0] if from_elsewhere else f'TYPE={kind}'}: not understood")
         return
-    if card.options.get("OP", "MOD").upper() == "NEW":
-        reader.deck.note(card.place, "*BOUNDARY, OP=NEW: supports of earlier steps are kept in the scene; see which you want")
+    if choice(card.options.get("OP", "MOD"), "NEW", "MOD") == "NEW":
+        reader.deck.note(card.place, "*BOUNDARY, OP=NEW: supports of earlier steps act no longer; see which you want")
+        reader.supports = [row for row in reader.supports if row[0] == reader.steps]
     for place, fields in card.rows():
         nodes = reader_nodes(reader, scope, fields[0], place)
-        if is_turned(reader, nodes, place, card.keyword):
-            continue
         word = fields[1].upper() if len(fields) > 1 else ""
         values = {d: 0.0 for d in HELD[word]} if word in HELD else boundary_values(reader, place, fields)
+        if values != {0: 0.0, 1: 0.0, 2: 0.0} and is_turned(reader, nodes, place, card.keyword):
+            continue
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
-        if values:
-            reader.deck.supports.append(Support(nodes, values, name, place))
+        if values and len(nodes):
+            reader.supports.append((reader.steps, Support(nodes, values, name, place)))
 
 
 def boundary_values(reader, place, fields):
@@ -66,16 +58,32 @@ def boundary_values(reader, place, fields):
     first = whole(fields[1], place, "a degree of freedom")
     last = whole(fields[2], place, "a degree of freedom") if len(fields) > 2 and fields[2] else first
     value = real(fields[3], place) if len(fields) > 3 and fields[3] else 0.0
-    if not 1 <= first <= last <= 31:
+    if not 0 <= first <= last <= 31:
         raise place.wrong(f"*BOUNDARY: degrees of freedom {first} to {last}")
-    if last > 3 and not (first <= 3 and last <= 6):
-        reader.deck.note(place, f"*BOUNDARY: degrees of freedom {first} to {last}, those above 3 solids do not have")
-    return {dof - 1: value for dof in range(first, min(last, 3) + 1)}
+    if first < 1 or (last > 3 and not (first <= 3 and last <= 6)):
+        reader.deck.note(place, f"*BOUNDARY: degrees of freedom {first} to {last}, those beyond 1 to 3 solids do not have")
+    return {dof - 1: value for dof in range(max(first, 1), min(last, 3) + 1)}
+
+
+def finish_supports(reader):
+    """Supports of the deck: of a node and direction the last line counts, whichever set named it."""
+    deck, last, kept = reader.deck, numpy.full((reader.deck.n_nodes, 3), numpy.nan), []
+    for _, support in reversed(reader.supports):
+        left = {}
+        for d, value in support.values.items():
+            there = last[support.nodes, d]
+            left[d] = numpy.isnan(there) | (there == value)
+            last[support.nodes[left[d]], d] = value
+        if all(free.all() for free in left.values()):
+            kept.append(support)
+            continue
+        kept += [Support(support.nodes[free], {d: support.values[d]}, "", support.place) for d, free in left.items() if free.any()]
+    deck.supports += reversed(kept)
 
 
 def set_name(reader, scope, word):
     """The name of a set in the deck."""
-    inner, name = reader.split(word.strip('"').upper(), scope)
+    inner, name = reader.split(label(word), scope)
     return inner.full(name)
 
 
@@ -96,6 +104,10 @@ def do_spring(reader, scope, card):
 
 
 def do_tie(reader, scope, card):
+    other = [word for word in ("CYCLIC SYMMETRY", "MULTISTAGE", "FLUID PERIODIC") if word in card.options]
+    if other:
+        reader.deck.note(card.place, f"*TIE, {other[0]}: not read, and no glue; the sector is a body of its own")
+        return
     for place, fields in card.rows():
         slave, master = surface_pair(reader, scope, place, fields)
         name = card.options.get("NAME", "tie").strip('"')
@@ -118,13 +130,7 @@ def surface_pair(reader, scope, place, fields):
     """Names of two surfaces in the deck."""
     if len(fields) < 2:
         raise place.wrong("two surfaces are needed: slave, master")
-    found = []
-    for word in fields[:2]:
-        inner, name = reader.split(word.strip('"').upper(), scope)
-        if name not in inner.surfaces:
-            raise place.wrong(f"there is no surface '{word[:60]}'")
-        found.append(inner.surfaces[name])
-    return found
+    return [surface_of(reader, scope, word, place) for word in fields[:2]]
 
 
 def do_interaction(reader, _, card):
@@ -152,7 +158,8 @@ def do_friction(reader, _, card):
 
 
 def do_behavior(reader, _, card):
-    kind = card.options.get("PRESSURE-OVERCLOSURE", "HARD").upper()
+    kind = choice(card.options.get("PRESSURE-OVERCLOSURE", "HARD"), "HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TIED",
+                  "SCALE FACTOR", "USER DEFINED")
     values = reader.interactions.get(reader.interaction)
     if values is None:
         raise card.place.wrong("*SURFACE BEHAVIOR outside of a *SURFACE INTERACTION")
@@ -178,76 +185,9 @@ def do_pair(reader, scope, card):
         reader.pairs.append((Contact(interaction, *surface_pair(reader, scope, place, fields), place), interaction, "TIED" in card.options))
 
 
-def forget(reader, card):
-    """OP=NEW: the loads of earlier steps act no longer."""
-    if card.options.get("OP", "MOD").upper() == "NEW":
-        reader.loads = {key: value for key, value in reader.loads.items() if key[0] != card.keyword or value[0] == reader.steps}
-
-
-def act(reader, key, load=None):
-    """Adds a load, None where it is 0; the same in an earlier step acts no longer (OP=MOD)."""
-    step, loads = reader.loads.get(key, (0, []))
-    kept = loads if step == reader.steps else []
-    reader.loads[key] = reader.steps, kept + ([load] if load else [])
-
-
-def do_cload(reader, scope, card):
-    forget(reader, card)
-    for place, fields in card.rows():
-        if len(fields) != 3:
-            raise place.wrong(f"*CLOAD: {len(fields)} fields, expected a node or set, a direction, a force")
-        nodes, d = reader_nodes(reader, scope, fields[0], place), direction(fields[1], place, card.keyword, reader)
-        value = real(fields[2], place)
-        if d is None or is_turned(reader, nodes, place, card.keyword):
-            continue
-        force = numpy.zeros(3)
-        force[d] = value
-        name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
-        key = (card.keyword, name or int(nodes[0]), d)
-        act(reader, key, Load(name, place, nodes=nodes, force=force) if value else None)
-
-
-def do_dload(reader, scope, card):
-    forget(reader, card)
-    for place, fields in card.rows():
-        kind = fields[1].upper() if len(fields) > 1 else ""
-        if kind == "GRAV":
-            gravity(reader, scope, place, fields)
-        elif len(kind) == 2 and kind[0] == "P" and kind[1].isdigit() and len(fields) == 3:
-            faces = check_faces(reader.deck, reader_cells(reader, scope, fields[0], place), int(kind[1]), place)
-            act(reader, (card.keyword, faces.tobytes()), Load("", place, faces=faces, pressure=real(fields[2], place)))
-        else:
-            reader.deck.note(place, f"*DLOAD {kind}: not understood")
-
-
-def gravity(reader, scope, place, fields):
-    """Acceleration and direction, on all cells."""
-    if len(fields) != 6:
-        raise place.wrong("*DLOAD GRAV needs an acceleration and three components of its direction")
-    values = numpy.array([real(word or "0", place) for word in fields[2:]])
-    cells = reader_cells(reader, scope, fields[0], place) if fields[0] else numpy.arange(reader.deck.n_cells)
-    if not numpy.linalg.norm(values[1:]) > 0:
-        raise place.wrong("*DLOAD GRAV has no direction")
-    if len(cells) < reader.deck.n_cells or reader.deck.gravity:
-        reader.deck.note(place, "*DLOAD GRAV: gravity of squeal is one, and acts on all parts; not taken")
-        return
-    reader.deck.gravity = values[0] * values[1:] / numpy.linalg.norm(values[1:]), place
-
-
-def do_dsload(reader, scope, card):
-    forget(reader, card)
-    for place, fields in card.rows():
-        if len(fields) != 3 or fields[1].upper() != "P":
-            reader.deck.note(place, f"*DSLOAD {', '.join(fields[1:2])}: not understood")
-            continue
-        name = surface_pair(reader, scope, place, [fields[0], fields[0]])[0]
-        load = Load(name, place, faces=reader.deck.surfaces[name][0], pressure=real(fields[2], place))
-        act(reader, (card.keyword, name), load)
-
-
 def do_motion(reader, scope, card):
     """Nodes that turn: a set, rad per time, two points of the axis, by the right-hand rule from the first to the second."""
-    if "ROTATION" not in card.options or card.options.get("TYPE", "VELOCITY").upper() != "VELOCITY":
+    if "ROTATION" not in card.options or choice(card.options.get("TYPE", "VELOCITY"), "VELOCITY", "DISPLACEMENT") != "VELOCITY":
         reader.deck.note(card.place, "*MOTION: only ROTATION with TYPE=VELOCITY is understood")
         return
     for place, fields in card.rows():
@@ -264,8 +204,8 @@ def do_motion(reader, scope, card):
 def do_step(reader, _, card):
     reader.steps += 1
     if reader.steps == 2:
-        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same set and direction "
-                                     "the last one; see which you want")
+        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same node and "
+                                     "direction the last one; see which you want")
     if card.options.get("NLGEOM", "NO").upper() in ("", "YES"):
         reader.deck.differ(card.place, "*STEP, NLGEOM: motion of squeal is small; -static_geometric and -static_follower give "
                                        "modes the stiffness of the preload")
@@ -308,8 +248,8 @@ def finish_steps(reader):
 
 
 def finish(reader):
-    """Loads that act, contact of all pairs, springs."""
-    reader.deck.loads += [load for _, loads in reader.loads.values() for load in loads]
+    """Supports, contact of all pairs, springs."""
+    finish_supports(reader)
     for contact, interaction, tied in reader.pairs:
         values = reader.interactions.get(interaction)
         if values is None:
@@ -322,24 +262,9 @@ def finish(reader):
         reader.deck.contacts.append(contact)
     ground_springs(reader, SPRINGS)
     finish_steps(reader)
-    for section in reader.deck.sections:
-        if section.material not in reader.deck.materials:
-            raise section.place.wrong(f"there is no *MATERIAL {section.material}")
 
 
-def listed(do):
-    """Lists the options of a card that change what it says and are not known."""
-    def done(reader, scope, card):
-        do(reader, scope, card)
-        for name in sorted(set(card.options) - KNOWN[card.keyword] - {"TYPE"}):
-            idle = name in IDLE.get(card.keyword, ())
-            reader.deck.note(card.place, f"*{card.keyword}: option {name}{f', {NOT_NEEDED}' if idle else ' is not understood'}")
-    return done
-
-
-CARDS = {keyword: listed(do) for keyword, do in (MATERIAL_CARDS | {
-    "BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
-    "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
-    "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "CLOAD": do_cload, "DLOAD": do_dload,
-    "DSLOAD": do_dsload, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static, "FREQUENCY": do_frequency,
-    "COMPLEX FREQUENCY": do_complex}).items()}
+CARDS = {"BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
+         "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
+         "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
+         "FREQUENCY": do_frequency, "COMPLEX FREQUENCY": do_complex}

@@ -113,18 +113,22 @@ class Assembly:
         self.of_nodes, self.of_faces = {}, {}  # name in the deck -> name of the set
 
     def parts(self, used):
-        """Parts by sections; no cell is in two, none is in no part."""
+        """Parts by sections; a cell has the last of its sections, none is in no part."""
         part_of = numpy.full(self.deck.n_cells, -1)
         for number, section in enumerate(self.deck.sections):
-            if not len(section.cells):
-                self.deck.note(section.place, f"section of {section.name}: has no elements")
-                continue
-            if (part_of[section.cells] >= 0).any():
-                other = self.deck.sections[part_of[section.cells].max()]
-                raise section.place.wrong(f"some elements of {section.name} have the section of {other.name} too")
+            before = part_of[section.cells]
+            for other in numpy.unique(before[before >= 0]).tolist():
+                self.deck.differ(section.place, f"{(before == other).sum()} elements of {self.deck.sections[other].name} have the later "
+                                                f"section of {section.name}")
             part_of[section.cells] = number
+        for number, section in enumerate(self.deck.sections):
+            cells = numpy.flatnonzero(part_of == number)
+            if not len(cells):
+                self.deck.note(section.place, f"section of {section.name}: has no elements" + (
+                    " but those of later sections" if len(section.cells) else ""))
+                continue
             name = self.things.new(self.sets.new(section.name))
-            self.result.volumes[name] = section.cells
+            self.result.volumes[name] = cells
             self.result.entries.append(part_entry(name, section, used[section.material]))
         if (part_of < 0).any():
             cell = int(numpy.flatnonzero(part_of < 0)[0])

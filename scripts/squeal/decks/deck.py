@@ -133,10 +133,10 @@ class Tie:
 
 
 class Index:
-    """Numbers of nodes or elements -> places in their array; a number that stands twice is an error."""
+    """Numbers of nodes or elements -> places in their array; a number that stands twice is an error where it must not."""
 
-    def __init__(self):
-        self.parts, self.lines, self.n, self.ready = [], [], 0, None
+    def __init__(self, once=True):
+        self.once, self.parts, self.lines, self.n, self.ready = once, [], [], 0, None
 
     def add(self, ids, at, lines, file):
         """Numbers, their places, lines of the file."""
@@ -152,7 +152,7 @@ class Index:
             at = numpy.concatenate([at for _, at in self.parts] or [numpy.empty(0, int)])
             order = numpy.argsort(ids, kind="stable")
             twice = numpy.flatnonzero(ids[order][1:] == ids[order][:-1])
-            if len(twice):
+            if len(twice) and self.once:
                 later = order[twice + 1].min()
                 raise self.line_of(later).wrong(f"{what} {ids[later]} stands twice")
             self.ready = ids[order], at[order]

@@ -87,12 +87,13 @@ def add_springs(assembly):
 
 
 def add_loads(assembly):
-    """Forces on nodes, summed over a set; pressures on surfaces; gravity is of the scene as a whole."""
-    named, single, places, pressed = {}, {}, {}, {}
+    """Forces on nodes and pressures on faces, summed: over a set or surface that has a name, else at each node and face; gravity
+    is of the scene as a whole."""
+    named, single, places = {}, {}, {}
     for load in assembly.deck.loads:
         if load.faces is not None:
-            pressed.setdefault((load.name, load.pressure), []).append(load)
-        elif load.name:
+            continue
+        if load.name:
             force, where, _ = named.setdefault(load.name, (numpy.zeros(3), [], load.nodes))
             force += load.force
             where.append(load.place)
@@ -104,12 +105,41 @@ def add_loads(assembly):
         force_entry(assembly, (name, name), nodes, force, where)
     for force, nodes in grouped(single, 3):
         force_entry(assembly, ("", "force"), nodes, force, [places[int(node)] for node in nodes])
-    for (name, pressure), loads in pressed.items():
-        comment = summary([load.place for load in loads])
-        faces = numpy.concatenate([load.faces for load in loads])
-        written = assembly.face_set(faces, name, "pressed")
-        assembly.add("loads", f"{written}_pressure", [("set", written, comment),
-                                                      ("pressure", ("stress", (pressure,)), f"{comment} into the body")])
+    add_pressures(assembly, [load for load in assembly.deck.loads if load.faces is not None])
+
+
+def add_pressures(assembly, loads):
+    """Pressures on surfaces that have a name, and on other faces by their sum."""
+    named, single = {}, []
+    for load in loads:
+        if load.name:
+            before = named.setdefault(load.name, [0.0, [], load.faces])
+            before[0] += load.pressure
+            before[1].append(load.place)
+        else:
+            single.append(load)
+    for name, (pressure, where, faces) in named.items():
+        pressure_entry(assembly, (name, name), faces, pressure, where)
+    if not single:
+        return
+    faces, at = numpy.unique(numpy.concatenate([load.faces for load in single]), axis=0, return_inverse=True)
+    total, first = numpy.zeros(len(faces)), numpy.full(len(faces), len(single))
+    of_load = numpy.repeat(numpy.arange(len(single)), [len(load.faces) for load in single])
+    numpy.add.at(total, at.ravel(), numpy.array([load.pressure for load in single])[of_load])
+    numpy.minimum.at(first, at.ravel(), of_load)
+    for pressure in dict.fromkeys(total[numpy.argsort(first, kind="stable")].tolist()):
+        chosen = total == pressure
+        where = [single[number].place for number in numpy.unique(first[chosen]).tolist()]
+        pressure_entry(assembly, ("", "pressed"), faces[chosen], pressure, where)
+
+
+def pressure_entry(assembly, names, faces, pressure, where):
+    """A pressure on a surface."""
+    if not len(faces) or not pressure:
+        return
+    written, comment = assembly.face_set(faces, *names), summary(where)
+    assembly.add("loads", f"{written}_pressure", [("set", written, comment),
+                                                  ("pressure", ("stress", (pressure,)), f"{comment} into the body")])
 
 
 def force_entry(assembly, names, nodes, force, where):

@@ -22,12 +22,18 @@ def read_bytes(path):
         data = path.read_bytes()
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}") from None
+    data = data.removeprefix(b"\xef\xbb\xbf")  # the mark of UTF-8
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     control = CONTROL.search(data)
     if control:
         raise Place(str(path), data.count(b"\n", 0, control.start()) + 1).wrong(f"the byte {control[0][0]} is no text")
     return data
+
+
+def shorter(word):
+    """The beginning of bytes, as text."""
+    return word[:40].decode("latin-1")
 
 
 def whole(text, place, what="a number"):
