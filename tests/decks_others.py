@@ -75,7 +75,8 @@ class NastranCase:
             ["GRID\t1\t0\t0.\t0.\t0.", "GRID,2,0,10.,0.,0.", "GRID,3,0,10.,10.,0.", " GRID,4,0,0.,10.,0. $ behind a blank",
              "GRID,5,,0.,10.,0.", "=,*(1),=,=,=,*(10.)", "=,*(1),=,*(10.),==", "GRID*,8,,10.,10.", "*,0.,7", "GRID,2,0,10.,0.,0."]) + "\n"}
     SCENE = {"model_gravity": "0,0,-1.962", "parts": "part_1", "part_1_young": "210e9", "part_1_poisson": "0.3", "part_1_density": "7800",
-             "supports": "support,support_2", "support_set": "support", "support_fix": "y", "support_2_set": "support_2", "support_2_fix": "xyz",
+             "supports": "support,support_2", "support_set": "support", "support_fix": "y",
+             "support_2_set": "support_2", "support_2_fix": "xyz",
              "loads": "force_force,force_2_force,force_3_force,pressed_pressure,pressed_2_pressure",
              "force_force_set": "force", "force_force_force": "0,0,-6", "force_2_force_set": "force_2", "force_2_force_force": "0,0,-12",
              "force_3_force_set": "force_3", "force_3_force_force": "6,0,0", "pressed_pressure_set": "pressed",
@@ -129,6 +130,44 @@ class Ansys:
     FORCES = {"force_force": (0, 0, -8), "pressed_pressure": (0, 0, -200), "top_face_pressure": (0, 0, -150)}
 
 
+class AnsysCase:
+    """What current versions write, and inputs of Workbench: UNBL, ETBLOCK, types by name, blocks without SOLID, a component twice,
+    selections, ranges, blocks of supports and forces, nodes with their own axes, a pyramid, a part without a material."""
+    UNITS = "mm-t-s"
+    FILES = {"case.cdb": "\n".join([
+        "/COM,ANSYS RELEASE 2025 R1", "/PREP7", "/NOLIST", "*SET,TID,3", "cid=4", "ETBLOCK,        2,        2", "(2i9,19a9)",
+        f"{1:9d}{185:9d}" + f"{0:9d}" * 19, f"{2:9d}{170:9d}" + f"{0:9d}" * 19, "       -1", "et,tid,SOLID185", "ET,CID,CONTA174",
+        "NBLOCK,6,SOLID,        18,         9", "(1i7,2i9,6e21.13e3)",
+        *(f"{k:7d}{0:9d}{0:9d}" + "".join(f"{v:21.13E}" for v in place) + (f"{90.:21.13E}" if k == 8 else "")
+          for k, place in enumerate(CORNERS, 1)),
+        f"{9:7d}{0:9d}{0:9d}" + "".join(f"{v:21.13E}" for v in (5, 5, -5)), "N,UNBL,LOC,       -1,", "nblock,3,,18", "(1i9,3e20.9e3)",
+        *(f"{10 + k:9d}" + "".join(f"{v:20.9E}" for v in (x, y, z + 20)) for k, (x, y, z) in enumerate(CORNERS, 1)), "-1",
+        "EBLOCK,19,SOLID,         2,         2", "(19i10)",
+        *("".join(f"{v:10d}" for v in row) for row in (
+            (1, 1, 1, 1, 0, 0, 0, 0, 8, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8), (1, 1, 1, 1, 0, 0, 0, 0, 8, 0, 2, 1, 2, 3, 4, 9, 9, 9, 9))),
+        "        -1", "eblock,10,,,1", "(15i9)", "".join(f"{v:9d}" for v in (3, 3, 3, 3, 0, *range(11, 19))), "-1",
+        "CMBLOCK,FOOT    ,NODE,       2  ! twice", "(8i10)", f"{5:10d}{-8:10d}", "CMBLOCK,FOOT    ,NODE,       3,,,,,KOPT", "(8i10)",
+        f"{1:10d}{-3:10d}{77:10d}", "CMBLOCK,UPPER,NODE,2", "(8i10)", f"{15:10d}{-18:10d}",
+        "MPTEMP,UNBL, 1, 1,  0.00000000    ,", "MPDATA,UNBL, 1,EX  ,       1, 1,  210000.000    ,",
+        "MPDATA,UNBL, 1,NUXY,       1, 1, 0.3    ,",
+        "MPDATA,UNBL, 1,DENS,       1, 1, 7.8E-9    ,", "TYPE, 1  $ MAT, 1  $ REAL, 1",
+        "LOCAL,UNBL,LOC,       12,1,  1.0,  2.0,  0.0", "SECBLOCK,1", "  1.0, 2.0", "KEYO,1,2,3",
+        "D,11,UX,0,,13,2,UZ", "D,8,UX,0", "D,8,UZ,0.25", "D,FOOT,ALL,0,0", "D,12,UY,%table%",
+        "DBLOCK,1", "(i9,a6,2(pg16.9))", f"{14:9d}{'UY':>6}{0.:16.9G}{0.:16.9G}", "       -1", "F,11,FX,1.5,0,14", "F,8,FX,2",
+        "CMSEL,S,UPPER", "SF,ALL,PRES,2.5", "NSEL,S,LOC,Z,0", "D,ALL,ALL,0", "ALLSEL,ALL", "OMEGA,0,0,0", "CE,3", "/GO", "FINISH"]) + "\n"}
+    # Node 8 is turned by 90 degrees about z: its x is y, its y is -x; UX and UZ hold y and move z
+    SCENE = {"parts": "part_1,part_3", "part_1_young": "210e9", "part_1_poisson": "0.3", "part_1_density": "7800",
+             "supports": "foot,support,support_2,support_3", "support_set": "support", "support_fix": "xz", "foot_set": "foot",
+             "foot_fix": "xyz", "support_2_set": "support_2", "support_2_fix": "y", "support_3_set": "support_3", "support_3_fix": "y",
+             "motions": "support_3_motion", "support_3_motion_set": "support_3", "support_3_motion_displacement": "0,0,2.5e-4",
+             "support_3_motion_directions": "z", "loads": "force_force,force_2_force,pressed_pressure", "force_force_set": "force",
+             "force_force_force": "6,0,0", "force_2_force_set": "force_2", "force_2_force_force": "0,2,0",
+             "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "2.5e6", "modes_target": "1", "modes_count": "20"}
+    LISTED = ["case.cdb:38: differs: SOLID185", "case.cdb:39: 1 pyramids of SOLID185", "case.cdb:48: CMBLOCK FOOT: 1 of its numbers",
+              "case.cdb:43: there is no material 3", "case.cdb:60: SECBLOCK", "case.cdb:62: KEYOPT", "case.cdb:67: D UY: '%table%'",
+              "case.cdb:77: D,ALL: of nodes that NSEL", "case.cdb:80: CE"]
+
+
 GRIDS = "".join(f"GRID,{k},,{x}.,{y}.,{z}.\n" for k, (x, y, z) in enumerate(CORNERS, 1))
 HEXA = "CHEXA,1,1,1,2,3,4,5,6\n,7,8\n"
 PROPERTY = "PSOLID,1,1\nMAT1,1,2.1E5,,0.3,7.8E-9\n"
@@ -162,7 +201,9 @@ REFUSED = {"bdf": [
     (NBLOCK.replace("ET,1,185\n", "") + EBLOCK, "wrong.cdb:14: EBLOCK: there is no ET 1"),
     (NBLOCK.replace("        3        0", "        2        0") + EBLOCK, "wrong.cdb:6: node 2 stands twice"),
     (NBLOCK.replace("1.0000000000000E+01", "1.0000000000x00E+01", 1) + EBLOCK, "wrong.cdb:5: '1.0000000000x00E+01' should be a number"),
-    (NBLOCK + EBLOCK, "wrong.cdb:15: there is no material 1"),
+    (NBLOCK + EBLOCK, "units are in doubt"),
+    (NBLOCK.replace("ET,1,185", "ET,1,0x10") + EBLOCK, "wrong.cdb:1: ET needs a number and a type"),
+    (NBLOCK.replace("3i9,6e21.13e3", "3i9,6z21"), "wrong.cdb:3: format (3i9,6z21) is not read"),
     (NBLOCK + EBLOCK + "CMBLOCK,A,NODE,12\n(8i10)\n         1\n", "wrong.cdb:17: CMBLOCK announces 12 items, and the file ends"),
     ("ET,1,185\n", "there is no NBLOCK"),
 ]}

@@ -155,7 +155,7 @@ def read_ansys(text):
     for row in rows:
         words = [word.strip() for word in row.partition("!")[0].split(",")]
         if words[0].upper() == "ET":
-            kinds[int(words[1])] = int(words[2])
+            kinds[int(words[1])] = int(re.sub("^[A-Za-z]+", "", words[2]))
     while k < len(rows):
         name = rows[k].split(",")[0].strip().upper()
         k += 1
@@ -181,9 +181,29 @@ def read_ansys(text):
     for at_, values in skip_second(blocks):
         n = SOLIDS.get(kinds[values[1]])
         if n:
-            nodes = (values[11:19] + at_)[:n]
-            elements.append([place[number] for number in dict.fromkeys(nodes)])
+            elements += [nodes for nodes in [unfolded(((values[11:19] + at_) + [0] * 20)[:n], place)] if nodes]
     return elements
+
+
+def unfolded(numbers, place):
+    """Places of the nodes of an element, each once; a middle that is left out is made, where others are there. No pyramids."""
+    n = 8 if len(numbers) in (8, 20) else 4
+    corners, middles = numbers[:n], numbers[n:]
+    if n == 8 and len(set(corners[4:])) == 1 and corners[2] != corners[3]:
+        return None
+    found = dict.fromkeys(corners)
+    nodes = [place[number] for number in found]
+    if not any(middles):
+        return nodes
+    edges = {}
+    for number, (a, b) in zip(middles, SECOND[n].split()):
+        ends = frozenset((corners[int(a)], corners[int(b)]))
+        if len(ends) == 2:
+            edges[ends] = edges.get(ends) or number
+    return nodes + [place[number] if number else np.mean([place[end] for end in ends], axis=0) for ends, number in edges.items()]
+
+
+SECOND = {4: "01 12 20 03 13 23", 8: "01 12 23 30 45 56 67 74 04 15 26 37"}
 
 
 def skip_second(rows):

@@ -10,13 +10,14 @@
   nastran.py    Nastran: files; nastran_cards.py cards in fields; nastran_case.py case control, sets that act;
                 nastran_systems.py coordinate systems; nastran_mesh.py grid points and solids; nastran_model.py properties,
                 materials, supports; nastran_springs.py, nastran_loads.py, nastran_contact.py
-  ansys.py      Ansys' archive: blocks and commands; ansys_mesh.py, ansys_model.py
+  ansys.py      Ansys' archive: commands; ansys_blocks.py blocks; ansys_mesh.py nodes, elements, components; ansys_model.py
   meshes.py     what meshio reads: Code_Aster's .med, .vtk, .vtu
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;
                 names.py names that squeal takes
   faces.py      faces of the cells: of sets of nodes, on the boundary, by their corners
+  axes.py       supports in axes of a node's own
   middles.py    nodes in the middle of edges that are left out
   gmsh_file.py  the mesh as a file of Gmsh 4.1, binary
   scene_file.py the scene in YAML, with where each line comes from

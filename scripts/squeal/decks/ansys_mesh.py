@@ -1,8 +1,11 @@
 """Ansys: nodes, elements with their degenerate shapes, components, coordinate systems."""
 
+import re
+
 import numpy
 
 from .deck import Block, Index, shape_of
+from .middles import fill_middles
 
 KNOWN = {"ET", "LOCAL"}
 MOST = 10**9
@@ -17,13 +20,18 @@ DIFFERS = {("hex8", 185): "SOLID185 becomes hex8 of squeal, QM6, which is that o
 # Of hexahedra in which nodes are the same: corners that must be equal, places of the nodes of the shape
 DEGENERATE = {
     8: [(((2, 3), (4, 5), (4, 6), (4, 7)), ("tet4", (0, 1, 2, 4))),
+        (((4, 5), (4, 6), (4, 7)), ("pyramid", ())),
         (((2, 3), (6, 7)), ("wedge6", (0, 1, 2, 4, 5, 6))), ((), ("hex8", range(8)))],
     20: [(((2, 3), (4, 5), (4, 6), (4, 7)), ("tet10", (0, 1, 2, 4, 8, 9, 11, 16, 17, 18))),
+         (((4, 5), (4, 6), (4, 7)), ("pyramid", ())),
          (((2, 3), (6, 7)), ("wedge15", (0, 1, 2, 4, 5, 6, 8, 9, 11, 12, 13, 15, 16, 17, 18))), ((), ("hex20", range(20)))],
     10: [((), ("tet10", range(10)))], 4: [((), ("tet4", range(4)))]}
 # Face number of SFE -> ours, from 0
 FACES = {"hex": {1: 0, 2: 2, 3: 3, 4: 4, 5: 5, 6: 1}, "wedge": {1: 0, 2: 2, 3: 3, 5: 4, 4: 4, 6: 1},
          "tet": {1: 0, 2: 1, 3: 2, 4: 3, 5: 3}}
+
+
+FIRST_ORDER = {"tet10": "tet4", "wedge15": "wedge6", "hex20": "hex8"}
 
 
 class Mesh:
@@ -32,8 +40,12 @@ class Mesh:
     def __init__(self):
         self.nodes, self.cells, self.others = Index(), Index(), Index()
         self.materials, self.systems_of, self.components = [], [], {}
-        self.turned, self.facets, self.types = set(), {}, {}
+        self.turned, self.facets, self.types = {}, {}, {}  # node -> its own axes, ...
+        self.behaviour = {}  # type -> KEYOPT(12): what contact does where it is not 0: rough, without separation, bonded
+        self.own_held = {}  # node -> {own direction: (value, place)}
+        self.selected = "ALL"  # nodes that ALL means: an array, or "" where this is not known
         self.systems = {0: (False, numpy.eye(3), numpy.zeros(3)), 1: (True, numpy.eye(3), numpy.zeros(3))}
+        self.waiting = []  # (block, head, lines): solids before their middles are there
 
 
 def positive(block, ids, what, rows=None):
@@ -46,7 +58,7 @@ def positive(block, ids, what, rows=None):
 def read_nodes(deck, mesh, block):
     """NBLOCK, fields, SOLID, largest, count."""
     letters = block.letters()
-    if not block.n_real:
+    if not 1 <= block.n_whole < len(block.fields):
         raise block.header.place.wrong("NBLOCK: its format has no coordinates")
     ids, values = block.wholes(letters)[:, 0], block.reals(letters)
     values = numpy.pad(values, ((0, 0), (0, max(0, 6 - values.shape[1]))))
@@ -56,7 +68,8 @@ def read_nodes(deck, mesh, block):
     positive(block, ids, "a node")
     at = deck.add_nodes(numpy.ascontiguousarray(values[:, :3]))
     mesh.nodes.add(ids, at, numpy.arange(len(ids)) + block.first + 1, block.header.place.file)
-    mesh.turned.update(at[values[:, 3:6].any(axis=1)].tolist())
+    for row in numpy.flatnonzero(values[:, 3:6].any(axis=1)).tolist():
+        mesh.turned[int(at[row])] = turned(values[row, 3:6])
 
 
 def rows_of(block, numbers):
@@ -72,20 +85,49 @@ def rows_of(block, numbers):
     return numpy.array(rows, int)
 
 
-def read_elements(deck, mesh, block):
-    """EBLOCK, fields, SOLID, largest, count: material, type, real, section, system, 3 others, n, unused, number, nodes."""
-    if block.header.word(2).upper() != "SOLID" or block.n_whole != 19:
-        raise block.header.place.wrong("EBLOCK: only blocks with SOLID and 19 fields are read")
+def solid_rows(block):
+    """Lines of elements, their heads [n][11] and nodes [n][27] of EBLOCK with SOLID: material, type, real, section, system, 3 others,
+    n, unused, number, nodes."""
+    if block.n_whole != 19:
+        raise block.header.place.wrong("EBLOCK with SOLID: only blocks with 19 fields are read")
     numbers = block.wholes(block.letters())
     rows = rows_of(block, numbers)
-    announced = block.header.whole(4, len(rows))
-    if announced != len(rows):
-        raise block.header.place.wrong(f"EBLOCK announces {announced} elements and has {len(rows)}: is the file damaged?")
     head = numbers[rows]
     second = numpy.zeros((len(rows), 19), int)
     long = head[:, 8] > 8
     second[long] = numbers[rows[long] + 1]
-    nodes = numpy.hstack([head[:, 11:19], second])
+    return rows, head[:, :11], numpy.hstack([head[:, 11:19], second])
+
+
+def plain_rows(block, types):
+    """The same of EBLOCK without SOLID: number, type, real, material, system, nodes; from the eleventh node on a second line."""
+    numbers, rows, row = block.wholes(block.letters()), [], 0
+    most = numbers.shape[1] - 5
+    if most < 1:
+        raise block.header.place.wrong("EBLOCK: its format has no nodes")
+    while row < len(numbers):
+        rows.append(row)
+        row += 1 + (SOLIDS.get(types.get(int(numbers[row, 1]), 0), 0) > most)
+    if row != len(numbers):
+        raise block.place(len(numbers) - 1).wrong("EBLOCK: the nodes of the last element are not all there")
+    rows = numpy.array(rows, int)
+    nodes = numpy.zeros((len(rows), max(27, 2 * numbers.shape[1])), int)
+    nodes[:, :most] = numbers[rows, 5:]
+    two = numpy.diff(numpy.append(rows, len(numbers))) > 1
+    nodes[two, most:most + numbers.shape[1]] = numbers[rows[two] + 1]
+    head = numpy.zeros((len(rows), 11), int)
+    head[:, [10, 1, 2, 0, 4]] = numbers[rows, :5]
+    head[:, 8] = (nodes != 0).sum(axis=1)
+    return rows, head, nodes
+
+
+def read_elements(deck, mesh, block):
+    """EBLOCK, fields, SOLID, largest, count."""
+    solid = block.header.word(2).upper().startswith("SOLID")
+    rows, head, nodes = solid_rows(block) if solid else plain_rows(block, mesh.types)
+    announced = block.header.whole(4, len(rows))
+    if announced != len(rows):
+        raise block.header.place.wrong(f"EBLOCK announces {announced} elements and has {len(rows)}: is the file damaged?")
     for number in numpy.unique(head[:, 1]).tolist():
         chosen = numpy.flatnonzero(head[:, 1] == number)
         if number not in mesh.types:
@@ -108,10 +150,11 @@ def add_type(deck, mesh, block, kind, found):
             deck.note(block.place(int(rows[0])), f"{len(rows)} elements of type {kind}, which squeal has not")
         return
     n = SOLIDS[kind]
-    wrong = numpy.flatnonzero((head[:, 8] != n) | (nodes[:, :n] < 1).any(axis=1) | (nodes[:, n:] != 0).any(axis=1))
+    corners = 8 if n in (8, 20) else 4
+    wrong = numpy.flatnonzero((nodes[:, :corners] < 1).any(axis=1) | (nodes < 0).any(axis=1) | (nodes[:, n:] != 0).any(axis=1))
     if len(wrong):
-        raise block.place(int(rows[wrong[0]])).wrong(f"element {head[wrong[0], 10]} of type {kind} needs {n} nodes; squeal has "
-                                                     "none without some of its middles")
+        raise block.place(int(rows[wrong[0]])).wrong(f"element {head[wrong[0], 10]} of type {kind} needs {n} nodes" + (
+            f", or {corners} and some middles" if n > corners else ""))
     left = numpy.ones(len(rows), bool)
     for equal, made in DEGENERATE[n]:
         match = left.copy()
@@ -123,27 +166,51 @@ def add_type(deck, mesh, block, kind, found):
 
 
 def add_shape(deck, mesh, block, made, found):
+    """Elements of one shape: of first order where they have no middle at all. What is folded in another way is left out."""
     kind, name, _ = made
     head, nodes, rows = found
-    at = mesh.nodes.need(nodes, "node", lambda row: block.place(int(rows[row])))
-    cells = deck.add_block(Block(shape_of(name), f"SOLID{kind}", head[:, 10], at, block.place(int(rows[0]))))
-    mesh.cells.add(head[:, 10], cells, rows + block.first + 1, block.header.place.file)
-    mesh.materials.append(head[:, 0])
-    mesh.systems_of.append(head[:, 4])
-    if (name, kind) in DIFFERS:
-        deck.differ(block.place(int(rows[0])), DIFFERS[name, kind])
+    place = block.place(int(rows[0]))
+    if name == "pyramid":
+        mesh.others.add(head[:, 10], head[:, 10], rows + block.first + 1, block.header.place.file)
+        deck.note(place, f"{len(rows)} pyramids of SOLID{kind}: squeal has none; they are left out, and their places are empty")
+        return
+    corners = shape_of(name).n_corners
+    plain = ~(nodes[:, corners:] != 0).any(axis=1)
+    for chosen, shape in ((plain, FIRST_ORDER.get(name, name)), (~plain, name)):
+        if not chosen.any():
+            continue
+        part = nodes[chosen][:, :shape_of(shape).n_nodes]
+        numbers = numpy.where(part > 0, part, part[:, :1])
+        at = mesh.nodes.need(numbers, "node", lambda row, chosen=chosen: block.place(int(rows[chosen][row])))
+        place = block.place(int(rows[chosen][0]))
+        made = Block(shape_of(shape), f"SOLID{kind}", head[chosen, 10], numpy.where(part > 0, at, -1), place)
+        mesh.waiting.append((made, head[chosen], rows[chosen] + block.first + 1))
+        if (shape, kind) in DIFFERS:
+            deck.differ(place, DIFFERS[shape, kind])
+        elif shape != name:
+            deck.differ(place, f"SOLID{kind} without middles becomes {shape} of squeal")
+
+
+def add_solids(deck, mesh):
+    """All solids, with their middles."""
+    fill_middles(deck, [block for block, *_ in mesh.waiting])
+    for block, head, lines in mesh.waiting:
+        cells = deck.add_block(block)
+        mesh.cells.add(head[:, 10], cells, lines, block.place.file)
+        mesh.materials.append(head[:, 0])
+        mesh.systems_of.append(head[:, 4])
 
 
 def read_component(deck, mesh, block):
     """CMBLOCK, name, NODE or ELEM, count: numbers; a negative one ends a range."""
     name, kind = block.header.word(1).upper(), block.header.word(2).upper()
     count = block.header.whole(3)
-    letters = block.letters()
-    filled = (letters.reshape(len(letters), block.n_whole, block.width) != ord(" ")).any(axis=2).ravel()
+    part, width = block.part(block.letters(), 0, len(block.fields))
+    filled = (part.reshape(len(part), -1, width) != ord(" ")).any(axis=2).ravel()
     if filled[:count].sum() != count or filled[count:].any():
         raise block.header.place.wrong(f"CMBLOCK {name} announces {count} items and has {filled.sum()}: is the file damaged?")
     numbers = []
-    for value in block.wholes(letters).ravel()[:count].tolist():
+    for value in block.wholes(block.letters()).ravel()[:count].tolist():
         if value < 0:
             if not numbers or not numbers[-1] < -value <= numbers[-1] + 10**7:
                 raise block.header.place.wrong(f"CMBLOCK {name}: {value} ends no range")
@@ -153,17 +220,18 @@ def read_component(deck, mesh, block):
     numbers, place = numpy.array(numbers, int), block.header.place
     if not kind.startswith(("NODE", "ELEM")):
         deck.note(place, f"CMBLOCK {name}: {kind} is not understood")
-    elif name in mesh.components:
-        raise place.wrong(f"component {name} stands twice")
-    elif kind.startswith("NODE"):
-        mesh.components[name] = "NODE", numpy.unique(mesh.nodes.need(numbers, "node", place))
-        deck.node_sets[name] = mesh.components[name][1], place
-    else:
-        at, missing = mesh.cells.find(numbers, "element")
-        mesh.others.need(numbers[missing], "element", place)
-        mesh.components[name] = "ELEM", numpy.unique(at[~missing])
-        if not missing.all():
-            deck.cell_sets[name] = mesh.components[name][1], place
+        return
+    index = mesh.nodes if kind.startswith("NODE") else mesh.cells
+    at, missing = index.find(numbers, "node" if kind.startswith("NODE") else "element")
+    lost = numbers[missing]
+    if not kind.startswith("NODE"):
+        lost = lost[mesh.others.find(lost, "element")[1]]
+    if len(lost):
+        deck.note(place, f"CMBLOCK {name}: {len(lost)} of its numbers are not in the file, the first is {lost[0]}")
+    mesh.components[name] = kind[:4], numpy.unique(at[~missing])  # a later one of a name replaces it
+    sets = deck.node_sets if kind.startswith("NODE") else deck.cell_sets
+    if not missing.all():
+        sets[name] = mesh.components[name][1], place
 
 
 def read_systems(mesh, commands):
@@ -171,7 +239,7 @@ def read_systems(mesh, commands):
     for command in commands:
         if command.words[0] != "LOCAL":
             continue
-        words = [word for word in command.words if not word.upper().startswith("R5")]
+        words = command.plain()
         part = words[1].upper() if len(words) > 1 and words[1].upper() in ("LOC", "ANG", "PRM") else ""
         command.words = [words[0], *words[2 if part else 1:]]
         number, kind = command.whole(1), command.whole(2)
@@ -196,18 +264,36 @@ def turned(degrees):
     return (about_z @ about_x @ about_y).T
 
 
-def read_mesh(deck, blocks, commands):
-    mesh = Mesh()
+def read_types(mesh, blocks, commands):
+    """ET: number, type by number or name (SOLID185); ETBLOCK: both and options a line."""
+    for block in blocks:
+        if block.name == "ETBLOCK":
+            letters = block.letters()
+            for row, (number, kind) in enumerate(block.wholes(letters)[:, :2].tolist()):
+                mesh.types[number] = kind
+                options = block.words(row, letters)[2:]
+                if len(options) > 11 and options[11].isdigit():
+                    mesh.behaviour[number] = int(options[11])
     for command in commands:
         if command.words[0] == "ET":
-            if not command.word(1) or not command.word(2):
+            name = re.match(r"[A-Za-z]*(\d{1,6})$", command.word(2))
+            if not command.word(1) or not name:
                 raise command.place.wrong("ET needs a number and a type")
-            mesh.types[command.whole(1)] = command.whole(2)
+            mesh.types[command.whole(1)] = int(name[1])
+        elif command.words[0] == "KEYOPT" and command.word(2) == "12":
+            mesh.behaviour[command.whole(1)] = command.whole(3)
+
+
+def read_mesh(deck, blocks, commands):
+    mesh = Mesh()
+    read_types(mesh, blocks, commands)
     read_systems(mesh, commands)
     for name, read in (("NBLOCK", read_nodes), ("EBLOCK", read_elements), ("CMBLOCK", read_component)):
+        if name == "CMBLOCK":
+            add_solids(deck, mesh)
+            mesh.cells.sorted("element")
         for block in blocks:
-            if block.header.words[0] == name:
+            if block.name == name:
                 read(deck, mesh, block)
         mesh.nodes.sorted("node")
-    mesh.cells.sorted("element")
     return mesh

@@ -2,9 +2,12 @@
 
 import numpy
 
+from .ansys_blocks import DATABASE
 from .ansys_mesh import FACES
+from .axes import aligned
 from .deck import Axes, Contact, Load, Material, Section, Support, Tie, Turning
 from .faces import boundary_faces, faces_by_three
+from .text import REAL
 
 KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE"}
 LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "MU"}
@@ -16,11 +19,12 @@ def read_model(deck, commands, mesh):
         make_material(deck, number, constants)
     read_parts(deck, mesh)
     pending = {"D": support, "F": force, "SFE": pressure_on_face, "SF": pressure_on_nodes, "ACEL": gravity, "MODOPT": modes,
-               "CMROTATE": turning}
+               "CMROTATE": turning, "CMSEL": select, "NSEL": select, "ALLSEL": select}
     for command in commands:
         if command.words[0] in pending:
             pending[command.words[0]](deck, mesh, command)
-    read_contact(deck, mesh, values, behaviours(commands))
+    hold_turned(deck, mesh)
+    read_contact(deck, mesh, values)
 
 
 def read_constants(deck, commands):
@@ -31,9 +35,9 @@ def read_constants(deck, commands):
             continue
         words = command.words
         if words[0] == "MPDATA":
-            if command.word(1).upper().startswith("R5"):
+            if DATABASE.match(command.word(1)):
                 command.words = [words[0], *words[3:]]
-            if command.whole(3, 1) != 1 or sum(bool(word) for word in command.words[4:]) > 1:
+            if command.whole(3, 1) != 1 or len({word for word in command.words[4:] if word}) > 1:
                 deck.note(command.place, "MPDATA: more than one temperature; the first value is taken")
             if command.whole(3, 1) != 1:
                 continue
@@ -94,61 +98,114 @@ def read_parts(deck, mesh):
     names = {members.tobytes(): name for name, (kind, members) in mesh.components.items() if kind == "ELEM"}
     for number, axes in sorted({pair for pair in zip(material.tolist(), system.tolist())}):
         cells = numpy.flatnonzero((material == number) & (system == axes))
-        place = mesh.cells.line_of(0)
+        place = mesh.cells.line_of(int(cells[0]))
         if str(number) not in deck.materials:
-            raise place.wrong(f"there is no material {number} (MP, MPDATA)")
+            deck.note(place, f"there is no material {number} (MP, MPDATA): the part has none, give it")
         if axes not in mesh.systems:
             raise place.wrong(f"there is no coordinate system {axes} (LOCAL)")
         title = names.get(cells.tobytes()) or f"part_{number}" + (f"_{axes}" if axes else "")
         cylinder, rows, origin = mesh.systems[axes]
         turned = Axes(True, rows[2], origin, place) if cylinder else Axes(False, rows[0], rows[1], place)
-        deck.sections.append(Section(title, cells, str(number), turned if axes else None, place))
+        deck.sections.append(Section(title, cells, str(number) if str(number) in deck.materials else "", turned if axes else None, place))
 
 
-def nodes_of(mesh, command):
-    """Nodes by a number, by a component, or all; and the name of the component."""
-    word = command.word(1).upper()
-    if word in mesh.components and mesh.components[word][0] == "NODE":
+def select(_, mesh, command):
+    """Which nodes ALL means from here on: all, those of a component, or what is not followed."""
+    kind, name = command.word(1).upper(), command.word(2).upper()
+    if command.words[0] == "ALLSEL" or command.words[0] == "NSEL" and kind == "ALL":
+        mesh.selected = "ALL"
+    elif command.words[0] == "CMSEL" and mesh.components.get(name, ("",))[0] == "ELEM":
+        return
+    elif command.words[0] == "CMSEL" and kind in ("S", "") and name in mesh.components:
+        mesh.selected = mesh.components[name][1]
+    else:
+        mesh.selected = ""
+
+
+def nodes_of(deck, mesh, command):
+    """Nodes by a number, by a range, by a component, or those that are selected; and the name of the component. None, and a note,
+    where there are none."""
+    word, name = command.word(1).upper(), command.words[0]
+    if mesh.components.get(word, ("",))[0] == "NODE":
         return mesh.components[word][1], word
     if word == "ALL":
-        return mesh.nodes.sorted("node")[1], ""
-    number = command.whole(1, -1)
-    return mesh.nodes.need(numpy.array([number]), "node", command.place), ""
+        if isinstance(mesh.selected, str) and not mesh.selected:
+            deck.note(command.place, f"{name},ALL: of nodes that NSEL or CMSEL chose, which is not followed: not taken")
+            return None, ""
+        return (mesh.nodes.sorted("node")[1], "") if isinstance(mesh.selected, str) else (mesh.selected, "")
+    if not word.isdigit():
+        deck.note(command.place, f"{name} {word[:20]}: no node and no component of nodes: not taken")
+        return None, ""
+    first, last, step = command.whole(1), command.whole(5) if name in "DF" else 0, command.whole(6) if name in "DF" else 0
+    numbers = numpy.arange(first, max(last, first) + 1, max(step, 1))
+    at, missing = mesh.nodes.find(numbers, "node")
+    if missing.all():
+        deck.note(command.place, f"{name}: node {first} is not in the file: not taken")
+        return None, ""
+    return at[~missing], ""
 
 
-def is_turned(deck, mesh, nodes, command):
-    """Whether displacements of a node are in axes of its own; then the line is listed."""
-    if mesh.turned and any(node in mesh.turned for node in nodes.tolist()):
-        deck.note(command.place, f"{command.words[0]}: in the turned axes of a node, not taken")
-        return True
-    return False
+def value_of(deck, command, number):
+    """A value, None and a note where it is a table or of two parts."""
+    word = command.word(number)
+    if not REAL.match(word or "0"):
+        deck.note(command.place, f"{command.words[0]} {command.word(2)[:10]}: '{word[:20]}' is no number: not taken")
+        return None
+    if command.word(number + 1) and REAL.match(command.word(number + 1)) and command.real(number + 1):
+        deck.note(command.place, f"{command.words[0]} with an imaginary part: not taken")
+        return None
+    return command.real(number)
 
 
 def support(deck, mesh, command):
-    """D, node, UX, value."""
-    nodes, name = nodes_of(mesh, command)
-    label, value = command.word(2).upper(), command.real(3)
-    if label not in ("UX", "UY", "UZ", "ALL"):
-        deck.note(command.place, f"D {label[:10]}: not understood")
-    elif any(command.words[5:]) or command.real(4):
-        deck.note(command.place, "D with an imaginary part, a range of nodes or more labels: not taken")
-    elif not is_turned(deck, mesh, nodes, command):
-        held = (0, 1, 2) if label == "ALL" else ("XYZ".index(label[1]),)
-        deck.supports.append(Support(nodes, {d: value for d in held}, name, command.place))
+    """D, node, UX, value, -, last node, step, more labels."""
+    labels = [word.upper() for word in (command.word(2), *command.words[7:12]) if word]
+    for label in labels:
+        if label not in ("UX", "UY", "UZ", "ALL"):
+            deck.note(command.place, f"D {label[:10]}: not understood")
+    held = sorted({d for d, label in enumerate(("UX", "UY", "UZ")) if {label, "ALL"} & set(labels)})
+    nodes, name = nodes_of(deck, mesh, command) if held else (None, "")
+    value = value_of(deck, command, 3) if nodes is not None else None
+    if value is None:
+        return
+    own = [node for node in nodes.tolist() if node in mesh.turned] if mesh.turned else []
+    for node in own:
+        mesh.own_held.setdefault(node, {}).update({d: (value, command.place) for d in held})
+    rest = numpy.setdiff1d(nodes, own) if own else nodes
+    if len(rest):
+        deck.supports.append(Support(rest, {d: value for d in held}, "" if own else name, command.place))
+
+
+def hold_turned(deck, mesh):
+    """Supports of nodes with axes of their own."""
+    for node, values in mesh.own_held.items():
+        found, place = aligned(mesh.turned[node], sorted(values)), next(iter(values.values()))[1]
+        moved = any(value for value, _ in values.values())
+        if found is None or moved and any(sign == 0 for _, sign in found.values()):
+            deck.note(place, "D: in the turned axes of a node, not taken")
+        else:
+            deck.supports.append(Support(numpy.array([node]), {d: sign * values[own][0] + 0.0 if moved else 0.0
+                                                               for d, (own, sign) in found.items()}, "", place))
 
 
 def force(deck, mesh, command):
-    """F, node, FX, value."""
-    nodes, name = nodes_of(mesh, command)
-    label, value = command.word(2).upper(), command.real(3)
+    """F, node, FX, value, -, last node, step."""
+    label = command.word(2).upper()
     if label not in ("FX", "FY", "FZ"):
         deck.note(command.place, f"F {label[:10]}: not understood")
-    elif any(command.words[5:]) or command.real(4):
-        deck.note(command.place, "F with an imaginary part or a range of nodes: not taken")
-    elif value and not is_turned(deck, mesh, nodes, command):
-        vector = numpy.zeros(3)
-        vector["XYZ".index(label[1])] = value
-        deck.loads.append(Load(name, command.place, nodes=nodes, force=vector))
+        return
+    nodes, name = nodes_of(deck, mesh, command)
+    value = value_of(deck, command, 3) if nodes is not None else None
+    if not value:
+        return
+    vector = numpy.zeros(3)
+    vector["XYZ".index(label[1])] = value
+    own = [node for node in nodes.tolist() if node in mesh.turned] if mesh.turned else []
+    for node in own:
+        deck.loads.append(Load("", command.place, nodes=numpy.array([node]), force=vector @ mesh.turned[node]))
+    rest = numpy.setdiff1d(nodes, own) if own else nodes
+    if len(rest):
+        deck.loads.append(Load("" if own else name, command.place, nodes=rest, force=vector))
 
 
 def pressure_on_face(deck, mesh, command):
@@ -156,8 +213,14 @@ def pressure_on_face(deck, mesh, command):
     if command.word(3).upper() != "PRES" or command.whole(4) > 1:
         deck.note(command.place, f"SFE {command.word(3)[:10]}: not understood")
         return
+    if not command.word(1).isdigit() or mesh.cells.find([command.whole(1)], "element")[1][0]:
+        deck.note(command.place, f"SFE {command.word(1)[:20]}: no number of a solid: not taken")
+        return
+    if not all(REAL.match(word) for word in command.words[5:] if word):
+        deck.note(command.place, "SFE: a pressure by a table: not taken")
+        return
     values = [command.real(k) for k in range(5, len(command.words)) if command.word(k)]
-    cell = int(mesh.cells.need(numpy.array([command.whole(1, -1)]), "element", command.place)[0])
+    cell = int(mesh.cells.find([command.whole(1)], "element")[0][0])
     at = numpy.searchsorted(deck.firsts(), cell, side="right") - 1
     face = FACES[deck.blocks[at].shape.family].get(command.whole(2))
     if face is None or not values:
@@ -173,15 +236,22 @@ def pressure_on_nodes(deck, mesh, command):
     if command.word(2).upper() != "PRES":
         deck.note(command.place, f"SF {command.word(2)[:10]}: not understood")
         return
-    nodes, name = nodes_of(mesh, command)
+    nodes, name = nodes_of(deck, mesh, command)
+    value = value_of(deck, command, 3) if nodes is not None else None
+    if value is None:
+        return
     faces = boundary_faces(deck, nodes)
     if not len(faces):
-        raise command.place.wrong("SF: no face of an element has all of its nodes there")
-    deck.loads.append(Load(f"{name}_face" if name else "", command.place, faces=faces, pressure=command.real(3)))
+        deck.note(command.place, "SF: no face of an element has all of its nodes there: not taken")
+        return
+    deck.loads.append(Load(f"{name}_face" if name else "", command.place, faces=faces, pressure=value))
 
 
 def gravity(deck, _, command):
     """ACEL: the acceleration of the supports, against which gravity acts."""
+    if not all(REAL.match(word or "0") for word in command.words[1:4]):
+        deck.note(command.place, "ACEL: by a table: not taken")
+        return
     vector = numpy.array([command.real(k) for k in (1, 2, 3)])
     if vector.any():
         deck.gravity = -vector, command.place
@@ -192,6 +262,9 @@ def turning(deck, mesh, command):
     kind, members = mesh.components.get(command.word(1).upper(), ("", None))
     if kind != "ELEM":
         raise command.place.wrong(f"CMROTATE: there is no component '{command.word(1)[:40]}' of elements")
+    if not all(REAL.match(word or "0") for word in command.words[2:11]):
+        deck.note(command.place, "CMROTATE: by a table: not taken")
+        return
     values = numpy.array([command.real(k) for k in range(2, 11)])
     omega, centre, axis = values[:3], values[3:6], values[6:] - values[3:6]
     if any(command.words[8:11]) and numpy.linalg.norm(axis) > 0:
@@ -210,13 +283,7 @@ def modes(deck, _, command):
 BONDED = 3, 5, 6  # values of KEYOPT(12)
 
 
-def behaviours(commands):
-    """Number of a type of elements -> KEYOPT(12), what contact does where it is not 0: rough, without separation, bonded."""
-    return {command.whole(1): command.whole(3) for command in commands
-            if command.words[0] in ("KEYOPT", "KEYO") and command.word(2) == "12"}
-
-
-def read_contact(deck, mesh, values, behaviour):
+def read_contact(deck, mesh, values):
     """Pairs of contact and target elements with one set of real constants; friction by MU of the material."""
     for number in sorted({number for number, _ in mesh.facets}):
         sides = {}
@@ -235,7 +302,7 @@ def read_contact(deck, mesh, values, behaviour):
         for kind, (faces, _, place) in sides.items():
             deck.surfaces[f"{kind}_{number}"] = numpy.concatenate(faces), place
         _, head, place = sides["contact"]
-        kind = behaviour.get(int(head[0, 1]), 0)
+        kind = mesh.behaviour.get(int(head[0, 1]), 0)
         if kind in BONDED:
             deck.ties.append(Tie(f"bond_{number}", f"contact_{number}", f"target_{number}", place,
                                  f"real constants {number}, KEYOPT(12) = {kind}, bonded"))

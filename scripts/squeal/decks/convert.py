@@ -19,9 +19,24 @@ READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".da
            ".cdb": read_ansys, ".med": read_meshes, ".vtk": read_meshes, ".vtu": read_meshes}
 
 
+# Endings that decks of several programs have, and what only those of a program have at the beginning of a line
+SHARED = (".dat", ".inp")
+SIGNS = ((read_ansys, re.compile(rb"^[ \t]*nblock[ \t]*,", re.IGNORECASE | re.MULTILINE)),
+         (read_abaqus, re.compile(rb"^[ \t]*\*[ \t]*(?:heading|node|part|include)\b", re.IGNORECASE | re.MULTILINE)),
+         (read_nastran, re.compile(rb"^[ \t]*(?:grid[ *\t,]|begin[ \t]+bulk|cend\b)", re.IGNORECASE | re.MULTILINE)))
+
+
+def reader_of(path):
+    """Who reads a file: by its ending, and by its content where several programs have this ending."""
+    if path.suffix.lower() in SHARED and path.is_file():
+        data = path.read_bytes()
+        return next((reader for reader, sign in SIGNS if sign.search(data)), READERS[path.suffix.lower()])
+    return READERS.get(path.suffix.lower())
+
+
 def read_deck(path, subcase=None):
-    """The deck of a file, by its ending; of Nastran's of the subcase with that number."""
-    reader = READERS.get(path.suffix.lower())
+    """The deck of a file; of Nastran's of the subcase with that number."""
+    reader = reader_of(path)
     if reader is None:
         raise BadInput(f"{path}: files that end in '{path.suffix}' are not read; those in {', '.join(READERS)} are")
     if subcase is None:

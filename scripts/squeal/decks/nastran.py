@@ -12,7 +12,8 @@ DEEPEST = 10
 KNOWN = (nastran_mesh.KNOWN | nastran_systems.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN | nastran_springs.KNOWN |
          nastran_contact.KNOWN | nastran_case.KNOWN)
 # A name, in quotes perhaps over several lines
-INCLUDE = re.compile(rb"^[ \t]*include[ \t]*=?[ \t]*(?:'([^']{1,1000})'|\"([^\"]{1,1000})\"|([^'\"\n$]+))[^\n]*$", re.IGNORECASE | re.MULTILINE)
+INCLUDE = re.compile(rb"^[ \t]*include[ \t]*=?[ \t]*"
+                     rb"(?:'([^']{1,1000})'|\"([^\"]{1,1000})\"|([^'\"\n$]+))[^\n]*$", re.IGNORECASE | re.MULTILINE)
 BEGIN = re.compile(rb"^[ \t]*begin(?:[ \t]+bulk|[ \t]*$)[^\n]*\n?", re.IGNORECASE | re.MULTILINE)
 END = re.compile(rb"^[ \t]*enddata\b[^\n]*", re.IGNORECASE | re.MULTILINE)
 

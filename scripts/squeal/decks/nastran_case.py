@@ -14,7 +14,8 @@ CHOICES = ("SPC", "LOAD", "METHOD", "STATSUB")
 OUTPUT = {word[:4] for word in """TITLE SUBTITLE LABEL ECHO LINE MAXLINES DISPLACEMENT VELOCITY ACCELERATION STRESS STRAIN ELSTRESS FORCE
 ELFORCE SPCFORCES MPCFORCES OLOAD ESE EKE EDE SET OUTPUT PAGE VECTOR PRESSURE THERMAL FLUX GPFORCE GPSTRESS GPSTRAIN GPKE SVECTOR
 SDISPLACEMENT SVELOCITY SACCELERATION NLSTRESS MODES MEFFMASS BOUTPUT SURFACE VOLUME STRFIELD DATAREC XYPLOT XYPRINT XYPUNCH PLOTID
-SKIP RESVEC NOUTPUT GROUNDCHECK WEIGHTCHECK ELSUM POST CSCALE XTITLE YTITLE XGRID YGRID XAXIS YAXIS PLOT FIND BGRESULTS BCRESULTS""".split()}
+SKIP RESVEC NOUTPUT GROUNDCHECK WEIGHTCHECK ELSUM POST CSCALE XTITLE YTITLE XGRID YGRID XAXIS YAXIS PLOT FIND
+BGRESULTS BCRESULTS""".split()}
 LOADS = ("FORCE", "FORCE1", "FORCE2", "MOMENT", "MOMENT1", "MOMENT2", "PLOAD", "PLOAD1", "PLOAD2", "PLOAD4", "PLOADX1", "GRAV", "ACCEL",
          "ACCEL1", "RFORCE", "RFORCE1", "SLOAD", "SPCD", "TEMP", "TEMPD")
 SPCS = ("SPC", "SPC1")
@@ -115,8 +116,8 @@ class Chosen:
         self.spcs = set() if spc is None else {spc, *sums.get(spc, ())}
         self.loads = {} if load is None else {load: 1.0} | factors.get(load, {})
         self.method = choices.get("METHOD", (None,))[0]
-        for name, number, known in (("SPC", spc, numbers_of(tables, (*SPCS, "SPCADD"))), ("LOAD", load, numbers_of(tables, (*LOADS, "LOAD")))):
-            if number is not None and number not in known:
+        for name, number, cards in (("SPC", spc, (*SPCS, "SPCADD")), ("LOAD", load, (*LOADS, "LOAD"))):
+            if number is not None and number not in numbers_of(tables, cards):
                 deck.note(choices[name][1], f"{name} = {number}: there is no such set")
         self.note_others(deck, tables, control)
 
@@ -174,5 +175,6 @@ def lowest(deck, tables, names, parts, word):
     place = next(table.place(int((table.whole(0, 1)[:, 0] == numbers[0]).argmax())) for table in named(tables, *names)
                  if (table.whole(0, 1)[:, 0] == numbers[0]).any())
     others = f", not {', '.join(map(str, numbers[1:5]))}{' ...' if len(numbers) > 5 else ''}" if numbers[1:] else ""
-    deck.differ(place, f"no case control: {word} = {numbers[0]} is taken{others}; write {word} = n and BEGIN BULK before the cards to choose")
+    deck.differ(place, f"no case control: {word} = {numbers[0]} is taken{others}; write {word} = n and BEGIN BULK before the "
+                       "cards to choose")
     return numbers[0]

@@ -2,6 +2,7 @@
 
 import numpy
 
+from .axes import aligned
 from .deck import Axes, Material, Section, Support
 from .elastic import engineering
 from .nastran_cards import named
@@ -191,24 +192,10 @@ def directions(word, place, what):
     return [int(digit) - 1 for digit in word if digit in "123"]
 
 
-ALONG = 1e-9  # sine of the angle between two axes below which they are one
-
-
 def in_space(mesh, node, x, held):
-    """Directions of space that are held where those of a point's own axes are, with the sign of each and its own direction;
-    None where they are others. All three are those of space, whichever axes."""
+    """The same directions of a point in space, by axes.aligned()."""
     number = mesh.turned.get(int(node), 0)
-    if number not in mesh.systems:
-        return None
-    axes = mesh.systems[number].directions(x)
-    if number == 0 or numpy.allclose(axes, numpy.eye(3), atol=ALONG):
-        return {d: (d, 1.0) for d in held}
-    spans = axes[held]
-    across = [d for d in range(3) if numpy.linalg.norm(spans[:, d]) > ALONG]
-    if len(across) != len(held):
-        return None
-    single = {d: [(own, float(numpy.sign(axes[own, d]))) for own in held if abs(abs(axes[own, d]) - 1) < ALONG] for d in across}
-    return {d: (single[d] or [(-1, 0.0)])[0] for d in across}
+    return aligned(mesh.systems[number].directions(x), held) if number in mesh.systems else None
 
 
 def read_supports(deck, tables, mesh, chosen):
