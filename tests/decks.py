@@ -250,8 +250,9 @@ def mirrored(name, edges):
     return [*corners, *(len(corners) + k for k in middles)][:int(name[len(family(name)):])]
 
 
-def meshio_file(solid, path):
-    """The box as a file of meshio: VTK or VTU with a field, or MED with groups, and elements as Code_Aster has them."""
+def meshio_file(solid, path, half=False):
+    """The box as a file of meshio: VTK or VTU with a field, or MED with groups, and elements as Code_Aster has them; or every second
+    element the other way round."""
     import meshio
     getattr(meshio._mesh, "topological_dimension", {}).setdefault("wedge15", 3)  # pylint: disable=protected-access
     names = {"tet4": "tetra", "tet10": "tetra10", "wedge6": "wedge", "wedge15": "wedge15", "hex8": "hexahedron",
@@ -260,6 +261,9 @@ def meshio_file(solid, path):
     if path.suffix == ".med":
         places = {name: [row[k] for k in mirrored(name, ABAQUS)] for name, row in places.items()}
     cells = [(names[name], nodes[:, places[name]]) for _, name, nodes in solid.numbered()]
+    if half:
+        for (_, name, _), (_, nodes) in zip(solid.numbered(), cells):
+            nodes[::2] = nodes[::2][:, mirrored(name, ABAQUS)]
     if path.suffix != ".med":
         data = {"material": [np.full(len(nodes), 4, np.int32) for _, nodes in cells]}
         meshio.write(str(path), meshio.Mesh(solid.x * MM, cells, cell_data=data))

@@ -136,7 +136,7 @@ def meshio(folder):
                          ("hex20", ".med"), ("wedge15", ".med"), ("wedge+tet1", ".med")):
         solid = decks.Solid(kind, folder, "--distort", "3", "--renumber", "5")
         path = folder / f"mesh{ending}"
-        decks.meshio_file(solid, path)
+        decks.meshio_file(solid, path, half=kind in ("hex20", "wedge15"))
         convert(path, "mm-t-s", folder / "mesh")
         if ending == ".med":
             words = decks.scene_words(solid.path)

@@ -11,7 +11,8 @@
                 nastran_systems.py coordinate systems; nastran_mesh.py grid points and solids; nastran_model.py properties,
                 materials, supports; nastran_springs.py, nastran_loads.py, nastran_contact.py
   ansys.py      Ansys' archive: commands; ansys_blocks.py blocks; ansys_mesh.py nodes, elements, components; ansys_model.py
-  meshes.py     what meshio reads: Code_Aster's .med, .vtk, .vtu
+  meshes.py     .vtk and .vtu by meshio, and Code_Aster's .med; med_file.py the HDF5 of MED
+  orientation.py  elements that are mirror images
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;

@@ -12,6 +12,7 @@ from .assemble import assemble, give_sections, model_size
 from .gmsh_file import write_mesh
 from .meshes import read_meshes
 from .nastran import read_nastran
+from .orientation import set_orientation
 from .scene_file import remarks, scene_lines, write_scene
 from .units import guess, named
 
@@ -60,6 +61,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     deck = read_deck(path, subcase)
     if not deck.n_cells:
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
+    set_orientation(deck)
     give_sections(deck)
     size = model_size(deck)
     if not 0 < size < 1e100:

@@ -196,6 +196,7 @@ class Deck:
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
+        self.all_mirrored = False  # whether the format has all elements the other way round
         self.preload = None  # Place of the step about whose state the modes are
         self.notes, self.differs = [], {}
 

@@ -85,8 +85,16 @@ FACE_GMSH = {3: 2, 6: 9, 4: 3, 8: 16, 9: 10}  # nodes of a face -> Gmsh's number
 POINT_GMSH = 15
 
 
+# Three neighbours of each corner, the right way round
+CORNERS = {"tet": ((1, 2, 3), ), "wedge": ((1, 2, 3), (2, 0, 4), (0, 1, 5), (5, 4, 0), (3, 5, 1), (4, 3, 2)),
+           "hex": ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))}
+
+
 def signed_volumes(shape, x):
-    """Six times the volume, by its sign, of tetrahedra at the first corner of elements with nodes x [n][nodes][3]."""
-    ends = {"tet": (1, 2, 3), "wedge": (1, 2, 3), "hex": (1, 3, 4)}[shape.family]
-    edges = [x[:, end] - x[:, 0] for end in ends]
-    return numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2])
+    """Mean over the corners of the volumes spanned by their edges, of elements with corners x [n][corners][3]; the sign is that of
+    the volume."""
+    total = numpy.zeros(len(x))
+    for corner, ends in enumerate(CORNERS[shape.family]):
+        a, b, c = (x[:, end] - x[:, corner] for end in ends)
+        total += numpy.einsum("ij,ij->i", numpy.cross(a, b), c)
+    return total / len(CORNERS[shape.family])

@@ -1,5 +1,4 @@
-"""Files that meshio reads: VTK, VTU, Code_Aster's MED. They hold meshes and groups, hence no material and no scene. Elements
-of the other orientation (MED has them all so, and writers of VTK differ on wedges) are mirrored."""
+"""Files of VTK and VTU, which meshio reads, and of MED. They hold meshes and groups, hence no material and no scene."""
 
 import contextlib
 import io
@@ -8,40 +7,38 @@ import numpy
 
 from ..tables import BadInput
 from .deck import Block, Deck, Place, shape_of
-from .elements import signed_volumes
 from .faces import faces_by_three
+from .med_file import read_med
 
 SHAPES = {"tetra": "tet4", "tetra10": "tet10", "wedge": "wedge6", "wedge15": "wedge15", "hexahedron": "hex8",
-          "hexahedron20": "hex20", "hexahedron27": "hex27"}
-FACES = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+          "hexahedron20": "hex20", "hexahedron27": "hex27", "voxel": "hex8"}
+VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of a hexahedron among those of a voxel
+# Without their nodes inside of faces and elements
+PLAINER = {"MED hexahedron27": "hex20", "MED wedge18": "wedge15", "wedge18": "wedge15", "hexahedron24": "hex20"}
+FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
+THIN = ("vertex", "line", *FACES)
 MOST = 64  # values of a field of whole numbers that tells parts
 
 
 def load(path):
     """meshio's mesh; whatever it stumbles over is one line."""
+    if not path.is_file():
+        raise BadInput(f"{path}: no such file")
     try:
         import meshio
     except ImportError:
         raise BadInput("meshio is missing: apt-get install python3-meshio") from None
     getattr(meshio._mesh, "topological_dimension", {}).setdefault("wedge15", 3)  # pylint: disable=protected-access
-    reader = {".med": "med", ".vtk": "vtk", ".vtu": "vtu"}[path.suffix.lower()]
-    if not path.is_file():
-        raise BadInput(f"{path}: no such file")
+    read = {".med": read_med, ".vtk": meshio.vtk.read, ".vtu": meshio.vtu.read}[path.suffix.lower()]
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), numpy.errstate(all="ignore"):
-            return getattr(meshio, reader).read(str(path))
+            return read(str(path))
     except MemoryError:
         raise BadInput(f"{path}:1: announces more than there is memory for: is the file damaged?") from None
     except (Exception, SystemExit) as error:  # pylint: disable=broad-except
         text = " ".join(str(error).split())[:160] or type(error).__name__
-        raise BadInput(f"{path}:1: meshio cannot read it ({text}): is the file damaged?") from None
-
-
-def right_way(shape, nodes, x):
-    """Nodes of elements, all of them mirrored where all are the wrong way round."""
-    volumes = signed_volumes(shape, x[nodes[:, :shape.n_corners]])
-    return nodes[:, shape.mirror_order()] if len(volumes) and (volumes < 0).all() else nodes
+        raise BadInput(f"{path}:1: it cannot be read ({text}): is the file damaged?") from None
 
 
 def checked(deck, mesh):
@@ -53,6 +50,8 @@ def checked(deck, mesh):
     if not numpy.isfinite(x).all() or abs(x).max() > 1e100:
         raise place.wrong(f"point {int(numpy.argwhere(~(abs(x) <= 1e100))[0][0]) + 1} is not finite")
     for cells in mesh.cells:
+        if cells.type not in SHAPES and cells.type not in PLAINER and cells.type not in FACES:
+            continue
         nodes = numpy.asarray(cells.data)
         if nodes.dtype.kind not in "iu" or nodes.ndim != 2:
             raise place.wrong(f"cells of type {cells.type} are no table of nodes")
@@ -73,7 +72,7 @@ def tags_of(mesh, number, block, name):
 
 def field_of_parts(deck, mesh):
     """The field of cells that tells parts: the first of whole numbers with few values."""
-    solids = [k for k, cells in enumerate(mesh.cells) if cells.type in SHAPES]
+    solids = [k for k, cells in enumerate(mesh.cells) if cells.type in SHAPES or cells.type in PLAINER]
     chosen = None
     for name in mesh.cell_data:
         found = [tags_of(mesh, k, mesh.cells[k].data, name) for k in solids]
@@ -88,29 +87,45 @@ def field_of_parts(deck, mesh):
     return chosen
 
 
+def add_cells(deck, cells, nodes, first):
+    """Numbers of volume elements in the deck; those of squeal have no nodes inside of faces and, but for VTK's hex27, of elements."""
+    place = Place(deck.path, 1)
+    shape = shape_of(SHAPES.get(cells.type) or PLAINER[cells.type])
+    if cells.type == "voxel":
+        nodes = nodes[:, VOXEL]
+    if cells.type in PLAINER:
+        nodes = nodes[:, :shape.n_nodes]
+        deck.differ(place, f"{len(nodes)} cells of type {cells.type} become {shape.name}: without their nodes inside of faces")
+    if nodes.shape[1] != shape.n_nodes:
+        raise place.wrong(f"cells of type {cells.type} have {nodes.shape[1]} nodes")
+    return deck.add_block(Block(shape, cells.type, numpy.arange(first, first + len(nodes)), nodes, place))
+
+
 def read_meshes(path):
     """The deck of a file."""
-    mesh, deck, place = load(path), Deck(path, "mesh by meshio"), Place(str(path), 1)
+    mesh, deck, place = load(path), Deck(path, "mesh of MED" if path.suffix.lower() == ".med" else "mesh by meshio"), Place(str(path), 1)
     x = checked(deck, mesh)
     deck.add_nodes(x)
-    med = getattr(mesh, "cell_tags", None) is not None and "cell_tags" in mesh.cell_data
-    field, first, groups, surfaces = field_of_parts(deck, mesh), 1, {}, []
+    deck.all_mirrored = med = path.suffix.lower() == ".med"
+    for name in getattr(mesh, "others", ()):
+        deck.note(place, f"mesh '{name}': a second one, not taken")
+    field, first, groups, surfaces = "cell_tags" if med else field_of_parts(deck, mesh), 1, {}, []
     for number, cells in enumerate(mesh.cells):
-        nodes = numpy.asarray(cells.data, int)
-        tags = tags_of(mesh, number, nodes, field) if field else None
-        if cells.type in SHAPES:
-            shape = shape_of(SHAPES[cells.type])
-            if nodes.shape[1] != shape.n_nodes:
-                raise place.wrong(f"cells of type {cells.type} have {nodes.shape[1]} nodes")
-            block = Block(shape, cells.type, numpy.arange(first, first + len(nodes)), right_way(shape, nodes, x), place)
+        if cells.type in SHAPES or cells.type in PLAINER:
+            nodes = numpy.array(cells.data, int)
+            tags = tags_of(mesh, number, nodes, field) if field else None
+            tags = numpy.zeros(len(nodes), int) if tags is None and med else tags
+            added = add_cells(deck, cells, nodes, first)
             first += len(nodes)
-            added = deck.add_block(block)
             for tag in numpy.unique(tags).tolist() if tags is not None else ():
                 groups.setdefault(tag, []).append(added[tags == tag])
         elif cells.type in FACES and med:
+            nodes = numpy.array(cells.data, int)
             surfaces.append((nodes[:, :3], tags_of(mesh, number, nodes, "cell_tags")))
         else:
-            deck.note(place, f"{len(nodes)} cells of type {cells.type}: not taken")
+            thin = cells.type.rstrip("0123456789") in THIN
+            deck.note(place, f"{len(cells.data)} cells of type {cells.type}: not taken" + (
+                "" if thin else "; squeal has no such elements, their places are empty"))
     if med:
         add_groups(deck, mesh, groups, surfaces)
     else:
@@ -121,7 +136,7 @@ def read_meshes(path):
 
 def add_groups(deck, mesh, groups, surfaces):
     """Groups of MED: a family, the tag, is in some of them."""
-    place, members, faces = Place(deck.path, 1), {}, {}
+    place, members, faces, lost = Place(deck.path, 1), {}, {}, {}
     for tag, parts in groups.items():
         for name in mesh.cell_tags.get(tag, ["rest"] if tag == 0 else []):
             members.setdefault(name, []).extend(parts)
@@ -132,11 +147,13 @@ def add_groups(deck, mesh, groups, surfaces):
         for tag in numpy.unique(tags).tolist() if tags is not None else ():
             chosen = tags == tag
             for name in mesh.cell_tags.get(tag, []):
-                if missing[chosen].any():
-                    raise place.wrong(f"group {name} has cells that are no face of a volume element")
-                faces.setdefault(name, []).append(found[chosen])
+                lost[name] = lost.get(name, 0) + int(missing[chosen].sum())
+                faces.setdefault(name, []).append(found[chosen & ~missing])
     for name, parts in faces.items():
-        deck.surfaces[name] = numpy.concatenate(parts), place
+        if lost[name]:
+            deck.note(place, f"group {name}: {lost[name]} of its cells are no face of a volume element; they are not in it")
+        if any(map(len, parts)):
+            deck.surfaces[name] = numpy.concatenate(parts), place
     tags = mesh.point_data.get("point_tags")
     for tag, names in (mesh.point_tags if tags is not None else {}).items():
         for name in names:

@@ -36,4 +36,5 @@ def fill_middles(deck, blocks):
     straight = [edge_keys(block, n).ravel() for block in blocks if not block.shape.second]
     hanging = int(numpy.isin(new, numpy.concatenate(straight)).sum()) if straight else 0
     deck.differ(second[0].place, f"{second[0].kind} without some of its nodes in the middle of edges: {len(new)} are made "
-                "there, so that the edges bend" + (f"; {hanging} are beside elements of first order, which do not follow them" if hanging else ""))
+                "there, so that the edges bend" + (
+                    f"; {hanging} are beside elements of first order, which do not follow them" if hanging else ""))
