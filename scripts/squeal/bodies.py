@@ -7,7 +7,7 @@ import numpy
 
 from .cells import boundary_faces, read_cells
 from .provenance import Units
-from .tables import BadInput
+from .tables import BadInput, regular
 
 LARGEST = 1e30  # of what is a displacement, a velocity or a place
 DISCS = ("disc", "disk", "rotor")  # in the name of a part that is one
@@ -116,7 +116,7 @@ def opened(path):
     except ImportError:
         raise BadInput(f"{path}: cannot be read without the Python module h5py") from None
     try:
-        with h5py.File(path) as file:
+        with h5py.File(regular(path)) as file:
             yield file
     except (OSError, KeyError, IndexError, ValueError, RuntimeError, TypeError) as error:  # the last two: h5py's of torn files
         raise BadInput(f"{path}: cannot be read: {error}") from None

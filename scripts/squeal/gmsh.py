@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from .program import ROOT
-from .tables import BadInput
+from .tables import BadInput, regular
 
 TRI6, TET10, QUAD8, HEX20 = 9, 11, 16, 17  # numbers of types
 DIMENSION = {15: 0, 1: 1, 8: 1} | dict.fromkeys((2, 3, TRI6, 10, QUAD8), 2)  # of others 3
@@ -34,7 +34,7 @@ def make_mesh(name, path, form="msh41", **numbers):
 def as_text(path, folder):
     """The file itself where it is of format 2.2 in text, else one in `folder` that gmsh makes of it."""
     try:
-        with path.open("rb") as file:
+        with regular(path).open("rb") as file:
             head = file.read(64)
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from None

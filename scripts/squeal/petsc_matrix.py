@@ -4,7 +4,7 @@ import os
 
 import numpy
 
-from squeal.tables import BadInput
+from squeal.tables import BadInput, regular
 
 CLASS, VECTOR = 1211216, 1211214  # MAT_FILE_CLASSID, VEC_FILE_CLASSID
 LARGEST = 1e60  # squeal refuses larger entries, whose products overflow
@@ -36,7 +36,7 @@ def write_matrix(path, matrix):
 
 def read_words(path):
     """The bytes of a file, and its first four words, as far as it has them."""
-    data = path.read_bytes()
+    data = regular(path).read_bytes()
     return data, numpy.frombuffer(data[:min(16, len(data) // 4 * 4)], ">i4")
 
 

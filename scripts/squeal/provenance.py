@@ -2,7 +2,7 @@
 
 import re
 
-from .tables import BadInput
+from .tables import BadInput, regular
 
 DEFAULTS = "At their defaults"
 TO_SI = {"mm, t, s, N, MPa": {"m": 1e-3, "m2": 1e-6, "m_s": 1e-3, "m_s2": 1e-3, "m_n": 1e-3, "pa": 1e6}}
@@ -40,7 +40,7 @@ class Provenance:
         self.given, self.defaults, self.facts = {}, {}, {}
         self.path = path
         try:
-            lines = path.read_text().splitlines()
+            lines = regular(path).read_text().splitlines()
         except FileNotFoundError:
             raise BadInput(f"{path}: no such file; a run writes it with its first table") from None
         except (OSError, ValueError) as error:

@@ -8,6 +8,8 @@ import sys
 
 from . import STOPPED
 
+TRACE = "SQUEAL_TRACE"  # where it is set, an exception that nobody foresaw shows its trace
+
 
 class BadInput(Exception):
     """One line for the user."""
@@ -23,9 +25,17 @@ def optional(text):
     return float(text) if text.strip() else math.nan
 
 
+def regular(path):
+    """The path itself, unless it is of a pipe or a device, which might never end."""
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise BadInput(f"{path}: is no file but a {'pipe' if path.is_fifo() else 'device or socket'}; give a file")
+    return path
+
+
 def read_table(path, kinds):
     """Rows of a table as dictionaries with the columns of `kinds`, each converted by its function."""
     try:
+        regular(path)
         with path.open(newline="") as lines:
             reader = csv.DictReader(lines)
             missing = [name for name in kinds if name not in (reader.fieldnames or [])]
@@ -52,9 +62,9 @@ def whole(path):
 def header(path):
     """Names of the columns; none where they cannot be read, which is for read_table() to say."""
     try:
-        with path.open(newline="") as lines:
+        with regular(path).open(newline="") as lines:
             return next(csv.reader(lines), [])
-    except (OSError, ValueError, csv.Error):
+    except (BadInput, OSError, ValueError, csv.Error):
         return []
 
 
@@ -92,16 +102,27 @@ def print_row(*cells):
     print(f"| {' | '.join(cells)} |", flush=True)
 
 
+def printable(text):
+    """One line of letters that are seen; what is none, as in a damaged file or a name with a line break, becomes ?."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
+
+
 def run(name, work):
-    """Does the work and prints the file that it returns; returns the exit status."""
+    """Does the work and prints the file that it returns; returns the exit status. What goes wrong is one line; where it was not
+    foreseen the line has the command line."""
     try:
         print(work(), flush=True)
     except BrokenPipeError:  # who reads has enough, as `head` has; what is left goes nowhere
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (BadInput, OSError) as error:  # the latter where a folder cannot be made, or a disk is full
         said = f"{error.filename}: {error.strerror}" if getattr(error, "filename", None) else str(error)
-        text = "".join(letter if letter.isprintable() else "?" for letter in said)  # a damaged file's too
-        print(f"{name}: {text}", file=sys.stderr)
+        print(f"{name}: {printable(said)}", file=sys.stderr)
+        return 1
+    except Exception as error:  # pylint: disable=broad-except
+        if os.environ.get(TRACE):
+            raise
+        said = f"{' '.join(sys.argv[1:])[:200]}: {type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        print(f"{name}: {printable(said)} (not foreseen; is a file damaged? {TRACE}=1 shows where)", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{name}: stopped", file=sys.stderr)

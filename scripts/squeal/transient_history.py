@@ -7,7 +7,7 @@ import numpy
 
 from .provenance import Units
 from .signal import LEAST, equal_steps
-from .tables import BadInput
+from .tables import BadInput, regular
 
 NEEDED = ("time_s", "normal_force_n", "friction_force_n")
 WORKS = ("external_work_j", "friction_work_j", "contact_work_j", "damping_work_j", "integrator_work_j")
@@ -28,7 +28,7 @@ def open_table(folder, name="transient.csv"):
 def read_lines(path, under_way):
     """Lines of the table; the last one of a run under way may be cut off."""
     try:
-        text = path.read_text()
+        text = regular(path).read_text()
     except FileNotFoundError:
         raise BadInput(f"{path}: no such file; run squeal -analysis transient first, or name its -output_dir") from None
     except (OSError, ValueError) as error:
@@ -146,7 +146,7 @@ def snapshot_times(folder):
     """Times (s) of the snapshots by file, from the XDMF text; it may be unfinished."""
     for name in ("transient.xmf", "transient.xmf.part"):
         try:
-            text = (folder / name).read_text(errors="replace")
+            text = regular(folder / name).read_text(errors="replace")
         except OSError:
             continue
         times, now = {}, None

@@ -23,4 +23,6 @@
   gmsh_file.py  the mesh as a file of Gmsh 4.1, binary
   scene_file.py the scene in YAML, with where each line comes from
   convert.py    the way from a file to these two
+  balance.py    mass, centre, supports and loads of the deck beside those of the scene; written.py reads the scene and its
+                mesh again; integrals.py integrates over elements and faces
 """

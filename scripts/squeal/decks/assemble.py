@@ -32,6 +32,7 @@ class Result:
     volumes: dict = field(default_factory=dict)  # name -> cells
     surfaces: dict = field(default_factory=dict)  # name -> faces (cell, face)
     points: dict = field(default_factory=dict)  # name -> nodes
+    into: numpy.ndarray = None  # node of the deck -> that of the deck which it became by ties
     entries: list = field(default_factory=list)
 
     def firsts(self):
@@ -194,14 +195,15 @@ def part_entry(name, section, material):
     """Material and axes of a part."""
     entry = Entry("parts", name)
     if not material.young:
-        entry.hints.append(f"{name}: {{young: ?, poisson: ?, density: ?}}   no material is in the file: give it")
-        return entry
+        entry.hints.append(f"{name}: {{young: ?, poisson: ?{'' if material.density else ', density: ?'}}}   the file has no stiffness that "
+                           "squeal takes: give it")
 
     def row(key, value, keyword):
         entry.rows.append((key, value, f"{material.places.get(keyword, material.place)} {material.name}"))
 
-    row("young", ("stress", material.young), "ELASTIC")
-    row("poisson", ("", material.poisson), "ELASTIC")
+    if material.young:
+        row("young", ("stress", material.young), "ELASTIC")
+        row("poisson", ("", material.poisson), "ELASTIC")
     if material.shear:
         row("shear", ("stress", material.shear), "ELASTIC")
         if section.axes is None:
@@ -212,9 +214,9 @@ def part_entry(name, section, material):
         units = "", "length" if section.axes.cylinder else ""
         for key, unit, value in zip(keys, units, (section.axes.first, section.axes.second)):
             entry.rows.append((key, (unit, tuple(value)), str(section.axes.place)))
-    if material.density is None:
+    if material.density is None and material.young:
         entry.hints.append(f"{name}_density is not in the file: give it")
-    else:
+    elif material.density is not None:
         row("density", ("density", (material.density,)), "DENSITY")
     if material.alpha:
         row("alpha", ("rate", (material.alpha,)), "DAMPING")
@@ -234,6 +236,7 @@ def assemble(deck, size):
     number = numpy.cumsum(used) - 1
     number[~used] = -1
     result = Result(deck.x[used], deck.blocks)
+    result.into = merged
     assembly = Assembly(deck, result, number[merged])
     materials = dict(deck.materials) | {"": Material("", None)}
     assembly.parts(materials)

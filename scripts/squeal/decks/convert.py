@@ -5,16 +5,18 @@ from pathlib import Path
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, printable
 from .abaqus import read_abaqus
 from .ansys import read_ansys
 from .assemble import assemble, give_sections, model_size
+from .balance import compared, of_deck
 from .gmsh_file import write_mesh
 from .meshes import read_meshes
 from .nastran import read_nastran
 from .orientation import set_orientation
 from .scene_file import remarks, scene_lines, write_scene
 from .units import guess, named
+from .written import of_scene
 
 READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".dat": read_nastran,
            ".cdb": read_ansys, ".med": read_meshes, ".vtk": read_meshes, ".vtu": read_meshes}
@@ -47,15 +49,18 @@ def read_deck(path, subcase=None):
     return reader(path, subcase)
 
 
-def clean(text):
-    """One line of printable characters."""
-    return re.sub(r"[^\x20-\x7e]", "?", text)
+def check_name(path):
+    """A name that stands on one line of a scene."""
+    if not str(path).isprintable():
+        raise BadInput(f"{path}: has a line break, another control character or no UTF-8 in its name; give it another")
 
 
 def convert(path, units=None, output=None, strict=False, subcase=None):
     """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
     chosen = named(units) if units else None
     output = output or Path(path.stem)
+    check_name(path)
+    check_name(output)
     if not output.parent.is_dir():
         raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
     deck = read_deck(path, subcase)
@@ -66,6 +71,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     size = model_size(deck)
     if not 0 < size < 1e100:
         raise BadInput(f"{path}:1: all nodes are in one place")
+    nodes = [block.nodes for block in deck.blocks]
     used = [deck.materials[section.material] for section in deck.sections if section.material]
     chosen, why = (chosen, f"units {chosen.name}, given by --units") if chosen else guess(deck, size, used)
     result = assemble(deck, size)
@@ -73,15 +79,18 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     if not numpy.isfinite(result.x).all():
         raise BadInput(f"{path}:1: places are not finite")
     mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
-    lines, notes = scene_lines(deck, result, chosen, why, mesh), [clean(note) for note in remarks(deck)]
+    lines, notes = scene_lines(deck, result, chosen, why, mesh), [printable(note) for note in remarks(deck)]
     missing = deck.missing()
     if strict and missing:
-        raise BadInput(f"{clean(str(missing[0][0]))}: {clean(missing[0][1])} ({len(missing)} such lines; --strict)")
+        raise BadInput(f"{printable(str(missing[0][0]))}: {printable(missing[0][1])} ({len(missing)} such lines; --strict)")
     try:
         write_mesh(mesh, result)
-        write_scene(scene, [clean(line) for line in lines], notes)
+        write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None
+    balance, differs = compared(of_deck(deck, nodes, result.into, chosen), of_scene(mesh, scene))
+    if strict and differs:
+        raise BadInput(f"{path}:1: {differs} (--strict)")
     cells = sum(len(block.ids) for block in result.blocks)
-    return [clean(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
-            f"{len(result.points)} sets of nodes", *notes, f"{mesh} {scene}"]
+    return [printable(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
+            f"{len(result.points)} sets of nodes", *notes, *balance, f"{mesh} {scene}"]

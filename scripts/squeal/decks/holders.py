@@ -72,7 +72,10 @@ def add_springs(assembly):
     """Springs to the ground, summed at each node."""
     rows, places = {}, {}
     for spring in assembly.deck.springs:
-        for node in assembly.into[spring.nodes].tolist():
+        inside = assembly.into[spring.nodes]
+        if (inside < 0).any():
+            assembly.deck.note(spring.place, "spring at a node that no volume element has: not in the scene")
+        for node in inside[inside >= 0].tolist():
             rows[node] = rows.get(node, numpy.zeros(3)) + spring.stiffness
             places.setdefault(node, spring.place)
     back = {int(new): old for old, new in enumerate(assembly.into.tolist())} if rows else {}

@@ -18,6 +18,11 @@ def shown(value, units):
     return words[0] if len(words) == 1 else '"' + ",".join(words) + '"'
 
 
+def quoted(text):
+    """A text as YAML has it in double quotes."""
+    return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
 def entry_lines(entry, units):
     """Lines of one thing."""
     lines = [f"{entry.name}:"] if entry.rows else []
@@ -41,11 +46,11 @@ def mode_lines(deck, units):
 def scene_lines(deck, result, units, why, mesh):
     """All lines."""
     lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "",
-             f"model: {{mesh: {mesh}}}" if deck.gravity is None else "model:"]
+             f"model: {{mesh: {quoted(mesh)}}}" if deck.gravity is None else "model:"]
     if deck.gravity is not None:
         vector, place = deck.gravity
         factor = units.length / units.time**2
-        lines += [f"  mesh: {mesh}", '  gravity: "' + ",".join(f"{g * factor:.15g}" for g in vector) + f'"  # {place}']
+        lines += [f"  mesh: {quoted(mesh)}", '  gravity: "' + ",".join(f"{g * factor:.15g}" for g in vector) + f'"  # {place}']
     for kind in LISTS:
         entries = [entry for entry in result.entries if entry.kind == kind]
         if entries:

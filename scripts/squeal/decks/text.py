@@ -6,7 +6,7 @@ import warnings
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 from .deck import Place
 
 WHOLE = re.compile(r"[+-]?\d{1,15}$")
@@ -19,7 +19,7 @@ CHUNK = 200000  # lines that become a matrix of characters at once
 def read_bytes(path):
     """Content of a file, with lines that end as Unix does."""
     try:
-        data = path.read_bytes()
+        data = regular(path).read_bytes()
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}") from None
     data = data.removeprefix(b"\xef\xbb\xbf")  # the mark of UTF-8

@@ -2,7 +2,7 @@
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 from .entries import entries
 from .text import integers, read_lines, table, whole
 
@@ -11,7 +11,7 @@ SYMMETRIES = {"general": "general", "symmetric": "symmetric", "skew-symmetric": 
 
 def is_market(path):
     """By its first bytes."""
-    with path.open("rb") as stream:
+    with regular(path).open("rb") as stream:
         return stream.read(14).lower() == b"%%matrixmarket"
 
 

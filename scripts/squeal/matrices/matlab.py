@@ -11,7 +11,7 @@ import zlib
 import h5py
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 from .entries import entries
 
 MATRIX, COMPRESSED = 14, 15
@@ -26,7 +26,7 @@ MOST = 2**31
 def read(path):
     """All square matrices of more than one row."""
     try:
-        if h5py.is_hdf5(path):
+        if h5py.is_hdf5(regular(path)):
             found = read_hdf5(path)
         else:
             found = read_five(path, path.read_bytes())

@@ -4,13 +4,13 @@ import struct
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 from .op4_columns import Columns, check_head, string_head
 
 
 def is_binary(path):
     """By the mark of the first record, the head of a matrix."""
-    with path.open("rb") as stream:
+    with regular(path).open("rb") as stream:
         mark = stream.read(4)
     return mark in [struct.pack(order + "i", n) for order in "<>" for n in (24, 48)]
 

@@ -6,7 +6,7 @@ import warnings
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?$")  # Fortran may leave out the E
 WHOLE = re.compile(r"[+-]?\d{1,15}$")
@@ -15,7 +15,7 @@ WHOLE = re.compile(r"[+-]?\d{1,15}$")
 def read_lines(path):
     """Lines of a file of text."""
     try:
-        data = path.read_bytes()
+        data = regular(path).read_bytes()
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}") from None
     try:

@@ -6,7 +6,7 @@ import numpy
 import scipy.sparse
 
 from ..petsc_matrix import write_matrix
-from ..tables import BadInput, whole
+from ..tables import BadInput, printable, whole
 
 HELD = 1e36  # what Abaqus adds to the diagonal of an unknown that is held
 KINDS = (("stiffness", r"k|stif"), ("mass", r"m"), ("damping", r"[cbd]"))
@@ -34,8 +34,8 @@ def check(found):
     """Raises BadInput for matrices that cannot be of one system."""
     names = [matrix.name.lower() for matrix in found]
     for matrix in found:
-        if not re.match(r"[A-Za-z]\w*$", matrix.name):
-            raise BadInput(f"{matrix.path}: '{matrix.name}' is no name; give one, NAME={matrix.path}")
+        if not re.fullmatch(r"[A-Za-z]\w*", matrix.name, re.ASCII):
+            raise BadInput(f"{matrix.path}: '{matrix.name}' is no name of letters, digits and _; give one, NAME={matrix.path}")
         if names.count(matrix.name.lower()) > 1:
             raise BadInput(f"{matrix.path}: another matrix is named {matrix.name} too; give a name, "
                            f"NAME={matrix.path}")
@@ -128,7 +128,7 @@ def write_scene(folder, found, table, lines):
     known = [matrix for matrix in found if kind_of(matrix.name)]
     with whole(folder / "matrices.yaml") as part:
         with part.open("w") as out:
-            out.write("".join(f"# {line}\n" for line in lines))
+            out.write("".join(f"# {printable(line)}\n" for line in lines))
             out.write(f'terms: "{",".join(matrix.name.lower() for matrix in known)}"\n')
             for matrix in found:
                 kind = kind_of(matrix.name)

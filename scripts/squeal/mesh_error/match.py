@@ -7,7 +7,7 @@ import h5py
 import numpy
 from scipy.spatial import cKDTree
 
-from ..tables import BadInput
+from ..tables import BadInput, regular
 
 SAMPLED = 3000  # nodes at which shapes are compared
 LEAST = 0.5  # share of a shape that lies in the space of its partner
@@ -23,7 +23,7 @@ class Shapes:
     def __init__(self, folder, n_modes):
         path = folder / "modes.h5"
         try:
-            with h5py.File(path) as file:
+            with h5py.File(regular(path)) as file:
                 self.read(file["VTKHDF"], n_modes)
         except (OSError, KeyError) as error:
             raise BadInput(f"{path}: has no shapes to compare: {error}") from None

@@ -4,6 +4,7 @@ them."""
 import numpy
 
 from ..frf_tables import Responses
+from ..tables import BadInput, regular
 from .charts import Axis, Chart, Panel
 from .markup import Column, Part, count, figure, figures, fixed, legend, missing, section, table, tag
 
@@ -85,8 +86,8 @@ def how_it_was_done(folder):
     if not path.exists() or not folder.scene or folder.scene.value("analysis") != "transient":
         return None
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, ValueError) as error:
+        lines = regular(path).read_text(encoding="utf-8").splitlines()
+    except (BadInput, OSError, ValueError) as error:
         return folder.lacks(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}")
     return tag("div", tag("h4", "How it was done"), tag("ul", [tag("li", line) for line in lines]),
                id=f"{folder.key}-response-how")

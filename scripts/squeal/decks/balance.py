@@ -1,0 +1,227 @@
+"""What a deck and the scene made of it weigh, and what holds and loads them: mass, centre of mass, elements, nodes that are
+held and loaded, force and moment, by part and in all. `of_deck` takes it from the elements, densities and loads of the deck;
+written.py reads the scene and its mesh again, from their files. Both give a Model, and `sums` is the same for both."""
+
+from dataclasses import dataclass, field
+
+import numpy
+
+from .faces import keys_of
+from .integrals import areas, volumes
+
+SAME = 1e-9  # relative difference of sums over straight elements
+SHOWN = 6  # parts in the table
+MARK = "UNBALANCED"  # the first word where deck and scene differ
+
+
+@dataclass
+class Model:
+    """Places are m; values are in SI. Nodes of `held` and `forces` are those of `x`."""
+    x: numpy.ndarray
+    blocks: list  # (shape, nodes [e][n] in its order)
+    parts: list = field(default_factory=list)  # (name, density or None, cells)
+    held: numpy.ndarray = None  # [n][3]
+    springs: numpy.ndarray = None  # [n][3], N/m
+    forces: numpy.ndarray = None  # [n][3], N
+    pressed: list = field(default_factory=list)  # (cells [f], nodes [f][k], pressure)
+    gravity: numpy.ndarray = None  # m/s^2
+
+    def __post_init__(self):
+        n = len(self.x)
+        self.held, self.springs, self.forces = numpy.zeros((n, 3), bool), numpy.zeros((n, 3)), numpy.zeros((n, 3))
+
+
+@dataclass
+class Row:
+    """Sums of one part."""
+    name: str
+    volume: float = 0
+    mass: float = None  # None: it has no density
+    centre: numpy.ndarray = None
+    cells: int = 0
+    held: int = 0
+    directions: int = 0  # that are held
+    loaded: int = 0
+    stiffness: numpy.ndarray = None
+    force: numpy.ndarray = None
+    moment: numpy.ndarray = None
+    gross: float = 0  # sum of the sizes of all forces
+
+
+def of_deck(deck, blocks, into, units):
+    """The model of a deck whose blocks had these nodes [e][n] when it was read; `into` is the node that each became by ties."""
+    model = Model(deck.x[into] * units.length, [(block.shape, into[nodes]) for block, nodes in zip(deck.blocks, blocks)])
+    part_of = numpy.full(deck.n_cells, -1)
+    for number, section in enumerate(deck.sections):
+        part_of[section.cells] = number
+    for number, section in enumerate(deck.sections):
+        cells, material = numpy.flatnonzero(part_of == number), deck.materials.get(section.material)
+        if len(cells):
+            density = None if material is None or material.density is None else material.density * units.density
+            model.parts.append((section.name, density, cells))
+    for support in deck.supports:
+        for d in support.values:
+            model.held[into[support.nodes], d] = True
+    for spring in deck.springs:
+        numpy.add.at(model.springs, into[spring.nodes], numpy.multiply(spring.stiffness, units.stiffness))
+    for load in deck.loads:
+        if load.faces is None:
+            numpy.add.at(model.forces, into[load.nodes], load.force * units.force)
+        elif len(load.faces):
+            model.pressed += faces_of(model, load.faces, load.pressure * units.stress)
+    if deck.gravity is not None:
+        model.gravity = numpy.multiply(deck.gravity[0], units.length / units.time**2)
+    return model
+
+
+def faces_of(model, faces, pressure):
+    """Rows of `pressed` of faces (cell, face)."""
+    first, found = 0, []
+    for shape, nodes in model.blocks:
+        inside = (faces[:, 0] >= first) & (faces[:, 0] < first + len(nodes))
+        for number, local in enumerate(shape.faces()):
+            cells = faces[inside & (faces[:, 1] == number), 0]
+            if len(cells):
+                found.append((cells, nodes[cells - first][:, local], pressure))
+        first += len(nodes)
+    return found
+
+
+def cells_of_faces(model, nodes):
+    """For faces [f][k] the cell that has each, -1 where none has."""
+    keys, cells, first = [], [], 0
+    for shape, rows in model.blocks:
+        for local in shape.faces():
+            corners = local[:3 if len(local) in (3, 6) else 4]
+            keys.append(keys_of(rows[:, corners]))
+            cells.append(numpy.arange(first, first + len(rows)))
+        first += len(rows)
+    keys, cells = numpy.concatenate(keys), numpy.concatenate(cells)
+    order = numpy.argsort(keys, kind="stable")
+    wanted = keys_of(nodes[:, :3 if nodes.shape[1] in (3, 6) else 4])
+    at = numpy.minimum(numpy.searchsorted(keys[order], wanted), len(keys) - 1)
+    return numpy.where(keys[order[at]] == wanted, cells[order[at]], -1)
+
+
+def sums(model):
+    """A row for each part, one of all, and one of nodes of no element, None where nothing is there. A node or face of several
+    parts counts in the first."""
+    cells = [volumes(shape, model.x[nodes]) for shape, nodes in model.blocks]
+    volume, moment = (numpy.concatenate(parts) for parts in zip(*cells))
+    middle = moment / numpy.where(volume > 0, volume, 1)[:, None]
+    part_of, owner = numpy.full(len(volume), len(model.parts)), numpy.full(len(model.x), len(model.parts))
+    for number in reversed(range(len(model.parts))):
+        part_of[model.parts[number][2]] = number
+    first = 0
+    for _, nodes in model.blocks:
+        of_cell = numpy.repeat(part_of[first:first + len(nodes)], nodes.shape[1])
+        numpy.minimum.at(owner, nodes.ravel(), of_cell)
+        first += len(nodes)
+    rows = [Row(name, *mass_of(density, volume[chosen], moment[chosen]), len(chosen)) for name, density, chosen in model.parts]
+    rows.append(Row("of no element", cells=0))
+    loaded, force, turn, gross = loads_on(model, middle, part_of, owner, len(rows))
+    for number, row in enumerate(rows):
+        mine = owner == number
+        row.held, row.directions = int(model.held[mine].any(axis=1).sum()), int(model.held[mine].sum())
+        row.loaded, row.stiffness = int((loaded & mine).sum()), model.springs[mine].sum(axis=0)
+        row.force, row.moment, row.gross = force[number], turn[number], gross[number]
+        if model.gravity is not None and row.mass:
+            row.force = row.force + row.mass * model.gravity
+            row.moment = row.moment + row.mass * numpy.cross(row.centre, model.gravity)
+            row.gross += row.mass * numpy.linalg.norm(model.gravity)
+    lost = rows.pop()
+    return rows, total_of(rows), lost if lost.held or lost.loaded or lost.stiffness.any() else None
+
+
+def mass_of(density, volume, moment):
+    """Volume, mass, centre."""
+    total = volume.sum()
+    return total, None if density is None else density * total, moment.sum(axis=0) / total if total > 0 else numpy.zeros(3)
+
+
+def loads_on(model, middle, part_of, owner, n):
+    """Which nodes are loaded; by part force [n][3], moment about the origin [n][3], and the sum of the sizes of forces [n]."""
+    loaded = model.forces.any(axis=1)
+    force, turn, gross = numpy.zeros((n, 3)), numpy.zeros((n, 3)), numpy.zeros(n)
+    numpy.add.at(force, owner, model.forces)
+    numpy.add.at(turn, owner, numpy.cross(model.x, model.forces))
+    numpy.add.at(gross, owner, numpy.linalg.norm(model.forces, axis=1))
+    for cells, nodes, pressure in model.pressed:
+        if not pressure:
+            continue
+        x = model.x[nodes]
+        area, arm = areas(x)
+        corners = 3 if nodes.shape[1] in (3, 6) else 4
+        outward = numpy.einsum("fi,fi->f", area, x[:, :corners].mean(axis=1) - middle[cells])
+        inward = numpy.where(outward > 0, -pressure, pressure)[:, None]
+        numpy.add.at(force, part_of[cells], inward * area)
+        numpy.add.at(turn, part_of[cells], inward * arm)
+        numpy.add.at(gross, part_of[cells], abs(pressure) * numpy.linalg.norm(area, axis=1))
+        loaded[nodes] = True
+    return loaded, force, turn, gross
+
+
+def total_of(rows):
+    """The row of all parts."""
+    masses = [row.mass for row in rows]
+    by = [row.volume for row in rows] if None in masses else masses
+    centre = sum(weight * row.centre for weight, row in zip(by, rows)) / (sum(by) or 1)
+    found = Row("all", sum(row.volume for row in rows), None if None in masses else sum(masses), centre)
+    for name in ("cells", "held", "directions", "loaded", "stiffness", "force", "moment", "gross"):
+        setattr(found, name, sum(getattr(row, name) for row in rows))
+    return found
+
+
+def apart(deck, scene, size):
+    """What differs between two rows: pairs (what, of the deck, of the scene)."""
+    found = []
+    for name, what in (("cells", "elements"), ("held", "held nodes"), ("directions", "held directions"), ("loaded", "loaded nodes")):
+        if getattr(deck, name) != getattr(scene, name):
+            found.append((what, str(getattr(deck, name)), str(getattr(scene, name))))
+    gross = max(deck.gross, scene.gross)
+    stiffness = abs(deck.stiffness).sum()
+    for name, unit, scale in (("volume", "m^3", deck.volume), ("mass", "kg", deck.mass), ("centre", "m", size), ("force", "N", gross),
+                              ("moment", "N m", gross * size), ("stiffness", "N/m", stiffness)):
+        one, other = getattr(deck, name), getattr(scene, name)
+        if (one is None) != (other is None) or (one is not None and not numpy.all(abs(one - other) <= SAME * (scale or 0))):
+            found.append((name, f"{shown(one)} {unit}", f"{shown(other)} {unit}"))
+    return found
+
+
+def shown(value):
+    """A number or three, of which rounding beside the largest is 0; none as a dash."""
+    if value is None:
+        return "-"
+    values = numpy.atleast_1d(value)
+    return ", ".join(f"{number + 0:.6g}" for number in numpy.where(abs(values) > 1e-12 * abs(values).max(), values, 0))
+
+
+def compared(deck, scene):
+    """Lines to print, and the first difference or None."""
+    (rows, total, lost), (others, other_total, _) = sums(deck), sums(scene)
+    size = max(float(abs(deck.x).max(initial=0)), float(numpy.linalg.norm(numpy.ptp(deck.x, axis=0))))
+    if len(rows) != len(others):
+        differs = [f"{MARK}: parts: {len(rows)} in the deck, {len(others)} in the scene"]
+    else:
+        differs = [f"{MARK}: {what} of {other.name}: {one} in the deck, {two} in the scene"
+                   for row, other in zip([*rows, total], [*others, other_total]) for what, one, two in apart(row, other, size)]
+    lines = differs[:1] or ["balance: the scene has the mass, centre, elements, held and loaded nodes, force and moment of the deck"]
+    if lost:
+        lines.append(f"balance: nodes of no volume element: {lost.held} held, {lost.loaded} loaded with {shown(lost.force)} N; not in the "
+                     "scene")
+    return lines + table(others, other_total), differs[0] if differs else None
+
+
+def table(rows, total):
+    """Lines of the table; of many parts the first."""
+    cells = [("part", "kg", "centre, m", "elements", "held", "loaded", "force, N")]
+    more = [(f"and {len(rows) - SHOWN} more parts", *[""] * 6)] if len(rows) > SHOWN + 1 else []
+    chosen = rows[:SHOWN] if more else rows
+    cells += [line_of(row) for row in chosen] + more + ([line_of(total)] if len(rows) > 1 else [])
+    widths = [max(len(row[k]) for row in cells) for k in range(7)]
+    lines = ["  ".join([row[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:]))]) for row in cells]
+    return lines + [f"moment about the origin: {shown(total.moment)} N m"] * bool(total.gross)
+
+
+def line_of(row):
+    return (row.name, shown(row.mass), shown(row.centre), str(row.cells), str(row.held), str(row.loaded), shown(row.force))
