@@ -33,7 +33,7 @@ static PetscErrorCode ScopeCheckSliding(MPI_Comm comm, const Scope *s, const Con
   PetscCall(PetscSNPrintf(straight, sizeof(straight), "not used without -%s_rotation", c->name));
   PetscCall(PetscSNPrintf(still, sizeof(still), "not used where nothing slides as told: give -%s_slip or -%s_rotation",
                           c->name, c->name));
-  if (!turns) PetscCall(OptionsRefuseOf(comm, c->name, "center", straight));
+  if (!turns) PetscCall(OptionsRefuseOf(comm, c->name, "centre", straight));
   if (s->transient && !turns && Vec3Dot(c->slip, c->slip) == 0)
     PetscCall(
       OptionsRefuseOf(comm, c->name, c->speed > 0 ? "speed ramp ramp_shape delay" : "ramp ramp_shape delay", still));

@@ -119,7 +119,7 @@ disc-1.Every, 12., 1., 2., 0., 1., 2., -5.
              "loads": "corner_force,piston_pressure", "corner_force_set": "corner", "corner_force_force": "1.5,0,-5",
              "piston_pressure_set": "piston", "piston_pressure_pressure": "2e6",
              "contacts": "rubbing", "rubbing_surfaces": "rubs,disc_1_face", "rubbing_kn_per_area": "2e14", "rubbing_mu": "0.4",
-             "rubbing_rotation": "0,0,-12", "rubbing_center": "1e-3,2e-3,0",
+             "rubbing_rotation": "0,0,-12", "rubbing_centre": "1e-3,2e-3,0",
              "modes_target": "1", "modes_count": "20"}
     FORCES = {"corner_force": (1.5, 0, -5), "piston_pressure": (0, 0, -200)}
     LISTED = ["brake.inp:67: differs: *TIE glue: 4 nodes", "brake.inp:14: differs: C3D8 ", "brake.inp:35: differs: C3D8R ",

@@ -122,7 +122,7 @@ class Ansys:
              "force_force_force": "0,0,-8", "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "2e6",
              "top_face_pressure_set": "top_face", "top_face_pressure_pressure": "1.5e6",
              "contacts": "pair_5", "pair_5_surfaces": "contact_5,target_5", "pair_5_law": "constraint", "pair_5_mu": "0.45",
-             "pair_5_rotation": "0,0,3", "pair_5_center": "1e-3,2e-3,0",
+             "pair_5_rotation": "0,0,3", "pair_5_centre": "1e-3,2e-3,0",
              "modes_target": "1", "modes_count": "12"}
     LISTED = ["pair.cdb:28: differs: SOLID185", "pair.cdb:32: 1 elements of type 21", "pair.cdb:59: MP KXX",
               "pair.cdb:64: D: in the turned axes", "pair.cdb:67: F MX", "pair.cdb:74: BFE"]

@@ -87,7 +87,7 @@ typedef struct {
   PetscReal  speed;       /* sliding speed, m/s */
   PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
   PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
-  PetscReal  center[3];   /* a point of its axis, m */
+  PetscReal  centre[3];   /* a point of its axis, m */
   PetscBool  slides;      /* every pair has a slip direction; known after ContactSetUp() */
 } ContactInterface;
 
@@ -129,7 +129,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
                                    along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
 .  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
-.  -contact_center <0,0,0>        - a point of the axis of rotation, m
+.  -contact_centre <0,0,0>        - a point of the axis of rotation, m
 .  -contact_speed <m/s>           - sliding speed where only the direction is given
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu_slope N0 along it

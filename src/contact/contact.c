@@ -72,7 +72,7 @@ static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface
   for (int i = 0; i < 5; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
   PetscCall(OptionsCheckFinite(comm, c->name, "slip", "a direction", c->slip));
   PetscCall(OptionsCheckFinite(comm, c->name, "rotation", "rad/s", c->rotation));
-  PetscCall(OptionsCheckFinite(comm, c->name, "center", "m", c->center));
+  PetscCall(OptionsCheckFinite(comm, c->name, "centre", "m", c->centre));
   PetscFunctionReturn(0);
 }
 
@@ -108,7 +108,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
                             c->slip, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3,
                             c->rotation, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-center", "a point of its axis, m", 3, c->center, NULL));
+  PetscCall(OptionsGetReals(PetscOptionsObject, "-centre", "a point of its axis, m", 3, c->centre, NULL));
   PetscOptionsEnd();
   PetscCall(InterfaceCheckFinite(comm, c));
   PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
@@ -279,7 +279,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
     PetscCall(ChecksumAddReals(c, 3, f->slip));
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
-    PetscCall(ChecksumAddReals(c, 3, f->center));
+    PetscCall(ChecksumAddReals(c, 3, f->centre));
   }
   PetscCall(ContactTiesAddChecksum(contact, c));
   PetscFunctionReturn(0);

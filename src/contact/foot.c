@@ -220,6 +220,6 @@ void ContactSlideAlong(const ContactInterface *c, const PetscReal x[3], PetscRea
   for (int d = 0; d < 3; d++) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
 
-    v[d] = -(w[e] * (x[f] - c->center[f]) - w[f] * (x[e] - c->center[e]));
+    v[d] = -(w[e] * (x[f] - c->centre[f]) - w[f] * (x[e] - c->centre[e]));
   }
 }

@@ -45,7 +45,7 @@ PetscErrorCode DynamicsSetFrames(Dynamics d)
     if (!turns) continue;
     n_turning++;
     PetscCall(DynamicsFindPart(d, d->interfaces[i].master, &part));
-    PetscCall(ExternalSetFrame(d->external, scene->parts[part].name, rotation, d->interfaces[i].center, d->coriolis,
+    PetscCall(ExternalSetFrame(d->external, scene->parts[part].name, rotation, d->interfaces[i].centre, d->coriolis,
                                d->centrifugal));
   }
   PetscCheck(n_turning, d->comm, PETSC_ERR_USER_INPUT,

@@ -18,7 +18,7 @@ static const Box block = {
        .x = {x_upper, y_upper, z_upper}
 };
 
-#define TURNING "-joint_kinematics turning -joint_rotation 0,0,2 -joint_center 0.05,-0.1,0 "
+#define TURNING "-joint_kinematics turning -joint_rotation 0,0,2 -joint_centre 0.05,-0.1,0 "
 
 /* A slave is a node of the block; both bodies have nodes at z = 0, but none at the same x */
 static inline PetscBool IsSlave(const Slider *s, PetscInt i)

@@ -196,7 +196,7 @@ def add_contacts(assembly):
             rows.append(("mu", ("", (contact.mu,)), comment))
         if contact.rotation:
             rows += [("rotation", ("rate", contact.rotation), f"{contact.turning} of the master"),
-                     ("center", ("length", contact.centre), str(contact.turning))]
+                     ("centre", ("length", contact.centre), str(contact.turning))]
         if contact.damping and contact.mu:
             rows.append(("friction_damping", "true", str(contact.damping)))
         if contact.mu and not contact.rotation:

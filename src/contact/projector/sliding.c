@@ -1,7 +1,7 @@
 /*
    Kinematics of a sliding interface. With the ramp r(t), its integral R(t), and the given velocity of the slave
    relative to the master, V s (s of -contact_slip, V of -contact_speed) or -w x (x - c) (-contact_rotation,
-   -contact_center):
+   -contact_centre):
       prescribed  the part of r V s or -r w x (x - c) in the tangent plane is added to the slip velocity; of V s its
                   direction alone, so that the speed is V
       turning     the master, and the frame in which its nodes are described, is at x -> Q (x - c) + c, Q the rotation
@@ -77,7 +77,7 @@ void SlidingFrame(const ContactInterface *c, const ContactSliding *sliding, Pets
   const PetscReal way = sliding->speed * RampIntegral(&sliding->ramp, t);
 
   *frame = (ContactFrame){.shift = {0}};
-  for (int d = 0; d < 3; d++) frame->centre[d] = c->center[d];
+  for (int d = 0; d < 3; d++) frame->centre[d] = c->centre[d];
   if (!sliding->turning) return;
   if (sliding->rotates)
     FrameTurn(sliding->axis, way, frame->D);
