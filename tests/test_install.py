@@ -7,6 +7,8 @@
               --help, and those for modes make their files from results of the installed program
   manual      every option of -help stands in squeal.1, with its default; man has no warning
   completion  bash is offered the options of the program, the names of a scene, the words of a choice, files
+  scenes      of each scene that reads a mesh the line in its head makes the mesh, and the scene runs (not the brake of 50,000
+              unknowns, of which test_brake_mesh.py is)
   paths       no text names the folders of sources or build
   sources     nothing that Python compiles beside its sources is installed
 
@@ -143,6 +145,26 @@ def check_sources(place, faults):
     faults.check(not compiled, f"sources: no folder that Python compiles into, but {compiled}")
 
 
+def check_scenes(place, squeal, faults):
+    """A mesh as the head of its scene says, and a run of that scene, in time no longer than a step or two."""
+    share = next(place.rglob("share/squeal"))
+    if not shutil.which("gmsh"):
+        print("skipped: scenes, no gmsh, of scripts/packages.txt")
+        return
+    for scene in sorted(share.glob("options/*.yaml")):
+        text = scene.read_text()
+        mesh = re.search(r"^model: {mesh: ([^,}]+)", text, re.MULTILINE)
+        if not mesh or scene.stem == "brake":
+            continue
+        making = re.search(r"^#   (gmsh .*)$", text, re.MULTILINE)
+        faults.check(making, f"scenes: {scene.name} says how {mesh[1]} is made")
+        if making:
+            run(*making[1].split(), cwd=share)
+            words = ("-ts_max_time", 1e-6) if "analysis: transient" in text else ()
+            run(*squeal, "-options_file", scene, "-output_dir", place / scene.stem, *words, cwd=share)
+            faults.check((place / scene.stem / "scene.yaml").is_file(), f"scenes: {scene.name} with {mesh[1]}")
+
+
 def check_paths(place, build, faults):
     """Words of the build in files that are text."""
     for path in sorted(place.rglob("*")):
@@ -170,6 +192,7 @@ def main():
         check_manual(place, squeal, faults)
         check_completion(top, place, bin_dir / "squeal", faults)
         check_paths(place, build, faults)
+        check_scenes(place, squeal, faults)
     return 1 if faults else 0
 
 
