@@ -33,7 +33,7 @@ def words(text):
 
 def is_there(word):
     """Whether a word that looks like a path names something; one that does not is taken to."""
-    if word.startswith(FOLDERS):
+    if word.startswith(FOLDERS) and not word.endswith(".msh"):  # which the command that names it makes
         return any(ROOT.glob(word.replace("NAME", "*")))
     if re.fullmatch(r"\w+\.[ch]|\w+\.py", word):
         return any(path for folder in FOLDERS for path in (ROOT / folder).rglob(word))

@@ -9,7 +9,7 @@
 
    Left vectors solve the transposed problem with the transposed factors, from a start vector of their own; what one
    of the two Krylov spaces misses inside the window shows in the other. Eigenvalues outside the window, |sigma| >
-   -modes_growth, are no part of the claim.
+   -modes_growth, are listed where they are found, by sweeps too, and are no part of the claim.
 */
 #pragma once
 
@@ -47,8 +47,8 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 +  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
 .  -modes_target <0>         - instead of a band: the -modes_count modes nearest to this frequency, Hz
 .  -modes_count <20>         - how many; either of the two overrides a band
-.  -modes_growth <1/s>       - largest growth or decay that a band must cover; default a tenth of the angular
-frequency of f2
+.  -modes_growth <1/s>       - modes of a band with growth and decay up to this must be found; default a tenth of the
+angular frequency of f2
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called

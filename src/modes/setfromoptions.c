@@ -43,7 +43,7 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
                              modes->target, &modes->target, &has_target));
   PetscCall(PetscOptionsInt("-modes_count", "how many of them", "modes.h", modes->count, &modes->count, &has_count));
   PetscCall(PetscOptionsReal(
-    "-modes_growth", "largest growth or decay that a band must cover, 1/s (0: a tenth of the angular frequency f2)",
+    "-modes_growth", "modes of a band with growth and decay up to this must be found, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
   PetscCall(ShiftsSetFromOptions(modes, PetscOptionsObject));
   PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",

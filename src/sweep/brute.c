@@ -96,8 +96,9 @@ PetscErrorCode SweepBrute(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Largest distance of a full eigenvalue from the nearest reduced one, relative, and the frequency where it is */
-static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedModes *reduced, PetscReal *omega)
+/* Largest distance of a full eigenvalue in the window from the nearest reduced one, relative, and the frequency where it is */
+static PetscReal LargestDistance(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced,
+                                 PetscReal *omega)
 {
   PetscReal largest = 0;
 
@@ -105,7 +106,7 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
     const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
     PetscReal          nearest = PETSC_MAX_REAL;
 
-    if (full[i].rigid) continue;
+    if (full[i].rigid || PetscAbsReal(full[i].sigma) > growth) continue;
     for (PetscInt k = 0; k < reduced->n; k++) nearest = PetscMin(nearest, cabs(reduced->lambda[k] - lambda));
     if (nearest <= largest * cabs(lambda)) continue;
     largest = nearest / cabs(lambda);
@@ -115,13 +116,13 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], const ReducedMod
 }
 
 /* True errors beside the sum of what the two solutions state */
-static void CheckRatios(PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
+static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced, SweepCheck *check)
 {
   for (PetscInt i = 0; i < n; i++) {
     const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
     PetscReal          nearest = PETSC_MAX_REAL, stated = 1, ratio;
 
-    if (full[i].rigid || !reduced->n) continue;
+    if (full[i].rigid || !reduced->n || PetscAbsReal(full[i].sigma) > growth) continue;
     for (PetscInt k = 0; k < reduced->n; k++) {
       const PetscReal distance = cabs(reduced->lambda[k] - lambda);
 
@@ -133,13 +134,16 @@ static void CheckRatios(PetscInt n, const Mode full[], const ReducedModes *reduc
   }
 }
 
-/* Compares the two at the point of the check; the reduced window is a little wider, for modes on its edge */
+/* Compares the two at the point of the check, by what both must have: growth and decay as asked for, |sigma|; the reduced window is
+   a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 {
-  const ReducedWindow wide = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), sweep->window.growth};
+  const PetscReal     growth = sweep->window.growth;
+  const ReducedWindow wide   = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), growth * (1 + 1e-3), 0};
   const Mode         *full;
   ReducedModes        reduced;
   PetscReal          *p;
+  PetscInt            n;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
@@ -150,22 +154,25 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   if (sweep->parity < 0)
     PetscCall(ModesSolve(sweep->modes));
   else
-    PetscCall(ModesSolveAny(sweep->modes, &check->n_full));
-  PetscCall(ModesGet(sweep->modes, &check->n_full, &full));
-  for (PetscInt i = 0; i < check->n_full; i++)
+    PetscCall(ModesSolveAny(sweep->modes, &n));
+  PetscCall(ModesGet(sweep->modes, &n, &full));
+  for (PetscInt i = 0; i < n; i++) {
+    if (PetscAbsReal(full[i].sigma) > growth) continue;
+    check->n_full++;
     check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);
+    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
+  }
   for (PetscInt k = 0; k < reduced.n; k++) {
     const PetscReal omega = cimag(reduced.lambda[k]);
 
-    if (omega < sweep->window.low || omega > sweep->window.high) continue;
+    if (omega < sweep->window.low || omega > sweep->window.high || PetscAbsReal(creal(reduced.lambda[k])) > growth)
+      continue;
     check->n_reduced++;
     check->n_unstable_reduced += ReducedIsUnstable(reduced.lambda[k], reduced.error[k]);
   }
-  CheckRatios(check->n_full, full, &reduced, check);
-  check->error    = LargestDistance(check->n_full, full, &reduced, &check->omega);
+  CheckRatios(n, full, growth, &reduced, check);
+  check->error    = LargestDistance(n, full, growth, &reduced, &check->omega);
   check->estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
-  for (PetscInt i = 0; i < check->n_full; i++)
-    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
   PetscCall(ReducedModesDestroy(&reduced));
   PetscFunctionReturn(0);
 }

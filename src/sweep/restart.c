@@ -1,25 +1,23 @@
 /*
-   Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it
-   stopped. Each rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a
-   temporary name that becomes final only when all ranks have written. The dense model is made again from the same
-   blocks of vectors: on one rank bit by bit the same. The checksum of the scene tells whether the files belong to this
-   sweep, and one of all that stands before it, at the end of each file, whether it is whole. Files of another sweep and
-   damaged ones are named, not read, and in the end replaced.
+   Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it stopped. Each
+   rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a temporary name that becomes
+   final only when all have written. The dense model is made again from the same blocks of vectors: on one rank bit by bit the
+   same. The checksum of the scene tells whether the files belong to this sweep, and one of all that stands before it, at the end
+   of each file, whether it is whole. Files of another sweep and damaged ones are named, not read, and in the end replaced.
 */
 #include "sweepimpl.h"
 #include "base/path.h"
 #include <stdio.h>
 #include <unistd.h>
 
-#define VERSION         5       /* of the format */
+#define VERSION         6       /* of the format */
 #define SWEEP_MAX_PARTS 1000    /* of a scene; more are none */
 #define PIECE           1048576 /* bytes read at once */
 
 /* What stands before the parts of the scene and the vectors in each file */
 typedef struct {
-  PetscReal last;
+  PetscReal last, fall, reach;
   PetscInt  version, n_parts, n_parameters, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
-  PetscReal fall;
 } Header;
 
 /* A file; good until something fails */
@@ -184,6 +182,7 @@ static PetscErrorCode HeaderSet(Sweep sweep, PetscInt n_parts, Header *h)
   h->last         = greedy->last;
   h->n_passed     = greedy->n_passed;
   h->fall         = greedy->fall;
+  h->reach        = greedy->reach;
   h->n_samples    = greedy->n_samples;
   h->n_used       = basis->reduced.n_used;
   h->first        = sweep->n_kept;
@@ -284,6 +283,7 @@ static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
   sweep->greedy.last      = h->last;
   sweep->greedy.n_passed  = h->n_passed;
   sweep->greedy.fall      = h->fall;
+  sweep->greedy.reach     = h->reach;
   sweep->n_kept           = h->n;
   PetscFunctionReturn(0);
 }

@@ -212,6 +212,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
       sweep->greedy.keep_ctx = sweep;
     }
     if (!sweep->whole) PetscCall(BasisMake(sweep, PETSC_FALSE));
+    if (sweep->greedy.reach > sweep->window.growth) sweep->window.rtol = sweep->rtol / POINTS_MARGIN;
+    if (sweep->whole) sweep->window.rtol = PETSC_MAX_REAL;
   }
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);

@@ -7,7 +7,7 @@
 #include "petscmain.h"
 #include "sweep/track/frame.h"
 
-static const ReducedWindow everything = {0, 100, 100};
+static const ReducedWindow everything = {0, 100, 100, 0};
 
 /* Events of n equal steps, with their onsets */
 static PetscErrorCode FindOnsets(const Dense *dense, const ReducedWindow *window, PetscReal first, PetscReal last,

@@ -12,7 +12,7 @@
 #define N_USED   20
 #define N_POINTS 3
 
-static const ReducedWindow everything = {0, 1e3, 1e3};
+static const ReducedWindow everything = {0, 1e3, 1e3, 0};
 
 /* K of kappa = 1, 4, 9, ... with random couplings, and p0 times an unsymmetric part */
 static PetscErrorCode SystemMake(System *s)

@@ -10,7 +10,7 @@
 
 #define NEAR_EPS 1e-12
 
-static const ReducedWindow all = {0, 10, 10};
+static const ReducedWindow all = {0, 10, 10, 0};
 
 /* Breaks when: lambda = sqrt(-kappa) loses a member or digits, or the order of a pair changes. Reference: closed form
    in densesystem.h with a = d = 2, b = 1, c = 4/3, mu_c = 0.75 */
@@ -84,7 +84,7 @@ static PetscErrorCode TestUnevenDamping(int *failed)
    closed form, a = d = 2, b = 1, c = 4/3, mu = -3: kappa = 2 -+ sqrt(5) */
 static PetscErrorCode TestDivergence(int *failed)
 {
-  const ReducedWindow above = {0.1, 10, 10};
+  const ReducedWindow above = {0.1, 10, 10, 0};
   const PetscReal     mu    = -3;
   System              s;
   ReducedModes        m;

@@ -9,7 +9,7 @@
 
 #define N_LOCK 8 /* unknowns of the system that locks in */
 
-static const ReducedWindow wide = {0, 1e3, 1e3};
+static const ReducedWindow wide = {0, 1e3, 1e3, 0};
 
 /* Two unknowns of kappa = 4 +- 0.5 coupled by friction p0, defective at p0 = 1, hidden by a rotation among the N_LOCK
    unknowns of the model; n_weak further ones couple weakly to all; C = p1 K / 100 has the same eigenvectors */

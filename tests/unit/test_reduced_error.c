@@ -13,7 +13,7 @@
 #define N_ALL  50
 #define N_USED 30
 
-static const ReducedWindow wide = {0, 1e3, 1e3};
+static const ReducedWindow wide = {0, 1e3, 1e3, 0};
 
 /* K of kappa = 1, 4, 9, ... with random couplings: strong (1) inside the model, and inside the rest, weak between them,
    symmetric or not; M near the identity; p0 times the unsymmetric part, C = p1 times random */
@@ -91,7 +91,7 @@ static PetscErrorCode TestFloor(int *failed)
 {
   enum { n = 30 };
   unsigned long long  seed                 = 3;
-  const ReducedWindow window               = {0, 1e6, 1e6};
+  const ReducedWindow window               = {0, 1e6, 1e6, 0};
   PetscReal           K[(n + 1) * (n + 1)] = {0}, M[(n + 1) * (n + 1)] = {0}, v[n], error = 0, estimate = 0;
   long double         vv = 0, vKv = 0;
   System              s;

@@ -15,7 +15,7 @@
 #define N_PAIRS    10
 #define N_PLACES   12
 
-static const ReducedWindow everything = {0, 100, 100};
+static const ReducedWindow everything = {0, 100, 100, 0};
 
 /* Pair p of ten in status s; each rank has those with p mod ranks = rank */
 static PetscBool IsClosed(PetscInt s, PetscInt p)

@@ -7,7 +7,7 @@
 #include "densesweep.h"
 #include "petscmain.h"
 
-static const ReducedWindow everything = {0, 100, 100};
+static const ReducedWindow everything = {0, 100, 100, 0};
 
 /* Largest distance of the branches from the straight lines kappa + slope p on which they begin */
 static PetscReal RunStraight(const Run *run, PetscInt n, const PetscReal kappa[], const PetscReal slope[])
@@ -161,7 +161,7 @@ static PetscErrorCode TestFriction(int *failed)
 static PetscErrorCode TestWindow(int *failed)
 {
   const PetscReal     kappa[3] = {1, 4, 1.7}, slope[3] = {3, -3, 0};
-  const ReducedWindow window = {0.5, 1.5, 10};
+  const ReducedWindow window = {0.5, 1.5, 10, 0};
   static Run          run;
   Dense               dense;
 

@@ -5,7 +5,7 @@
 #include "densesweep.h"
 #include "petscmain.h"
 
-static const ReducedWindow everything = {0, 100, 100};
+static const ReducedWindow everything = {0, 100, 100, 0};
 
 /* Breaks when: a defective point spoils the match, or counts as two events. Reference: lock-in at p = 0.4 = a point of
    the sweep (d = (p - 0.5)^2 - 0.01), lock-out at 0.6, also one */

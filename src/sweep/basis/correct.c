@@ -231,7 +231,7 @@ PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const Re
                                ShiftInvert *counter, PetscInt *full, PetscInt *by_basis)
 {
   const Reduced *reduced = &basis->reduced;
-  ReducedWindow  w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL};
+  ReducedWindow  w       = {window->low < 0.5 * window->high ? 0 : window->low, window->high, PETSC_MAX_REAL, 0};
   PencilMatrices frictionless;
   ReducedModes   modes;
   PetscReal     *p0;

@@ -156,6 +156,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.drop             = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
   run.guarded.low      = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high     = high * (1 + GUARD);
+  run.guarded.growth   = PetscMax(greedy->window.growth, greedy->reach);
   PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
   PetscCall(PointsScale(basis->pencil, n, points, run.scale));
   if (greedy->n_samples) PetscCall(PointNext(&run, &next));

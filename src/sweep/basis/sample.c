@@ -6,6 +6,7 @@
 #define SAFE         (1. / POINTS_MARGIN) /* what is asked at a point that corrections come from, beside rtol */
 #define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
+#define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
 #define SAMPLE_NEAREST 4 /* modes taken in where the band has none */
 
 PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
@@ -55,6 +56,10 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
   PetscCall(PencilSetParameters(run->basis->pencil, p));
   PetscCall(SampleModes(run, wide));
   PetscCall(ModesGet(run->greedy->modes, &n, &mode));
+  for (PetscInt i = 0; i < n; i++) /* what lies beyond the growth asked for is followed by corrections like the others */
+    if (PetscAbsReal(mode[i].sigma) > run->greedy->window.growth)
+      run->greedy->reach = PetscMax(run->greedy->reach, (1 + SAMPLE_REACH) * PetscAbsReal(mode[i].sigma));
+  run->guarded.growth = PetscMax(run->guarded.growth, run->greedy->reach);
   PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
   PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
   PetscCall(BVDestroy(&block));
@@ -176,7 +181,8 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
 
     n_vectors += n_added;
     PetscCall(BasisUse(run->basis, run->basis->reduced.n));
-    if (fall > 0 && fall * worst <= SAFE * run->greedy->rtol) break; /* the vectors just taken in are enough */
+    if (fall > 0 && fall * worst <= SAFE * run->greedy->rtol && run->greedy->reach <= run->greedy->window.growth)
+      break; /* the vectors just taken in are enough, where no others are needed to tell what lies beyond the growth */
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
     run->greedy->fall = PetscMax(fall, worst / before);
   }

@@ -247,7 +247,7 @@ static PetscBool IsInside(const ReducedWindow *window, PetscComplex lambda)
 {
   const PetscReal sigma = PetscAbsReal(creal(lambda)), omega = cimag(lambda);
 
-  if (omega < window->low * (1 - WINDOW_EDGE) || sigma > window->growth) return PETSC_FALSE;
+  if (omega < window->low * (1 - WINDOW_EDGE) || (sigma > window->growth && window->rtol <= 0)) return PETSC_FALSE;
   return omega <= window->high * (1 + WINDOW_EDGE) ? PETSC_TRUE : PETSC_FALSE;
 }
 

@@ -278,3 +278,27 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
   PetscCall(DensePencilDestroy(&e.pencil));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ReducedDropInexact(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                                  ReducedModes *modes)
+{
+  PetscBool    outside = PETSC_FALSE;
+  PetscInt     n       = 0, *list;
+  ReducedModes all     = *modes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < all.n; i++)
+    if (PetscAbsReal(creal(all.lambda[i])) > window->growth) outside = PETSC_TRUE;
+  if (!outside || window->rtol == PETSC_MAX_REAL) PetscFunctionReturn(0);
+  PetscCall(ReducedEstimate(reduced, p, &all));
+  PetscCall(PetscMalloc1(all.n, &list));
+  for (PetscInt i = 0; i < all.n; i++) {
+    const PetscBool known = reduced->n > reduced->n_used && all.error[i] <= window->rtol * cabs(all.lambda[i]);
+
+    if (known || PetscAbsReal(creal(all.lambda[i])) <= window->growth) list[n++] = i;
+  }
+  PetscCall(ReducedModesSelect(&all, n, list, modes));
+  PetscCall(PetscFree(list));
+  PetscCall(ReducedModesDestroy(&all));
+  PetscFunctionReturn(0);
+}

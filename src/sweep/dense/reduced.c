@@ -297,6 +297,7 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
+  PetscCall(ReducedDropInexact(reduced, p, window, modes));
   PetscCall(DensePencilDestroy(&pencil));
   PetscCall(PetscFree(E));
   PetscCall(PetscFree(Ms));

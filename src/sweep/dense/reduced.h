@@ -20,9 +20,10 @@ typedef struct {
                                           rounding in the dense matrices */
 } Reduced;
 
-/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s */
+/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s; and with rtol > 0 those of larger |sigma| that the basis
+   happens to have: whose estimated error is at most rtol |lambda| */
 typedef struct {
-  PetscReal low, high, growth;
+  PetscReal low, high, growth, rtol;
 } ReducedWindow;
 
 /* Eigenvalues of one point, omega >= 0, by frequency (members of a pair of equal frequency by growth, the stable one
@@ -87,6 +88,9 @@ PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
 /* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see
    the file), and a floor for rounding, which alone remains without Z */
 PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
+/* Takes out what has a larger |sigma| than the window and is not known to its rtol */
+PetscErrorCode ReducedDropInexact(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                                  ReducedModes *modes);
 
 /* sensitivity.c - d lambda / d p_j = -y^T (dQ/dp_j) x / (y^T Q' x) of mode i for every parameter j, [n_parameters];
    zero for a rigid mode, not finite at a defective pair */
