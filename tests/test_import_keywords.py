@@ -16,18 +16,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.decks import ansys_model, nastran
 from squeal.decks.abaqus import CARDS as ABAQUS
 from squeal.decks.convert import convert, read_deck
-from squeal.decks.deck import Block, Deck, Place
-from squeal.decks.elements import EDGES, SHAPES, signed_volumes
-from squeal.decks.faces import nodes_by_kind
-from squeal.decks.orientation import set_orientation
 from squeal.decks.units import SYSTEMS
 from squeal.tables import BadInput
 
-import decks
 import decks_abaqus
 import decks_others
 import numpy as np
-import odd_meshes as odd
 
 FAILED = []
 
@@ -246,88 +240,6 @@ def others(folder):
         check_refused(folder, ending, cases)
 
 
-def chosen(folder):
-    """--subcase; bulk data alone, of which the lowest set is taken and the others are said; a subcase that is not there."""
-    name, text = next(iter(decks_others.NastranCase.FILES.items()))
-    (folder / name).write_text(text)
-    convert(folder / name, "mm-t-s", folder / "scene", subcase=1)
-    options = scene(folder, "scene")[0]
-    check("--subcase 1 has the loads, and any method", "loads" in options and options["modes_count"] == "7", options)
-    try:
-        convert(folder / name, "mm-t-s", folder / "scene", subcase=3)
-        check("--subcase 3 is refused", False)
-    except BadInput as error:
-        check("--subcase 3 is refused", "case.bdf:6: there is no SUBCASE 3; those of the file are 1, 2" in str(error), error)
-    bulk = decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY + "SPC1,1,123,1,2,3,4\nSPC1,3,123,5\nENDDATA\n"
-    options, listed = sections(folder, "deck.bdf", bulk)
-    check("bulk data alone: the lowest set", options.get("supports") == "support" and any(
-        line.startswith("deck.bdf:13: differs: no case control: SPC = 1 is taken, not 3") for line in listed), (options, listed))
-    options, listed = sections(folder, "deck.bdf", "CEND\nBEGIN BULK\n" + bulk)
-    check("case control without SPC holds nothing", "supports" not in options and
-          any(line.startswith("deck.bdf:15: SPC1 of set 1: case control has no SPC = 1") for line in listed), (options, listed))
-
-
-def middles(folder):
-    """Middles of straight edges that are left out are made where they were, once for all elements of an edge: of a box of hex20
-    without some, the same nodes as with all."""
-    solid = decks.Solid("hex20", folder, "--elements", "2,1,1")
-    whole = decks.nastran(solid, "free")
-    lines, random = [], np.random.default_rng(3)
-    for line in whole:
-        words = line.split(",")
-        if words[0] == "" and len(lines) and lines[-1].split(",")[0] in ("CHEXA", "") and len(words) > 5:
-            words = [word if k < 3 or random.random() < 0.6 else "" for k, word in enumerate(words)]
-        lines.append(",".join(words))
-    places = []
-    for text in (whole, lines):
-        (folder / "deck.bdf").write_text("\n".join(text))
-        deck = read_deck(folder / "deck.bdf")
-        places.append(np.concatenate([deck.x[block.nodes] for block in deck.blocks]))
-    used = len({node for block in deck.blocks for node in block.nodes.ravel().tolist()})
-    check("middles that are left out", lines != whole and np.allclose(*places, atol=1e-9) and used == len(solid.x),
-          (used, len(solid.x)))
-    check("middles that are left out are said", any("CHEXA without some" in text for text in deck.differs), deck.differs)
-
-
-def odd_meshes(folder):
-    """Files of MED with elements that squeal has not, families without groups, groups of what is no face, several meshes, fields of
-    what is not there; faces alone, nodes alone: read and said, or one line."""
-    for name, (meshes, wanted) in odd.MED.items():
-        odd.write_med(folder / "odd.med", meshes, fields=name == "odd")
-        try:
-            said = [line.replace(f"{folder}/odd.med:1: ", "") for line in convert(folder / "odd.med", "m-kg-s", folder / "scene")]
-        except BadInput as error:
-            check(f"MED: {name}: one line", wanted is None and "\n" not in str(error) and str(error).startswith(f"{folder}/odd.med:1: "), error)
-            continue
-        check(f"MED: {name}", wanted is not None and all(any(line.startswith(start) for line in said) for start in wanted), said)
-        if name == "odd":
-            check("MED: odd: parts and sets", scene(folder, "scene")[0]["parts"] == "both"
-                  and said[1] == "16 nodes, 2 elements, 2 volumes, 1 surfaces, 0 sets of nodes", said)
-
-
-def orientation():
-    """Faces of surfaces stay where they are when elements are mirrored, of every shape."""
-    random = np.random.default_rng(7)
-    for name, corners in (("tet10", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]),
-                          ("wedge15", [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (0, 1))]),
-                          ("hex20", decks_others.CORNERS)):
-        shape, corners = SHAPES[name], np.array(corners, float) + 0.1 * random.random((len(corners), 3))
-        x = np.vstack([corners, [(corners[a] + corners[b]) / 2 for a, b in EDGES[shape.family]]])
-        deck = Deck("none", "test")
-        deck.add_nodes(np.vstack([x, x * (1, 1, -1) + (5, 0, 0)]))
-        deck.add_block(Block(shape, name, np.array([1, 2]), np.array([range(len(x)), range(len(x), 2 * len(x))]), Place("none", 1)))
-        faces = np.array([(cell, face) for cell in (0, 1) for face in range(len(shape.faces()))])
-        deck.surfaces["all"] = faces.copy(), Place("none", 1)
-        before = {tuple(faces[row]): set(nodes) for rows, found in nodes_by_kind(deck, faces) for row, nodes in zip(rows, found.tolist())}
-        set_orientation(deck)
-        after = deck.surfaces["all"][0]
-        same_nodes = all(before[tuple(faces[row])] == set(nodes)
-                         for rows, found in nodes_by_kind(deck, after) for row, nodes in zip(rows, found.tolist()))
-        volumes = signed_volumes(shape, deck.x[deck.blocks[0].nodes[:, :shape.n_corners]])
-        check(f"mirrored {name}: faces, orientation, a line", same_nodes and (volumes > 0).all() and len(deck.differs) == 1
-              and (after[:len(faces) // 2] == faces[:len(faces) // 2]).all(), (faces, after, volumes))
-
-
 def strict(folder):
     """--strict takes output and analyses for what they are, and refuses the rest."""
     plain = "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4,ELSET=E\n1,1,2,3,4\n"
@@ -362,10 +274,6 @@ def main():
         preloaded(Path(name))
         closed_pipe(Path(name))
         strict(Path(name))
-        chosen(Path(name))
-        middles(Path(name))
-        odd_meshes(Path(name))
-    orientation()
     page()
     return 1 if FAILED else 0
 

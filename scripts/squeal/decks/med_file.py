@@ -8,7 +8,8 @@ import numpy
 # MED's name of a type -> nodes, name in meshio; of those that squeal lacks a name for the list
 TYPES = {"PO1": (1, "vertex"), "SE2": (2, "line"), "SE3": (3, "line3"), "SE4": (4, "line4"), "TR3": (3, "triangle"),
          "TR6": (6, "triangle6"), "TR7": (7, "triangle7"), "QU4": (4, "quad"), "QU8": (8, "quad8"), "QU9": (9, "quad9"),
-         "TE4": (4, "tetra"), "T10": (10, "tetra10"), "HE8": (8, "hexahedron"), "H20": (20, "hexahedron20"), "H27": (27, "MED hexahedron27"),
+         "TE4": (4, "tetra"), "T10": (10, "tetra10"), "HE8": (8, "hexahedron"), "H20": (20, "hexahedron20"),
+         "H27": (27, "MED hexahedron27"),
          "PE6": (6, "wedge"), "P15": (15, "wedge15"), "P18": (18, "MED wedge18"), "PY5": (5, "pyramid"), "P13": (13, "pyramid13")}
 
 
@@ -68,7 +69,8 @@ def read_med(path):
         mesh, step, families, others = mesh_of(file)
         places = step["NOE"]["COO"]
         n = int(places.attrs["NBR"])
-        found = Mesh(places[()].reshape((n, int(mesh.attrs["ESP"])), order="F"), others=others)
+        dimension = int(mesh.attrs["ESP" if "ESP" in mesh.attrs else "DIM"])  # MED 2 has DIM alone
+        found = Mesh(places[()].reshape((n, dimension), order="F"), others=others)
         if "FAM" in step["NOE"]:
             found.point_data["point_tags"] = step["NOE"]["FAM"][()]
         for kind, group in step.get("MAI", {}).items():
