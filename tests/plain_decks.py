@@ -12,7 +12,7 @@ ABAQUS = {"C3D4": 4, "C3D6": 6, "C3D8": 8, "C3D8I": 8, "C3D8R": 8, "C3D10": 10, 
 def cards(text):
     """(keyword, options, lines of data) of a deck of Abaqus."""
     found, header = [], None
-    for line in text.split("\n"):
+    for line in re.sub(r"(?m)^[ \t]+(?=\*)", "", text).split("\n"):
         if line.startswith("**"):
             header = None
             continue
@@ -32,8 +32,17 @@ def cards(text):
 
 def numbers(lines, width):
     """Rows of so many numbers, which go on over lines."""
-    flat = [float(re.sub("[dD]", "e", word)) for line in lines for word in line.split(",") if word.strip()]
+    rows = [[float(re.sub("[dD]", "e", word)) for word in line.split(",") if word.strip()] for line in lines]
+    if all(len(row) >= width for row in rows):
+        rows = [row[:width] for row in rows]
+    flat = [number for row in rows for number in row]
     return np.array(flat).reshape(-1, width) if flat else np.empty((0, width))
+
+
+def node_rows(lines):
+    """Number and place of each line; what is left out is 0, and what follows is of no use."""
+    rows = [([float(re.sub("[dD]", "e", word)) if word.strip() else 0.0 for word in line.split(",")] + 3 * [0.0])[:4] for line in lines]
+    return np.array(rows).reshape(-1, 4)
 
 
 def moved(rows):
@@ -75,7 +84,7 @@ def elements_of(members, motion):
     place, found = {}, []
     for keyword, options, rows in members:
         if keyword == "NODE":
-            for number, *x in numbers(rows, 4):
+            for number, *x in node_rows(rows):
                 if options.get("SYSTEM") == "C":
                     x = [x[0] * np.cos(np.radians(x[1])), x[0] * np.sin(np.radians(x[1])), x[2]]
                 place[int(number)] = motion[0] @ np.array(x) + motion[1]

@@ -19,7 +19,7 @@ from pathlib import Path
 from .decks.convert import READERS, convert
 from .tables import BadInput, print_table, run, whole
 
-MEMORY = 4 << 30  # bytes of an import
+MEMORY, MEMORY_CCX = 4 << 30, 32 << 30  # bytes of addresses of an import, and of ccx, which takes more than it touches
 SOLIDS = {".inp": rb"^[ \t]*\*\s*ELEMENT\b[^\n]*C3D(4|6|8|10|15|20|27)", ".cdb": rb"^(ET|UNBL|NBLOCK)",
           ".bdf": rb"^[ \t]*(CTETRA|CPENTA|CHEXA)"}
 SOLIDS |= {".nas": SOLIDS[".bdf"], ".dat": SOLIDS[".bdf"]}
@@ -103,7 +103,7 @@ def ccx_runs(path, seconds):
                 (folder / other.name).symlink_to(other.resolve())
         (folder / "deck.inp").unlink(missing_ok=True)
         shutil.copy(path, folder / "deck.inp")
-        limit = f"ulimit -v {MEMORY >> 10}; exec nice ccx deck"
+        limit = f"ulimit -v {MEMORY_CCX >> 10}; exec nice ccx deck"
         try:
             done = subprocess.run(["bash", "-c", limit], cwd=folder, capture_output=True, timeout=seconds, check=False)
         except subprocess.TimeoutExpired:

@@ -16,7 +16,7 @@
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;
-                names.py names that squeal takes
+                gaps.py how far surfaces of a contact are apart; names.py names that squeal takes
   faces.py      faces of the cells: of sets of nodes, on the boundary, by their corners
   axes.py       supports in axes of a node's own
   middles.py    nodes in the middle of edges that are left out

@@ -26,11 +26,14 @@ class Said:
 
 
 def forget(reader, card):
-    """OP=NEW: the loads of earlier steps act no longer."""
+    """OP=NEW: the loads of earlier steps act no longer; *DLOAD and *DSLOAD are one in CalculiX."""
     if choice(card.options.get("OP", "MOD"), "NEW", "MOD") != "NEW":
         return
-    for said in (reader.forces, reader.pressures, reader.gravity):
-        said[:] = [row for row in said if row.keyword != card.keyword or row.step == reader.steps]
+    for said in [reader.forces] if card.keyword == "CLOAD" else [reader.pressures, reader.gravity]:
+        gone = {row.keyword for row in said if row.step != reader.steps}
+        for keyword in sorted(gone - {card.keyword}):
+            reader.deck.note(card.place, f"*{card.keyword}, OP=NEW: ends *{keyword} of earlier steps too, as in CalculiX")
+        said[:] = [row for row in said if row.step == reader.steps]
 
 
 def in_force(rows, keys_of, n):

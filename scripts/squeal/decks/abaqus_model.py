@@ -106,6 +106,7 @@ def do_spring(reader, scope, card):
 def do_tie(reader, scope, card):
     other = [word for word in ("CYCLIC SYMMETRY", "MULTISTAGE", "FLUID PERIODIC") if word in card.options]
     if other:
+        card.options.pop(other[0])
         reader.deck.note(card.place, f"*TIE, {other[0]}: not read, and no glue; the sector is a body of its own")
         return
     for place, fields in card.rows():

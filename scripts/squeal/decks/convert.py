@@ -61,6 +61,8 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     output = output or Path(path.stem)
     check_name(path)
     check_name(output)
+    if "\\" in str(output):
+        raise BadInput(f"{output}: PETSc takes \\ in the name of a file for /; give --output another name")
     if not output.parent.is_dir():
         raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
     deck = read_deck(path, subcase)

@@ -3,7 +3,10 @@
 import numpy
 
 from .faces import surface_nodes
+from .gaps import gaps
 
+TOUCH = 1e-6  # of the slave's size: nodes that are nearer touch
+ROOM = 1.05  # of a tolerance over the largest gap
 DIRECTIONS = "xyz"
 
 
@@ -175,6 +178,18 @@ def set_turning(deck):
             deck.note(turning.place, "nodes that turn, and no contact has one of its two surfaces among them: not in the scene")
 
 
+def gap_rows(deck, contact):
+    """The tolerance that finds the pairs of surfaces that the deck has apart; such a gap is said."""
+    found = gaps(deck, deck.surfaces[contact.slave][0], deck.surfaces[contact.master][0])
+    size = numpy.ptp(deck.x[surface_nodes(deck, deck.surfaces[contact.slave][0])], axis=0).max()
+    if not found.max(initial=0) > TOUCH * size:
+        return []
+    deck.differ(contact.place, f"contact {contact.slave}, {contact.master}: apart by {found.min():.3g} to {found.max():.3g} (units of the "
+                               "deck); pairs of squeal begin without a gap")
+    tolerance = float(f"{ROOM * found.max():.3g}")
+    return [("tolerance", ("length", (tolerance,)), f"{contact.place} finds pairs that are {found.max():.3g} apart there")]
+
+
 def add_contacts(assembly):
     """Pairs of surfaces; what a deck does not say is a hint."""
     set_turning(assembly.deck)
@@ -191,6 +206,7 @@ def add_contacts(assembly):
             rows.append(("kn_per_area", ("stiffness_per_area", (contact.stiffness,)), comment))
         else:
             rows.append(("law", "constraint", f"{comment} no stiffness is given: exact contact"))
+        rows += gap_rows(assembly.deck, contact)
         hints = []
         if contact.mu is not None:
             rows.append(("mu", ("", (contact.mu,)), comment))
