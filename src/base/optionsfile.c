@@ -8,6 +8,9 @@
 */
 #include <squeal/options.h>
 #include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <yaml.h>
 
@@ -212,6 +215,16 @@ static PetscErrorCode YamlReadEvents(YamlFile *f, yaml_parser_t *parser)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode YamlDestroy(YamlFile *f)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
+  PetscCall(PetscFree(f->keys));
+  PetscCall(PetscFree(f->lines));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode YamlCheck(const char file[], FILE *stream)
 {
   YamlFile     *f;
@@ -224,16 +237,57 @@ static PetscErrorCode YamlCheck(const char file[], FILE *stream)
   yaml_parser_set_input_file(&parser, stream);
   PetscCall(YamlReadEvents(f, &parser));
   yaml_parser_delete(&parser);
-  for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
-  PetscCall(PetscFree(f->keys));
-  PetscCall(PetscFree(f->lines));
-  PetscCall(PetscFree(f));
+  PetscCall(YamlDestroy(f));
+  PetscFunctionReturn(0);
+}
+
+/* Of PETSc's own form, -NAME VALUE line by line: raises an error for an option that stands in it twice */
+static PetscErrorCode TextCheck(const char file[], FILE *stream)
+{
+  YamlFile *f;
+  char     *line = NULL;
+  size_t    room = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &f));
+  f->file = file;
+  for (f->line = 1; getline(&line, &room, stream) >= 0; f->line++) {
+    const char  *name   = line + strspn(line, " \t");
+    const size_t length = strcspn(name, " \t\r\n");
+
+    if (name[0] != '-' || length < 2 || length > MAX_KEY) continue;
+    PetscCall(PetscStrncpy(f->key, name + 1, length));
+    PetscCall(YamlAddKey(f));
+  }
+  free(line);
+  PetscCall(YamlDestroy(f));
+  PetscFunctionReturn(0);
+}
+
+/* Whether PETSc reads a file as YAML: by its ending, or by how it begins */
+static PetscErrorCode FileIsYaml(const char file[], FILE *stream, PetscBool *is_yaml)
+{
+  static const char *const endings[] = {".yaml", ".yml", ".json"};
+  const char              *ending    = strrchr(file, '.');
+  char                     first[6]  = "";
+  const size_t             n         = fread(first, 1, sizeof(first) - 1, stream);
+
+  PetscFunctionBeginUser;
+  rewind(stream);
+  PetscCheck(n < 2 || (memcmp(first, "\xff\xfe", 2) && memcmp(first, "\xfe\xff", 2)), PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "-options_file %s is in UTF-16; save it as UTF-8", file);
+  if (!strncmp(first, "%YAML", 5) || !strncmp(first, "---", 3)) *is_yaml = PETSC_TRUE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(endings) && ending && !*is_yaml; i++) {
+    PetscCall(PetscStrcasecmp(ending, endings[i], is_yaml));
+    PetscCheck(!*is_yaml || !strcmp(ending, endings[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "-options_file %s: write its ending in small letters, '%s', or give it as -options_file_yaml", file,
+               endings[i]);
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
 {
-  const char *ending = strrchr(file, '.');
   struct stat what;
   FILE       *stream;
 
@@ -246,7 +300,8 @@ PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
              MAX_SIZE >> 20);
   stream = fopen(file, "rb");
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
-  if (is_yaml || (ending && (!strcmp(ending, ".yaml") || !strcmp(ending, ".yml")))) PetscCall(YamlCheck(file, stream));
+  PetscCall(FileIsYaml(file, stream, &is_yaml));
+  PetscCall(is_yaml ? YamlCheck(file, stream) : TextCheck(file, stream));
   (void)fclose(stream);
   PetscFunctionReturn(0);
 }

@@ -138,8 +138,9 @@ def flat(node, prefix=""):
 
 
 def wanted_keys(path):
-    """Options of a file, as PyYAML reads its text."""
-    return dict(flat(yaml.load(path.read_bytes(), yaml.BaseLoader)))
+    """Options of a file, as PyYAML reads its text, behind marks that it may begin with."""
+    text = path.read_bytes().decode().lstrip("\ufeff\u2028")
+    return dict(flat(yaml.load(text, yaml.BaseLoader)))
 
 
 def plain(value):

@@ -18,6 +18,16 @@ void ReaderErrorSet(ReaderError *error, PetscErrorCode code, const char format[]
   va_end(values);
 }
 
+/* Whether a number of text ends where a blank or the file's end follows: of 0.06.01 not the half is read */
+static PetscBool WordEnds(MeshReader *r)
+{
+  const int next = fgetc(r->file);
+
+  if (next == EOF) return PETSC_TRUE;
+  (void)ungetc(next, r->file);
+  return strchr(blanks, next) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The next integer of INT_BYTES or SIZE_BYTES; 0 after an error */
 int64_t ReadInteger(MeshReader *r, int bytes)
 {
@@ -28,7 +38,7 @@ int64_t ReadInteger(MeshReader *r, int bytes)
 
   if (r->error->code) return 0;
   if (!r->binary) {
-    n     = fscanf(r->file, "%lld", &text);
+    n     = fscanf(r->file, "%lld", &text) == 1 && WordEnds(r);
     value = text;
   } else if (bytes == INT_BYTES) {
     n     = (int)fread(&small, INT_BYTES, 1, r->file);
@@ -82,9 +92,11 @@ PetscInt ReadCountLine(MeshReader *r)
 void ReadReals(MeshReader *r, PetscInt n, PetscReal value[])
 {
   for (PetscInt i = 0; i < n; i++) {
-    double    x = 0;
-    const int m = r->error->code ? 0 : r->binary ? (int)fread(&x, sizeof(x), 1, r->file) : fscanf(r->file, "%lf", &x);
+    double x = 0;
+    int    m = 0;
 
+    if (!r->error->code && r->binary) m = (int)fread(&x, sizeof(x), 1, r->file);
+    if (!r->error->code && !r->binary) m = fscanf(r->file, "%lf", &x) == 1 && WordEnds(r);
     if (m != 1 || !isfinite(x))
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s ends or holds no finite number at some place",
                      r->section);
@@ -99,7 +111,7 @@ void ReadSectionEnd(MeshReader *r, PetscBool known)
   while (!r->error->code && strncmp(rest, "$End", 4)) {
     if (!fgets(rest, sizeof(rest), r->file))
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file ends within $%s", r->section);
-    else if (known && rest[0] != '$' && rest[strspn(rest, blanks)])
+    else if (known && strncmp(rest, "$End", 4) && rest[strspn(rest, blanks)])
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s holds more than it announces", r->section);
   }
   (void)snprintf(end, sizeof(end), "$End%s", r->section);
