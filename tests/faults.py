@@ -105,6 +105,12 @@ FAULTS = (
      "dV * (N[b] * flow[a] - N[a] * flow[b])", "spin"),
     ("residues are those of the first row, not of the blow", "scripts/squeal/identify.py", "numpy.outer(part, time)",
      "numpy.outer(part, time - time[0])", "response"),
+    ("the time without contact is none in the verification of a reduced run", "src/reduced/verify.c", "(force[i] <= 0)", "(force[i] < 0)",
+     "transient_reduced"),
+    ("the critical step is 0.4 % longer", "src/dynamics/criticalstep.c", "  critical->assembled = dt;",
+     "  critical->assembled = 1.004 * dt;", "transient_free"),
+    ("the place of a probe that the analysis does not use is accepted", "src/scope.c", 'name, "at part", no_probe', 'name, "part", no_probe',
+     "bad_probes"),
 )
 
 

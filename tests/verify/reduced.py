@@ -3,12 +3,17 @@
 
     verify/reduced.py agree FULL REDUCED COLUMN TOLERANCE
     verify/reduced.py lift FIELDS SNAPSHOT TOLERANCE
+    verify/reduced.py verified RUN FINER HIGHER
 
 FULL and REDUCED are output folders whose rows need not stand at the same times; the largest difference of the column over the
 time that both have, the second interpolated linearly to the times of the first, is relative to the largest value.
 
+RUN has said in RUN.log beside its folder what half the step and a higher cut-off change in the last half of its time: the rms of
+the force, relative, and the share of the time without contact. FINER and HIGHER are such runs, all with rows at the steps of RUN.
+
 FIELDS and SNAPSHOT are files with displacements of one mesh; the largest difference is relative to the largest displacement."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -36,5 +41,24 @@ def lift(fields, snapshot, tolerance):
     return not 0 < miss < float(tolerance) * largest
 
 
+def measured(folder):
+    """Rms of the force about its mean and share of the steps without one, in the last half of the steps."""
+    force = history(folder)["normal_force_n"][1:]
+    last = force[len(force) // 2:]
+    return last.std(), (last <= 0).mean()
+
+
+def verified(*folders):
+    text = (Path(folders[0]).parent / (Path(folders[0]).name.rpartition("-")[0] + ".log")).read_text()
+    said = re.findall(r"its rms by (\S+) \+- \S+, the time without contact by (\S+) \+-", text)
+    one, *others = map(measured, folders)
+    found = [(rms / one[0] - 1, share - one[1]) for rms, share in others]
+    print(f"shares of the time without contact {one[1]:.3g}, {', '.join(f'{share:.3g}' for _, share in others)}; rms and share change by "
+          f"{found}, said {said}")
+    near = all(abs(float(word) - value) <= 0.006 * abs(float(word)) + 1e-9  # of three digits
+               for words, values in zip(said, found) for word, value in zip(words, values))
+    return not (len(said) == 2 and near and 0 < one[1] < 1 and any(share for _, share in found))
+
+
 if __name__ == "__main__":
-    sys.exit({"agree": agree, "lift": lift}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"agree": agree, "lift": lift, "verified": verified}[sys.argv[1]](*sys.argv[2:]))
