@@ -21,7 +21,9 @@ cylinders  a shoe on a shaft, both parts of rings about z: volumes "shaft", "sho
 
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
-(-4, 4, 7) / 9. --scale 1000 gives mm. Lengths in m.
+(-4, 4, 7) / 9. --scale 1000 gives mm. --odd writes what Gmsh may write as well: each group in two parts, of a mesh that is
+partitioned, with the entities that were; the second part stands reversed in its physical group, and is in another one, without
+name, first; parameters of nodes; ghost elements; sections without meaning here. Lengths in m.
 """
 
 import argparse
@@ -236,31 +238,44 @@ def section(name, *content):
     return b"".join([f"${name}\n".encode(), *content, f"$End{name}\n".encode()])
 
 
-def entities_41(binary, nodes, groups):
-    dimensions = [TYPES[elements.shape[1]][1] for elements in groups.values()]
-    yield words(binary, ("Q", [dimensions.count(d) for d in range(4)]))
+def entities_41(binary, nodes, blocks, odd=False):
+    """blocks: (dimension, tag, physical groups, elements); those of a partitioned mesh are parts of 1, 2, ..."""
+    yield words(binary, ("Q", [sum(block[0] == d for block in blocks) for d in range(4)]))
     for dimension in (1, 2, 3):
-        for tag, elements in enumerate(groups.values(), 1):
-            if TYPES[elements.shape[1]][1] == dimension:
+        for at, tag, physical, elements in blocks:
+            if at == dimension:
                 points = nodes[elements.ravel()]
                 box = [*points.min(0).tolist(), *points.max(0).tolist()]
-                yield words(binary, ("i", [tag]), ("d", box), ("Q", [1]), ("i", [tag + PHYSICAL]), ("Q", [0]))
+                part = [("i", [dimension, tag % len(blocks)]), ("Q", [1]), ("i", [1])] if odd else []
+                yield words(binary, ("i", [tag]), *part, ("d", box), ("Q", [len(physical)]), ("i", physical), ("Q", [1]),
+                            ("i", [-tag]))
 
 
-def nodes_41(binary, nodes, tags, groups):
-    volume = next(tag for tag, elements in enumerate(groups.values(), 1) if TYPES[elements.shape[1]][1] == 3)
-    yield words(binary, ("Q", [1, len(nodes), min(tags), max(tags)]))
-    yield words(binary, ("i", [3, volume, 0]), ("Q", [len(nodes)]))
-    yield from (words(binary, ("Q", [tag])) for tag in tags)
-    yield from (words(binary, ("d", point)) for point in nodes.tolist())
-
-
-def elements_41(binary, tags, groups, numbers):
-    yield words(binary, ("Q", [len(groups), len(numbers), min(numbers), max(numbers)]))
-    number = iter(numbers)
+def blocks_of(groups, odd):
+    """(dimension, tag, physical groups, elements) of each entity."""
     for tag, elements in enumerate(groups.values(), 1):
-        kind, dimension = TYPES[elements.shape[1]]
-        yield words(binary, ("i", [dimension, tag, kind]), ("Q", [len(elements)]))
+        dimension = TYPES[elements.shape[1]][1]
+        if not odd:
+            yield dimension, tag, [tag + PHYSICAL], elements
+            continue
+        half = len(elements) // 3
+        yield dimension, 2 * tag + len(groups), [tag + PHYSICAL], elements[:half]
+        yield dimension, 2 * tag + len(groups) + 1, [3, -(tag + PHYSICAL)], elements[half:]
+
+
+def nodes_41(binary, nodes, tags, blocks, odd):
+    volume = next(tag for dimension, tag, _, _ in blocks if dimension == 3)
+    yield words(binary, ("Q", [1, len(nodes), min(tags), max(tags)]))
+    yield words(binary, ("i", [3, volume, int(odd)]), ("Q", [len(nodes)]))
+    yield from (words(binary, ("Q", [tag])) for tag in tags)
+    yield from (words(binary, ("d", [*point, *([0.1, 0.2, 0.3] if odd else [])])) for point in nodes.tolist())
+
+
+def elements_41(binary, tags, blocks, numbers):
+    yield words(binary, ("Q", [len(blocks), len(numbers), min(numbers), max(numbers)]))
+    number = iter(numbers)
+    for dimension, tag, _, elements in blocks:
+        yield words(binary, ("i", [dimension, tag, TYPES[elements.shape[1]][0]]), ("Q", [len(elements)]))
         yield from (words(binary, ("Q", [next(number), *(tags[n] for n in element)])) for element in elements.tolist())
 
 
@@ -269,33 +284,46 @@ def nodes_22(binary, nodes, tags):
     yield from (words(binary, ("i", [tag]), ("d", point)) for tag, point in zip(tags, nodes.tolist()))
 
 
-def elements_22(binary, tags, groups, numbers):
+def elements_22(binary, tags, blocks, numbers, odd):
     yield f"{len(numbers)}\n".encode()
     number = iter(numbers)
-    for tag, elements in enumerate(groups.values(), 1):
+    for _, tag, physical, elements in blocks:
         kind = TYPES[elements.shape[1]][0]
+        tagged = [physical[-1], tag] + ([2, 1, -2] if odd else [])
         if binary:
-            yield words(binary, ("i", [kind, len(elements), 2]))
-        tagged = [tag + PHYSICAL, tag]
+            yield words(binary, ("i", [kind, len(elements), len(tagged)]))
         for element in elements.tolist():
-            head = [next(number), *tagged] if binary else [next(number), kind, 2, *tagged]
+            head = [next(number), *tagged] if binary else [next(number), kind, len(tagged), *tagged]
             yield words(binary, ("i", [*head, *(tags[n] for n in element)]))
 
 
-def write(path, version, binary, nodes, groups, node_tags, numbers):
+def partitioned_41(binary, nodes, groups, blocks):
+    """The entities before the partition, which have no element any more, and the parts; a ghost entity."""
+    whole = [(dimension, tag, [9], elements) for dimension, tag, _, elements in blocks_of(groups, False)]
+    ghosts = [("Q", [2]), ("Q", [1]), ("i", [len(blocks) + 90, 2])]
+    return (section("Entities", *entities_41(binary, nodes, whole)) +
+            section("PartitionedEntities", words(binary, *ghosts), *entities_41(binary, nodes, blocks, odd=True)))
+
+
+def write(path, version, binary, nodes, groups, node_tags, numbers, odd=False):
     names = [f'{TYPES[elements.shape[1]][1]} {tag} "{name}"\n'
              for tag, (name, elements) in enumerate(groups.items(), 1 + PHYSICAL)]
-    order = struct.pack("=i", 1) if binary else b""
+    order, blocks = struct.pack("=i", 1) if binary else b"", list(blocks_of(groups, odd))
     content = section("MeshFormat", f"{version} {int(binary)} 8\n".encode(), order, b"\n" if binary else b"")
+    content += section("Comments", b"$ nothing\n") if odd else b""
     content += section("PhysicalNames", f"{len(names)}\n".encode(), "".join(names).encode())
     end = b"\n" if binary else b""
     if version == "4.1":
-        content += section("Entities", *entities_41(binary, nodes, groups), end)
-        content += section("Nodes", *nodes_41(binary, nodes, node_tags, groups), end)
-        content += section("Elements", *elements_41(binary, node_tags, groups, numbers), end)
+        content += (partitioned_41(binary, nodes, groups, blocks) if odd
+                    else section("Entities", *entities_41(binary, nodes, blocks), end))
+        content += section("Nodes", *nodes_41(binary, nodes, node_tags, blocks, odd), end)
+        content += section("Periodic", words(binary, ("Q", [0])), end) if odd else b""
+        content += section("Elements", *elements_41(binary, node_tags, blocks, numbers), end)
+        content += section("GhostElements", words(binary, ("Q", [1]), ("Q", [1]), ("i", [1]), ("Q", [1]), ("i", [2])),
+                           end) if odd else b""
     else:
         content += section("Nodes", *nodes_22(binary, nodes, node_tags), end)
-        content += section("Elements", *elements_22(binary, node_tags, groups, numbers), end)
+        content += section("Elements", *elements_22(binary, node_tags, blocks, numbers, odd), end)
     path.write_bytes(content)
 
 
@@ -318,6 +346,7 @@ def command_line():
                         help="of the block's bottom; GAP of others; m")
     parser.add_argument("--format", choices=["2.2", "4.1"], default="4.1")
     parser.add_argument("--binary", action="store_true")
+    parser.add_argument("--odd", action="store_true")
     parser.add_argument("--renumber", type=int, metavar="SEED")
     parser.add_argument("--move", action="store_true")
     parser.add_argument("--scale", type=float, default=1)
@@ -339,7 +368,8 @@ def main():
         random.shuffle(numbers)
     if arguments.move:
         nodes = nodes @ MOVE_ROTATION.T + MOVE_SHIFT
-    write(arguments.file, arguments.format, arguments.binary, arguments.scale * nodes, groups, node_tags, numbers)
+    write(arguments.file, arguments.format, arguments.binary, arguments.scale * nodes, groups, node_tags, numbers,
+          arguments.odd)
 
 
 if __name__ == "__main__":

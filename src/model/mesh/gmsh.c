@@ -74,14 +74,6 @@ static const GmshShape *ReadShape(MeshReader *r)
   return &shapes[0];
 }
 
-static PetscInt FindEntity(const GmshMesh *mesh, PetscInt dim, PetscInt tag)
-{
-  for (PetscInt e = 0; e < mesh->n_entities; e++) {
-    if (mesh->entities[e].dim == dim && mesh->entities[e].tag == tag) return e;
-  }
-  return -1;
-}
-
 /* $MeshFormat: version, kind and size of numbers; binary files add the integer 1 */
 static PetscErrorCode ReadFormat(MeshReader *r, GmshMesh *mesh)
 {
@@ -98,74 +90,10 @@ static PetscErrorCode ReadFormat(MeshReader *r, GmshMesh *mesh)
   r->binary  = binary ? PETSC_TRUE : PETSC_FALSE;
   if ((r->version != 22 && r->version != 41) || bytes != SIZE_BYTES) {
     ReaderErrorSet(r->error, PETSC_ERR_SUP,
-                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are", version, bytes);
+                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are (Mesh.MshFileVersion)", version, bytes);
   }
   if (r->binary && ReadInteger(r, INT_BYTES) != 1) {
     ReaderErrorSet(r->error, PETSC_ERR_SUP, "the file was written with another byte order; write it here, or as text");
-  }
-  PetscFunctionReturn(0);
-}
-
-/* $PhysicalNames: dimension, tag and name of each group; in format 2.2 the groups are the entities */
-static PetscErrorCode ReadNames(MeshReader *r, GmshMesh *mesh)
-{
-  char line[512];
-
-  PetscFunctionBeginUser;
-  mesh->n_groups = ReadCountLine(r);
-  PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
-  for (PetscInt g = 0; g < mesh->n_groups && !r->error->code; g++) {
-    GmshGroup *group = &mesh->groups[g];
-    int        dim, tag, end = 0;
-
-    if (!fgets(line, sizeof(line), r->file) ||
-        sscanf(line, "%d %d \"%127[^\"]\" %n", &dim, &tag, group->name, &end) != 3 || !end || line[end]) {
-      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ,
-                     "line %" PetscInt_FMT " of $PhysicalNames is not: dimension tag \"name\"", g + 2);
-      break;
-    }
-    group->dim = dim;
-    group->tag = tag;
-    for (PetscInt k = 0; k < g; k++)
-      if (mesh->groups[k].dim == dim && mesh->groups[k].tag == tag)
-        ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$PhysicalNames calls group %d of dimension %d '%s' and '%s'", tag,
-                       dim, mesh->groups[k].name, group->name);
-  }
-  if (r->version == 41) PetscFunctionReturn(0);
-  mesh->n_entities = mesh->n_groups;
-  PetscCall(PetscCalloc1(mesh->n_entities, &mesh->entities));
-  for (PetscInt g = 0; g < mesh->n_groups; g++) {
-    mesh->entities[g] = (GmshEntity){mesh->groups[g].dim, mesh->groups[g].tag, 1, {mesh->groups[g].tag}};
-  }
-  PetscFunctionReturn(0);
-}
-
-/* $Entities (4.1): tag, box (a point for dimension 0), physical groups, bounding entities */
-static PetscErrorCode ReadEntities(MeshReader *r, GmshMesh *mesh)
-{
-  PetscInt  count[4], e = 0;
-  PetscReal box[6];
-
-  PetscFunctionBeginUser;
-  for (PetscInt dim = 0; dim < 4; dim++) mesh->n_entities += count[dim] = ReadCount(r, SIZE_BYTES);
-  PetscCall(PetscCalloc1(mesh->n_entities, &mesh->entities));
-  for (PetscInt dim = 0; dim < 4; dim++) {
-    for (PetscInt i = 0; i < count[dim] && !r->error->code; i++, e++) {
-      GmshEntity *entity = &mesh->entities[e];
-
-      entity->dim = dim;
-      entity->tag = ReadTag(r, INT_BYTES);
-      ReadReals(r, dim ? 6 : 3, box);
-      entity->n_physical = ReadCount(r, SIZE_BYTES);
-      if (entity->n_physical > GMSH_MAX_PHYSICAL) {
-        ReaderErrorSet(r->error, PETSC_ERR_SUP,
-                       "entity %" PetscInt_FMT " is in %" PetscInt_FMT " physical groups; at most %d are supported",
-                       entity->tag, entity->n_physical, GMSH_MAX_PHYSICAL);
-        break;
-      }
-      for (PetscInt p = 0; p < entity->n_physical; p++) entity->physical[p] = ReadTag(r, INT_BYTES);
-      for (PetscInt n = dim ? ReadCount(r, SIZE_BYTES) : 0; n > 0; n--) (void)ReadTag(r, INT_BYTES);
-    }
   }
   PetscFunctionReturn(0);
 }
@@ -206,6 +134,27 @@ static PetscErrorCode ReadNodes(MeshReader *r, GmshMesh *mesh)
   PetscFunctionReturn(0);
 }
 
+/* Nodes of format 2.2 with Mesh.SaveParametric: dimension and tag of their entity follow x, y, z, then the parameters on a
+   curve or surface */
+static PetscErrorCode ReadParametricNodes(MeshReader *r, GmshMesh *mesh)
+{
+  PetscReal parameter[3];
+
+  PetscFunctionBeginUser;
+  mesh->n_nodes = ReadCountLine(r);
+  PetscCall(PetscMalloc2(mesh->n_nodes, &mesh->node_tags, 3 * mesh->n_nodes, &mesh->x));
+  for (PetscInt i = 0; i < mesh->n_nodes && !r->error->code; i++) {
+    PetscInt dim;
+
+    mesh->node_tags[i] = ReadTag(r, INT_BYTES);
+    ReadReals(r, 3, mesh->x + 3 * i);
+    dim = ReadTag(r, INT_BYTES);
+    (void)ReadTag(r, INT_BYTES);
+    ReadReals(r, dim == 1 || dim == 2 ? dim : 0, parameter);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Elements of format 2.2: number, type, tags (the first is the physical group), nodes; binary files hold blocks of
    one type */
 static void ReadElements22(MeshReader *r, GmshMesh *mesh)
@@ -226,9 +175,9 @@ static void ReadElements22(MeshReader *r, GmshMesh *mesh)
       for (PetscInt t = 0; t < n_tags; t++) {
         const PetscInt tag = ReadTag(r, INT_BYTES);
 
-        if (t == 0) physical = tag;
+        if (t == 0) physical = PetscAbsInt(tag);
       }
-      *element = (GmshElement){.shape = shape, .number = number, .entity = FindEntity(mesh, shape->dim, physical)};
+      *element = (GmshElement){.shape = shape, .number = number, .entity = GmshFindEntity(mesh, shape->dim, physical)};
       for (PetscInt v = 0; v < shape->n_nodes; v++) element->node[v] = ReadTag(r, INT_BYTES);
     }
   }
@@ -240,10 +189,14 @@ static void ReadElements41(MeshReader *r, GmshMesh *mesh, PetscInt n_blocks)
   PetscInt e = 0;
 
   for (PetscInt b = 0; b < n_blocks && !r->error->code; b++) {
-    const PetscInt   dim = ReadTag(r, INT_BYTES), entity = FindEntity(mesh, dim, ReadTag(r, INT_BYTES));
+    const PetscInt   dim = ReadTag(r, INT_BYTES), tag = ReadTag(r, INT_BYTES), entity = GmshFindEntity(mesh, dim, tag);
     const GmshShape *shape = ReadShape(r);
     const PetscInt   last  = e + ReadCount(r, SIZE_BYTES);
 
+    if (entity < 0 && mesh->n_entities)
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ,
+                     "$Elements has entity %" PetscInt_FMT " of dimension %" PetscInt_FMT ", which $Entities does not hold",
+                     tag, dim);
     if (last > mesh->n_elements)
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$Elements holds more than it announces");
     for (; e < last && !r->error->code; e++) {
@@ -275,11 +228,13 @@ static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *me
     const char *name;
     PetscErrorCode (*read)(MeshReader *, GmshMesh *);
   } sections[] = {
-    {"MeshFormat",    ReadFormat  },
-    {"PhysicalNames", ReadNames   },
-    {"Entities",      ReadEntities},
-    {"Nodes",         ReadNodes   },
-    {"Elements",      ReadElements},
+    {"MeshFormat",          ReadFormat                 },
+    {"PhysicalNames",       GmshReadNames              },
+    {"Entities",            GmshReadEntities           },
+    {"PartitionedEntities", GmshReadPartitionedEntities},
+    {"Nodes",               ReadNodes                  },
+    {"ParametricNodes",     ReadParametricNodes        },
+    {"Elements",            ReadElements               },
   };
   PetscBool known = PETSC_FALSE;
 

@@ -50,3 +50,9 @@ typedef struct {
    nothing), for the caller to raise on all ranks. Not collective; free with GmshMeshDestroy() in any case. */
 PETSC_INTERN PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *error);
 PETSC_INTERN PetscErrorCode GmshMeshDestroy(GmshMesh *mesh);
+
+/* gmshgroups.c - sections $PhysicalNames, $Entities and $PartitionedEntities; the index of an entity, -1 where it is none */
+PETSC_INTERN PetscErrorCode GmshReadNames(MeshReader *r, GmshMesh *mesh);
+PETSC_INTERN PetscErrorCode GmshReadEntities(MeshReader *r, GmshMesh *mesh);
+PETSC_INTERN PetscErrorCode GmshReadPartitionedEntities(MeshReader *r, GmshMesh *mesh);
+PETSC_INTERN PetscInt       GmshFindEntity(const GmshMesh *mesh, PetscInt dim, PetscInt tag);
