@@ -111,23 +111,29 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
+Scope ChainGetScope(const Chain *chain)
 {
   const Analysis analysis = chain->analysis;
-  const Scope    scope    = {.analysis  = analyses[analysis],
-                             .sweep     = analysis == ANALYSIS_SWEEP,
-                             .transient = ChainIsInTime(chain),
-                             .map       = analysis == ANALYSIS_MAP,
-                             .cycle     = analysis == ANALYSIS_CYCLE,
-                             .frf       = analysis == ANALYSIS_FRF,
-                             .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
-                             .model     = chain->model,
-                             .contact   = chain->contact,
-                             .linear    = chain->modes,
-                             .operators = chain->operators,
-                             .varied    = chain->sweep,
-                             .dynamics  = chain->dynamics,
-                             .reduced   = chain->reduced};
+
+  return (Scope){.analysis  = analyses[analysis],
+                 .sweep     = analysis == ANALYSIS_SWEEP,
+                 .transient = ChainIsInTime(chain),
+                 .map       = analysis == ANALYSIS_MAP,
+                 .cycle     = analysis == ANALYSIS_CYCLE,
+                 .frf       = analysis == ANALYSIS_FRF,
+                 .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
+                 .model     = chain->model,
+                 .contact   = chain->contact,
+                 .linear    = chain->modes,
+                 .operators = chain->operators,
+                 .varied    = chain->sweep,
+                 .dynamics  = chain->dynamics,
+                 .reduced   = chain->reduced};
+}
+
+PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
+{
+  const Scope scope = ChainGetScope(chain);
 
   PetscFunctionBeginUser;
   PetscCall(ScopeCheck(comm, &scope, chain->claims));

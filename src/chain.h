@@ -62,6 +62,8 @@ PETSC_INTERN PetscErrorCode ChainDestroy(Chain *chain);
 /* The pencil at p: about the sliding state there, or with all pairs closed; made once */
 PETSC_INTERN PetscErrorCode ChainLinearise(Chain *chain);
 
+/* The run as scope.h sees it */
+PETSC_INTERN Scope ChainGetScope(const Chain *chain);
 /* Whether the analysis is a run in time, or is made of such runs */
 PETSC_INTERN PetscBool ChainIsInTime(const Chain *chain);
 

@@ -58,8 +58,11 @@ static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
 
 static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
 {
+  const Scope scope = ChainGetScope(chain);
+
   PetscFunctionBeginUser;
   if (what == SHOWN_MODEL) PetscCall(ModelView(chain->model, viewer));
+  if (what == SHOWN_MODEL) PetscCall(ScopeView(&scope, viewer));
   if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));
   if (what == SHOWN_OPERATORS) PetscCall(ChainLinearise(chain));
   if (what == SHOWN_OPERATORS) PetscCall(PencilView(chain->pencil, viewer));

@@ -169,12 +169,30 @@ static PetscErrorCode ScopeCheckStill(MPI_Comm comm, const ModelScene *scene)
   PetscFunctionReturn(0);
 }
 
+/* What of the model a run does not use, though a file may hold it for others */
+typedef struct {
+  PetscBool loads;  /* and gravity: modes with all pairs closed need no equilibrium */
+  PetscBool places; /* probes and circles: nothing moves, or only modes are asked for */
+  PetscBool damping, spin;
+} ScopeIdle;
+
+static ScopeIdle ScopeGetIdle(const Scope *s, PetscBool statics)
+{
+  return (ScopeIdle){
+    .loads   = s->modes && !statics ? PETSC_TRUE : PETSC_FALSE,
+    .places  = !s->transient && !s->frf ? PETSC_TRUE : PETSC_FALSE,
+    .damping = !s->transient && !s->modes ? PETSC_TRUE : PETSC_FALSE,
+    .spin    = !s->modes ? PETSC_TRUE : PETSC_FALSE,
+  };
+}
+
 /* What the model reads for other analyses */
 static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
   static const char all[]      = "not used by modes with all pairs closed; give -modes_contact static";
   static const char no_probe[] = "not used without -analysis transient or frf";
   static const char unloaded[] = "not used by -analysis static, which is found without the load of the spin";
+  const ScopeIdle   idle       = ScopeGetIdle(s, statics);
   const ModelScene *scene;
   char              turning[160];
 
@@ -183,15 +201,15 @@ static PetscErrorCode ScopeCheckModel(MPI_Comm comm, const Scope *s, PetscBool s
                           "not used by -analysis %s; a contact's -..._kinematics turning turns its master",
                           s->analysis));
   PetscCall(ModelGetScene(s->model, &scene));
-  if (s->modes && !statics) PetscCall(OptionsRefuse(comm, "-model_gravity", all));
-  if (!s->transient && !s->modes) PetscCall(ScopeCheckStill(comm, scene));
-  for (PetscInt i = 0; i < scene->n_parts && !s->modes; i++)
+  if (idle.loads) PetscCall(OptionsRefuse(comm, "-model_gravity", all));
+  if (idle.damping) PetscCall(ScopeCheckStill(comm, scene));
+  for (PetscInt i = 0; i < scene->n_parts && idle.spin; i++)
     PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "spin", s->transient ? turning : unloaded));
-  for (PetscInt i = 0; i < scene->n_probes && !s->transient && !s->frf; i++)
+  for (PetscInt i = 0; i < scene->n_probes && idle.places; i++)
     PetscCall(OptionsRefuseOf(comm, scene->probes[i].name, "at part", no_probe));
-  for (PetscInt i = 0; i < scene->n_circles && !s->transient && !s->frf; i++)
+  for (PetscInt i = 0; i < scene->n_circles && idle.places; i++)
     PetscCall(OptionsRefuseOf(comm, scene->circles[i].name, "radius count part face centre tolerance", no_probe));
-  for (PetscInt i = 0; i < scene->n_loads && s->modes && !statics; i++)
+  for (PetscInt i = 0; i < scene->n_loads && idle.loads; i++)
     PetscCall(OptionsRefuseOf(comm, scene->loads[i].name, "force pressure set point moment", all));
   PetscFunctionReturn(0);
 }
@@ -212,19 +230,38 @@ static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm, const Scope *s)
   PetscFunctionReturn(0);
 }
 
+/* What statics read and this equilibrium has no use for; slides = every contact is told where to */
+static PetscErrorCode ScopeCheckEquilibrium(MPI_Comm comm, const Scope *s, PetscBool identify, PetscBool slides)
+{
+  PetscFunctionBeginUser;
+  if (!identify) PetscCall(OptionsRefuse(comm, "-static_identify_steps", "not used without -..._kn identify"));
+  if (slides)
+    PetscCall(OptionsRefuse(comm, "-static_load_steps",
+                            "not used where every contact slides as told: no pair can stick, and the way of the loads "
+                            "makes no difference"));
+  if (s->modes || s->transient)
+    PetscCall(OptionsRefuse(comm, "-static_view_kkt", "printed by -analysis static alone; leave it out"));
+  PetscFunctionReturn(0);
+}
+
 /* What every reader reads, and this analysis has no use for */
 static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool statics)
 {
   const ContactInterface *interfaces = NULL;
   PetscInt                n          = 0;
-  PetscBool               identify   = PETSC_FALSE;
+  PetscBool               identify = PETSC_FALSE, slides = PETSC_TRUE; /* all are told where to */
 
   PetscFunctionBeginUser;
   if (s->model) PetscCall(ScopeCheckModel(comm, s, statics));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++) PetscCall(ScopeCheckContact(comm, s, &interfaces[i]));
-  for (PetscInt i = 0; i < n; i++) identify = identify || interfaces[i].identify ? PETSC_TRUE : PETSC_FALSE;
-  if (!identify) PetscCall(OptionsRefuse(comm, "-static_identify_steps", "not used without -..._kn identify"));
+  for (PetscInt i = 0; i < n; i++) {
+    const ContactInterface *c = &interfaces[i];
+
+    PetscCall(ScopeCheckContact(comm, s, c));
+    if (c->identify) identify = PETSC_TRUE;
+    if (Vec3Dot(c->slip, c->slip) + Vec3Dot(c->rotation, c->rotation) == 0) slides = PETSC_FALSE;
+  }
+  PetscCall(ScopeCheckEquilibrium(comm, s, identify, slides));
   if (s->sweep || s->transient)
     PetscCall(OptionsRefuse(comm, "-modes_filters", "written by -analysis modes and frf alone; leave it out"));
   if (s->transient || s->frf)
@@ -266,7 +303,49 @@ PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
   readers[READER_STATICS].in_force = statics;
   if (statics) readers[READER_FACTOR].in_force = PETSC_TRUE;
   if (!readers[READER_FACTOR].in_force) readers[READER_ITERATIVE] = readers[READER_FACTOR];
+  if (!readers[READER_FACTOR].in_force && !s->cycle)
+    PetscCall(OptionsRefuse(comm, "-squeal_memory", "not used where no matrix is factorised, as by a run in time"));
   PetscCall(OptionsClaimsCheck(comm, claims, readers, s->analysis));
   PetscCall(ScopeCheckRead(comm, s, statics));
+  PetscFunctionReturn(0);
+}
+
+/* Adds a thing to a list: "load press, probe tip" */
+static PetscErrorCode IdleAdd(const char kind[], const char name[], size_t size, char text[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrlcat(text, text[0] ? ", " : "", size));
+  PetscCall(PetscStrlcat(text, kind, size));
+  PetscCall(PetscStrlcat(text, name, size));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
+{
+  const ModelScene *scene;
+  PetscBool         statics;
+  ScopeIdle         idle;
+  char              text[1024] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeNeedsStatics(s, &statics));
+  PetscCall(ModelGetScene(s->model, &scene));
+  idle = ScopeGetIdle(s, statics);
+  if (idle.loads && Vec3Dot(scene->gravity, scene->gravity) > 0)
+    PetscCall(IdleAdd("gravity", "", sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_loads && idle.loads; i++)
+    PetscCall(IdleAdd("load ", scene->loads[i].name, sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_probes && idle.places; i++)
+    PetscCall(IdleAdd("probe ", scene->probes[i].name, sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_circles && idle.places; i++)
+    PetscCall(IdleAdd("circle ", scene->circles[i].name, sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_dashpots && idle.damping; i++)
+    PetscCall(IdleAdd("dashpot ", scene->dashpots[i].name, sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_parts && idle.damping; i++)
+    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0)
+      PetscCall(IdleAdd("damping of ", scene->parts[i].name, sizeof(text), text));
+  for (PetscInt i = 0; i < scene->n_parts && idle.spin; i++)
+    if (scene->parts[i].spin.rate != 0) PetscCall(IdleAdd("spin of ", scene->parts[i].name, sizeof(text), text));
+  if (text[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  not used by -analysis %s: %s\n", s->analysis, text));
   PetscFunctionReturn(0);
 }

@@ -34,3 +34,6 @@ typedef struct {
 
 /* Raises an error for an option of the command line that a reader claimed of whom the run has no need. Collective. */
 PETSC_INTERN PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *scope, OptionsClaims claims);
+
+/* Says which things of the model the run does not use. Collective. */
+PETSC_INTERN PetscErrorCode ScopeView(const Scope *scope, PetscViewer viewer);

@@ -109,8 +109,8 @@ FAULTS = (
      "transient_reduced"),
     ("the critical step is 0.4 % longer", "src/dynamics/criticalstep.c", "  critical->assembled = dt;",
      "  critical->assembled = 1.004 * dt;", "transient_free"),
-    ("the place of a probe that the analysis does not use is accepted", "src/scope.c", 'name, "at part", no_probe', 'name, "part", no_probe',
-     "bad_probes"),
+    ("the place of a probe that the analysis does not use is accepted", "src/scope.c", 'name, "at part", no_probe',
+     'name, "part", no_probe', "bad_probes"),
 )
 
 

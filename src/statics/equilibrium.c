@@ -28,7 +28,7 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
     [ACTIVE_CONVERGED] = "",
     [ACTIVE_SINGULAR]  = "the closed pairs leave a motion that nothing resists; give -supports or -springs",
     [ACTIVE_REPEATS] =
-      "the statuses of the pairs go round in a circle; change -static_load_steps or the -loads a little",
+      "the statuses of the pairs go round in a circle; change the -loads a little, or -static_load_steps where pairs can stick",
     [ACTIVE_SLOW]     = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
     [ACTIVE_JAMMED]   = "the bodies jam: friction presses them together by more than they yield",
     [ACTIVE_UNSOLVED] = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it"};
