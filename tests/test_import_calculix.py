@@ -94,8 +94,8 @@ def spellings():
 
 def same_model(one, other):
     """Whether nodes, elements, supports and parts are the same."""
-    return (np.array_equal(one.x, other.x) and np.array_equal(one.held, other.held) and len(one.blocks) == len(other.blocks)
-            and all(a[0] == b[0] and np.array_equal(a[1], b[1]) for a, b in zip(one.blocks, other.blocks))
+    cells = [np.concatenate([nodes for _, nodes in model.blocks]) for model in (one, other)]
+    return (np.array_equal(one.x, other.x) and np.array_equal(one.held, other.held) and np.array_equal(*cells)
             and [part[:2] for part in one.parts] == [part[:2] for part in other.parts])
 
 
@@ -109,6 +109,23 @@ def ways(folder):
             check(f"{about}: listed {words}", sum(words in line for line in lines) == 1, lines)
         extra = ("*NODE FILE",) if "*NODE FILE" in str(text) else ()
         check(f"{about}: nothing else is listed", len(lines) == n_printed + len(said) + len(extra), lines)
+
+
+def included(folder):
+    """Data of a keyword that go on in another file, and behind the line that names it."""
+    rows = NODES.split("\n")
+    (folder / "rows.txt").write_text("\n".join(rows[3:7]) + "\n")
+    (folder / "more.txt").write_text("2, 5,6,7,8, 9,10,11,12\n" + SETS)
+    text = PLAIN.replace(NODES, "\n".join([*rows[:3], "*INCLUDE, INPUT=rows.txt", *rows[7:]]))
+    text = text.replace(ELEMENTS + SETS, ELEMENTS.replace("2, 5,6,7,8, 9,10,11,12\n", "*INCLUDE, INPUT=more.txt\n"))
+    options, _, model = brought(folder, PLAIN)
+    found, _, other = brought(folder, text)
+    check("data in other files: the scene", found == options and same_model(model, other), found)
+    try:
+        brought(folder, PLAIN.replace("210000., .3\n", "*INCLUDE, INPUT=rows.txt\n"))
+        check("data of a material in another file", False, "it was not refused")
+    except BadInput as error:
+        check("data of a material in another file", "rows.txt:1: *INCLUDE within the data of *ELASTIC" in str(error), error)
 
 
 def overlapping(folder):
@@ -256,7 +273,7 @@ def unforeseen():
 def main():
     program = starter(str(Path(sys.argv[1]).resolve()))
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for part in (ways, overlapping, steps, supports, no_files):
+        for part in (ways, included, overlapping, steps, supports, no_files):
             part(Path(name))
         for part in (modes, gap, names):
             part(Path(name), program)

@@ -22,6 +22,7 @@ ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONT
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY",  # say nothing of the model
          "KINEMATIC", "DISTRIBUTING"}  # or are listed with what they belong to
+ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
 POINTS = "`points` of squeal do this, on a set of the mesh"
 INSTEAD = {"COUPLING": POINTS, "RIGID BODY": POINTS, "MASS": POINTS, "ROTARY INERTIA": POINTS,
            "CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
@@ -129,25 +130,42 @@ def split_cards(data, file):
     return cards
 
 
-def read_cards(path, depth=0):
-    """Cards of a file and of those that it includes."""
+def read_cards(path, depth=0, last=None):
+    """Cards of a file and of those that it includes; `last` holds the one before. Data that follow *INCLUDE, or begin an included
+    file, are of the keyword before."""
+    last = [None] if last is None else last
     for card in split_cards(read_bytes(path), str(path)):
         if card.keyword == "INCLUDE":
             name = card.options.get("INPUT", "").strip('"')
             if not name or depth == DEEPEST:
                 raise card.place.wrong("*INCLUDE needs INPUT=FILE" if not name else "files include each other too deeply")
             try:
-                yield from read_cards(beside(path, name), depth + 1)
+                yield from read_cards(beside(path, name), depth + 1, last)
             except BadInput as error:
                 missing = str(error).startswith(f"{beside(path, name)}: ")
                 raise card.place.wrong(f"*INCLUDE: {error}") if missing else error
+        if (card.keyword == "INCLUDE" or (depth and not card.keyword)) and last[0] is not None:
+            yield from more_of(last[0], card)
             continue
+        if card.keyword == "INCLUDE":
+            continue
+        last[0] = card
         if "INPUT" in card.options and card.keyword in ("NODE", "ELEMENT", "NSET", "ELSET"):
             name = card.options.pop("INPUT").strip('"')
             other = beside(path, name)
             card.pieces.append((read_bytes(other), 1))
             card.place = Place(str(other), 1)
         yield card
+
+
+def more_of(last, card):
+    """Data of `card` as those of the keyword before it."""
+    if not any(text.strip() for text, _ in card.pieces):
+        return
+    if last.keyword in ADDED:
+        yield Card(last.keyword, dict(last.options), card.place, card.pieces)
+    elif last.keyword not in PLAIN | OUTPUT:
+        raise card.place.wrong(f"*INCLUDE within the data of *{last.keyword} is not read")
 
 
 def beside(path, name):

@@ -169,6 +169,8 @@ def do_surface(reader, scope, card):
             reader.deck.note(card.place, f"*SURFACE {name} has no faces of volume elements")
     else:
         reader.deck.note(card.place, f"*SURFACE, TYPE={kind}: not understood")
+    if name in scope.surfaces:
+        faces = numpy.unique(numpy.concatenate([reader.deck.surfaces[scope.full(name)][0], faces]), axis=0)
     scope.surfaces[name] = scope.full(name)
     reader.deck.surfaces[scope.full(name)] = faces, card.place
 
