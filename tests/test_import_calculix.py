@@ -255,6 +255,34 @@ def no_files(folder):
         check(f"{' '.join(words)}: one line", done.returncode == 1 and done.stderr.count("\n") == 1, done.stderr)
 
 
+def infinite(folder):
+    """A table with inf is one line that names its place, but for errors, which may be unknown."""
+    (folder / "modes.csv").write_text("mode,freq_hz,error_hz\n1,100,inf\n2,inf,0\n")
+    kinds = {"mode": int, "freq_hz": float, "error_hz": float}
+    try:
+        tables.read_table(folder / "modes.csv", kinds)
+        check("inf in a table", False, "it was not refused")
+    except BadInput as error:
+        check("inf in a table", "modes.csv: line 3: freq_hz is 'inf', which is not finite" in str(error), error)
+    kinds.pop("freq_hz")
+    check("inf of an error", tables.read_table(folder / "modes.csv", kinds)[0]["error_hz"] == np.inf)
+
+
+def study(folder):
+    """scripts/study/decks: what becomes of a deck that is right, of one that is refused, and of one without solids."""
+    (folder / "decks").mkdir()
+    for name, text in (("right", PLAIN), ("refused", PLAIN.replace("8\n2, 5", "8\n2, 55")), ("shells", PLAIN.replace(ELEMENTS, (
+            "*ELEMENT, TYPE=S4, ELSET=E\n1, 1,2,6,5\n")).replace("SOLID", "SHELL"))):
+        (folder / f"decks/{name}.inp").write_text(text)
+    done = subprocess.run([Path(__file__).resolve().parents[1] / "scripts/study/decks", "decks", "--no-ccx", "-o", "out"], cwd=folder,
+                          capture_output=True, text=True, timeout=100, check=False)
+    check("study: status", done.returncode == 0, done.stderr)
+    with (folder / "out/decks.csv").open(newline="") as rows:
+        found = {Path(row["file"]).stem: row["outcome"] for row in csv.DictReader(rows)}
+    check("study: outcomes", found == {"right": "imported", "refused": "refused", "shells": "no solids"}, found)
+    check("study: share and reason", "50.0 %" in done.stdout and "node # is not in the file" in done.stdout, done.stdout)
+
+
 def unforeseen():
     """An exception of a script is one line with its command line, and its trace where SQUEAL_TRACE is set."""
     said = io.StringIO()
@@ -273,7 +301,7 @@ def unforeseen():
 def main():
     program = starter(str(Path(sys.argv[1]).resolve()))
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for part in (ways, included, overlapping, steps, supports, no_files):
+        for part in (ways, included, overlapping, steps, supports, infinite, study, no_files):
             part(Path(name))
         for part in (modes, gap, names):
             part(Path(name), program)

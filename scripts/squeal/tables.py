@@ -8,6 +8,7 @@ import sys
 
 from . import STOPPED
 
+MAY_BE_INFINITE = "error", "condition"  # how names of columns begin that hold inf where nothing is known
 TRACE = "SQUEAL_TRACE"  # where it is set, an exception that nobody foresaw shows its trace
 
 
@@ -48,6 +49,11 @@ def read_table(path, kinds):
         raise BadInput(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
+def quoted(text):
+    """A text as YAML has it in double quotes."""
+    return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
 @contextlib.contextmanager
 def whole(path):
     """The file to write in place of one, which bears its name only when all of it is there."""
@@ -78,6 +84,8 @@ def convert(path, line, row, kinds):
             values[name] = kind(row[name])
         except (ValueError, KeyError):
             raise BadInput(f"{path}: line {line}: {name} is '{row[name]}'") from None
+        if kind is float and math.isinf(values[name]) and not name.startswith(MAY_BE_INFINITE):
+            raise BadInput(f"{path}: line {line}: {name} is '{row[name]}', which is not finite")
     return values
 
 

@@ -1,6 +1,6 @@
 """The scene in YAML: what was understood, with the place that each line is from, then all that was not."""
 
-from ..tables import whole
+from ..tables import quoted, whole
 
 MOST_ALIKE = 3
 LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts", "ties")
@@ -16,11 +16,6 @@ def shown(value, units):
     kind, values = value
     words = [f"{number * FACTORS[kind](units):.15g}" for number in values]
     return words[0] if len(words) == 1 else '"' + ",".join(words) + '"'
-
-
-def quoted(text):
-    """A text as YAML has it in double quotes."""
-    return '"' + str(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 def entry_lines(entry, units):

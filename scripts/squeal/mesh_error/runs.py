@@ -4,7 +4,7 @@ import math
 
 from ..program import measured_run
 from ..provenance import Provenance
-from ..tables import BadInput, flag, read_table
+from ..tables import BadInput, flag, printable, quoted, read_table
 from .limits import UNKNOWN, limit_of
 from .match import Shapes, match
 from .meshes import choose, divided, mesh_of, per_node, run_modes, wider
@@ -46,7 +46,7 @@ class Study:
         if not swept:
             return words
         names = [i for i, word in enumerate(swept) if word.startswith("-sweep_")] + [len(swept)]
-        lines = [f'{swept[i][1:]}: "{" ".join(swept[i + 1:k]) or "true"}"' for i, k in zip(names, names[1:])]
+        lines = [f"{swept[i][1:]}: {quoted(printable(' '.join(swept[i + 1:k])) or 'true')}" for i, k in zip(names, names[1:])]
         self.args.output.mkdir(parents=True, exist_ok=True)
         path = self.args.output / "sweep.yaml"
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
