@@ -154,14 +154,17 @@ static PetscErrorCode VectorCopy(PetscInt k, const PetscReal *re, const PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Room for n modes of a model of this size */
-static PetscErrorCode ProjectionModesCreate(PetscInt n, PetscInt size, ProjectionModes *modes)
+/* Room for n modes of the present basis; left vectors that nobody asks for need no digits */
+static PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes)
 {
   PetscFunctionBeginUser;
-  *modes = (ProjectionModes){.n = n, .size = size};
-  PetscCall(PetscMalloc3(n, &modes->lambda, n * size, &modes->vectors[0], n * size, &modes->vectors[1]));
+  *modes = (ProjectionModes){.n = n, .size = p->k};
+  PetscCall(PetscMalloc3(n, &modes->lambda, n * p->k, &modes->vectors[0], n * p->k, &modes->vectors[1]));
   PetscCall(PetscMalloc2(n, &modes->backward[0], n, &modes->backward[1]));
-  for (PetscInt i = 0; i < n; i++) modes->backward[0][i] = modes->backward[1][i] = INFINITY;
+  for (PetscInt i = 0; i < n; i++) {
+    modes->backward[0][i] = INFINITY;
+    modes->backward[1][i] = p->modes->left ? INFINITY : 0;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -284,7 +287,7 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   for (PetscInt i = 0; i < n; i++)
     if (cimag(lambda[i]) >= 0 && ProjectionHas(p, lambda[i])) list[m++] = i;
   if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
-  PetscCall(ProjectionModesCreate(m, k, modes));
+  PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
     const PetscInt  at     = list[i] * n;
     const PetscBool paired = cimag(lambda[list[i]]) > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -306,7 +309,7 @@ PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *befo
   const DensePencil dense = {.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C, .M = p->M};
 
   PetscFunctionBeginUser;
-  PetscCall(ProjectionModesCreate(before->n, p->k, modes));
+  PetscCall(ProjectionModesCreate(p, before->n, modes));
   modes->lambda_reach = before->lambda_reach;
   *followed           = PETSC_TRUE;
   for (PetscInt i = 0; i < before->n && *followed; i++) PetscCall(FollowMode(p, &dense, before, i, modes, followed));
