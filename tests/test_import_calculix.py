@@ -21,6 +21,7 @@ from squeal.decks.balance import sums
 from squeal.decks.convert import convert
 from squeal.tables import BadInput
 
+import h5py
 import numpy as np
 from served import starter
 from test_import_keywords import scene
@@ -201,16 +202,20 @@ GAP = HEAD + NODES + (
 
 
 def gap(folder, program):
-    """Surfaces that are 0.02 mm apart: a tolerance that finds all four pairs, which carry the 400 N, and a line that says so."""
+    """Surfaces that are 0.02 mm apart: a tolerance that finds all four pairs, which close and carry the 400 N, and a line that says
+    so. The block beyond the gap moves by the gap and the compression of pairs, 4 MPa / 1e14 N/m^3, and of the bar."""
     options, lines, _ = brought(folder, GAP, "gap")
     check("gap: its tolerance", 2e-5 < float(options["i_tolerance"]) < 2.2e-5, options)
     check("gap: listed", sum("apart by 0.02 to 0.02" in line for line in lines) == 1, lines)
-    done = program.run(folder, ["-options_file", "gap.yaml", "-analysis", "static", "-output_dir", "gap", "-output_fields", "0"])
+    done = program.run(folder, ["-options_file", "gap.yaml", "-analysis", "static", "-output_dir", "gap"])
     check("gap: statics run", done.status == 0, done.stderr)
     if done.status == 0:
         with (folder / "gap/static.csv").open(newline="") as rows:
             force = [float(row["lambda_n_n"]) for row in csv.DictReader(rows)]
         check("gap: four pairs of 100 N", np.allclose(force, 4 * [100], atol=1e-6), force)
+        with h5py.File(folder / "gap/static.h5") as file:
+            moved = -file["VTKHDF/PointData/displacement_m"][:, 0].min()
+        check("gap: it closes", 2e-5 + 4e6 / 1e14 < moved < 2e-5 + 4e6 / 1e14 + 4e6 / 210e9 * 0.025, moved)
     closed = GAP.replace("20.02", "20").replace("25.02", "25")
     options, lines, _ = brought(folder, closed)
     check("no gap: no tolerance", "i_tolerance" not in options and not any("apart by" in line for line in lines), options)

@@ -109,21 +109,16 @@ def sums(model):
     cells = [volumes(shape, model.x[nodes]) for shape, nodes in model.blocks]
     volume, moment = (numpy.concatenate(parts) for parts in zip(*cells))
     middle = moment / numpy.where(volume > 0, volume, 1)[:, None]
-    part_of, owner = numpy.full(len(volume), len(model.parts)), numpy.full(len(model.x), len(model.parts))
-    for number in reversed(range(len(model.parts))):
-        part_of[model.parts[number][2]] = number
-    first = 0
-    for _, nodes in model.blocks:
-        of_cell = numpy.repeat(part_of[first:first + len(nodes)], nodes.shape[1])
-        numpy.minimum.at(owner, nodes.ravel(), of_cell)
-        first += len(nodes)
+    part_of, owner = owners(model, len(volume))
     rows = [Row(name, *mass_of(density, volume[chosen], moment[chosen]), len(chosen)) for name, density, chosen in model.parts]
     rows.append(Row("of no element", cells=0))
     loaded, force, turn, gross = loads_on(model, middle, part_of, owner, len(rows))
+    held, directions, loaded = (numpy.bincount(owner, values, len(rows)).astype(int) for values in (
+        model.held.any(axis=1), model.held.sum(axis=1), loaded))
+    stiffness = numpy.stack([numpy.bincount(owner, model.springs[:, d], len(rows)) for d in range(3)], axis=1)
     for number, row in enumerate(rows):
-        mine = owner == number
-        row.held, row.directions = int(model.held[mine].any(axis=1).sum()), int(model.held[mine].sum())
-        row.loaded, row.stiffness = int((loaded & mine).sum()), model.springs[mine].sum(axis=0)
+        row.held, row.directions, row.loaded = int(held[number]), int(directions[number]), int(loaded[number])
+        row.stiffness = stiffness[number]
         row.force, row.moment, row.gross = force[number], turn[number], gross[number]
         if model.gravity is not None and row.mass:
             row.force = row.force + row.mass * model.gravity
@@ -131,6 +126,19 @@ def sums(model):
             row.gross += row.mass * numpy.linalg.norm(model.gravity)
     lost = rows.pop()
     return rows, total_of(rows), lost if lost.held or lost.loaded or lost.stiffness.any() else None
+
+
+def owners(model, n_cells):
+    """The part of each cell, and the first part that has each node, as numbers; of none the number of parts."""
+    part_of, owner = numpy.full(n_cells, len(model.parts)), numpy.full(len(model.x), len(model.parts))
+    for number in reversed(range(len(model.parts))):
+        part_of[model.parts[number][2]] = number
+    firsts = numpy.cumsum([0, *(len(nodes) for _, nodes in model.blocks)])
+    of_blocks = [part_of[low:high] for low, high in zip(firsts, firsts[1:])]
+    for number in reversed(range(len(model.parts))):
+        for (_, nodes), of_block in zip(model.blocks, of_blocks):
+            owner[nodes[of_block == number]] = number
+    return part_of, owner
 
 
 def mass_of(density, volume, moment):
@@ -143,9 +151,10 @@ def loads_on(model, middle, part_of, owner, n):
     """Which nodes are loaded; by part force [n][3], moment about the origin [n][3], and the sum of the sizes of forces [n]."""
     loaded = model.forces.any(axis=1)
     force, turn, gross = numpy.zeros((n, 3)), numpy.zeros((n, 3)), numpy.zeros(n)
-    numpy.add.at(force, owner, model.forces)
-    numpy.add.at(turn, owner, numpy.cross(model.x, model.forces))
-    numpy.add.at(gross, owner, numpy.linalg.norm(model.forces, axis=1))
+    some = numpy.flatnonzero(loaded)
+    numpy.add.at(force, owner[some], model.forces[some])
+    numpy.add.at(turn, owner[some], numpy.cross(model.x[some], model.forces[some]))
+    numpy.add.at(gross, owner[some], numpy.linalg.norm(model.forces[some], axis=1))
     for cells, nodes, pressure in model.pressed:
         if not pressure:
             continue

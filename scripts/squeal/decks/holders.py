@@ -179,13 +179,13 @@ def set_turning(deck):
 
 
 def gap_rows(deck, contact):
-    """The tolerance that finds the pairs of surfaces that the deck has apart; such a gap is said."""
+    """The tolerance that finds the pairs of surfaces that the deck has apart; such a gap is said, since only a state knows it."""
     found = gaps(deck, deck.surfaces[contact.slave][0], deck.surfaces[contact.master][0])
     size = numpy.ptp(deck.x[surface_nodes(deck, deck.surfaces[contact.slave][0])], axis=0).max()
     if not found.max(initial=0) > TOUCH * size:
         return []
     deck.differ(contact.place, f"contact {contact.slave}, {contact.master}: apart by {found.min():.3g} to {found.max():.3g} (units of the "
-                               "deck); pairs of squeal begin without a gap")
+                               "deck); statics and runs in time have this gap, modes take all pairs as closed but about a static state")
     tolerance = float(f"{ROOM * found.max():.3g}")
     return [("tolerance", ("length", (tolerance,)), f"{contact.place} finds pairs that are {found.max():.3g} apart there")]
 
