@@ -260,6 +260,30 @@ def test_calculix(folder, squeal, launcher):
     check("CalculiX: frequencies", len(exact) == 6 and off < 1e-6, f"off by {off:.1e}; it prints 7 digits")
 
 
+def test_rank(folder, squeal, launcher):
+    """A mass of lower rank, M = G' G, as CalculiX has of C3D20R, with the rounding of its digits: frequencies by the eigenvalues
+    1 / kappa of G K^-1 G', on one rank and three. With a direction of less than no mass it is refused."""
+    dice, n, rank = numpy.random.default_rng(11), 60, 40
+    A, G = dice.standard_normal((n, n)), dice.standard_normal((rank, n))
+    K, M, w = A @ A.T + n * numpy.eye(n), G.T @ G, numpy.linalg.svd(G)[2][-1]
+    exact = numpy.sqrt(1 / numpy.linalg.eigvalsh(G @ numpy.linalg.solve(K, G.T))[::-1]) / (2 * numpy.pi)
+    for name, mass in (("low", M), ("negative", M - 1e-6 * numpy.outer(w, w))):
+        foreign.market(folder / "K.mtx", K)
+        foreign.market(folder / "M.mtx", mass)
+        convert([folder / "K.mtx", folder / "M.mtx"], folder / name)
+        for ranks in ("1", "3"):
+            words = ["-options_file", f"{name}/matrices.yaml", "-modes_band", f"0,{1.01 * exact[9]}", "-output_dir", "modes"]
+            run = subprocess.run([launcher, "-n", ranks, squeal, *words], cwd=folder, capture_output=True, text=True)
+            if name == "negative":
+                check(f"a mass that is negative, {ranks} ranks",
+                      run.returncode == 1 and "has 1 negative eigenvalues: it must be" in run.stderr, run.stderr)
+                continue
+            with (folder / "modes/modes.csv").open(newline="") as table:
+                found = numpy.array([float(row["freq_hz"]) for row in csv.DictReader(table)])
+            off = abs(found / exact[:10] - 1).max() if len(found) == 10 else numpy.inf
+            check(f"a mass of rank {rank} of {n}, {ranks} ranks", run.returncode == 0 and off < 1e-9, f"off by {off:.1e} {run.stderr}")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("squeal")
@@ -272,6 +296,7 @@ def main():
         test_unknowns(folder)
         test_refused(folder)
         test_damage(folder, args.count)
+        test_rank(folder, str(Path(args.squeal).resolve()), str(Path(args.launcher).resolve()))
         if shutil.which("ccx"):
             test_calculix(folder, str(Path(args.squeal).resolve()), args.launcher)
     return 1 if failed else 0

@@ -46,6 +46,7 @@ typedef struct {
 typedef struct {
   Mat       K, C, M;   /* C is NULL without damping */
   PetscBool symmetric; /* K, M (and C) symmetric */
+  PetscBool singular;  /* M is loaded and has no mass along some directions that are no unknowns */
   Mat       K_even, left, right;
   PetscBool prefers_even; /* -operators_factors symmetric */
 } PencilMatrices;

@@ -35,7 +35,7 @@ static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *fric
   PetscFunctionBeginUser;
   window->massless = 0;
   window->most     = INFINITY;
-  PetscCall(MassHasEmptyRows(frictionless->M, &window->singular));
+  PetscCall(MassIsSingular(frictionless, &window->singular));
   if (!window->singular) PetscFunctionReturn(0);
   window->most = modes->has_band ? MODES_MOST * PetscMax(window->high, window->growth)
                                  : PetscMax(MODES_FINITE * window->scale, MODES_MOST * window->target);

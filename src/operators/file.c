@@ -170,7 +170,7 @@ PetscErrorCode OperatorsLoad(Operators o)
   PetscFunctionBeginUser;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(OperatorsReadMatrix(o, i, &A[i]));
   PetscCall(OperatorsCheckMatrices(o, A));
-  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M]));
+  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M], &o->mass_singular));
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++)
     if (A[i]) PetscCall(MatrixIsSymmetric(A[i], &o->symmetric));
   PetscCall(OperatorsAddMatrices(o, A));

@@ -151,15 +151,26 @@ PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char fi
   PetscFunctionReturn(0);
 }
 
-/* How many eigenvalues of a symmetric matrix are negative or zero: signs of the pivots of L D L' (J. J. Sylvester) */
-static PetscErrorCode MassCountPivots(Mat M, PetscInt *bad)
+#define MASS_ROUNDING 1e-10 /* of the diagonal: what is smaller, of the mass along a direction, is none */
+
+/* How many eigenvalues of a symmetric matrix M + shift diag(M) are negative or zero: signs of the pivots of L D L' (J. J. Sylvester) */
+static PetscErrorCode MassCountPivots(Mat S, Vec diagonal, PetscReal shift, PetscInt *bad)
 {
   MatFactorInfo info;
   PetscInt      negative, zero;
   Mat           F;
   IS            row, column;
+  Mat           M;
+  Vec           moved;
 
   PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(diagonal, &moved));
+  PetscCall(VecCopy(diagonal, moved));
+  PetscCall(VecScale(moved, shift));
+  PetscCall(MatDuplicate(S, MAT_COPY_VALUES, &M));
+  PetscCall(MatSetOption(M, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE)); /* a row may be empty */
+  PetscCall(MatDiagonalSet(M, moved, ADD_VALUES));
+  PetscCall(VecDestroy(&moved));
   PetscCall(MatFactorInfoInitialize(&info));
   PetscCall(MatGetFactor(M, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &F));
   PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* pivots of the root are counted only without ScaLAPACK */
@@ -172,6 +183,7 @@ static PetscErrorCode MassCountPivots(Mat M, PetscInt *bad)
   PetscCall(ISDestroy(&row));
   PetscCall(ISDestroy(&column));
   PetscCall(MatDestroy(&F));
+  PetscCall(MatDestroy(&M));
   PetscFunctionReturn(0);
 }
 
@@ -207,7 +219,7 @@ static PetscErrorCode MassCountEmpty(Mat S, PetscInt *empty)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MassCheck(Mat M)
+PetscErrorCode MassCheck(Mat M, PetscBool *singular)
 {
   PetscInt  empty, bad = 0;
   PetscReal norm, largest;
@@ -222,12 +234,14 @@ PetscErrorCode MassCheck(Mat M)
   PetscCall(MatGetDiagonal(S, diagonal));
   PetscCall(VecNorm(diagonal, NORM_2, &largest));
   PetscCall(MatNorm(S, NORM_FROBENIUS, &norm));
+  if (norm > largest * (1 + 1e-15)) PetscCall(MassCountPivots(S, diagonal, -MASS_ROUNDING, &bad));
+  *singular = bad > empty ? PETSC_TRUE : PETSC_FALSE;
+  if (*singular) PetscCall(MassCountPivots(S, diagonal, MASS_ROUNDING, &bad));
   PetscCall(VecDestroy(&diagonal));
-  if (norm > largest * (1 + 1e-15)) PetscCall(MassCountPivots(S, &bad));
   bad -= bad ? empty : 0;
   PetscCheck(bad <= 0, PetscObjectComm((PetscObject)M), PETSC_ERR_USER_INPUT,
              "the mass matrix has %" PetscInt_FMT
-             " eigenvalues that are negative or zero, beside unknowns without any mass: it must be positive definite",
+             " negative eigenvalues: it must be positive definite, or have no mass along some directions",
              bad);
   PetscCall(MatDestroy(&S));
   PetscFunctionReturn(0);

@@ -66,6 +66,7 @@ struct _p_Operators {
   PetscInt            *spin_of_part;     /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
   Terms                spin;             /* of spinning parts, for pencils; made when the first one asks */
   Terms                terms;            /* of the bodies, in all unknowns; with loaded matrices friction too */
+  PetscBool            mass_singular;    /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
   Mat                  Z, E;             /* u = Z q, q = E'u where some displacements follow others; else NULL */
   PetscBool           *follows;          /* [unknowns of this rank] which ones do */

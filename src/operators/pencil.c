@@ -12,6 +12,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   *pencil      = s;
   s->comm      = operators->comm;
   s->operators = operators;
+  s->mass_singular = operators->mass_singular;
   PetscCall(PencilTakeState(s, state));
   PetscCall(PencilCheckSliding(s));
   PetscCall(OperatorsNeedSpin(operators));
@@ -186,6 +187,7 @@ PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
   frictionless = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_FALSE, p);
   same_mass    = TermsVanish(terms, TERMS_UNSYMMETRIC, PETSC_TRUE, p);
   m->symmetric = pencil->operators->symmetric && frictionless ? PETSC_TRUE : PETSC_FALSE;
+  m->singular  = pencil->mass_singular;
   PetscCall(PencilFormSum(pencil, frictionless ? PROJECTED_K : PENCIL_K, &m->K));
   PetscCall(PencilFormSum(pencil, same_mass ? PROJECTED_M : PENCIL_M, &m->M));
   PetscCall(PencilFormSum(pencil, PENCIL_C, &m->C));
@@ -201,6 +203,7 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, PROJECTED_M, &m->M));
   m->C         = NULL;
   m->symmetric = pencil->operators->symmetric;
+  m->singular  = pencil->mass_singular;
   m->K_even = m->left = m->right = NULL;
   m->prefers_even                = PETSC_FALSE;
   PetscFunctionReturn(0);

@@ -38,6 +38,7 @@ struct _p_Pencil {
   PetscInt *left_mu;   /* [n_left] parameters that are friction coefficients */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
+  PetscBool mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool released;    /* the terms are gone */
   PetscBool has_factors; /* left' right was formed at the present point */
   Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
@@ -91,8 +92,9 @@ PETSC_INTERN PetscErrorCode PencilProjectTerms(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
 
 /* matrixfile.c - raises an error for a file that does not hold a real matrix of finite numbers, alike on all ranks; and
-   for a mass matrix whose symmetric part is not positive definite on the unknowns that have mass */
+   for a mass matrix whose symmetric part has negative eigenvalues beyond rounding. Singular: some are zero to rounding, beside
+   those of unknowns without any mass */
 PETSC_INTERN PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[]);
-PETSC_INTERN PetscErrorCode MassCheck(Mat M);
+PETSC_INTERN PetscErrorCode MassCheck(Mat M, PetscBool *singular);
 /* matrixterm.c - the same of the mass at the present point, where it depends on parameters, which may be of any sign */
 PETSC_INTERN PetscErrorCode PencilCheckMass(Pencil pencil, Mat M);

@@ -49,17 +49,17 @@ PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal awa
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MassHasEmptyRows(Mat M, PetscBool *empty)
+PetscErrorCode MassIsSingular(const PencilMatrices *pencil, PetscBool *singular)
 {
   PetscReal least;
   Vec       largest;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(M, NULL, &largest));
-  PetscCall(MatGetRowMaxAbs(M, largest, NULL));
+  PetscCall(MatCreateVecs(pencil->M, NULL, &largest));
+  PetscCall(MatGetRowMaxAbs(pencil->M, largest, NULL));
   PetscCall(VecMin(largest, NULL, &least));
   PetscCall(VecDestroy(&largest));
-  *empty = least > 0 ? PETSC_FALSE : PETSC_TRUE;
+  *singular = pencil->singular || !(least > 0) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -138,8 +138,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, 
    faster than `most`, 1/s */
 PETSC_INTERN PetscErrorCode ShiftInvertCountMassless(const PencilMatrices *pencil, PetscReal most, ShiftInvert *si,
                                                      PetscInt *n);
-/* Whether unknowns are without mass: rows of M without an entry that is not zero. Collective. */
-PETSC_INTERN PetscErrorCode MassHasEmptyRows(Mat M, PetscBool *empty);
+/* Whether unknowns or directions are without mass: rows of M without an entry that is not zero, or what the pencil says. Collective. */
+PETSC_INTERN PetscErrorCode MassIsSingular(const PencilMatrices *pencil, PetscBool *singular);
 
 /* readoptions.c - reads the options eps_, pep_ (eigensolvers), st_ (factorisations), and of st_ksp_ those of iterative
    solvers, where some are given and nobody has read them yet, so that what is still unread is unknown */

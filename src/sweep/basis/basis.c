@@ -18,11 +18,11 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   basis->comm   = comm;
   basis->pencil = pencil;
   PetscCall(PencilGetFrictionless(pencil, &frictionless));
-  PetscCall(MassHasEmptyRows(frictionless.M, &singular)); /* of which vectors orthonormal in M hold nothing */
+  PetscCall(MassIsSingular(&frictionless, &singular)); /* of which vectors orthonormal in M hold nothing */
   PetscCheck(
     !singular, comm, PETSC_ERR_SUP,
-    "unknowns have no mass (multipliers, or nodes without inertia): sweeps on a basis are not offered with them; "
-    "give -sweep_method full");
+    "unknowns or directions have no mass (multipliers, nodes without inertia, a mass of fewer points): sweeps on a basis "
+    "are not offered with them; give -sweep_method full");
   PetscCall(MatDuplicate(frictionless.M, MAT_COPY_VALUES, &basis->M));
   PetscCall(MatSetOption(basis->M, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatCreateVecs(basis->M, &u, NULL));
