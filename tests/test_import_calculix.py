@@ -144,6 +144,17 @@ def overlapping(folder):
     check("C3D6: differs", sum("differs: C3D6: squeal has 6 points, CalculiX 2" in line for line in lines) == 1, lines)
 
 
+def distributed(folder):
+    """Axes that a distribution gives to elements: a part for each, with the axes of its row."""
+    material = MATERIAL.replace("*ELASTIC\n210000., .3\n", (
+        "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n9e4, 7e4, 5e4, .2, .2, .2, 3e4, 3e4,\n3e4\n"))
+    axes = "*DISTRIBUTION, NAME=D\n, 1., 0., 0., 0., 1., 0.\n2, 0., 0., 1., 1., 0., 0.\n*ORIENTATION, NAME=O\nD\n"
+    options, _, model = brought(folder, PLAIN.replace(MATERIAL + SECTION, material + axes + SECTION.replace("E,", "E, ORIENTATION=O,")))
+    found = [(row.name, options[f"{row.name}_axis_1"], options[f"{row.name}_axis_2"], round(1e3 * row.centre[0], 6))
+             for row in sums(model)[0]]
+    check("axes by a distribution", found == [("e", "1,0,0", "0,1,0", 5), ("e_2", "0,0,1", "1,0,0", 15)], found)
+
+
 # Loads of steps, and the total reaction at x = 0 in the last one by CalculiX 2.20, *NODE PRINT, TOTALS=ONLY. Pressures are on
 # faces whose nodes are half at x = 0; CalculiX leaves out what acts on held nodes, here half of 2 MPa on the 100 mm^2 of element 1
 PICKED = "*NSET, NSET=L\n9, 10, 11, 12\n*NSET, NSET=L2\n9, 10\n*ELSET, ELSET=B\n2\n*SURFACE, NAME=SA\nE, S3\n*SURFACE, NAME=SB\nB, S3\n"
@@ -306,7 +317,7 @@ def unforeseen():
 def main():
     program = starter(str(Path(sys.argv[1]).resolve()))
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for part in (ways, included, overlapping, steps, supports, infinite, study, no_files):
+        for part in (ways, included, overlapping, distributed, steps, supports, infinite, study, no_files):
             part(Path(name))
         for part in (modes, gap, names):
             part(Path(name), program)

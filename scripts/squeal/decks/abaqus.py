@@ -14,7 +14,8 @@ from .text import read_bytes, real, shorter
 
 DEEPEST = 10  # files that include each other
 BLANKS = re.compile(rb"^[ \t]+(?=\*)", re.MULTILINE)  # the first letter of a line of a keyword, but for blanks, is *
-PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "ORIENTATION": 3, "TRANSFORM": 3}  # others last
+PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "DISTRIBUTION": 3, "TRANSFORM": 3,
+          "ORIENTATION": 4}  # others last
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
           "SECTION PRINT", "PRINT", "MODAL FILE"}
@@ -32,7 +33,8 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "NSET": {"NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"},
          "ELSET": {"ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED", "INPUT"},
          "SURFACE": {"NAME", "TYPE", "INTERNAL"}, "TRANSFORM": {"NSET", "TYPE"},
-         "MATERIAL": {"NAME"}, "DENSITY": set(), "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
+         "MATERIAL": {"NAME"}, "DENSITY": set(), "DISTRIBUTION": {"NAME", "LOCATION", "TABLE"},
+         "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
          "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
@@ -181,7 +183,7 @@ class Scope:
         self.turn = numpy.eye(3) if turn is None else turn
         self.shift = numpy.zeros(3) if shift is None else shift
         self.nodes, self.cells, self.others = Index(), Index(), Index(once=False)
-        self.node_sets, self.cell_sets, self.surfaces, self.axes = {}, {}, {}, {}
+        self.node_sets, self.cell_sets, self.surfaces, self.axes, self.distributions = {}, {}, {}, {}, {}
         self.other_sets = {}  # elsets -> numbers of elements that are no volumes
         self.holders = {}  # numbers of spring elements -> (type, nodes, place)
 
@@ -267,7 +269,7 @@ class Reader:
 
     def replay(self, cards, scope):
         """Does what cards say: nodes and elements first, then sets, then what refers to them."""
-        for _, card in sorted(((PHASES.get(card.keyword, 4), card) for card in cards), key=lambda pair: pair[0]):
+        for _, card in sorted(((PHASES.get(card.keyword, 5), card) for card in cards), key=lambda pair: pair[0]):
             do = CARDS.get(card.keyword)
             if do:
                 do(self, scope, card)

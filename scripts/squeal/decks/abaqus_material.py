@@ -139,12 +139,34 @@ def axis_of(vector, card):
     return vector / length
 
 
-def do_orientation(reader, scope, card):
+def axes_or_error(reader, scope, card):
     """Axes, or the error that they are, which counts only where a material needs them."""
     try:
-        scope.axes[card.need("NAME")] = read_axes(reader, scope, card)
+        return read_axes(reader, scope, card)
     except BadInput as error:
-        scope.axes[card.need("NAME")] = error
+        return error
+
+
+def do_distribution(reader, scope, card):
+    """Rows of elements, none for all others, and six numbers of their axes; what else it may distribute is not taken."""
+    rows = [(place, fields) for place, fields in card.rows() if len(fields) == 7]
+    if len(rows) != len(list(card.rows())):
+        reader.deck.note(card.place, "*DISTRIBUTION: only that of axes, by six numbers, is read")
+        return
+    scope.distributions[card.need("NAME")] = [
+        (place, reader_cells(reader, scope, fields[0], place) if fields[0] else None, ",".join(fields[1:])) for place, fields in rows]
+
+
+def do_orientation(reader, scope, card):
+    """Axes, or a list of (cells, axes) where a distribution gives them."""
+    name, rows = card.need("NAME"), list(card.rows())
+    given = scope.distributions.get(label(rows[0][1][0])) if rows else None
+    if given is None:
+        scope.axes[name] = axes_or_error(reader, scope, card)
+        return
+    more = "".join("\n" + ",".join(fields) for _, fields in rows[1:])
+    scope.axes[name] = [(cells, axes_or_error(reader, scope, type(card)(card.keyword, card.options, place, [
+        ((text + more).encode(), place.line)]))) for place, cells, text in given]
 
 
 def do_section(reader, scope, card):
@@ -162,15 +184,28 @@ def do_section(reader, scope, card):
 
 
 def finish_sections(deck):
-    """Sections have their materials, and axes where these need them."""
+    """Sections have their materials, and axes where these need them; a section for each of several axes."""
+    found = []
     for section in deck.sections:
         if section.material not in deck.materials:
             raise section.place.wrong(f"there is no *MATERIAL {section.material}")
-        if isinstance(section.axes, BadInput):
-            if deck.materials[section.material].shear:
-                raise section.axes
-            section.axes = None
+        given = section.axes if isinstance(section.axes, list) else [(None, section.axes)]
+        if not deck.materials[section.material].shear:
+            given = [(None, None)]
+        row_of = numpy.full(deck.n_cells, -1)
+        for number, (cells, _) in sorted(enumerate(given), key=lambda row: row[1][0] is not None):
+            row_of[slice(None) if cells is None else cells] = number
+        rows = row_of[section.cells]
+        if (rows < 0).any():
+            raise section.place.wrong(f"{(rows < 0).sum()} elements of {section.name} have no axes in the *DISTRIBUTION")
+        for number in numpy.unique(rows).tolist():
+            if isinstance(given[number][1], BadInput):
+                raise given[number][1]
+            found.append(Section(section.name, section.cells[rows == number], section.material, given[number][1], section.place))
+        if not len(rows):
+            found.append(Section(section.name, section.cells, section.material, None, section.place))
+    deck.sections = found
 
 
 CARDS = {"MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,
-         "ORIENTATION": do_orientation, "SOLID SECTION": do_section}
+         "DISTRIBUTION": do_distribution, "ORIENTATION": do_orientation, "SOLID SECTION": do_section}
