@@ -199,7 +199,7 @@ static PetscErrorCode ModelMake(Sweep sweep)
     sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
-  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + GREEDY_LOOKS, &sweep->greedy.sample));
+  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
   if (sweep->method == SWEEP_REAL) {
     GridPoint(&sweep->grid, GridSize(&sweep->grid) / 2, p);

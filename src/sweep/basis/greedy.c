@@ -11,7 +11,9 @@
 
    Corrections of one point tell little of the error at others. Before it ends, the points farthest from all others are
    therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on. Of two
-   points alone both are full solutions, which say nothing of what lies between: there the middle is looked at.
+   points alone both are full solutions, which say nothing of what lies between: there the middle is looked at. Where few
+   points differ, as those of a load that changes contact statuses, the last full solution itself is looked at too: its
+   corrections end at rtol.
 */
 #include "greedywork.h"
 
@@ -85,39 +87,65 @@ static void PointsMiddle(const GreedyWork *run, PetscReal middle[])
   for (PetscInt k = 0; k < n; k++) middle[k] = run->scale[k] < 0 ? PetscSqrtReal(a[k] * b[k]) : 0.5 * (a[k] + b[k]);
 }
 
-/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; NULL for
-   nowhere more */
-static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const PetscReal middle[])
+/* Contact statuses among the points, of groups of pairs that open and close; 0 without groups */
+static PetscErrorCode PointsStatuses(const GreedyWork *run, PetscInt *n)
 {
-  PetscReal farthest;
-  PetscInt  i;
+  const OperatorsParameter *parameter    = run->basis->reduced.parameter;
+  const PetscInt            n_parameters = run->basis->reduced.n_parameters;
+  PetscInt                  first        = n_parameters;
 
-  i = PointFarthest(run, &farthest);
-  if (farthest > 0) return &run->points[i * run->basis->reduced.n_parameters];
-  return run->n == 2 && look < 3 ? middle : NULL;
+  PetscFunctionBeginUser;
+  *n = 0;
+  while (first > 0 && parameter[first - 1].internal) first--;
+  for (PetscInt i = 0; i < run->n && first < n_parameters; i++) {
+    PetscBool same = PETSC_FALSE;
+
+    for (PetscInt j = 0; j < i && !same; j++)
+      PetscCall(PetscArraycmp(&run->points[i * n_parameters + first], &run->points[j * n_parameters + first],
+                              n_parameters - first, &same));
+    *n += same ? 0 : 1;
+  }
+  PetscFunctionReturn(0);
 }
 
-/* Looks at the points farthest from all others with the factors of the last full solution */
+/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; then at the
+   last full solution itself, whose corrections ended at rtol and left short vectors out; NULL for nowhere more */
+static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const PetscReal middle[], PetscBool *own)
+{
+  PetscReal farthest;
+  PetscInt  i = PointFarthest(run, &farthest);
+
+  if (farthest > 0) return &run->points[i * run->basis->reduced.n_parameters];
+  if (run->n == 2 && look < 3) return middle;
+  if (*own) return NULL;
+  *own = PETSC_TRUE;
+  return run->greedy->sample[run->first].p;
+}
+
+/* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and close at
+   every status: what one lacks says little of another */
 static PetscErrorCode PointsLook(GreedyWork *run)
 {
   Greedy *const   g         = run->greedy;
   const PetscInt  n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
   const PetscReal drop = run->drop;
   PetscReal       worst, *middle;
-  PetscInt        n_added;
+  PetscInt        n_added, n_statuses;
+  PetscBool       own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n_parameters, &middle));
+  PetscCall(PointsStatuses(run, &n_statuses));
   if (run->n == 2) PointsMiddle(run, middle);
   g->looked  = PETSC_TRUE;
   run->first = n_samples - 1;
   run->drop  = PetscMin(drop, LOOK_DROP);
-  for (int look = 0; look < GREEDY_LOOKS; look++) {
-    const PetscReal *p     = LookNext(run, look, middle);
+  for (int look = 0; look < PetscMax(GREEDY_LOOKS, n_statuses); look++) {
+    const PetscReal *p     = LookNext(run, look, middle, &own);
     ReducedModes     modes = {0};
 
     if (!p) break;
-    run->sides = look % 2 ? CORRECT_LEFT : CORRECT_RIGHT;
+    run->sides = own || n_statuses ? CORRECT_BOTH : look % 2 ? CORRECT_LEFT : CORRECT_RIGHT;
     PetscCall(FactorKeep(run, p));
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
     PetscCall(ReducedModesDestroy(&modes));
