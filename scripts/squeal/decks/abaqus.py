@@ -206,8 +206,10 @@ class Reader:
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
 
     def split(self, name, scope):
-        """Scope and local name of INSTANCE.NAME."""
+        """Scope and local name of INSTANCE.NAME, which may stand behind ASSEMBLY. too."""
         first, dot, last = name.partition(".")
+        if dot and first not in self.instances and last.partition(".")[0] in self.instances:
+            first, dot, last = last.partition(".")
         if dot and first in self.instances:
             return self.instances[first], last
         return scope, name

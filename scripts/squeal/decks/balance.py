@@ -106,8 +106,7 @@ def cells_of_faces(model, nodes):
 def sums(model):
     """A row for each part, one of all, and one of nodes of no element, None where nothing is there. A node or face of several
     parts counts in the first."""
-    cells = [volumes(shape, model.x[nodes]) for shape, nodes in model.blocks]
-    volume, moment = (numpy.concatenate(parts) for parts in zip(*cells))
+    volume, moment = volumes_of(model)
     middle = moment / numpy.where(volume > 0, volume, 1)[:, None]
     part_of, owner = owners(model, len(volume))
     rows = [Row(name, *mass_of(density, volume[chosen], moment[chosen]), len(chosen)) for name, density, chosen in model.parts]
@@ -126,6 +125,17 @@ def sums(model):
             row.gross += row.mass * numpy.linalg.norm(model.gravity)
     lost = rows.pop()
     return rows, total_of(rows), lost if lost.held or lost.loaded or lost.stiffness.any() else None
+
+
+def volumes_of(model):
+    """Volume and first moment of all cells; elements of one shape at once, since some decks have a block for each element."""
+    firsts = numpy.cumsum([0, *(len(nodes) for _, nodes in model.blocks)])
+    volume, moment = numpy.zeros(firsts[-1]), numpy.zeros((firsts[-1], 3))
+    for shape in {shape.name: shape for shape, _ in model.blocks}.values():
+        mine = [number for number, (other, _) in enumerate(model.blocks) if other is shape]
+        rows = numpy.concatenate([numpy.arange(firsts[number], firsts[number + 1]) for number in mine])
+        volume[rows], moment[rows] = volumes(shape, model.x[numpy.concatenate([model.blocks[number][1] for number in mine])])
+    return volume, moment
 
 
 def owners(model, n_cells):

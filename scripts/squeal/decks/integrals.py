@@ -103,11 +103,10 @@ def rule(family, n_nodes, n_points):
 
 
 def straight(shape, x):
-    """Whether nodes in the middle of edges, faces and of the element are there, to rounding, in all elements x [e][n][3]."""
-    corners = CORNERS[shape.family]
-    first = rule_at_nodes(shape)
-    apart = abs(x[:, len(corners):] - numpy.einsum("nc,ecd->end", first, x[:, :len(corners)]))
-    return apart.max(initial=0) <= 1e-13 * abs(x).max(initial=0)
+    """Whether nodes in the middle of edges, faces and of the element are there, to rounding, of each element x [e][n][3]."""
+    corners = len(CORNERS[shape.family])
+    apart = abs(x[:, corners:] - rule_at_nodes(shape) @ x[:, :corners])
+    return apart.max(axis=(1, 2), initial=0) <= 1e-13 * abs(x).max(initial=0)
 
 
 @functools.cache
@@ -121,22 +120,26 @@ def rule_at_nodes(shape):
 
 def volumes(shape, x):
     """Volume [e] and first moment [e][3] of elements with nodes x [e][n][3], for a mirrored one positive too."""
-    found = [volumes_of_some(shape, x[first:first + CHUNK]) for first in range(0, len(x), CHUNK)]
-    return tuple(numpy.concatenate(parts) for parts in zip(*found)) if found else (numpy.empty(0), numpy.empty((0, 3)))
-
-
-def volumes_of_some(shape, x):
-    n, first = shape.n_nodes, not shape.second
-    if not first and straight(shape, x):
-        n, first = len(CORNERS[shape.family]), True
-        x = x[:, :n]
-    values, slopes, weights = rule(shape.family, n, 2 if first else 4)
     volume, moment = numpy.zeros(len(x)), numpy.zeros((len(x), 3))
-    for p, weight in enumerate(weights):
-        j = numpy.einsum("nd,eni->edi", slopes[p], x, optimize=True)
-        det = weight * numpy.einsum("ei,ei->e", numpy.cross(j[:, 0], j[:, 1]), j[:, 2])
+    for first in range(0, len(x), CHUNK):
+        part = x[first:first + CHUNK]
+        plain, corners = straight(shape, part), len(CORNERS[shape.family])
+        for chosen, n, n_points in ((plain, corners, 2), (~plain, shape.n_nodes, 4)):
+            if chosen.any():
+                rows = first + numpy.flatnonzero(chosen)
+                volume[rows], moment[rows] = volumes_of_some(rule(shape.family, n, n_points), part[chosen, :n])
+    return volume, moment
+
+
+def volumes_of_some(points_of, x):
+    """The same by a rule."""
+    volume, moment = numpy.zeros(len(x)), numpy.zeros((len(x), 3))
+    n, x = len(x), numpy.ascontiguousarray(x.transpose(2, 0, 1)).reshape(-1, x.shape[1])  # rows of each coordinate
+    for value, slope, weight in zip(*points_of):
+        a, b, c = numpy.ascontiguousarray((x @ slope).T).reshape(3, 3, n)
+        det = weight * (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]))
         volume += det
-        moment += det[:, None] * numpy.einsum("n,eni->ei", values[p], x, optimize=True)
+        moment += (det * (x @ value).reshape(3, n)).T
     sign = numpy.where(volume < 0, -1.0, 1.0)
     return sign * volume, sign[:, None] * moment
 
