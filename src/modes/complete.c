@@ -66,7 +66,7 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
 }
 
 /* Why a damped solution was not done by projection */
-static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t size)
+static PetscErrorCode DescribeRoute(const Window *window, PetscBool dense, char text[], size_t size)
 {
   char measure[80] = "";
 
@@ -76,7 +76,8 @@ static PetscErrorCode DescribeRoute(const Window *window, char text[], size_t si
   if (window->beyond >= 0)
     PetscCall(PetscSNPrintf(measure, sizeof(measure), " (strength %.2g beyond the undamped modes of the window)",
                             (double)window->beyond));
-  PetscCall(PetscSNPrintf(text, size, "; solved as a quadratic problem (PEP), since %s%s", window->why, measure));
+  PetscCall(PetscSNPrintf(text, size, "; solved as a quadratic problem (%s), since %s%s", dense ? "LAPACK" : "PEP",
+                          window->why, measure));
   PetscFunctionReturn(0);
 }
 
@@ -88,7 +89,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 
   PetscFunctionBeginUser;
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
-  PetscCall(DescribeRoute(window, route, sizeof(route)));
+  PetscCall(DescribeRoute(window, modes->dense, route, sizeof(route)));
   if (window->most < INFINITY)
     PetscCall(
       PetscSNPrintf(massless, sizeof(massless),
@@ -106,6 +107,11 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             window->expected));
   else if (window->project && (modes->left || window->counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
+  else if (modes->left && modes->dense)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none was found missing: LAPACK finds all eigenvalues of the matrices and of their transposes, which are "
+                            "the same%s, to %.1e%s",
+                            region, (double)window->worst, frictionless));
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size,
                             "none was found missing: right and left vectors, sought from different starts with one "

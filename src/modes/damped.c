@@ -6,9 +6,12 @@
 
    With C = beta K all of them lie on the circle |lambda + 1/beta| = 1/beta, and thousands of overdamped ones gather near
    -1/beta. These must stay farther from the shift than the window's corners, sigma + i high: a shift of 0.3 high is the
-   fastest where beta high is small, one of high where it is near one.
+   fastest where beta high is small, one of high where it is near one. Systems of few unknowns are solved by LAPACK
+   (dampeddense.c).
 */
 #include "modesimpl.h"
+
+#define DAMPED_RESTARTS 20 /* of TOAR, before LAPACK is asked where it may be */
 
 PetscReal DampedShift(const Window *window)
 {
@@ -43,13 +46,18 @@ static PetscErrorCode DampedCollect(PEP pep, PetscReal shift, PetscInt n, Spectr
   PetscFunctionReturn(0);
 }
 
-/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the
-   window; for modes near a target those at most as far from it as the count-th nearest */
-static PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
+PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
 {
   if (!window->count) return hypot(window->high, shift + window->growth);
   if (found->n < window->count) return PETSC_MAX_REAL;
   return hypot(window->target, shift) + WindowNearest(window, found);
+}
+
+/* Eigenvalues that are asked for first */
+static PetscInt DampedFirst(const Window *window)
+{
+  if (window->count) return 2 * (PetscMax(0, window->below) + window->count + window->extra);
+  return window->within >= 0 ? 2 * (window->within + window->extra) : 40;
 }
 
 /* Solver for nev eigenvalues about the shift; the transposed problem starts from another random vector */
@@ -111,28 +119,27 @@ static PetscErrorCode DampedRunSolver(Modes modes, PEP pep, PetscBool *failed)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
-                           PetscBool transposed, Spectrum *spectrum)
+/* By SLEPc's PEP */
+static PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
+                                     PetscBool transposed, Spectrum *spectrum)
 {
-  Mat         problem[3] = {pencil->K, pencil->C, pencil->M};
-  PetscInt    n, nev = 40;
-  PetscBool   covered = PETSC_FALSE, failed = PETSC_FALSE;
-  PetscMPIInt size;
+  Mat       problem[3] = {pencil->K, pencil->C, pencil->M};
+  PetscInt  n, nev;
+  PetscBool covered = PETSC_FALSE, failed = PETSC_FALSE, dense = PETSC_FALSE, next;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n, NULL));
-  PetscCallMPI(MPI_Comm_size(si->comm, &size));
-  /* TOAR breaks down in the whole space, and ranks without unknowns leave it at another step than the one that has all */
-  PetscCheck(n > 1 || size == 1, si->comm, PETSC_ERR_USER_INPUT, "one damped unknown on %d ranks: run it on one rank",
-             size);
-  if (window->within >= 0) nev = 2 * (window->within + window->extra);
-  if (window->count) nev = 2 * (PetscMax(0, window->below) + window->count + window->extra);
+  nev = DampedFirst(window);
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatCreateTranspose(problem[i], &problem[i]));
   for (int attempt = 0; attempt < 8 && !covered; attempt++, nev += failed ? 0 : nev / 2) {
     PEP pep;
 
     nev = PetscMin(nev, 2 * n);
+    if (attempt) PetscCall(DampedIsDense(modes, pencil->K, nev, attempt, &dense));
+    if (dense) break;
     PetscCall(DampedCreateSolver(problem, si, transposed, attempt, nev, &pep));
+    PetscCall(DampedIsDense(modes, pencil->K, nev, 1, &next));
+    if (next) PetscCall(PEPSetTolerances(pep, PETSC_DEFAULT, DAMPED_RESTARTS));
     PetscCall(PEPSetStoppingTestFunction(pep, DampedStop, modes, NULL));
     PetscCall(LimitAttach(modes, nev / 2, si)); /* conjugates are one mode */
     PetscCall(ProgressBegin(&modes->progress, transposed ? "left vectors" : "right vectors", 2 * nev + nev / 4));
@@ -149,7 +156,22 @@ PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Wind
     PetscCall(PEPDestroy(&pep));
     if (nev == 2 * n) break;
   }
-  if (!covered) PetscCall(WindowComplain(modes, window, "pep"));
+  if (!covered && !dense) PetscCall(WindowComplain(modes, window, "pep"));
+  if (dense) PetscCall(DampedSolveDense(modes, pencil, window, si->shift, transposed, spectrum));
   for (int i = 0; i < 3 && transposed; i++) PetscCall(MatDestroy(&problem[i]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
+                           PetscBool transposed, Spectrum *spectrum)
+{
+  PetscBool dense;
+
+  PetscFunctionBeginUser;
+  PetscCall(DampedIsDense(modes, pencil->K, DampedFirst(window), 0, &dense));
+  if (dense)
+    PetscCall(DampedSolveDense(modes, pencil, window, si->shift, transposed, spectrum));
+  else
+    PetscCall(DampedSolvePep(modes, pencil, window, si, transposed, spectrum));
   PetscFunctionReturn(0);
 }

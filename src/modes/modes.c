@@ -188,7 +188,9 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
       PetscCall(LeftMatch(modes, window, &window->worst, &complete));
     }
     if (!pencil->C && window->finite >= 0 && WindowLacks(window, &modes->right)) complete = PETSC_FALSE;
+    if (complete && !proven && !pencil->C && CopiesDoubtful(modes, window, &modes->right)) complete = PETSC_FALSE;
     if (complete) break;
+    CopiesMakeRoom(modes, window, &modes->right);
     window->extra += 10 + modes->right.n / 2;
     PetscCall(SpectrumDestroy(&modes->right));
     PetscCall(SpectrumDestroy(&modes->left_spectrum));
@@ -210,7 +212,9 @@ PetscErrorCode ModesReset(Modes modes)
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));
-  modes->n = 0;
+  modes->n        = 0;
+  modes->block[0] = 0;
+  modes->dense    = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

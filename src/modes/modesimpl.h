@@ -61,6 +61,7 @@ struct _p_Modes {
   PetscInt    n;
   PetscInt    below;        /* modes below the band where it holds none; -1: not known */
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  PetscBool   dense;        /* LAPACK found all eigenvalues */
   PetscInt    shifts;       /* in use */
   char (*parity)[PARITY_LENGTH]; /* [n] with -symmetry, else NULL */
   char        completeness[4096];
@@ -71,6 +72,7 @@ struct _p_Modes {
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
   ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */
+  PetscInt       block[2];      /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */
   PetscInt       found, wanted; /* eigenvalues converged at the last restart, and how many are asked for */
@@ -145,6 +147,14 @@ PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pen
                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the window; for
+   modes near a target those at most as far from it as the count-th nearest that was found */
+PETSC_INTERN PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
+/* dampeddense.c - whether LAPACK is to find all eigenvalues where nev of them are asked for, for the attempt-th time; it does so,
+   about the shift. Sets modes->dense */
+PETSC_INTERN PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense);
+PETSC_INTERN PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                             PetscReal shift, PetscBool transposed, Spectrum *spectrum);
 /* modes.c - right spectrum by the solver that fits the pencil; a shift that happens to be an eigenvalue is moved */
 PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window,
                                             ShiftInvert *si);
@@ -162,6 +172,11 @@ PETSC_INTERN PetscReal DampedShift(const Window *window);
 PETSC_INTERN PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none);
 PETSC_INTERN PetscErrorCode ModesReset(Modes modes); /* forgets the last solution */
 PETSC_INTERN PetscErrorCode ModesComplainNone(Modes modes, PetscInt below);
+
+/* copies.c - whether as many equal eigenvalues of the spectrum were found as a block of the eigensolver has vectors, and no count
+   says that these are all; makes the next blocks larger, also where it is known that eigenvalues are missing */
+PETSC_INTERN PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum *spectrum);
+PETSC_INTERN void      CopiesMakeRoom(Modes modes, const Window *window, const Spectrum *spectrum);
 
 /* modes.c - right and left spectra of a window that agree, with a factorisation about its shift */
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,

@@ -74,6 +74,7 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
   *complete = right->n == left->n ? PETSC_TRUE : PETSC_FALSE;
   wide.low = 0, wide.high = PETSC_MAX_REAL, wide.count = 0;
   if (*complete) PetscCall(LeftMatch(modes, &wide, &window->worst, complete));
+  if (*complete && CopiesDoubtful(modes, window, right)) *complete = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -272,6 +273,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   window->guard = PETSC_TRUE;
   for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
     if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);
+    if (attempt && !complete) CopiesMakeRoom(modes, window, &modes->right);
     PetscCall(SpectraDestroy(modes));
     PetscCall(ProjectionForget(&p));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));

@@ -177,6 +177,7 @@ static PetscErrorCode UndampedCreateSolver(const Undamped *u, PetscBool transpos
   PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(u->si, transposed, st));
+  PetscCall(BlockKrylovSetLeast(*eps, u->modes->block[0]));
   PetscCall(EPSSetFromOptions(*eps));
   PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
   PetscCall(EPSSetTarget(*eps, u->si->shift));
@@ -260,6 +261,7 @@ static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *penc
     PetscCall(EPSSolve(eps));
     PetscCall(ProgressEnd(&modes->progress));
     PetscCall(UndampedDescribe(eps, si, sizeof(modes->solver), modes->solver));
+    PetscCall(BlockKrylovGetBlock(eps, &modes->block[1]));
     PetscCall(SavedByFactors(modes, si));
     PetscCall(UndampedCollect(eps, si->shift, n, window, spectrum, &covered));
     if (!covered) PetscCall(LimitCheck(modes, PETSC_FALSE, spectrum));

@@ -5,7 +5,8 @@
 #include <slepc/private/epsimpl.h>
 
 typedef struct {
-  PetscInt   size;  /* of a block, as given; 0: chosen */
+  PetscInt   size;  /* of a block, as given; 0: chosen, */
+  PetscInt   least; /* and then not below this */
   PetscInt   block; /* in use */
   PetscReal  reach; /* ends the solution where all out to this distance from the target have converged; 0: none */
   PetscBool  reached;

@@ -13,8 +13,9 @@
    asked for, in blocks of 4, 80, 88, 96, 104 columns take 296, 288, 284, 284 solves, and a column of both spaces takes 0.6 MB */
 static PetscErrorCode BlockKrylovSizes(EPS eps)
 {
-  EPS_BlockKrylov *ctx   = eps->data;
-  const PetscInt   block = PetscMin(ctx->size ? ctx->size : ctx->paired ? BLOCK / 2 : BLOCK, eps->n);
+  EPS_BlockKrylov *ctx    = eps->data;
+  const PetscInt   chosen = PetscMax(ctx->least, ctx->paired ? BLOCK / 2 : BLOCK);
+  const PetscInt   block  = PetscMin(ctx->size ? ctx->size : chosen, eps->n);
 
   PetscFunctionBegin;
   PetscCheck(ctx->size <= eps->n, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
@@ -171,6 +172,16 @@ PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block)
   PetscFunctionBegin;
   PetscCall(BlockKrylovGet(eps, &ctx));
   *block = ctx ? ctx->block : 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockKrylovSetLeast(EPS eps, PetscInt least)
+{
+  EPS_BlockKrylov *ctx;
+
+  PetscFunctionBegin;
+  PetscCall(BlockKrylovGet(eps, &ctx));
+  if (ctx) ctx->least = least;
   PetscFunctionReturn(0);
 }
 

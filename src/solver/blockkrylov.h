@@ -25,6 +25,10 @@ PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
 /* Vectors in a block of a solver that is set up, 1 for another type */
 PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);
 
+/* At least so many vectors in a block, where none are asked for by option: as many equal eigenvalues as a block has vectors are
+   found for certain, more of them by rounding alone. Not collective. */
+PETSC_INTERN PetscErrorCode BlockKrylovSetLeast(EPS eps, PetscInt least);
+
 /* The solution ends where all that lies within the distance from the target has converged: the next Ritz value is known
    well enough to lie beyond it. Not collective. Another type has no reach. */
 PETSC_INTERN PetscErrorCode BlockKrylovSetReach(EPS eps, PetscReal reach);

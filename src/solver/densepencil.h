@@ -15,6 +15,26 @@ typedef struct {
 void DensePencilEvaluate(const DensePencil *pencil, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[]);
 PetscErrorCode DensePencilDestroy(DensePencil *pencil);
 
+/* companion.c - all eigenvalues of a dense problem, by shift and invert about a real shift, rad/s */
+typedef struct {
+  const DensePencil *pencil;
+  PetscInt           n, N; /* sizes of Q and of the standard problem, N = 2 n with damping */
+  PetscReal          shift;
+  PetscReal         *P, *B;   /* [n * n] factors of Q(shift); [N * N] */
+  PetscReal         *wr, *wi; /* [N] theta */
+  PetscReal         *R, *L;   /* [N * N] in LAPACK's real storage */
+  PetscBLASInt      *pivot;
+} DenseShifted;
+
+/* Solves about the shift, moved away from eigenvalues (unstable real ones) where necessary; the caller destroys w */
+PetscErrorCode DenseShiftedSolve(const DensePencil *pencil, PetscReal shift, DenseShifted *w);
+/* lambda of entry i of N, omega >= 0; false for what is not listed: infinite ones, the one of a conjugate pair */
+PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *lambda);
+/* Its vectors [n], of any length */
+void           DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[]);
+PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[]);
+PetscErrorCode DenseShiftedDestroy(DenseShifted *w);
+
 /* follow.c - from a guess lambda, x, y [n] the eigenvalue with vectors of any length that Newton's method finds; found =
    false where it does not settle or Q(lambda) stays singular */
 PetscErrorCode DensePencilFollow(const DensePencil *pencil, PetscComplex *lambda, PetscComplex x[], PetscComplex y[],

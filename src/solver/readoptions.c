@@ -178,6 +178,24 @@ static PetscErrorCode PrefixIsLeft(size_t n_prefixes, const char *const prefix[]
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given)
+{
+  char       *all, *text, name[256];
+  const char *value;
+  PetscBool   more = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  *given = PETSC_FALSE;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  text = all;
+  while (more && !*given) {
+    PetscCall(OptionsNextGiven(&text, sizeof(name), name, &value, &more));
+    if (more) *given = strncasecmp(name, prefix, strlen(prefix)) ? PETSC_FALSE : PETSC_TRUE;
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SolverReadEigenOptions(MPI_Comm comm)
 {
   static const char        other[]  = "not offered, other modes would be found; choose them by -modes_band or "

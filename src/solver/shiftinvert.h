@@ -146,3 +146,5 @@ PETSC_INTERN PetscErrorCode MassIsSingular(const PencilMatrices *pencil, PetscBo
 PETSC_INTERN PetscErrorCode SolverReadEigenOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadFactorOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm);
+/* Whether an option that begins so, as "pep_", is given */
+PETSC_INTERN PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given);
