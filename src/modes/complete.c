@@ -6,30 +6,34 @@
 */
 #include "modesimpl.h"
 
-/* Modes that do not oscillate: rows listed, and as many of them as the undamped system has modes */
-static void CountReal(Modes modes, const Window *window, PetscInt *rows, PetscInt *pairs)
+/* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero is one
+   mode with another zero, which is not listed, or with a decay; two decays are one mode */
+static void CountReal(Modes modes, PetscInt *rows, PetscInt *pairs, PetscInt *at_zero)
 {
-  PetscInt n_rigid = 0;
+  PetscInt decays = 0;
 
-  *rows = 0;
+  *at_zero = 0;
   for (PetscInt i = 0; i < modes->n; i++) {
-    *rows += modes->mode[i].omega == 0;
-    n_rigid += modes->mode[i].rigid;
+    *at_zero += modes->mode[i].rigid;
+    decays += !modes->mode[i].rigid && modes->mode[i].omega == 0;
   }
-  *pairs = (*rows + window->twins + 1) / 2;
-  if (*rows == n_rigid) *pairs = n_rigid; /* each a double zero of which one is listed */
+  *rows  = *at_zero + decays;
+  *pairs = *at_zero + (PetscMax(0, decays - *at_zero) + 1) / 2;
 }
 
 /* The count without friction and damping, and why that of the rows may differ from it */
 static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, char text[], size_t size)
 {
-  PetscInt rows, pairs;
-  char     real[128] = "", other[128] = "";
+  PetscInt rows, pairs, at_zero;
+  char     real[192] = "", other[128] = "", zeros[128] = "";
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (window->expected < 0 || window->count) PetscFunctionReturn(0);
-  CountReal(modes, window, &rows, &pairs);
+  CountReal(modes, &rows, &pairs, &at_zero);
+  if (at_zero && window->rigid)
+    PetscCall(PetscSNPrintf(zeros, sizeof(zeros), "; %" PetscInt_FMT " at zero, one for each motion that nothing resists, K x = 0",
+                            at_zero));
   if (rows != pairs)
     PetscCall(PetscSNPrintf(real, sizeof(real),
                             "; %" PetscInt_FMT
@@ -40,8 +44,8 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
     PetscCall(PetscStrncpy(other, "; the others lie beyond that growth or have left the band", sizeof(other)));
   if (modes->n - rows + pairs > window->expected)
     PetscCall(PetscStrncpy(other, "; the others came into the band by friction, damping or spin", sizeof(other)));
-  PetscCall(PetscSNPrintf(text, size, "%s; the count without friction and damping is %" PetscInt_FMT " (inertia)%s",
-                          real, window->expected, other));
+  PetscCall(PetscSNPrintf(text, size, "%s%s; the count without friction and damping is %" PetscInt_FMT " (inertia)%s",
+                          zeros, real, window->expected, other));
   PetscFunctionReturn(0);
 }
 
@@ -83,7 +87,7 @@ static PetscErrorCode DescribeRoute(const Window *window, PetscBool dense, char 
 
 PetscErrorCode WindowDescribe(Modes modes, const Window *window)
 {
-  char         frictionless[384], region[64] = "", route[256], massless[192] = "";
+  char         frictionless[512], region[64] = "", route[256], massless[192] = "";
   char        *text = modes->completeness;
   const size_t size = sizeof(modes->completeness);
 

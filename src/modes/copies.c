@@ -28,7 +28,10 @@ static PetscInt CopiesMost(const Spectrum *s, PetscReal tiny)
 
 PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum *s)
 {
-  if (window->expected >= 0 && s->n >= window->expected) return PETSC_FALSE;
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) n += s->omega[i] >= window->edge[0] && s->omega[i] <= window->edge[1];
+  if (window->expected >= 0 && n >= window->expected) return PETSC_FALSE;
   return CopiesMost(s, window->scale) >= modes->block[1] ? PETSC_TRUE : PETSC_FALSE;
 }
 

@@ -286,6 +286,7 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   PetscCall(ShiftInvertDestroy(&modes->counter));
   if (window->rigid) PetscCall(TwinsDrop(modes, window));
   if (window->rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
+  if (window->rigid) PetscCall(TwinsTrim(modes, window));
   PetscCall(WindowDescribe(modes, window));
   PetscCall(SavedByDamping(modes, &pencil, window));
   PetscFunctionReturn(0);

@@ -25,6 +25,8 @@ PETSC_INTERN PetscErrorCode SpectrumTake(Spectrum *spectrum, PetscReal sigma, Pe
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
 PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt order[]);
+/* In place of its entries copies of n of them, some more than once */
+PETSC_INTERN PetscErrorCode SpectrumTakeFrom(Spectrum *spectrum, PetscInt n, const PetscInt from[]);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* moves the entries; `from` is destroyed */
@@ -90,7 +92,6 @@ typedef struct {
   PetscInt  extra;           /* eigenvalues to compute beyond those expected */
   PetscBool guard;           /* those are wanted even where all of the window are found without */
   PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
-  PetscInt  twins;           /* the other zeros, which were left out */
   PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
   PetscReal target;          /* rad/s */
   PetscBool mapped;          /* damping left the vectors as they were: C = alpha M + beta K */
@@ -203,8 +204,9 @@ PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal
 /* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 
-/* twins.c - lists a rigid mode of a damped system once, and trims the list to the modes asked for */
-PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, Window *window);
+/* twins.c - of the zeros of a damped system at most one for each rigid mode; trims the list to the modes asked for */
+PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);
+PETSC_INTERN PetscErrorCode TwinsTrim(Modes modes, const Window *window);
 
 /* saved.c - keep in words what factors, the route of damping, and symmetry saved; and show them. n [parities] unknowns of n_whole,
    entries of the largest factors */
@@ -214,7 +216,8 @@ PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
 PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
 
-/* nullvectors.c - vectors of the rigid modes of a damped system where those of the eigensolver are bad. Errors:
+/* nullvectors.c - lists a rigid mode of a damped system for each vector of the null space, first of all, and finds their vectors
+   where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
 

@@ -6,7 +6,9 @@
       (K - s M) x' = M x,   s = -(10 scale)^2 far below every elastic mode,
 
    which reduces what is elastic by |s| / omega^2 each time, and M-orthonormal. Left ones by the transposed problem. The
-   two zeros of a rigid mode have one vector: of those that were kept some may be the same.
+   two zeros of a rigid mode have one vector: of those that were kept some may be the same. Rounding makes a conjugate pair of
+   two zeros, of which one is listed, or two real eigenvalues, so that the number of zeros found says nothing. Listed is one
+   for each vector of the null space, first of all.
 */
 #include "modesimpl.h"
 #include <petscblaslapack.h>
@@ -148,10 +150,60 @@ static PetscErrorCode NullIsGood(Modes modes, PetscInt *n, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
+/* Lists n rigid modes, first of all: some twice, or less of them than there were */
+static PetscErrorCode NullList(Modes modes, PetscInt n)
+{
+  Spectrum *const side[2] = {&modes->right, &modes->left_spectrum};
+  PetscInt        n_rigid = 0, m, *from;
+  Mode           *mode;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(modes->n + n, &from, modes->n, &mode));
+  PetscCall(PetscArraycpy(mode, modes->mode, modes->n));
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (mode[i].rigid) from[n_rigid++] = i;
+  for (m = n_rigid; m < n; m++) from[m] = from[m % n_rigid];
+  m = n;
+  for (PetscInt i = 0; i < modes->n; i++)
+    if (!mode[i].rigid) from[m++] = i;
+  for (int k = 0; k < 2; k++)
+    if (side[k]->n) PetscCall(SpectrumTakeFrom(side[k], m, from));
+  PetscCall(PetscFree(modes->mode));
+  PetscCall(PetscMalloc1(m, &modes->mode));
+  for (PetscInt i = 0; i < m; i++) modes->mode[i] = mode[from[i]];
+  modes->n = m;
+  PetscCall(PetscFree2(from, mode));
+  PetscFunctionReturn(0);
+}
+
+/* How many of n vectors are of the null space of K, and of K' where there are left ones: motions that nothing resists */
+static PetscErrorCode NullCount(Modes modes, const PencilMatrices *pencil, const ShiftInvert *si, PetscInt n, PetscInt *count)
+{
+  PetscReal *error;
+  Vec        like, *x;
+
+  PetscFunctionBeginUser;
+  *count = n;
+  PetscCall(MatCreateVecs(pencil->K, &like, NULL));
+  PetscCall(VecDuplicateVecs(like, n, &x));
+  PetscCall(PetscMalloc1(n, &error));
+  for (int left = 0; left < (modes->left_spectrum.n ? 2 : 1); left++) {
+    PetscInt found = 0;
+
+    PetscCall(NullIterate(pencil, si, left ? PETSC_TRUE : PETSC_FALSE, n, x, error));
+    for (PetscInt j = 0; j < n; j++) found += error[j] < NULL_GOOD;
+    *count = PetscMin(*count, found);
+  }
+  PetscCall(PetscFree(error));
+  PetscCall(VecDestroyVecs(n, &x));
+  PetscCall(VecDestroy(&like));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window)
 {
   const PencilMatrices pencil = {.K = damped->K, .M = damped->M, .symmetric = damped->symmetric};
-  PetscInt             n;
+  PetscInt             n, found = 0;
   PetscBool            good;
   PetscReal           *error;
   ShiftInvert          si;
@@ -159,11 +211,18 @@ PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, cons
 
   PetscFunctionBeginUser;
   PetscCall(NullIsGood(modes, &n, &good));
-  if (good) PetscFunctionReturn(0);
+  if (!n) PetscFunctionReturn(0);
+  if (good && n == window->rigid) {
+    PetscCall(NullList(modes, n));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ShiftInvertCreate(&pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &si));
+  if (n < window->rigid) PetscCall(NullCount(modes, &pencil, &si, window->rigid, &found));
+  n = PetscMax(n, found);
+  PetscCall(NullList(modes, n));
   PetscCall(MatCreateVecs(pencil.K, &like, NULL));
   PetscCall(VecDuplicateVecs(like, n, &x));
   PetscCall(PetscMalloc1(n, &error));
-  PetscCall(ShiftInvertCreate(&pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &si));
   if (modes->left_spectrum.n) PetscCall(NullIterate(&pencil, &si, PETSC_TRUE, n, x, error));
   if (modes->left_spectrum.n) PetscCall(NullPut(modes, PETSC_TRUE, x, &modes->left_spectrum));
   PetscCall(NullIterate(&pencil, &si, PETSC_FALSE, n, x, error));

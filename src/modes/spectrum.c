@@ -106,6 +106,20 @@ PetscErrorCode SpectrumPermute(Spectrum *s, const PetscInt order[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SpectrumTakeFrom(Spectrum *s, PetscInt n, const PetscInt from[])
+{
+  Spectrum list;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumCreate(n, &list));
+  for (PetscInt k = 0; k < n; k++)
+    PetscCall(SpectrumAdd(&list, s->sigma[from[k]], s->omega[from[k]], s->xr[from[k]], s->xi[from[k]]));
+  list.reach = s->reach;
+  PetscCall(SpectrumDestroy(s));
+  *s = list;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SpectrumRemove(Spectrum *s, PetscInt i)
 {
   PetscFunctionBeginUser;

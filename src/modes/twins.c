@@ -16,7 +16,7 @@ static PetscErrorCode ModeRemove(Modes modes, PetscInt i)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TwinsDrop(Modes modes, Window *window)
+PetscErrorCode TwinsDrop(Modes modes, const Window *window)
 {
   PetscInt n_rigid = 0;
 
@@ -26,8 +26,13 @@ PetscErrorCode TwinsDrop(Modes modes, Window *window)
     if (!modes->mode[i].rigid) continue;
     PetscCall(ModeRemove(modes, i));
     n_rigid--;
-    window->twins++;
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TwinsTrim(Modes modes, const Window *window)
+{
+  PetscFunctionBeginUser;
   while (window->count && modes->n > window->count) PetscCall(ModeRemove(modes, WindowFarthest(window, &modes->right)));
   PetscFunctionReturn(0);
 }

@@ -20,7 +20,7 @@
 
 #define ON_SHIFT 1e3 /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
 
-static PetscErrorCode ShiftedCreate(const DensePencil *pencil, PetscReal shift, DenseShifted *w)
+static PetscErrorCode DenseShiftedCreate(const DensePencil *pencil, PetscReal shift, DenseShifted *w)
 {
   PetscFunctionBeginUser;
   w->pencil = pencil;
@@ -105,7 +105,7 @@ PetscErrorCode DenseShiftedSolve(const DensePencil *pencil, PetscReal shift, Den
   PetscBool bad = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(ShiftedCreate(pencil, shift, w));
+  PetscCall(DenseShiftedCreate(pencil, shift, w));
   for (int attempt = 0; attempt < 12 && bad; attempt++) {
     if (attempt) w->shift *= 1.7;
     if (pencil->symmetric) {
