@@ -19,7 +19,9 @@ from .program import scene
 SWEPT = {"contact_kn": (1e-4, 1e4, True), "contact_mu": (0.0, 1.2, False), "pad_young": (0.25, 4, True),
          "disc_young": (0.4, 2.5, True), "beam_young": (0.3, 3, True), "pad_density": (0.5, 2, True),
          "disc_density": (0.5, 2, True), "rows_stiffness": (0.1, 10, True), "disc_alpha": (0.0, 40, False)}
+LINKED = {"disc_young": ("beam_young", 1e11, 1e12), "pad_density": ("disc_density", 2e3, 8e3)}  # and what takes its value
 POINTS = 9
+KINDS = ("parameter", "load", "two", "link", "load and parameter")
 
 
 def even(low, high, generator):
@@ -47,29 +49,62 @@ def random_scene(seed):
     return words, value
 
 
+def without(words, *names):
+    """The words of a command line but for these options and their values."""
+    pairs = zip(words[::2], words[1::2])
+    return [word for name, value in pairs if name not in names for word in (name, value)]
+
+
+def load_axis(words, value, r):
+    """A load that presses down what another one lifts, so that pairs close as it grows: words, and the values of the load."""
+    lift = even(20, 80, r)
+    words = without(words, "-contact_law", "-modes_contact", "-press_force")
+    words += ["-modes_contact", "static", "-loads", "press,side", "-side_set", "beam_top", "-side_force",
+              f"0,{even(3, 0.6 * lift, r):g},{lift:g}"]
+    value["press_force"] = 100.0
+    value["contact_kn"] = even(1, 1e4, r) * value["contact_kn"]  # short vectors have large energies in a stiff contact
+    return words, spaced(lift + even(0.5, 3, r), lift * even(1.3, 4, r), True, POINTS)
+
+
+def spaced(low, high, ratio, n):
+    """n values from low to high, evenly or evenly in ratios."""
+    return [float(f"{low * (high / low)**(i / (n - 1)):.10g}" if ratio else f"{low + (high - low) * i / (n - 1):.10g}")
+            for i in range(n)]
+
+
 def random_sweep(seed):
-    """Words of the scene, its values, and the names and values of the axes."""
+    """Words of the scene, its values, the names and values of the axes, and what takes the value of the first."""
     words, value = random_scene(seed)
     r = random.Random(1000 + seed)
+    kind = KINDS[seed % len(KINDS)]
     names = [name for name in SWEPT if name != "contact_kn" or "constraint" not in words]
     names = [name for name in names if name != "disc_alpha" or "-pad_beta" in words]
-    chosen = [names[seed % len(names)]]
-    if r.random() < 0.15:
+    chosen = [names[seed // len(KINDS) % len(names)]]
+    axes, link = {}, None
+    if kind.startswith("load"):
+        words, axes["press_force"] = load_axis(words, value, r)
+        chosen = chosen if kind == "load and parameter" else []
+    elif kind == "two":
         chosen.append(r.choice([name for name in names if name not in chosen]))
-    axes = {}
+    elif kind == "link":
+        first = r.choice(list(LINKED))
+        link, low, high = LINKED[first]
+        axes[first], chosen = spaced(low, high, True, POINTS), []
     for name in chosen:
         low, high, ratio = SWEPT[name]
-        n = POINTS if len(chosen) == 1 else 3
         low, high = (low * value[name], high * value[name]) if ratio else (low, high)
-        axes[name] = [float(f"{low * (high / low)**(i / (n - 1)):.10g}" if ratio else
-                            f"{low + (high - low) * i / (n - 1):.10g}") for i in range(n)]
-    return words, value, axes
+        axes[name] = spaced(low, high, ratio, POINTS)
+    if len(axes) > 1:  # both ends and the middle
+        axes = {name: values[::POINTS // 2] for name, values in axes.items()}
+    return words, value, axes, link
 
 
 def scene_words(words, value):
     """The whole command line of a scene, without output."""
     own = dict(value)
     own["rows_stiffness"] = f"0,{own['rows_stiffness']:.10g},0"
+    if "press_force" in own:
+        own["press_force"] = f"0,0,-{own['press_force']:.10g}"
     if "constraint" in words:
         del own["contact_kn"]
     return [*scene("massi2005"), *words, *(w for name, v in own.items() for w in (f"-{name}", v))]
@@ -124,10 +159,12 @@ def grid_points(axes):
 def one_sweep(program, seed, every=1):
     """Errors of one sweep, at each `every`th point: (seed, name, [(true, stated, freq, point)] of the sweep, the same of its
     full solutions, reason)."""
-    words, value, axes = random_sweep(seed)
+    words, value, axes, link = random_sweep(seed)
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
         options = ["-sweep_parameter", ",".join(axes)]
+        if link:
+            options += ["-sweep_link", f"{next(iter(axes))},{link}"]
         for suffix, name in zip(("", "_2"), axes):
             options += [f"-sweep_values{suffix}", ",".join(f"{v:.10g}" for v in axes[name])]
         reason = launch(program, [*scene_words(words, value), "-analysis", "sweep", *options, "-sweep_onsets", 0,
@@ -139,6 +176,8 @@ def one_sweep(program, seed, every=1):
         for number, point in list(enumerate(grid_points(axes), 1))[::every]:
             place = folder / str(number)
             place.mkdir()
+            if link:
+                point = {**point, link: next(iter(point.values()))}
             try:
                 full = full_point(program, place, words, {**value, **point})
             except RuntimeError as error:

@@ -16,6 +16,7 @@ PALETTE = [BLUE, ORANGE, GREEN, PURPLE, SKY]
 QUIET, LEADER = "#C4C4C4", "#9A9A9A"
 WIDTH, HEIGHTS = 12, {"frequency": 5.6, "growth": 3.6}  # inches
 MARKERS = {"lock_in": ("^", "lock-in"), "lock_out": ("v", "lock-out"), "divergence": ("D", "divergence"),
+           "negative_damping": (">", "negative damping"), "positive_damping": ("<", "damping positive again"),
            "restabilisation": ("s", "restabilisation"), "jump": ("X", "jump of growth")}
 TEXT = {"path_effects": [matplotlib.patheffects.withStroke(linewidth=3, foreground="white")], "zorder": 8}
 # Places of a text about its point, tried in this order, points

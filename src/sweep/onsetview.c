@@ -3,7 +3,8 @@
 */
 #include "sweepimpl.h"
 
-static const char *const kinds[] = {"lock-in", "lock-out", "divergence", "stable again"};
+static const char *const kinds[]      = {"lock-in", "lock-out", "divergence", "stable again"};
+static const char *const by_damping[] = {"negative damping", "damping positive again"}; /* in place of the first two */
 
 /* Digits of a critical value, of which those between the points of a sweep in full have few */
 static int OnsetDigits(Sweep sweep)
@@ -63,7 +64,8 @@ static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParamete
       parameter->name, (double)event->critical, parameter->unit, (double)event->error,
       sweep->label[event->branch[0]].text, (double)(event->omega / (2 * PETSC_PI)), event->above ? "above" : "below"));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.*g %s +- %.1e, %.2f Hz, %s%s\n", kinds[event->kind],
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.*g %s +- %.1e, %.2f Hz, %s%s\n",
+                                     event->by_damping ? by_damping[event->kind] : kinds[event->kind],
                                      parameter->name, OnsetDigits(sweep), (double)event->critical, parameter->unit,
                                      (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
                                      sweep->label[event->branch[0]].text,

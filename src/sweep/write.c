@@ -5,6 +5,12 @@
 #include "sweepimpl.h"
 
 static const char *const event_kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
+static const char *const by_damping[]  = {"negative_damping", "positive_damping"}; /* in place of the first two */
+
+static const char *EventKind(const BranchEvent *event)
+{
+  return event->by_damping ? by_damping[event->kind] : event_kinds[event->kind];
+}
 
 /* Number as text, empty where there is none */
 typedef struct {
@@ -99,7 +105,7 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
     if (!event->found) continue;
     PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s%s",
                               parameters[sweep->grid.parameter[0][0]].name, (double)event->critical,
-                              (double)(event->omega / (2 * PETSC_PI)), event_kinds[event->kind],
+                              (double)(event->omega / (2 * PETSC_PI)), EventKind(event),
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
                               (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text,

@@ -64,7 +64,8 @@ def main():
     for w, values in found.items():
         unstable[w] = sum(value.real > 0 for value in values)
         passed = [row["kind"] for row in onsets if float(row["critical_value"]) < w]
-        expected = unstable[min(found)] + passed.count("lock_in") - passed.count("lock_out")
+        expected = unstable[min(found)] + sum(kind in ("lock_in", "negative_damping") for kind in passed)
+        expected -= sum(kind in ("lock_out", "positive_damping") for kind in passed)
         if expected != unstable[w]:
             sys.exit(f"speed {w}: {unstable[w]} unstable, the onsets before it make {expected}")
     off = compare_onsets(onsets, matrices)

@@ -12,7 +12,9 @@ from .markup import (Column, Part, count, figure, figures, fixed, join, legend, 
 
 LOUD = ("blue", "orange", "green", "purple", "sky")
 SIGNS = {"lock_in": ("up", "ink"), "lock_out": ("down", "ink"), "divergence": ("square", "ink"),
+         "negative_damping": ("up", "vermilion"), "positive_damping": ("down", "vermilion"),
          "restabilisation": ("square", "green"), "jump": ("cross", "soft")}
+FIRST = {"lock_in": "lock-in", "negative_damping": "negative damping"}
 VERIFY = {"value": float, "true_error": optional, "error_estimate": optional, "modes_full": int, "modes_reduced": int,
           "unstable_full": int, "unstable_reduced": int}
 EXTRA = {"sensitivities.csv": "Sensitivities", "robustness.csv": "What can become unstable", "verify.csv":
@@ -180,12 +182,12 @@ def verdict(study):
     n = len({(row["value"], row["value_2"]) for row in study.rows})
     text = f"{count(n, 'point')}; " + (f"unstable somewhere: {', '.join(names[:6])}"
                                        if names else "no mode is unstable")
-    first = min((row for row in study.onsets if row["kind"] == "lock_in"), key=lambda row: row["critical_value"],
+    first = min((row for row in study.onsets if row["kind"] in FIRST), key=lambda row: row["critical_value"],
                 default=None)
     if first and not study.is_map:
         axis = study.axes[0]
         value = figures(first["critical_value"] * axis.factor, 5)
-        text += f"; first lock-in at {axis.name} {value} {axis.unit}".rstrip()
+        text += f"; first {FIRST[first['kind']]} at {axis.name} {value} {axis.unit}".rstrip()
         text += f", {fixed(first['freq_hz'], 1)} Hz, {first['label']}"
     return text + "."
 

@@ -41,6 +41,24 @@ static BranchEvent EventOf(const ModeFrame *frame, PetscInt i, const ModeFrame *
   };
 }
 
+/* Whether most of the growth of mode i comes from damping, not from an unsymmetric stiffness through which two modes feed each
+   other. With x^H M x = 1 the imaginary part of x^H Q(sigma + i omega) x = 0 is
+
+      2 sigma omega = P - omega c,   P = -Im x^H K x,   c = Re x^H C x,
+
+   so that damping alone makes -c / 2 of sigma, and more than half of it where c < -sigma. */
+static PetscBool GrowsByDamping(const ModeFrame *frame, PetscInt i)
+{
+  const DensePencil  *pencil = &frame->pencil;
+  const PetscInt      size   = frame->modes.size;
+  const PetscComplex *x      = &frame->modes.x[i * size];
+  PetscReal           c      = 0;
+
+  for (PetscInt k = 0; k < size && pencil->damped; k++)
+    for (PetscInt j = 0; j < size; j++) c += creal(conj(x[j]) * x[k]) * pencil->C[k * pencil->n + j];
+  return c < -creal(frame->modes.lambda[i]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
 {
   const PetscBool begins = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
@@ -51,6 +69,7 @@ PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *ot
     event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
   else
     event.kind = begins ? EVENT_LOCK_IN : EVENT_LOCK_OUT;
+  event.by_damping = cimag(event.lambda) != 0 ? GrowsByDamping(frame, i) : PETSC_FALSE;
   PetscCall(BranchEventsAdd(events, &event));
   PetscFunctionReturn(0);
 }
