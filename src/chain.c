@@ -255,8 +255,12 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 
 PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer)
 {
+  PetscBool terms;
+
   PetscFunctionBeginUser;
   PetscCall(ChainAssemble(chain));
   PetscCall(ChainConnect(chain, viewer));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-terms", &terms));
+  if (chain->model) PetscCall(ContactCheckBodies(chain->contact, terms));
   PetscFunctionReturn(0);
 }

@@ -160,6 +160,12 @@ PetscErrorCode ContactDampFriction(Contact contact);
     mesh. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactSetUpTies(Contact contact);
 
+/*@ ContactCheckBodies - prints a line for each body that hangs together with no other one and is held by nothing, where there are
+    others, with the nodes by which it lies on them; and for nodes that two bodies have in one place without sharing them, where no
+    tie, contact or bushing has both. With matrix terms, which may hold anything, none. Collective; after ContactSetUp() or
+    ContactSetUpTies(). @*/
+PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms);
+
 /*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
 PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces);
 

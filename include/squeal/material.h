@@ -26,7 +26,7 @@ typedef struct {
 
 /* Material of one body; SI units */
 typedef struct {
-  char      *name;
+  char      *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
   PetscReal  young;   /* Young's modulus, Pa, > 0; E_1 where not isotropic */
   PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
   PetscReal  density; /* kg/m^3, > 0 */

@@ -218,6 +218,10 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
+/*@ ModelNameBody - "part pad", "parts pad, beam"; "a piece of part pad about 0.01, 0.02, 0 m" where other bodies have cells of that
+    part too. Collective. @*/
+PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[]);
+
 /*@ ModelGetSetNodes - local nodes of a named set, node [n], ascending, also those that other ranks own. Collective. The
     caller frees the array (PetscFree()).
     Errors: PETSC_ERR_USER_INPUT when no rank has the set; the message lists the sets of the mesh. @*/

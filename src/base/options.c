@@ -87,7 +87,8 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
   PetscCall(OptionsGetWords(comm, option, help, &count, names));
   for (PetscInt i = 0; i < count; i++) {
     PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
-               "%s '%s' is no name: use letters, digits and underscores, a letter first", option, names[i]);
+               "%s '%s' is no name: use letters, digits and underscores, a letter first%s", option, names[i],
+               strcmp(option, "-parts") ? "" : " (-NAME_volume gives the volume of the mesh)");
     for (PetscInt j = 0; j < i; j++) {
       PetscCall(PetscStrcasecmp(names[i], names[j], &same));
       PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, names[i]);
@@ -275,18 +276,21 @@ static PetscBool NameEnds(const char name[], const char *const endings[])
 
 PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size)
 {
-  char *all, *word, *rest, *name = NULL;
+  char       *all, *rest, name[MAX_NAME];
+  const char *given;
+  PetscBool   more;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   PetscCall(PetscOptionsGetAll(NULL, &all));
-  for (word = strtok_r(all, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
-    if (word[0] == '-' && isalpha((unsigned char)word[1]))
-      name = word;
-    else if (name && NameEnds(name, endings) && ListHolds(word, value)) {
-      PetscCall(PetscStrlcat(text, text[0] ? " or " : "", size));
+  rest = all;
+  PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &given, &more));
+  while (more) {
+    if (NameEnds(name, endings) && ListHolds(given, value)) {
+      PetscCall(PetscStrlcat(text, text[0] ? " or -" : "-", size));
       PetscCall(PetscStrlcat(text, name, size));
     }
+    PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &given, &more));
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);

@@ -243,7 +243,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   s = &m->scene;
-  PetscCall(RecordsDestroy(s->n_parts, sizeof(*s->parts), 1, s->parts));
+  PetscCall(RecordsDestroy(s->n_parts, sizeof(*s->parts), 2, s->parts));
   PetscCall(RecordsDestroy(s->n_supports, sizeof(*s->supports), 2, s->supports));
   PetscCall(RecordsDestroy(s->n_springs, sizeof(*s->springs), 2, s->springs));
   PetscCall(RecordsDestroy(s->n_dashpots, sizeof(*s->dashpots), 2, s->dashpots));

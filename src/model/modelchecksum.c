@@ -74,6 +74,7 @@ static PetscErrorCode PartAddChecksum(const Part *p, Checksum c)
 
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddString(c, p->name));
+  if (strcmp(p->name, p->volume)) PetscCall(ChecksumAddString(c, p->volume));
   PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
   if (p->spin.given) {
     PetscCall(ChecksumAddReals(c, 1, &p->spin.rate));

@@ -50,7 +50,7 @@ static PetscErrorCode SetHasCells(Model model, const char set[], PetscBool *has)
   PetscFunctionReturn(0);
 }
 
-/* The named sets of the mesh as "disc, pad", or those that have cells, for messages; the same text on all ranks */
+/* The named sets of the mesh as "'disc', 'pad'", or those that have cells, for messages; the same text on all ranks */
 static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], size_t size)
 {
   PetscInt                 n;
@@ -69,14 +69,17 @@ static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], si
     if (cells) PetscCall(SetHasCells(model, name, &has));
     if (!has) continue;
     if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
+    PetscCall(PetscStrlcat(list, "'", size));
     PetscCall(PetscStrlcat(list, name, size));
+    PetscCall(PetscStrlcat(list, "'", size));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[])
 {
-  static const char *const of_volumes[] = {"-parts", NULL}, *const of_sets[] = {"_set", "_surfaces", "_a", "_b", NULL};
+  static const char *const of_volumes[] = {"parts", "_volume", NULL};
+  static const char *const of_sets[]    = {"_set", "_surfaces", "_a", "_b", NULL};
   char      list[1024], option[256];
   PetscBool is_volume;
 
@@ -84,8 +87,9 @@ PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[
   PetscCall(PetscStrcmp(what, "volume", &is_volume));
   PetscCall(SetListNames(model, is_volume, list, sizeof(list)));
   PetscCall(OptionsWithValue(name, is_volume ? of_volumes : of_sets, option, sizeof(option)));
-  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "%s%sthe mesh has no %s named '%s'; it names: %s", option,
-          option[0] ? ": " : "", what, name, list);
+  SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "%s%sthe mesh has no %s named '%s'; it names: %s%s", option,
+          option[0] ? ": " : "", what, name, list,
+          is_volume ? " (-NAME_volume gives a part another one)" : "");
 }
 
 PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n, PetscInt **point)

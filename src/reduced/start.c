@@ -109,7 +109,7 @@ static PetscErrorCode StartVelocities(ReducedRun r)
   for (PetscInt i = 0; i < scene->n_parts; i++) {
     PetscInt n, *node;
 
-    PetscCall(ModelGetSetNodes(r->run.model, scene->parts[i].name, &n, &node));
+    PetscCall(ModelGetSetNodes(r->run.model, scene->parts[i].volume, &n, &node));
     for (PetscInt k = 0; k < n; k++) {
       for (int d = 0; d < 3; d++) nodal[3 * node[k] + d] += velocity[3 * i + d];
       count[node[k]]++;

@@ -96,28 +96,6 @@ static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt bo
   PetscFunctionReturn(0);
 }
 
-/* "part pad", "parts pad, beam" */
-static PetscErrorCode BodyName(const Mesh *mesh, MPI_Comm comm, const PetscInt body[], PetscInt b, size_t size,
-                               char text[])
-{
-  int *has, n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mesh->n_parts, &has));
-  for (PetscInt i = 0; i < mesh->n_cells; i++)
-    if (body[mesh->cell_node[mesh->cell_first[i]]] == b) has[mesh->cell_part[i]] = 1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)mesh->n_parts, MPI_INT, MPI_MAX, comm));
-  for (PetscInt i = 0; i < mesh->n_parts; i++) n += has[i];
-  PetscCall(PetscStrncpy(text, n > 1 ? "parts" : "part", size));
-  for (PetscInt i = 0, named = 0; i < mesh->n_parts; i++) {
-    if (!has[i]) continue;
-    PetscCall(PetscStrlcat(text, named++ ? ", " : " ", size));
-    PetscCall(PetscStrlcat(text, mesh->part[i], size));
-  }
-  PetscCall(PetscFree(has));
-  PetscFunctionReturn(0);
-}
-
 /* x to four digits beside `size`, for reading: no -0 and no rounding */
 static double Readable(PetscReal x, PetscReal size)
 {
@@ -170,7 +148,7 @@ PetscErrorCode RigidDescribe(Operators operators, Vec r, size_t size, char text[
   PetscCall(BodyFarthest(mesh, comm, body, r, &b));
   PetscCall(BodyMeasure(mesh, comm, body, b, &m));
   PetscCall(BodyFit(mesh, comm, body, b, r, &m));
-  PetscCall(BodyName(mesh, comm, body, b, sizeof(name), name));
+  PetscCall(ModelNameBody(model, body, b, sizeof(name), name));
   PetscCall(BodyPrint(name, &m, size, text));
   PetscCall(PetscFree(body));
   PetscFunctionReturn(0);

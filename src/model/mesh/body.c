@@ -179,3 +179,68 @@ PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body)
   PetscCall(BodiesSort(model, n, *n_bodies, *body));
   PetscFunctionReturn(0);
 }
+
+/* Which parts a body has cells of (bit 1), and which the others (bit 2); bits [n_parts] */
+static PetscErrorCode BodyFindParts(Model model, const PetscInt body[], PetscInt b, int bits[])
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < mesh->n_cells; i++)
+    bits[mesh->cell_part[i]] |= body[mesh->cell_node[mesh->cell_first[i]]] == b ? 1 : 2;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bits, (PetscMPIInt)mesh->n_parts, MPI_INT, MPI_BOR, model->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Appends " about x, y, z m": the middle of the body's box */
+static PetscErrorCode BodyAppendPlace(Model model, const PetscInt body[], PetscInt b, size_t size, char text[])
+{
+  const Mesh *mesh = &model->mesh;
+  PetscReal   box[6], middle[3], size_of = 0;
+  const char *unit;
+  char        place[128];
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 6; d++) box[d] = -PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
+    if (body[i / 3] != b) continue;
+    box[i % 3]     = PetscMax(box[i % 3], mesh->x[i]);
+    box[3 + i % 3] = PetscMax(box[3 + i % 3], -mesh->x[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPI_MAX, model->comm));
+  for (int d = 0; d < 3; d++) size_of = PetscMax(size_of, box[d] + box[3 + d]);
+  for (int d = 0; d < 3; d++) {
+    middle[d] = (box[d] - box[3 + d]) / 2;
+    if (PetscAbsReal(middle[d]) < 1e-9 * size_of) middle[d] = 0;
+  }
+  PetscCall(ModelGetUnit(model, "m", &unit));
+  PetscCall(PetscSNPrintf(place, sizeof(place), " about %.4g, %.4g, %.4g %s", (double)middle[0], (double)middle[1],
+                          (double)middle[2], unit));
+  PetscCall(PetscStrlcat(text, place, size));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[])
+{
+  const Mesh *mesh = &model->mesh;
+  PetscBool   piece = PETSC_FALSE;
+  PetscInt    n     = 0;
+  int        *bits;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_parts, &bits));
+  PetscCall(BodyFindParts(model, body, b, bits));
+  for (PetscInt i = 0; i < mesh->n_parts; i++) {
+    n += bits[i] & 1;
+    if (bits[i] == 3) piece = PETSC_TRUE;
+  }
+  PetscCall(PetscSNPrintf(text, size, "%s%s", piece ? "a piece of " : "", n > 1 ? "parts" : "part"));
+  for (PetscInt i = 0, named = 0; i < mesh->n_parts; i++) {
+    if (!(bits[i] & 1)) continue;
+    PetscCall(PetscStrlcat(text, named++ ? ", " : " ", size));
+    PetscCall(PetscStrlcat(text, mesh->part[i], size));
+  }
+  if (piece) PetscCall(BodyAppendPlace(model, body, b, size, text));
+  PetscCall(PetscFree(bits));
+  PetscFunctionReturn(0);
+}

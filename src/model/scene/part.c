@@ -10,10 +10,15 @@
 /* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */
 static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, void *record)
 {
-  Part *part = record;
+  Part     *part         = record;
+  char      volume[1024] = "";
+  PetscBool given;
 
   PetscFunctionBeginUser;
   (void)owner;
+  PetscCall(PetscOptionsString("-volume", "volume of the mesh that it is; default the part's own name", "model.h", volume,
+                               volume, sizeof(volume), &given));
+  PetscCall(PetscStrallocpy(given ? volume : part->name, &part->volume));
   PetscCall(PartReadElasticity(PetscOptionsObject, part));
   PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
   PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
@@ -100,7 +105,7 @@ static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt cell_pa
   PetscFunctionBeginUser;
   *n_marked = 0;
   PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, &cEnd));
-  PetscCall(DMGetLabel(model->dm, model->scene.parts[part].name, &label));
+  PetscCall(DMGetLabel(model->dm, model->scene.parts[part].volume, &label));
   if (!label) PetscFunctionReturn(0);
   PetscCall(DMLabelGetStratumIS(label, 1, &is));
   if (!is) PetscFunctionReturn(0);
@@ -126,7 +131,7 @@ PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[])
   for (PetscInt part = 0; part < model->scene.n_parts; part++) {
     PetscCall(PartMarkCells(model, part, cell_part, &n_local, &bad[0]));
     PetscCallMPI(MPI_Allreduce(&n_local, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
-    if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->scene.parts[part].name));
+    if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->scene.parts[part].volume));
   }
   for (PetscInt c = 0; c < model->mesh.n_cells; c++)
     if (cell_part[c] < 0) bad[1] = c;

@@ -1,0 +1,244 @@
+/*
+   What holds the bodies. Two bodies hang together by ties, contacts, bushings and points that have nodes of both; a body is held
+   by supports, motions, springs, dashpots, and by bushings and points that stand on the ground. Bodies that hang together with no
+   other ones and on nothing are said, and nodes in one place that nothing joins (touch.c). A scene that is free as a whole is
+   none of these.
+*/
+#include "bodiesimpl.h"
+
+#define MAX_LINES 4 /* of a kind */
+
+static PetscInt RootOf(const PetscInt parent[], PetscInt b)
+{
+  while (parent[b] != b) b = parent[b];
+  return b;
+}
+
+/* Marks the bodies of a set's nodes in has[] */
+static PetscErrorCode SetMark(BodyGraph *b, const char set[])
+{
+  PetscInt n, *node;
+
+  PetscFunctionBeginUser;
+  if (!set || !set[0]) PetscFunctionReturn(0);
+  PetscCall(ModelGetSetNodes(b->contact->model, set, &n, &node));
+  for (PetscInt i = 0; i < n; i++)
+    if (b->body[node[i]] >= 0) b->has[b->body[node[i]]] = 1;
+  PetscCall(PetscFree(node));
+  PetscFunctionReturn(0);
+}
+
+/* The bodies that are marked on any rank hang together, or each on the ground; clears the marks */
+static PetscErrorCode MarkedJoin(BodyGraph *b, PetscBool ground)
+{
+  PetscMPIInt count;
+  PetscInt    last = ground ? b->n : -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(b->n, &count));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, b->has, count, MPIU_INT, MPI_MAX, b->contact->comm));
+  for (PetscInt i = 0; i < b->n; i++) {
+    if (!b->has[i]) continue;
+    if (last >= 0) b->parent[RootOf(b->parent, i)] = RootOf(b->parent, last);
+    last = i;
+  }
+  PetscCall(PetscArrayzero(b->has, b->n));
+  PetscFunctionReturn(0);
+}
+
+/* What one set, or two, join */
+static PetscErrorCode SetsJoin(BodyGraph *b, const char one[], const char other[], PetscBool ground)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SetMark(b, one));
+  PetscCall(SetMark(b, other));
+  PetscCall(MarkedJoin(b, ground));
+  PetscFunctionReturn(0);
+}
+
+/* Whether a point has a stiffness or viscosity to the ground */
+static PetscBool PointStands(const Joint *point)
+{
+  for (int d = 0; d < 6; d++)
+    if (point->stiffness[d] != 0 || point->viscosity[d] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What joins bodies: bushings, points, ties by the nodes that follow, contacts */
+static PetscErrorCode GraphJoin(BodyGraph *b)
+{
+  const Contact     c = b->contact;
+  const ModelScene *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(c->model, &s));
+  for (PetscInt i = 0; i < s->n_joints; i++)
+    PetscCall(SetsJoin(b, s->joints[i].set[0], s->joints[i].set[1], PETSC_FALSE));
+  for (PetscInt i = 0; i < s->n_points; i++) PetscCall(SetsJoin(b, s->points[i].set[0], NULL, PETSC_FALSE));
+  for (PetscInt t = 0; t < c->n_ties; t++) {
+    for (PetscInt i = 0; i < c->n_links; i++)
+      if (c->links[i].tie == t) b->has[b->body[c->links[i].node]] = 1;
+    PetscCall(SetsJoin(b, c->ties[t].master, NULL, PETSC_FALSE));
+  }
+  for (PetscInt i = 0; i < c->n_interfaces; i++)
+    PetscCall(SetsJoin(b, c->interfaces[i].slave, c->interfaces[i].master, PETSC_FALSE));
+  for (PetscInt i = 0; i < b->n; i++) b->together[i] = RootOf(b->parent, i);
+  PetscFunctionReturn(0);
+}
+
+/* What holds bodies on the ground */
+static PetscErrorCode GraphHold(BodyGraph *b)
+{
+  const ModelScene *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(b->contact->model, &s));
+  for (PetscInt i = 0; i < 3 * b->mesh->n_nodes; i++)
+    if (b->mesh->unknown[i] < 0 && b->body[i / 3] >= 0) b->has[b->body[i / 3]] = 1;
+  PetscCall(MarkedJoin(b, PETSC_TRUE));
+  for (PetscInt i = 0; i < s->n_motions; i++) PetscCall(SetsJoin(b, s->motions[i].set, NULL, PETSC_TRUE));
+  for (PetscInt i = 0; i < s->n_springs; i++) PetscCall(SetsJoin(b, s->springs[i].set, NULL, PETSC_TRUE));
+  for (PetscInt i = 0; i < s->n_dashpots; i++) PetscCall(SetsJoin(b, s->dashpots[i].set, NULL, PETSC_TRUE));
+  for (PetscInt i = 0; i < s->n_joints; i++)
+    if (!s->joints[i].set[1] || !s->joints[i].set[1][0])
+      PetscCall(SetsJoin(b, s->joints[i].set[0], NULL, PETSC_TRUE));
+  for (PetscInt i = 0; i < s->n_points; i++)
+    if (PointStands(&s->points[i])) PetscCall(SetsJoin(b, s->points[i].set[0], NULL, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* Names the bodies of the piece that hangs together with body `first`; how many they are */
+static PetscErrorCode PieceName(const BodyGraph *b, PetscInt first, size_t size, char text[], PetscInt *n)
+{
+  PetscFunctionBeginUser;
+  *n      = 0;
+  text[0] = '\0';
+  for (PetscInt i = first; i < b->n; i++) {
+    char name[256];
+
+    if (RootOf(b->parent, i) != RootOf(b->parent, first)) continue;
+    PetscCall(ModelNameBody(b->contact->model, b->body, i, sizeof(name), name));
+    PetscCall(PetscStrlcat(text, *n ? ", " : "", size));
+    PetscCall(PetscStrlcat(text, name, size));
+    ++*n;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* "; 35 of its nodes lie on nodes of part a, which it does not share": where the piece lies on others */
+static PetscErrorCode PieceNameTouched(const BodyGraph *b, PetscInt first, PetscInt n_bodies, size_t size, char text[])
+{
+  const PetscInt root = RootOf(b->parent, first);
+  PetscInt       n    = 0;
+  char           names[512] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (PetscInt i = 0; i < b->n_touches; i++) {
+    const BodyTouch *t    = &b->touch[i];
+    const PetscBool  in_a = RootOf(b->parent, t->a) == root, in_b = RootOf(b->parent, t->b) == root;
+    char             name[256];
+
+    if (in_a == in_b) continue;
+    PetscCall(ModelNameBody(b->contact->model, b->body, in_a ? t->b : t->a, sizeof(name), name));
+    PetscCall(PetscStrlcat(names, n ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, name, sizeof(names)));
+    n += t->n;
+  }
+  if (n)
+    PetscCall(PetscSNPrintf(text, size,
+                            "; %" PetscInt_FMT " of %s nodes lie on nodes of %s and are not shared: merge them in the mesh, or "
+                            "join the bodies by -ties",
+                            n, n_bodies > 1 ? "their" : "its", names));
+  PetscFunctionReturn(0);
+}
+
+/* Whether a body is the first of a piece that hangs on nothing, where there is another piece */
+static PetscBool PieceIsLoose(const BodyGraph *b, PetscInt first)
+{
+  const PetscInt root = RootOf(b->parent, first);
+  PetscBool      others = PETSC_FALSE;
+
+  if (root == RootOf(b->parent, b->n)) return PETSC_FALSE;
+  for (PetscInt i = 0; i < b->n; i++) {
+    if (RootOf(b->parent, i) != root) others = PETSC_TRUE;
+    if (RootOf(b->parent, i) == root && i < first) return PETSC_FALSE;
+  }
+  return others;
+}
+
+static PetscErrorCode SayLoose(const BodyGraph *b)
+{
+  const MPI_Comm comm = b->contact->comm;
+  PetscInt       n = 0, n_bodies;
+  char           names[512], touched[768];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < b->n; i++) {
+    if (!PieceIsLoose(b, i) || n++ >= MAX_LINES) continue;
+    PetscCall(PieceName(b, i, sizeof(names), names, &n_bodies));
+    PetscCall(PieceNameTouched(b, i, n_bodies, sizeof(touched), touched));
+    PetscCall(PetscPrintf(comm, "note: %s %s: 6 rigid motions%s\n", names,
+                           n_bodies > 1 ? "hang together with no other body, and are held by nothing"
+                                        : "hangs together with no other body, and is held by nothing",
+                           touched));
+  }
+  if (n > MAX_LINES)
+    PetscCall(PetscPrintf(comm, "note: %" PetscInt_FMT " more bodies are held by nothing\n",
+                           n - MAX_LINES));
+  PetscFunctionReturn(0);
+}
+
+/* Nodes in one place of bodies that are held or hang together by something else */
+static PetscErrorCode SayTouches(const BodyGraph *b)
+{
+  PetscInt n = 0, n_nodes = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < b->n_touches; i++) {
+    const PetscInt   ground = RootOf(b->parent, b->n);
+    const BodyTouch *t      = &b->touch[i];
+    char             name[2][256];
+
+    if (RootOf(b->parent, t->a) != RootOf(b->parent, t->b) &&
+        (RootOf(b->parent, t->a) != ground || RootOf(b->parent, t->b) != ground))
+      continue; /* one of them is loose, which is said */
+    if (n++ >= MAX_LINES) {
+      n_nodes += t->n;
+      continue;
+    }
+    PetscCall(ModelNameBody(b->contact->model, b->body, t->a, sizeof(name[0]), name[0]));
+    PetscCall(ModelNameBody(b->contact->model, b->body, t->b, sizeof(name[1]), name[1]));
+    PetscCall(PetscPrintf(b->contact->comm,
+                           "note: %" PetscInt_FMT " nodes of %s lie on nodes of %s and are not shared: nothing "
+                           "joins the bodies there; merge them in the mesh, or give -ties or -contacts\n",
+                           t->n, name[0], name[1]));
+  }
+  if (n > MAX_LINES)
+    PetscCall(PetscPrintf(b->contact->comm,
+                           "note: so do %" PetscInt_FMT " more nodes of %" PetscInt_FMT " more pairs of bodies\n",
+                           n_nodes, n - MAX_LINES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms)
+{
+  BodyGraph b = {.contact = contact};
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(contact->model, &b.mesh));
+  PetscCall(ModelGetBodies(contact->model, &b.n, &b.body));
+  if (b.n > 1) {
+    PetscCall(PetscCalloc3(b.n + 1, &b.parent, b.n, &b.has, b.n, &b.together));
+    for (PetscInt i = 0; i <= b.n; i++) b.parent[i] = i;
+    PetscCall(GraphJoin(&b));
+    PetscCall(GraphHold(&b));
+    PetscCall(GraphFindTouches(&b));
+    if (!terms) PetscCall(SayLoose(&b));
+    if (!terms) PetscCall(SayTouches(&b));
+    PetscCall(PetscFree(b.touch));
+    PetscCall(PetscFree3(b.parent, b.has, b.together));
+  }
+  PetscCall(PetscFree(b.body));
+  PetscFunctionReturn(0);
+}
