@@ -221,31 +221,35 @@ static PetscErrorCode ReadElements(MeshReader *r, GmshMesh *mesh)
   PetscFunctionReturn(0);
 }
 
-/* Reads the section whose first line has just been read, up to its end */
+static const struct {
+  const char *name;
+  PetscErrorCode (*read)(MeshReader *, GmshMesh *);
+} sections[] = {
+  {"MeshFormat",          ReadFormat                 },
+  {"PhysicalNames",       GmshReadNames              },
+  {"Entities",            GmshReadEntities           },
+  {"PartitionedEntities", GmshReadPartitionedEntities},
+  {"Nodes",               ReadNodes                  },
+  {"ParametricNodes",     ReadParametricNodes        },
+  {"Elements",            ReadElements               },
+};
+
+/* Reads the section whose first line has just been read, up to its end; behind $Elements only looks whether one of these stands
+   in the file again */
 static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *mesh)
 {
-  static const struct {
-    const char *name;
-    PetscErrorCode (*read)(MeshReader *, GmshMesh *);
-  } sections[] = {
-    {"MeshFormat",          ReadFormat                 },
-    {"PhysicalNames",       GmshReadNames              },
-    {"Entities",            GmshReadEntities           },
-    {"PartitionedEntities", GmshReadPartitionedEntities},
-    {"Nodes",               ReadNodes                  },
-    {"ParametricNodes",     ReadParametricNodes        },
-    {"Elements",            ReadElements               },
-  };
   PetscBool known = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   sscanf(line, "$%31s", r->section);
   for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(sections); s++) {
     if (strcmp(r->section, sections[s].name)) continue;
+    if (r->seen & 1U << s) ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s stands twice", r->section);
     known = PETSC_TRUE;
-    PetscCall(sections[s].read(r, mesh));
+    r->seen |= 1U << s;
+    if (!r->error->code) PetscCall(sections[s].read(r, mesh));
   }
-  ReadSectionEnd(r, known);
+  if (known || !mesh->elements) ReadSectionEnd(r, known);
   PetscFunctionReturn(0);
 }
 
@@ -263,12 +267,14 @@ PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *erro
   else
     r.most = PetscMin(ftell(r.file), PETSC_MAX_INT / 32);
   if (r.file) rewind(r.file);
-  while (!error->code && !mesh->elements && fgets(line, sizeof(line), r.file)) {
+  while (!error->code && fgets(line, sizeof(line), r.file)) {
     if (line[0] == '$')
       PetscCall(ReadSection(&r, line, mesh));
     else if (!r.version)
       ReaderErrorSet(error, PETSC_ERR_FILE_READ,
                      "the file does not begin with $MeshFormat, as those of Gmsh do; scripts/import brings in others");
+    else if (!mesh->elements && line[strspn(line, " \t\r\n")])
+      ReaderErrorSet(error, PETSC_ERR_FILE_READ, "behind section $%s a line stands in no section", r.section);
   }
   if (r.file && ferror(r.file)) ReaderErrorSet(error, PETSC_ERR_FILE_READ, "%s", strerror(errno)); /* as of a folder */
   if (r.file) fclose(r.file);
