@@ -7,7 +7,7 @@
   lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function above 80, no
              function of C with more than six arguments
   columns    no line of C, Python or the shell beyond 140 columns
-  strata     only src/model knows how a DMPlex numbers its points
+  strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
@@ -42,9 +42,9 @@ ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kern
                   "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
-             "DampedStop": "PEPSetStoppingTestFunction()",
-             "UndampedStop": "EPSSetStoppingTestFunction()"}
-STRATA = re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")
+             "DampedStop": "PEPSetStoppingTestFunction()", "UndampedStop": "EPSSetStoppingTestFunction()"}
+ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
+    ("src/operators/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 
@@ -161,11 +161,11 @@ def columns(house):
 
 
 def strata(house):
-    """Who but the model asks a DMPlex for its numbering."""
+    """What one place alone may ask PETSc: how a DMPlex numbers its points; whether a matrix is symmetric, which each rank hears apart."""
     for source in house.c:
-        if room(source.path) != "model":
-            for found in STRATA.finditer(source.code):
-                yield house.say(source.path, source.line(found.start()), f"{found[1]} outside of src/model")
+        for place, pattern in ONLY:
+            for found in () if str(source.path.relative_to(house.root)).startswith(place) else pattern.finditer(source.code):
+                yield house.say(source.path, source.line(found.start()), f"{found[1]} outside of {place}")
 
 
 def readmes(house):
@@ -288,8 +288,7 @@ PLANTED = (
                                         "src/sweep/README.md": "basis/\n"}),
     (includes, "is private", {"src/modes/a.c": '#include "model/modelimpl.h"\n', "src/model/modelimpl.h": ""}),
     (includes, "is no file", {"src/modes/a.c": '#include "gone.h"\n'}),
-    (lengths, "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}),
-    (lengths, "longer than", {"tests/a.py": 351 * "\n"}),
+    (lengths, "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}), (lengths, "longer than", {"tests/a.py": 351 * "\n"}),
     (lengths, "a screen", {"src/main.c": 81 * "\n"}),
     (lengths, "body of Long", {"src/model/a.c": "static void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
     (lengths, "Many has 7 arguments", {"src/model/a.c": MANY}),
@@ -297,6 +296,7 @@ PLANTED = (
     (columns, "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
     (columns, "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
     (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
+    (strata, "MatIsSymmetric outside", {"src/model/a.c": "static void A(void)\n{\n  MatIsSymmetric(A, 0, &same);\n}\n"}),
     (readmes, "no README.md", {"src/solver/a.c": ""}),
     (readmes, "longer than", {"src/model/README.md": 26 * "\n"}),
     (options, "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
