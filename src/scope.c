@@ -171,9 +171,8 @@ static PetscErrorCode ScopeCheckStill(MPI_Comm comm, const ModelScene *scene)
 
 /* What of the model a run does not use, though a file may hold it for others */
 typedef struct {
-  PetscBool loads;  /* and gravity: modes with all pairs closed need no equilibrium */
-  PetscBool places; /* probes and circles: nothing moves, or only modes are asked for */
-  PetscBool damping, spin;
+  PetscBool loads; /* and gravity: modes with all pairs closed need no equilibrium */
+  PetscBool places /* probes and circles: nothing moves, or only modes are asked for */, damping, spin;
 } ScopeIdle;
 
 static ScopeIdle ScopeGetIdle(const Scope *s, PetscBool statics)
