@@ -97,7 +97,8 @@ typedef struct {
   PetscReal distance;           /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
   PetscBool free;               /* these stay free, else they are an error */
   PetscInt  n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
-  PetscReal offset;             /* largest distance of a node from its foot, m */
+  PetscInt  n_beyond;           /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */
+  PetscReal offset, beyond;     /* largest distance of a node from its foot, and of these along the surface, m */
 } ContactTie;
 
 /* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a gap is

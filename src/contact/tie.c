@@ -9,7 +9,7 @@
    the slave act on the nodes of the facet by the transpose.
 
    At its foot the normal of the master leads to the node. It is interpolated between the nodes of the surface (foot.c).
-   Where no normal does, the foot is the nearest point. -X_distance is the longest arm.
+   Where no normal does, the foot is the nearest point, beyond the border one on it. -X_distance is the longest arm.
 
    Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress along the surface is exact on
    any two meshes. Traction on it is where the slave's mesh refines the master's: sum_s w_i(x_s) int N_s dA = int N_i dA.
@@ -142,6 +142,17 @@ static PetscReal TieReach(const ContactTie *tie, const ContactFacet *facet)
   return tie->distance > 0 ? tie->distance : TIE_SHARE * facet->size;
 }
 
+/* Counts a node that lies beyond the border of the master: its arm is not along the normal */
+static void TieLookBeyond(const ContactFacet *facet, const ContactFoot *foot, const PetscReal arm[3], ContactTie *tie)
+{
+  PetscReal w[CONTACT_MAX_MASTER], e[3][3], beyond;
+
+  (void)ContactBasis(facet, foot->natural, arm, w, e);
+  beyond = PetscAbsReal(Vec3Dot(e[1], arm));
+  if (beyond <= TIE_SHARE * facet->size) return;
+  tie->n_beyond++, tie->beyond = PetscMax(tie->beyond, beyond);
+}
+
 /* The link of local node v; none for one that is too far off, or common to both */
 static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
 {
@@ -173,6 +184,7 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
   }
   tie->n++;
   tie->offset = PetscMax(tie->offset, foot.distance);
+  TieLookBeyond(facet, &foot, arm, tie);
   FailureTake(LinkDropHeld(link) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
 }
 
@@ -251,9 +263,14 @@ static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
   }
   PetscCall(PetscFree(vertex));
   PetscCall(ContactSurfaceDestroy(&work.master));
-  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 3, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 1, MPIU_REAL, MPI_MAX, contact->comm));
+  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 4, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, contact->comm));
   PetscCall(TieCheck(contact->comm, tie, &work.failure));
+  if (tie->n_beyond)
+    PetscCall(PetscPrintf(contact->comm,
+                          "note: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT " nodes lie beyond the border of %s, the "
+                          "farthest %.6g m, and follow it by rigid arms; a smaller -%s_distance leaves them out\n",
+                          tie->name, tie->n_beyond, tie->n, tie->master, (double)tie->beyond, tie->name));
   PetscCall(TieCheckMotions(contact, tie, tie->slave));
   PetscCall(TieCheckMotions(contact, tie, tie->master));
   PetscFunctionReturn(0);
