@@ -90,7 +90,8 @@ static PetscErrorCode ReadFormat(MeshReader *r, GmshMesh *mesh)
   r->binary  = binary ? PETSC_TRUE : PETSC_FALSE;
   if ((r->version != 22 && r->version != 41) || bytes != SIZE_BYTES) {
     ReaderErrorSet(r->error, PETSC_ERR_SUP,
-                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are (Mesh.MshFileVersion)", version, bytes);
+                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are (Mesh.MshFileVersion)",
+                   version, bytes);
   }
   if (r->binary && ReadInteger(r, INT_BYTES) != 1) {
     ReaderErrorSet(r->error, PETSC_ERR_SUP, "the file was written with another byte order; write it here, or as text");
