@@ -13,26 +13,38 @@ static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Run(MPI_Comm comm)
+/* From options to results; what is made is left in the chain where it fails */
+static PetscErrorCode RunChain(MPI_Comm comm, Chain *chain)
 {
-  Chain       chain  = {0};
   PetscViewer viewer = PETSC_VIEWER_STDOUT_(comm);
 
   PetscFunctionBeginUser;
-  PetscCall(ChainCreate(comm, &chain));
+  PetscCall(ChainCreate(comm, chain));
   PetscCall(OptionsDropUnlisted(comm));
   PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
   PetscCall(OptionsCheckValues(comm));
-  PetscCall(ChainCheckOptions(comm, &chain));
-  if (chain.model) PetscCall(ModelCheckGiven(chain.model));
-  PetscCall(ResultsKeepScene(chain.results, ReadAgain, NULL));
-  PetscCall(ResultsOpenDirectory(chain.results));
-  PetscCall(ChainSetUp(&chain, viewer));
-  PetscCall(ChainView(&chain));
-  PetscCall(ChainRun(&chain));
-  PetscCall(ResultsFinish(chain.results));
-  if (chain.view) PetscCall(SquealViewStages(comm, viewer));
+  PetscCall(ChainCheckOptions(comm, chain));
+  if (chain->model) PetscCall(ModelCheckGiven(chain->model));
+  PetscCall(ResultsKeepScene(chain->results, ReadAgain, NULL));
+  PetscCall(ResultsOpenDirectory(chain->results));
+  PetscCall(ChainSetUp(chain, viewer));
+  PetscCall(ChainView(chain));
+  PetscCall(ChainRun(chain));
+  PetscCall(ResultsFinish(chain->results));
+  if (chain->view) PetscCall(SquealViewStages(comm, viewer));
   PetscCall(OptionsWarnUnused(comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Run(MPI_Comm comm)
+{
+  Chain          chain = {0};
+  PetscErrorCode failure;
+
+  PetscFunctionBeginUser;
+  failure = RunChain(comm, &chain);
+  if (failure) ResultsUnlock(chain.results);
+  PetscCall(failure);
   PetscCall(ChainDestroy(&chain));
   PetscFunctionReturn(0);
 }

@@ -26,9 +26,14 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results);
 @*/
 PetscErrorCode ResultsSetFromOptions(Results results);
 
-/*@ ResultsOpenDirectory - makes the folder and its parents where they are missing. Collective.
-    Errors: PETSC_ERR_FILE_OPEN with the folder and the reason, also for a folder in which nothing may be written. @*/
+/*@ ResultsOpenDirectory - makes the folder and its parents where they are missing, and locks it until ResultsUnlock().
+    Collective. Errors: PETSC_ERR_FILE_OPEN with the folder and the reason, also for a folder in which nothing may be written,
+    or into which another run writes. @*/
 PetscErrorCode ResultsOpenDirectory(Results results);
+
+/*@ ResultsUnlock - lets another run write into the folder, also where this one has failed; ResultsDestroy() does so too. Not
+    collective. @*/
+void ResultsUnlock(Results results);
 
 /*@ ResultsGetDirectory - the folder (borrowed). Not collective. @*/
 PetscErrorCode ResultsGetDirectory(Results results, const char **dir);

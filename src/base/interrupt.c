@@ -16,6 +16,7 @@
 static const int             signals[]  = {SIGINT, SIGTERM};
 static volatile sig_atomic_t first_rank = 0;
 static pid_t                 launcher   = 0;
+static char                  removed[PETSC_MAX_PATH_LEN]; /* a file that goes then; empty for none */
 
 static void InterruptEnd(int number, siginfo_t *info, void *ctx)
 {
@@ -24,7 +25,13 @@ static void InterruptEnd(int number, siginfo_t *info, void *ctx)
     PrintAtOnce(number == SIGINT
                   ? "squeal: error: stopped by SIGINT; files that bear their final name are complete\n"
                   : "squeal: error: stopped by SIGTERM; files that bear their final name are complete\n");
+  if (removed[0]) (void)unlink(removed);
   (void)raise(number); /* the action before is the default one again */
+}
+
+void InterruptRemoves(const char path[])
+{
+  (void)strncpy(removed, path, sizeof(removed) - 1);
 }
 
 PetscErrorCode InterruptInstall(MPI_Comm comm)

@@ -1,4 +1,4 @@
-/* Private to base/: what happens at ^C and SIGTERM */
+/* What happens at ^C and SIGTERM */
 #pragma once
 
 #include <petscsys.h>
@@ -8,3 +8,6 @@ PETSC_INTERN PetscErrorCode InterruptInstall(MPI_Comm comm);
 
 /* Gives the signals their default action back, before an error is printed */
 PETSC_INTERN void InterruptRemove(void);
+
+/* A file that goes where a signal ends the run; empty for none */
+PETSC_INTERN void InterruptRemoves(const char path[]);

@@ -6,6 +6,7 @@
 #include "print.h"
 #include "path.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -21,6 +22,19 @@ static struct {
   PetscBool pending;    /* a progress line is on the screen */
   PetscErrorCode (*print)(FILE *, const char[], va_list);
 } printing;
+
+/* Where whoever reads a stream has gone, what is left for it goes nowhere: PETSc would take that for an error */
+static void PrintFlush(FILE *file)
+{
+  int nowhere;
+
+  if (!fflush(file) || errno != EPIPE) return;
+  nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere < 0) return;
+  (void)dup2(nowhere, fileno(file));
+  (void)close(nowhere);
+  clearerr(file);
+}
 
 /* Stands in for PetscVFPrintf */
 static PetscErrorCode PrintBoth(FILE *file, const char format[], va_list args)
@@ -38,6 +52,7 @@ static PetscErrorCode PrintBoth(FILE *file, const char format[], va_list args)
     va_end(copy);
   }
   PetscCall((*printing.print)(file, format, args));
+  if (shown) PrintFlush(file);
   PetscFunctionReturn(0);
 }
 
@@ -73,6 +88,16 @@ static int LogMakeFolder(const char path[])
   return access(folder, F_OK) ? PathMakeFolders(folder) : 0;
 }
 
+/* Opens the log, which may be a pipe, for which nobody waits */
+static FILE *LogOpen(const char path[])
+{
+  const int   fd     = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+  FILE *const stream = fd < 0 || fcntl(fd, F_SETFL, 0) ? NULL : fdopen(fd, "w");
+
+  if (fd >= 0 && !stream) (void)close(fd);
+  return stream;
+}
+
 PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[])
 {
   PetscMPIInt rank, error = 0;
@@ -85,7 +110,7 @@ PetscErrorCode PrintSetLog(MPI_Comm comm, const char file[])
              "-squeal_log %s would replace a file that is no log of squeal; choose another file", file);
   if (rank == 0 && !printing.log) {
     error        = LogMakeFolder(file);
-    printing.log = error ? NULL : fopen(file, "w");
+    printing.log = error ? NULL : LogOpen(file);
     if (!error && !printing.log) error = errno;
     if (printing.log) printing.log_number = fileno(printing.log);
     if (printing.log) (void)setvbuf(printing.log, NULL, _IOLBF, BUFSIZ);

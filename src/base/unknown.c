@@ -58,8 +58,7 @@ static const char *const read_later[] = {"citations",
                                          "vec_view",
                                          "vec_view_stash",
                                          "vecscatter_merge",
-                                         "vecstash_initial_size",
-                                         "viewer_binary_skip_info"};
+                                         "vecstash_initial_size"};
 
 /* Others, for the nearest name: what it reads at its start, and types, which the help printer is not told of */
 static const char *const read_first[] = {"bv_type",           "rg_type",

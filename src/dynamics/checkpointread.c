@@ -2,6 +2,7 @@
    Checkpoint: reads it back (checkpoint.c). Nothing of a file is used before all ranks have found all of it good.
 */
 #include "base/fault.h"
+#include "base/file.h"
 #include "checkpointimpl.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -44,14 +45,14 @@ static PetscErrorCode ReaderOpen(CheckpointReader *reader, const char dir[])
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(reader->name, sizeof(reader->name), "%s/%s", dir, CHECKPOINT_FILE));
-  reader->fd = open(reader->name, O_RDONLY);
+  reader->fd = FileOpen(reader->name, O_RDONLY);
   if (reader->fd < 0 && errno == ENOENT)
     PetscCall(FaultNote(&reader->fault, PETSC_ERR_FILE_OPEN,
                         "there is no %s in the folder -output_dir %s, from which -dynamics_restart goes on",
                         CHECKPOINT_FILE, dir));
   if (reader->fd < 0)
     PetscCall(FaultNote(&reader->fault, PETSC_ERR_FILE_OPEN, "cannot read %s for -dynamics_restart: %s", reader->name,
-                        strerror(errno)));
+                        FileReason(errno)));
   PetscFunctionReturn(0);
 }
 
@@ -259,7 +260,7 @@ PetscErrorCode CheckpointFind(MPI_Comm comm, Results results, CheckpointKind *ki
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", dir, CHECKPOINT_FILE));
   if (rank == 0 && !access(path, F_OK)) {
     found = CHECKPOINT_FOREIGN;
-    file  = fopen(path, "rb");
+    file  = FileStream(path, "rb");
     if (file && fread(magic, 1, sizeof(magic) - 1, file) == sizeof(magic) - 1 && !strcmp(magic, CHECKPOINT_MAGIC))
       found = CHECKPOINT_OURS;
     if (file) (void)fclose(file);

@@ -2,6 +2,7 @@
    What a run of modes left of one mode: its row of modes.csv, and mesh and shape in modes.h5.
 */
 #include "shape.h"
+#include "base/file.h"
 #include <errno.h>
 #include <hdf5.h>
 #include <math.h>
@@ -91,10 +92,10 @@ static PetscErrorCode ShapeOpenTable(const ShapeSource *source, char name[PETSC_
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/modes.csv", source->dir));
-  *file = fopen(name, "r");
+  *file = FileStream(name, "r");
   if (!*file)
     PetscCall(FaultNote(fault, PETSC_ERR_FILE_OPEN, "cannot read %s: %s; %s needs the folder of a run of modes", name,
-                        strerror(errno), source->option));
+                        FileReason(errno), source->option));
   PetscFunctionReturn(0);
 }
 
@@ -245,7 +246,7 @@ PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal omega, Shape 
   for (int i = 0; i < 2; i++)
     PetscCall(PetscSNPrintf(key[i], sizeof(key[i]), "PointData/mode_%03d%s_%s", (int)source->mode, source->kind,
                             i ? "im" : "re"));
-  from.file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
+  from.file = FileH5Open(name);
   if (from.file < 0)
     PetscCall(FaultNote(fault, PETSC_ERR_FILE_OPEN, "cannot read %s, which a run of modes writes with %s, for %s", name,
                         source->made_by, source->option));

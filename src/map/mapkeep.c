@@ -6,6 +6,7 @@
    file of their own, of which the chain's knows number and checksum.
 */
 #include "mapimpl.h"
+#include "base/file.h"
 #include "base/path.h"
 #include <squeal/checksum.h>
 #include <stdio.h>
@@ -78,7 +79,7 @@ static PetscErrorCode KeptWrite(Map map, const char kind[], PetscInt k, PetscInt
   if (!map->restart) PetscFunctionReturn(0);
   KeptName(map, kind, k, "", name);
   KeptName(map, kind, k, ".part", part);
-  file = fopen(part, "wb");
+  file = FileCreateStream(part, "wb");
   good = file && fwrite(&map->scene, sizeof(map->scene), 1, file) == 1;
   for (PetscInt i = 0; i < n && good; i++) {
     if (!piece[i].size) continue;
@@ -104,7 +105,7 @@ static PetscBool KeptRead(Map map, const char kind[], PetscInt k, PetscInt n, co
 
   if (!map->restart) return PETSC_FALSE;
   KeptName(map, kind, k, "", name);
-  file = fopen(name, "rb");
+  file = FileStream(name, "rb");
   good = file && fread(&scene, sizeof(scene), 1, file) == 1 && scene == map->scene;
   for (PetscInt i = 0; i < n && good; i++) {
     if (!piece[i].size) continue;
@@ -143,7 +144,7 @@ static PetscErrorCode KeptAddRow(Map map, PetscInt chain, PetscInt k, const MapP
   PetscFunctionBeginUser;
   if (!map->restart) PetscFunctionReturn(0);
   KeptName(map, "rows", chain, "", name);
-  file = fopen(name, k ? "r+b" : "wb");
+  file = k ? FileStream(name, "r+b") : FileCreateStream(name, "wb");
   good =
     file && fseek(file, (long)((size_t)k * sizeof(*row)), SEEK_SET) == 0 && fwrite(row, sizeof(*row), 1, file) == 1;
   if (file && fclose(file)) good = 0;
@@ -160,7 +161,7 @@ static PetscBool KeptReadRows(Map map, PetscInt chain, PetscInt n, MapPoint row[
   int      good;
 
   KeptName(map, "rows", chain, "", name);
-  file = fopen(name, "rb");
+  file = FileStream(name, "rb");
   good = file && fread(row, sizeof(*row), (size_t)n, file) == (size_t)n;
   if (file) (void)fclose(file);
   for (PetscInt k = 0; k < n && good; k++) found = ChecksumBytes(found, &row[k], sizeof(*row));

@@ -3,6 +3,7 @@
    one term, H with the coefficient contact_mu; matrixterm.c has those of the list -terms. K, M and C count as terms that
    are there without friction, symmetric or not.
 */
+#include "base/file.h"
 #include "matrixterm.h"
 #include "pencilimpl.h"
 #include <errno.h>
@@ -95,13 +96,26 @@ PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_va
   PetscFunctionReturn(0);
 }
 
+/* Opens a binary file of PETSc, which by itself would read NAME.info beside it as an options file, and write one */
+static PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerCreate(comm, viewer));
+  PetscCall(PetscViewerSetType(*viewer, PETSCVIEWERBINARY));
+  PetscCall(PetscViewerBinarySetSkipInfo(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerBinarySetSkipOptions(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerFileSetMode(*viewer, mode));
+  PetscCall(PetscViewerFileSetName(*viewer, file));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char file[], Mat *A)
 {
   PetscViewer viewer;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixFileCheck(comm, option, file));
-  PetscCall(PetscViewerBinaryOpen(comm, file, FILE_MODE_READ, &viewer));
+  PetscCall(MatrixViewerOpen(comm, file, FILE_MODE_READ, &viewer));
   PetscCall(MatCreate(comm, A));
   PetscCall(MatSetType(*A, MATAIJ));
   PetscCall(MatLoad(*A, viewer));
@@ -192,12 +206,12 @@ static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObje
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
   PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", file));
-  PetscCall(PetscViewerCreate(o->comm, &viewer));
-  PetscCall(PetscViewerSetType(viewer, PETSCVIEWERBINARY));
-  PetscCall(PetscViewerBinarySkipInfo(viewer));
-  PetscCall(PetscViewerFileSetMode(viewer, FILE_MODE_WRITE));
-  PetscCall(PetscViewerFileSetName(viewer, part));
   PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) failed = FileMake(part);
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", part,
+             FileReason(failed));
+  PetscCall(MatrixViewerOpen(o->comm, part, FILE_MODE_WRITE, &viewer));
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   errno = 0;
   error = PetscObjectView(A, viewer);

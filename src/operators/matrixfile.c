@@ -7,6 +7,7 @@
    A dense file has n = -1 and all entries. Numbers beyond 1e60 are refused: their products are no numbers.
 */
 #include "pencilimpl.h"
+#include "base/file.h"
 #include <errno.h>
 #include <sys/stat.h>
 
@@ -125,9 +126,9 @@ static PetscErrorCode MatrixFileNumbers(MatrixFile *f)
 static PetscErrorCode MatrixFileRead(const char file[], MatrixFile *f)
 {
   PetscFunctionBeginUser;
-  f->stream = fopen(file, "rb");
+  f->stream = FileStream(file, "rb");
   if (!f->stream) {
-    PetscCall(PetscSNPrintf(f->fault, sizeof(f->fault), "%s", strerror(errno)));
+    PetscCall(PetscSNPrintf(f->fault, sizeof(f->fault), "%s", FileReason(errno)));
     PetscFunctionReturn(0);
   }
   PetscCall(MatrixFileHead(f));

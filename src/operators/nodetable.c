@@ -7,6 +7,7 @@
    may be left out. Columns stand in any order; further ones are left unread.
 */
 #include "nodetable.h"
+#include "base/file.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -150,8 +151,8 @@ static PetscErrorCode NodeFileRead(NodeFile *f, const char file[], NodeTable *ta
   PetscInt n;
 
   PetscFunctionBeginUser;
-  f->stream = fopen(file, "r");
-  if (!f->stream) (void)snprintf(f->fault, sizeof(f->fault), "%s", strerror(errno));
+  f->stream = FileStream(file, "r");
+  if (!f->stream) (void)snprintf(f->fault, sizeof(f->fault), "%s", FileReason(errno));
   if (!f->stream) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(f->n_unknowns, &f->seen));
   NodeFileHead(f);

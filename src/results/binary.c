@@ -3,6 +3,7 @@
    file and flushes the folder, without which a crash of the machine may take the new name back.
 */
 #include "resultsimpl.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -16,7 +17,7 @@ static PetscErrorCode OutFileOpenBinary(OutFile *file)
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   for (int turn = 0; turn < 2; turn++) {
     if ((rank == 0) == (turn == 0)) {
-      file->fd = open(file->part, rank == 0 ? O_WRONLY | O_CREAT | O_TRUNC : O_WRONLY, 0666);
+      file->fd = rank ? FileOpen(file->part, O_WRONLY) : FileCreate(file->part, O_WRONLY);
       PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
     }
     PetscCall(OutFilesCheck(1, &file));

@@ -3,7 +3,9 @@
    somebody else put there may have any name.
 */
 #include "resultsimpl.h"
+#include "base/file.h"
 #include <ctype.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -127,21 +129,15 @@ static PetscErrorCode LineRead(Results results, char line[])
   PetscFunctionReturn(0);
 }
 
-/* Reads which files earlier runs wrote, from the scene.yaml that is there before this run writes its own. On the first
-   rank; the others have none */
-PetscErrorCode EarlierRead(Results results)
+/* Reads the lines of an earlier scene.yaml; returns errno where something is there that cannot be read */
+static PetscErrorCode SceneRead(Results results, const char path[], int *error)
 {
-  char        path[PETSC_MAX_PATH_LEN], *line = NULL;
-  size_t      room = 0;
-  FILE       *file;
-  PetscMPIInt rank;
+  FILE  *file = FileStream(path, "r");
+  char  *line = NULL;
+  size_t room = 0;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
-  if (rank || results->earlier_read) PetscFunctionReturn(0);
-  results->earlier_read = PETSC_TRUE;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
-  file = fopen(path, "r");
+  *error = file || errno == ENOENT ? 0 : errno;
   if (!file) PetscFunctionReturn(0); /* nothing there is known to be squeal's */
   while (getline(&line, &room, file) >= 0) {
     if (!strncmp(line, SCENE_FILES, strlen(SCENE_FILES))) PetscCall(LineRead(results, line + strlen(SCENE_FILES)));
@@ -149,6 +145,25 @@ PetscErrorCode EarlierRead(Results results)
   }
   free(line);
   (void)fclose(file);
+  PetscFunctionReturn(0);
+}
+
+/* Reads which files earlier runs wrote, from the scene.yaml that is there before this run writes its own. On the first
+   rank; the others have none. Collective */
+PetscErrorCode EarlierRead(Results results)
+{
+  char        path[PETSC_MAX_PATH_LEN];
+  PetscMPIInt rank;
+  int         error = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
+  if (rank == 0) PetscCall(SceneRead(results, path, &error));
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
+  PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
+             "cannot read %s, which names the files of earlier runs: %s; remove it, or choose another -output_dir", path,
+             FileReason(error));
   PetscFunctionReturn(0);
 }
 

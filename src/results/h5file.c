@@ -5,7 +5,9 @@
    nothing where the rows are; all the rest is copied from there when HDF5 has closed it.
    Reference: The HDF Group, HDF5 Reference Manual, H5Dget_offset, H5Pset_alloc_time.
 */
+#define _GNU_SOURCE /* memfd_create() */
 #include "resultsimpl.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -52,16 +54,13 @@ static PetscErrorCode OutFileH5Room(OutFile *file, hsize_t size)
   PetscFunctionReturn(0);
 }
 
-/* A file in memory without a name; negative where there is none */
-static int MemoryFile(void)
+/* A file in memory, which no file system bounds: /dev/shm may be full or read-only. Its failure is one of its own */
+static PetscErrorCode OutFileCreateMemory(OutFile *file)
 {
-  char name[64];
-  int  fd;
-
-  (void)snprintf(name, sizeof(name), "/squeal-%ld", (long)getpid());
-  fd = shm_open(name, O_RDWR | O_CREAT | O_EXCL, 0600);
-  if (fd >= 0) (void)shm_unlink(name);
-  return fd;
+  PetscFunctionBeginUser;
+  file->memory = memfd_create("squeal", MFD_CLOEXEC);
+  if (file->memory < 0 && !file->error) file->error = OUTFILE_NO_MEMORY;
+  PetscFunctionReturn(0);
 }
 
 /* Puts the file in memory below HDF5, with what it has written already */
@@ -88,15 +87,18 @@ static PetscErrorCode OutFileH5Detach(OutFile *file)
 /* Creates the file on the first rank, which HDF5 then leaves alone */
 static PetscErrorCode OutFileCreateH5(OutFile *file)
 {
+  hid_t access;
+
   PetscFunctionBeginUser;
-  file->fd = open(file->part, O_RDWR | O_CREAT | O_TRUNC, 0666);
+  file->fd = FileCreate(file->part, O_RDWR);
   PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(OutFileH5Room(file, 0));
-  file->memory = MemoryFile();
-  PetscCall(OutFileNote(file, file->memory < 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(OutFileCreateMemory(file));
   if (file->error) PetscFunctionReturn(0);
-  H5Quietly(file->h5, H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  access = FileH5Access();
+  H5Quietly(file->h5, H5Fcreate(file->part, H5F_ACC_TRUNC, H5P_DEFAULT, access));
   PetscCall(OutFileH5Note(file, file->h5));
+  (void)H5Pclose(access);
   if (file->h5 >= 0) PetscCall(OutFileH5Detach(file));
   PetscFunctionReturn(0);
 }
@@ -111,7 +113,7 @@ PetscErrorCode OutFileOpenH5(OutFile *file)
   if (rank == 0) PetscCall(OutFileCreateH5(file));
   PetscCall(OutFilesCheck(1, &file));
   if (rank > 0) {
-    file->fd = open(file->part, O_WRONLY);
+    file->fd = FileOpen(file->part, O_WRONLY);
     PetscCall(OutFileNote(file, file->fd < 0 ? PETSC_TRUE : PETSC_FALSE));
   }
   PetscCall(OutFilesCheck(1, &file));

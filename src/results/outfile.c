@@ -3,6 +3,7 @@
    Text that was flushed for a later run to go on from stays as NAME.part when this one fails.
 */
 #include "resultsimpl.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -49,7 +50,7 @@ PetscErrorCode OutFileOpenText(OutFile *file)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   if (rank == 0) {
-    file->stream = fopen(file->part, "w+");
+    file->stream = FileCreateStream(file->part, "w+");
     PetscCall(OutFileNote(file, file->stream ? PETSC_FALSE : PETSC_TRUE));
   }
   PetscFunctionReturn(0);
@@ -113,8 +114,8 @@ static const char *TextCut(OutFile *file, int fd, const char head[], const Resul
    bytes */
 static const char *TextReopen(OutFile *file, const char path[], const char head[], const ResultsMark *mark)
 {
-  const int   fd     = open(path, O_RDWR);
-  const char *reason = fd < 0 ? strerror(errno) : TextCut(file, fd, head, mark);
+  const int   fd     = FileOpen(path, O_RDWR);
+  const char *reason = fd < 0 ? FileReason(errno) : TextCut(file, fd, head, mark);
 
   if (!reason && strcmp(path, file->part) && rename(file->name, file->part)) reason = strerror(errno);
   if (!reason && lseek(fd, 0, SEEK_END) < 0) reason = strerror(errno);
@@ -221,7 +222,7 @@ static PetscErrorCode OutFileDiscard(OutFile *file)
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   PetscCall(OutFileCloseText(file));
   PetscCall(OutFileH5Close(file));
-  if (rank == 0 && !file->keep) (void)unlink(file->part); /* it may never have come to exist */
+  if (rank == 0 && !file->keep && file->error != FILE_NO_REGULAR) (void)unlink(file->part); /* it may never have come to exist */
   PetscFunctionReturn(0);
 }
 
@@ -243,6 +244,12 @@ PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[])
   for (PetscInt i = 0; i < n; i++) PetscCall(OutFileDiscard(files[i]));
   PetscCallMPI(MPI_Barrier(files[0]->comm)); /* no rank ends the run before the files are gone */
   advice = error == ENOSPC || error == EDQUOT || error == EFBIG ? "free some space or " : "";
+  PetscCheck(error != FILE_NO_REGULAR, files[failed]->comm, PETSC_ERR_FILE_WRITE,
+             "cannot write %s: it is no regular file; remove it, or choose another -output_dir", files[failed]->part);
+  PetscCheck(error != OUTFILE_NO_MEMORY, files[failed]->comm, PETSC_ERR_FILE_WRITE,
+             "cannot write %s: HDF5 needs a file in memory of some kilobytes, which memfd_create() does not give; do "
+             "without by -output_fields 0",
+             files[failed]->name);
   SETERRQ(files[failed]->comm, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; %schoose another -output_dir",
           files[failed]->name, strerror(error), advice);
 }

@@ -226,7 +226,6 @@ static PetscErrorCode SceneWrite(Results results, PetscBool ended)
 
   PetscFunctionBeginUser;
   PetscCall(OutFileSetName(results, SCENE, ".yaml", file));
-  PetscCall(EarlierRead(results));
   PetscCall(OutFileOpenText(file));
   PetscCall(ScenePrintCommands(results, file));
   PetscCall(ScenePrintCost(results, ended, file));

@@ -16,6 +16,7 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
   PetscCall(PetscNew(results));
   (*results)->comm   = comm;
   (*results)->fields = PETSC_TRUE;
+  (*results)->lock   = -1;
   PetscCall(PetscStrncpy((*results)->dir, "results", sizeof((*results)->dir)));
   PetscFunctionReturn(0);
 }
@@ -46,6 +47,8 @@ PetscErrorCode ResultsOpenDirectory(Results results)
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
              "cannot write into the folder -output_dir %s: %s; choose another", results->dir, strerror(error));
+  PetscCall(ResultsLock(results));
+  PetscCall(EarlierRead(results));
   PetscFunctionReturn(0);
 }
 
@@ -158,6 +161,7 @@ PetscErrorCode ResultsTableClose(ResultsTable *table)
 PetscErrorCode ResultsDestroy(Results *results)
 {
   PetscFunctionBeginUser;
+  ResultsUnlock(*results);
   if (*results) PetscCall(ResultsForget(*results));
   PetscCall(PetscFree(*results));
   PetscFunctionReturn(0);

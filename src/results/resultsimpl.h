@@ -20,6 +20,8 @@
 #define SCENE_FILES "# files:"
 #define SCENE_STAY  "# files of earlier runs:"
 
+#define OUTFILE_NO_MEMORY 4097 /* in errno: there is no file in memory */
+
 struct _p_Results {
   MPI_Comm  comm;
   char      dir[PETSC_MAX_PATH_LEN];
@@ -29,10 +31,10 @@ struct _p_Results {
   char    **earlier;      /* those that earlier runs wrote and this one does not keep, on the first rank */
   char    **note;         /* lines of scene.yaml */
   PetscBool keep_all;     /* nothing of earlier runs goes */
-  PetscBool earlier_read; /* on the first rank: `earlier` is what their scene.yaml lists */
   PetscInt  n_listed;     /* files that scene.yaml of this run names, 0 before it is there */
   HelpList  options;      /* all, as the run found them */
   double    begun;        /* MPI_Wtime() */
+  int       lock;         /* of the folder, on the first rank, else -1 */
 };
 
 /* A file that is being written as `part`, to be renamed to `name` */
@@ -88,6 +90,9 @@ PETSC_INTERN PetscErrorCode OutFileVPrint(OutFile *file, const char format[], va
 PETSC_INTERN PetscErrorCode OutFileWriteAt(OutFile *file, const char *bytes, size_t size, off_t offset);
 PETSC_INTERN PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[]);
 PETSC_INTERN PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[]);
+
+/* lock.c */
+PETSC_INTERN PetscErrorCode ResultsLock(Results results);
 
 /* earlier.c */
 PETSC_INTERN PetscErrorCode EarlierRead(Results results);

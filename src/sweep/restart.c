@@ -6,8 +6,8 @@
    of each file, whether it is whole. Files of another sweep and damaged ones are named, not read, and in the end replaced.
 */
 #include "sweepimpl.h"
+#include "base/file.h"
 #include "base/path.h"
-#include <stdio.h>
 #include <unistd.h>
 
 #define VERSION         6       /* of the format */
@@ -144,7 +144,7 @@ static PetscErrorCode AllGood(MPI_Comm comm, PetscBool *good)
 /* The checksum of all that stands in a file: appended, or compared with the one at its end */
 static PetscErrorCode FileSeal(const char name[], PetscBool append, PetscBool *good)
 {
-  FILE    *file = *good ? fopen(name, append ? "r+b" : "rb") : NULL;
+  FILE    *file = *good ? FileStream(name, append ? "r+b" : "rb") : NULL;
   char    *piece;
   uint64_t sum = CHECKSUM_BEGIN, last = 0;
   long     left = 0;
@@ -208,7 +208,7 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(HeaderSet(sweep, n_parts, &h));
   PetscCall(FileName(sweep, sweep->n_files, "", name));
   PetscCall(FileName(sweep, sweep->n_files, ".part", part));
-  s.file = fopen(part, "wb");
+  s.file = FileCreateStream(part, "wb");
   s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(&s, &h, sizeof(h), 1);
   Transfer(&s, (void *)scene, sizeof(*scene), h.n_parts);
@@ -301,7 +301,7 @@ static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
   there = whole = access(name, F_OK) == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(FileSeal(name, PETSC_FALSE, &whole));
   PetscCall(AllGood(sweep->comm, &whole));
-  s.file = whole ? fopen(name, "rb") : NULL;
+  s.file = whole ? FileStream(name, "rb") : NULL;
   s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
   Transfer(&s, &h, sizeof(h), 1);
   if (s.good) PetscCall(SceneCheck(sweep, &s, &h, names));

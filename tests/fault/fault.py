@@ -102,7 +102,7 @@ class Table:
 
 def contents(folder, ranks):
     """Files with final names."""
-    paths = [path for path in folder.glob("*") if path.suffix != ".part" and "_restart_" not in path.name]
+    paths = [path for path in folder.glob("*") if path.suffix not in (".part", ".lock") and "_restart_" not in path.name]
     return {path.name: content(path, ranks) for path in paths}
 
 

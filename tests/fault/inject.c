@@ -10,6 +10,7 @@
      FAULT_SIGNAL  a signal that the process gets before the call instead of a failure: 9 kills it there
      FAULT_RANK    rank of MPI whose calls count, 0 by default
      FAULT_ASK     in place of FAULT_AT: a socket of a test that names the calls; at each the run copies itself (branch.c)
+     FAULT_NO_LOCKS  flock(2) fails, whatever else is planned
      FAULT_REPORT  file for the number of calls, whether one failed, and which one: int64, int64, text
 
    Allocations are told apart by who asks: the program itself (memory.c). serve.c starts the program again and again

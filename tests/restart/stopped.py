@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A run of explicit dynamics that is stopped by signals, or out of room on the disk, and goes on from its last
+"""A run of explicit dynamics that is stopped by signals, or finds no room for a file, and goes on from its last
 checkpoint, ends with the tables and fields of a run that nobody disturbed, to the last bit. Breaks when a rank stops
 at another step than the rest, a file that is not whole replaces a good one, or rows are lost."""
 
@@ -21,8 +21,8 @@ def limit_table(runs, name, process):
         resource.prlimit(rank, resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
 
 
-def fill(runs, name, file):
-    """Puts a full disk in place of the file that is to be written, once it is not being written."""
+def occupy(runs, name, file):
+    """Puts a link in place of the file that is to be written, once it is not being written."""
     while True:
         try:
             runs.path(name, f"{file}.part").symlink_to("/dev/full")
@@ -32,7 +32,7 @@ def fill(runs, name, file):
 
 
 def check_full(runs):
-    """A row of the table, a checkpoint or a snapshot finds no room: one line; the last checkpoint serves, with
+    """A row of the table finds no room, or the name of a checkpoint or a snapshot is a link: one line; the last checkpoint serves, with
     more."""
     for file in ("transient.csv", "checkpoint.bin", "snapshot_000012.h5"):
         name = f"full_{file.split('.')[0]}"
@@ -43,14 +43,16 @@ def check_full(runs):
             wait(process, lambda: table.stat().st_size > 200000)  # more than a checkpoint has
             limit_table(runs, name, process)
         else:
-            fill(runs, name, file)
+            occupy(runs, name, file)
         stderr = process.communicate(timeout=PATIENCE)[1]
         lines = [line for line in stderr.splitlines() if line.startswith("squeal:")]
-        if not process.returncode or len(lines) != 1 or f"cannot write {runs.path(name, file)}: " not in lines[0]:
+        if not process.returncode or len(lines) != 1 or f"cannot write {runs.path(name, file)}" not in lines[0]:
             fail(f"{runs.scene}: no room for {file}: exit status {process.returncode}: {stderr}")
+        if file != "transient.csv":
+            runs.path(name, f"{file}.part").unlink()
         runs.complete(name, "-dynamics_checkpoint_interval", str(OFTEN), RESTART)
         compare(runs, "undisturbed", name)
-    print(f"{runs.scene}: no room for a row, a checkpoint, a snapshot, gone on with more: bitwise the same", flush=True)
+    print(f"{runs.scene}: no room for a row, no place for a checkpoint or a snapshot, gone on with it: bitwise the same", flush=True)
 
 
 # --- signals

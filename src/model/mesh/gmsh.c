@@ -7,6 +7,7 @@
    3.18 knows no curves.
 */
 #include "gmsh.h"
+#include "base/file.h"
 
 #include <errno.h>
 
@@ -262,9 +263,9 @@ PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *erro
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(mesh, sizeof(*mesh)));
   PetscCall(PetscMemzero(error, sizeof(*error)));
-  r.file = fopen(file, "rb");
+  r.file = FileStream(file, "rb");
   if (!r.file || fseek(r.file, 0, SEEK_END))
-    ReaderErrorSet(error, PETSC_ERR_FILE_OPEN, "%s", strerror(errno));
+    ReaderErrorSet(error, PETSC_ERR_FILE_OPEN, "%s", FileReason(errno));
   else
     r.most = PetscMin(ftell(r.file), PETSC_MAX_INT / 32);
   if (r.file) rewind(r.file);

@@ -4,6 +4,7 @@
    coordinates have 17 digits, so that the file gives the same matrices.
    Reference: Gmsh reference manual, MSH file format version 2.
 */
+#include "base/file.h"
 #include "model/modelimpl.h"
 #include <errno.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static int RigFileMake(Model model, PetscInt n_surfaces, const ModelFaces faces[
 
   (void)snprintf(part, sizeof(part), "%s.part", model->rig.save);
   errno       = 0;
-  file.stream = fopen(part, "w");
+  file.stream = FileCreateStream(part, "w");
   if (!file.stream) return errno;
   RigFileWrite(&file, &model->mesh, n_surfaces, faces, n_rows, rows);
   failed = ferror(file.stream) ? (errno ? errno : EIO) : 0;
@@ -103,7 +104,7 @@ PetscErrorCode RigSave(Model model)
   if (rank == 0) failed = RigFileMake(model, n_surfaces, faces, n_rows, rows);
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, model->comm));
   PetscCheck(!failed, model->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -rig_save: %s", model->rig.save,
-             strerror(failed));
+             FileReason(failed));
   PetscCall(PetscFree(rows));
   for (PetscInt s = 0; s < n_surfaces; s++) PetscCall(ModelFacesDestroy(&faces[s]));
   PetscFunctionReturn(0);
