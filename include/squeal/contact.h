@@ -81,7 +81,11 @@ typedef struct {
   PetscReal  kt;          /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
   PetscBool  kt_per_area; /* which of the two */
   PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
-  PetscReal  tolerance;   /* pairs farther apart than this are no pairs, m */
+  PetscReal  tolerance;   /* largest distance of a pair along the normal, m */
+  PetscReal  overhang;    /* along the surface: slaves farther beyond the master's border have no pair, m; 0: 1 % of a facet */
+  PetscInt   n_slaves;    /* nodes of the slave, over all ranks */
+  PetscInt   n_off;       /* those of them that have no pair, since no master lies under them */
+  PetscReal  off;         /* the farthest of these from the border, m */
   PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
   PetscReal  force;       /* total normal force in the sliding state, N */
   PetscReal  speed;       /* sliding speed, m/s */
@@ -134,7 +138,9 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_speed <m/s>           - sliding speed where only the direction is given
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu_slope N0 along it
-.  -contact_tolerance <m>         - largest distance of the two nodes of a pair
+.  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
+.  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave node has a
+                                   pair; default 1 % of the size of the facet
 .  -ties <names>                  - surfaces glued to others; each name is the prefix of the following, shown for one named `bond`
 .  -bond_surfaces <slave,master>  - a set whose nodes follow, and a surface
 .  -bond_distance <m>             - largest distance of a node from the surface; default 5 % of the size of the facet
@@ -145,8 +151,12 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 /*@
    ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
 
-   Errors: PETSC_ERR_USER_INPUT when a slave node finds no master node within the tolerance: names the interface, the
-   position of the node and the distance to the nearest candidate; also when a slip that is given vanishes in the
+   A slave node beyond the border of the master (over a hole or slot, or beyond the rim) has no pair and carries nothing; a
+   warning counts such nodes.
+
+   Errors: PETSC_ERR_USER_INPUT when a slave node over the master is farther from it along the normal than the tolerance, or
+   when no slave node lies over the master: names the interface, the position of the node and its distance; also when
+   a slip that is given vanishes in the
    surface at some pair, and friction needs it; for a node of a tie that is too far off, or that a support holds in a
    direction in which it does not hold what the node follows.
 @*/

@@ -64,12 +64,12 @@ static PetscErrorCode HoldRead(OptionsItems PetscOptionsObject, ContactInterface
 /* Raises an error for what is no finite number */
 static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface *c)
 {
-  static const char *const option[]   = {"mu", "mu_slope", "speed", "force", "tolerance"};
-  static const char *const unit[]     = {"without unit", "s/m", "m/s", "N", "m"};
-  const PetscReal          value[][3] = {{c->mu}, {c->mu_slope}, {c->speed}, {c->force}, {c->tolerance}};
+  static const char *const option[]   = {"mu", "mu_slope", "speed", "force", "tolerance", "overhang"};
+  static const char *const unit[]     = {"without unit", "s/m", "m/s", "N", "m", "m"};
+  const PetscReal          value[][3] = {{c->mu}, {c->mu_slope}, {c->speed}, {c->force}, {c->tolerance}, {c->overhang}};
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < 5; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
+  for (int i = 0; i < 6; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
   PetscCall(OptionsCheckFinite(comm, c->name, "slip", "a direction", c->slip));
   PetscCall(OptionsCheckFinite(comm, c->name, "rotation", "rad/s", c->rotation));
   PetscCall(OptionsCheckFinite(comm, c->name, "centre", "m", c->centre));
@@ -98,7 +98,11 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(StiffnessRead(PetscOptionsObject, c));
   PetscCall(HoldRead(PetscOptionsObject, c));
   PetscCall(
-    PetscOptionsReal("-tolerance", "largest distance of a pair, m", "contact.h", c->tolerance, &c->tolerance, NULL));
+    PetscOptionsReal("-tolerance", "largest distance of a slave node from the master along the normal, m", "contact.h",
+                     c->tolerance, &c->tolerance, NULL));
+  PetscCall(PetscOptionsReal(
+    "-overhang", "slave nodes farther beyond the master's border have no pair, m; 0: 1 % of a facet", "contact.h",
+    c->overhang, &c->overhang, NULL));
   PetscCall(
     PetscOptionsReal("-force", "total normal force in the sliding state, N", "contact.h", c->force, &c->force, NULL));
   PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", "contact.h", c->speed, &c->speed, NULL));
@@ -137,6 +141,8 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              c->name, c->kt_per_area ? "_per_area" : "");
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
              (double)c->tolerance);
+  PetscCheck(c->overhang >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_overhang %.6g must not be negative (m)", c->name,
+             (double)c->overhang);
   PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
              (double)c->force);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
@@ -270,7 +276,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
     const PetscReal         kn        = f->identify ? 0 : f->per_area ? -f->kn : f->kn;
     const PetscReal         kt        = f->kt_per_area ? -f->kt : f->kt;
-    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->speed, kn, kt, f->force};
+    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->overhang, f->speed, kn, kt, f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
@@ -306,6 +312,10 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
         PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
+    if (c->n_off)
+      PetscCall(PetscViewerASCIIPrintf(viewer,
+                                       "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n",
+                                       c->n_off, c->n_slaves, c->slave));
   }
   if (contact->n_interfaces)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));

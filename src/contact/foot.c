@@ -4,7 +4,7 @@
 
    It walks from a facet across edges, until it lies within one; on an edge (to 1e-9 of a facet) it stays where it is.
    Between two facets that both have it beyond their common edge (a ridge) it faces the edge, on the facet of the lower
-   number. Beyond the border of the surface it faces the border, up to CONTACT_EDGE.
+   number. Beyond the border of the surface it faces the border, up to ContactEdge().
 */
 #include "contactimpl.h"
 #include "kernels/drop.h"
@@ -75,7 +75,7 @@ static void WalkEnd(const ContactShape *shape, ContactFoot *foot)
   const ContactFacet *facet = &shape->surface->facet[foot->facet];
 
   foot->beyond = BeyondBorder(facet, foot->natural);
-  if (foot->beyond > CONTACT_EDGE) foot->facet = -1;
+  if (foot->beyond > ContactEdge(shape->surface, facet)) foot->facet = -1;
   FacetClamp(facet->n, foot->natural);
 }
 
@@ -132,6 +132,19 @@ void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3],
   if (gap >= -deepest * facet->size * PetscSqrtReal(length) && here.distance < foot->distance) *foot = here;
 }
 
+/* Distance along the surface, across its normal, from a foot on the border, m; 0 for a foot within */
+static PetscReal FootAcross(const ContactSurface *surface, const ContactFoot *foot, const PetscReal x[3])
+{
+  const ContactFacet *f       = &surface->facet[foot->facet];
+  const PetscReal     none[3] = {0, 0, 0};
+  PetscReal           weight[CONTACT_MAX_MASTER], e[3][3], gap;
+
+  if (BeyondBorder(f, foot->natural) < -INSIDE) return 0;
+  (void)ContactBasis(f, foot->natural, none, weight, e);
+  gap = ContactGap(f, weight, e[0], x);
+  return PetscSqrtReal(PetscMax(0, PetscSqr(foot->distance) - PetscSqr(gap)));
+}
+
 void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
 {
   const ContactShape rest = {.surface = surface};
@@ -141,6 +154,7 @@ void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], Contac
   if (foot->facet < 0) return;
   walk = *foot;
   ContactFootWalk(&rest, x, &walk);
+  if (walk.facet < 0 || walk.beyond > 0) foot->across = FootAcross(surface, foot, x);
   if (walk.facet < 0) return;
   foot->facet = walk.facet;
   for (int i = 0; i < 2; i++) foot->natural[i] = walk.natural[i];

@@ -1,6 +1,7 @@
 /*
    Pairing by position. Every rank finds the feet of its own slave nodes on the master surface (surface.h): the nearest
-   point, and from there the facet whose normal leads to the node. The master point moves with the facet's shape
+   point, and from there the facet whose normal leads to the node. A node beyond the border of the master has no pair: a
+   distance along the surface is no gap. The master point moves with the facet's shape
    functions, so that matching meshes give node-to-node pairs.
 
    Slip: given, or the velocity of the slave relative to a master that turns with angular velocity w about c:
@@ -39,11 +40,12 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
   return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Worst failure over all ranks: distance of a node without partner (m), its position, whether a slip vanished; slaves
-   that are nodes of the master too, and whose surface looks towards the master's or with it */
+/* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the border of
+   the master the farthest, and the nearest (its distance along the surface and in all, and where); whether a slip vanished;
+   slaves that are nodes of the master too, and whose surface looks towards the master's or with it */
 typedef struct {
-  PetscReal distance, x[3], no_slip;
-  PetscInt  n_common, n_towards, n_with, n;
+  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip;
+  PetscInt  n_common, n_towards, n_with, n, n_off;
 } PairFailure;
 
 /* Counts a pair that has one node twice, or of which one surface looks towards the other or where that looks */
@@ -58,7 +60,48 @@ static void PairLook(const ContactPair *pair, const PetscReal normal[3], PairFai
   if (along > 0) failure->n_with++;
 }
 
-/* Pairs the slave nodes that this rank owns with the facets nearest to them; what fails is kept in *failure */
+/* Keeps that a slave at x lies beyond the border of the master */
+static void PairOff(const ContactFoot *foot, const PetscReal x[3], PairFailure *failure)
+{
+  failure->n_off++;
+  failure->off = PetscMax(failure->off, foot->across);
+  if (failure->n_off > 1 && foot->across >= failure->nearest[0]) return;
+  failure->nearest[0] = foot->across;
+  failure->nearest[1] = foot->distance;
+  for (int d = 0; d < 3; d++) failure->nearest_x[d] = x[d];
+}
+
+/* Whether a slave lies farther beyond the border of the master than is allowed */
+static PetscBool FootIsOff(const ContactSurface *surface, const ContactFoot *foot)
+{
+  const ContactFacet *facet = &surface->facet[foot->facet];
+
+  return foot->across > 0.5 * ContactEdge(surface, facet) * facet->size ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Makes the pair of a slave node, but for its place in the list; false where no master lies under it */
+static PetscBool PairMake(const ContactInterface *c, const ContactSurface *surface, const PetscReal normal[3],
+                          ContactPair *pair, PairFailure *failure)
+{
+  ContactFoot foot;
+  PetscReal   distance;
+
+  ContactFootFind(surface, pair->x, &foot);
+  if (foot.facet < 0 || FootIsOff(surface, &foot)) {
+    PairOff(&foot, pair->x, failure);
+    return PETSC_FALSE;
+  }
+  if (!PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
+  distance = foot.across > 0 ? PetscAbsReal(pair->gap) : foot.distance;
+  if (distance > failure->distance) {
+    failure->distance = distance;
+    for (int d = 0; d < 3; d++) failure->x[d] = pair->x[d];
+  }
+  PairLook(pair, normal, failure);
+  return PETSC_TRUE;
+}
+
+/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
                                 PairFailure *failure)
 {
@@ -74,20 +117,12 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt v    = vertices[i];
-    ContactPair   *pair = &contact->pairs[contact->n_pairs++];
-    ContactFoot    foot;
+    ContactPair   *pair = &contact->pairs[contact->n_pairs];
 
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
     PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
-    ContactFootFind(surface, pair->x, &foot);
-    if (foot.distance > failure->distance) {
-      failure->distance = foot.distance;
-      PetscCall(PetscArraycpy(failure->x, pair->x, 3));
-    }
-    if (foot.facet < 0) continue;
-    if (!PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
-    PairLook(pair, &normals[3 * v], failure);
+    if (PairMake(c, surface, &normals[3 * v], pair, failure)) contact->n_pairs++;
   }
   PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
@@ -99,7 +134,6 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
 static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, PairFailure *failure)
 {
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->n_common, 4, MPIU_INT, MPI_SUM, comm));
   PetscCheck(
     2 * failure->n_common <= failure->n, comm, PETSC_ERR_USER_INPUT,
     "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
@@ -126,20 +160,56 @@ PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a node without partner, or where the slip that is given vanishes */
+/* Counts the slaves beyond the border of the master: an error where they are all */
+static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
+{
+  PetscReal *const along = failure->nearest, *const x = failure->nearest_x;
+  PetscReal        order = failure->n_off ? -along[0] : -PETSC_MAX_REAL, away[3] = {along[0], along[1], 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->n_common, 5, MPIU_INT, MPI_SUM, comm));
+  c->n_off    = failure->n_off;
+  c->n_slaves = failure->n + failure->n_off;
+  if (!c->n_off) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Allreduce(&failure->off, &c->off, 1, MPIU_REAL, MPI_MAX, comm));
+  PetscCall(ContactShareWorst(comm, &(PetscReal){order}, x));
+  PetscCall(ContactShareWorst(comm, &order, away));
+  PetscCheck(failure->n, comm, PETSC_ERR_USER_INPUT,
+             "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g m, is %.6g m away, %.6g m of "
+             "it beyond the border along the surface; give two of -%s_surfaces that touch",
+             c->name, c->slave, c->master, (double)x[0], (double)x[1], (double)x[2], (double)away[1], (double)away[0],
+             c->name);
+  PetscFunctionReturn(0);
+}
+
+/* Says how many slaves carry nothing */
+static PetscErrorCode OffWarn(MPI_Comm comm, const ContactInterface *c)
+{
+  PetscFunctionBeginUser;
+  if (!c->n_off) PetscFunctionReturn(0);
+  PetscCall(PetscFPrintf(comm, stderr,
+                         "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
+                         " nodes of %s have no master under them, and carry nothing; the farthest is %.3g m beyond the "
+                         "border of %s\n",
+                         c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, c->master));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a node too far from its partner, or where the slip that is given vanishes */
 static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   const PetscBool given =
     Vec3Dot(c->slip, c->slip) > 0 || Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCall(OffCheck(comm, c, failure));
   PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCheck(failure->distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s (nearest %.6g m away, "
-             "-%s_tolerance is %.6g m); each node of the first of -%s_surfaces must lie on the second",
+             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s: it is %.6g m above or below it, "
+             "-%s_tolerance is %.6g m; give a larger one for a gap that may close, or a set of the nodes that touch",
              c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
-             (double)failure->distance, c->name, (double)c->tolerance, c->name);
+             (double)failure->distance, c->name, (double)c->tolerance);
   PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
@@ -149,6 +219,7 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCheck(!c->slides || c->kt == 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt%s %.6g is of pairs that stick, and contact %s slides; leave it out, or -%s_slip and -%s_rotation",
              c->name, c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name, c->name, c->name);
+  PetscCall(OffWarn(comm, c));
   PetscFunctionReturn(0);
 }
 

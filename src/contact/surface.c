@@ -175,6 +175,7 @@ PetscErrorCode ContactGetSurface(Contact contact, PetscInt interface, const Cont
   if (!s->facet) {
     PetscCall(ContactSurfaceCreate(contact, contact->interfaces[interface].master, s));
     PetscCall(MasterCheck(contact->comm, &contact->interfaces[interface], s));
+    s->overhang = contact->interfaces[interface].overhang;
   }
   *surface = s;
   PetscFunctionReturn(0);

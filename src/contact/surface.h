@@ -42,6 +42,7 @@ typedef struct {
   ContactBox   *box;              /* at rest */
   PetscInt      n_nodes, *vertex; /* global numbers of the nodes, ascending */
   PetscReal     size;             /* mean of the facets, m */
+  PetscReal     overhang;         /* largest distance beyond the border of a slave that faces it, m; 0: CONTACT_EDGE */
 } ContactSurface;
 
 /* The surface as it lies */
@@ -58,6 +59,7 @@ typedef struct {
   PetscReal natural[2];
   PetscReal distance; /* of the slave, m */
   PetscReal beyond;   /* the border of the surface, in natural coordinates (2 is a facet); <= 0 within */
+  PetscReal across;   /* distance along the surface from a foot on the border, m; 0 where the foot is within */
 } ContactFoot;
 
 /* Facets found, a list that grows */
@@ -65,7 +67,13 @@ typedef struct {
   PetscInt n, room, *facet;
 } ContactFacetList;
 
-#define CONTACT_EDGE 0.02 /* beyond the border a slave still faces it, in natural coordinates */
+#define CONTACT_EDGE 0.02 /* beyond the border a slave still faces it, in natural coordinates: 1 % of a facet */
+
+/* How far beyond the border a slave still faces a facet, in natural coordinates */
+static inline PetscReal ContactEdge(const ContactSurface *s, const ContactFacet *f)
+{
+  return s->overhang > 0 ? 2 * s->overhang / f->size : CONTACT_EDGE;
+}
 
 /* By x, then y, then z */
 static inline int ContactPlaceCompare(const PetscReal a[3], const PetscReal b[3])
@@ -118,7 +126,7 @@ PETSC_INTERN void ContactFootWalk(const ContactShape *shape, const PetscReal x[3
 PETSC_INTERN void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal deepest,
                                  ContactFoot *foot);
 /* foot.c - foot of a node on the surface at rest: the nearest point, and from there the facet whose normal leads to the node;
-   matching nodes meet exactly. Beyond the border it is the nearest point */
+   matching nodes meet exactly. Beyond the border it is the nearest point, and foot->across is more than what ContactEdge() allows */
 PETSC_INTERN void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot);
 /* foot.c - weights and n, t, b at natural coordinates, t along a vector; returns the length of its part across n, 0
    where it has none and t is any tangent */

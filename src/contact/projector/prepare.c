@@ -114,7 +114,7 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
   ContactFoot            foot =
                 {
                   pair->facet, {pair->natural[0], pair->natural[1]},
-                   PETSC_MAX_REAL, 0
+                   PETSC_MAX_REAL, 0, 0
   },
               walk;
 
@@ -126,7 +126,7 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
     foot = (ContactFoot){.facet = -1, .distance = PETSC_MAX_REAL};
     for (PetscInt c = p->first_candidate[k]; c < p->first_candidate[k + 1]; c++)
       ContactFootTry(&shape, p->candidates.facet[c], x, deepest, &foot);
-    if (foot.beyond > CONTACT_EDGE) foot.facet = -1;
+    if (foot.facet >= 0 && foot.beyond > ContactEdge(m->surface, &m->surface->facet[foot.facet])) foot.facet = -1;
     walk = foot;
     if (foot.facet >= 0) ContactFootWalk(&shape, x, &walk);
     if (walk.facet >= 0) foot = walk;
