@@ -286,7 +286,7 @@ PetscErrorCode OptionsWithValue(const char value[], const char *const endings[],
   rest = all;
   PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &given, &more));
   while (more) {
-    if (NameEnds(name, endings) && ListHolds(given, value)) {
+    if (given && given[0] && NameEnds(name, endings) && ListHolds(given, value)) {
       PetscCall(PetscStrlcat(text, text[0] ? " or -" : "-", size));
       PetscCall(PetscStrlcat(text, name, size));
     }
