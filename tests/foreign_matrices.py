@@ -75,6 +75,44 @@ def calculix(path, A):
                     out.write("%d %d %24.17e\n" % (i + 1, j + 1, A[i, j]))
 
 
+def dmig_cards(name, A, form, kind=2, polar=0, lines=None):
+    """Head and columns of bulk data in free fields, or as `lines` makes them of the fields of a card."""
+    labels, lines = unknowns(), lines or free_fields
+    cards = lines(["DMIG", name, 0, form, kind, 0, polar])
+    for j in range(len(A)):
+        fields = []
+        for i in numpy.flatnonzero(A[:, j]):
+            if form != 6 or labels[i] >= labels[j]:
+                fields += [*labels[i], *((A[i, j].real, A[i, j].imag) if kind > 2 else (float(A[i, j]), ""))]
+        cards += lines(["DMIG", name, *labels[j], "", *fields]) if fields else []
+    return cards
+
+
+def free_fields(card):
+    """Eight fields a line."""
+    words = [repr(float(word)) if isinstance(word, float) else str(word) for word in card]
+    return [",".join([words[0] if at == 1 else "", *words[at:at + 8]]) for at in range(1, len(words), 8)]
+
+
+def small_fields(card):
+    """Fields of 8 characters, numbers without an E, as 1.5-3."""
+    words = [("%.7g" % word if "." in "%.7g" % word else "%d." % word) if isinstance(word, float) else str(word) for word in card]
+    return [(words[0] if at == 1 else "+").ljust(8) + "".join(word.rjust(8) for word in words[at:at + 8]) for at in range(1, len(words), 8)]
+
+
+def large_fields(card):
+    """Fields of 16 characters, exponents with a D, as punched; the head in small ones."""
+    if card[2] == 0:
+        return small_fields(card)
+    words = [("%.9E" % word).replace("E", "D") if isinstance(word, float) else str(word) for word in card]
+    return [(words[0] + "*" if at == 1 else "*").ljust(8) + "".join(word.rjust(16) for word in words[at:at + 4]) for at in range(1, len(words), 4)]
+
+
+def dmig(path, A):
+    """One matrix, in free fields."""
+    path.write_text("\n".join(dmig_cards(path.stem, A, 6 if (A == A.T).all() else 1)) + "\n")
+
+
 def runs(column):
     """First row (from 1) and values of each run without zeros."""
     at = numpy.flatnonzero(column)

@@ -36,7 +36,7 @@ loader.exec_module(importer)
 
 FORMS = {
     "market": (".mtx", foreign.market), "market array": (".mtx", foreign.market_array), "harwell": (".matrix", foreign.harwell),
-    "abaqus": (".mtx", foreign.abaqus), "calculix": (".sti", foreign.calculix),
+    "abaqus": (".mtx", foreign.abaqus), "dmig": (".bdf", foreign.dmig), "calculix": (".sti", foreign.calculix),
     "op4 text": (".op4", lambda path, A: foreign.op4_text(path, A, path.stem)),
     "op4 text sparse": (".op4", lambda path, A: foreign.op4_text(path, A, path.stem, "strings")),
     "op4 text bigmat": (".op4", lambda path, A: foreign.op4_text(path, A, path.stem, "bigmat")),
@@ -48,7 +48,7 @@ FORMS = {
     "matlab 7.3": (".mat", lambda path, A: foreign.matlab_hdf5(path, A, path.stem)),
 }
 SORTED = numpy.argsort([node * 10 + direction for node, direction in foreign.unknowns()])
-LABELLED = ("abaqus",)  # whose unknowns are sorted by node and direction
+LABELLED = "abaqus", "dmig"  # whose unknowns are sorted by node and direction
 NO_CALCULIX = ("G", "U")
 failed = []
 
@@ -206,7 +206,7 @@ def test_damage(folder, count):
                 continue
             apart = entries_apart(as_read(here / "out"), good)
             counts["same" if not apart else "one entry"] += 1
-            if apart > 4:
+            if apart > (24 if form == "dmig" else 4):  # a column of DMIG moves with its head
                 worst = worst or f"{i}: {apart} entries differ"
                 (here / f"accepted_{i}").write_bytes(data)
         check(f"{count} damaged files, {form}", not worst and counts["refused"] > count / 4,

@@ -65,11 +65,16 @@ def split_pieces(path, pieces):
     return before, bulk, False
 
 
+def read_tables(path, known):
+    """Pieces before the bulk data, those of it, its cards as tables, and whether it has an end."""
+    before, bulk, ended = split_pieces(path, read_text(path))
+    return before, bulk, [table for data, file, first in bulk for table in tables_of(data, first, file, known)], ended
+
+
 def read_nastran(path, subcase=None):
     """The deck of a file; of several subcases the one with that number, else nastran_case.chosen_case chooses."""
     deck = Deck(path, "Nastran")
-    before, bulk, ended = split_pieces(path, read_text(path))
-    tables = [table for data, file, first in bulk for table in tables_of(data, first, file, KNOWN)]
+    before, bulk, tables, ended = read_tables(path, KNOWN)
     if not any(table.name == "GRID" for table in tables):
         raise BadInput(f"{path}:1: there is no GRID; is this a deck of Nastran?")
     control = nastran_case.read_case(deck, before)

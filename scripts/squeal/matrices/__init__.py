@@ -6,6 +6,7 @@
     harwell.py          Harwell-Boeing (Ansys *HBMAT), and its mapping of equations
     abaqus.py           *MATRIX GENERATE / *MATRIX OUTPUT of Abaqus: MATRIX INPUT and COORDINATE
     calculix.py         .sti, .mas and .dof of *FREQUENCY, SOLVER=MATRIXSTORAGE
+    dmig.py             DMIG of bulk data of Nastran
     op4.py              OUTPUT4 of Nastran, dense and sparse: as text; op4_bytes.py binary, op4_columns.py what both share
     matlab.py           MATLAB .mat
     places.py           where nodes are: a table, or *NODE of a deck

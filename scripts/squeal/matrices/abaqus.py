@@ -4,10 +4,8 @@ Abaqus' own: Lagrange multipliers, generalised ones."""
 
 import re
 
-import numpy
-
 from ..tables import BadInput
-from .entries import entries
+from .entries import entries, labelled
 from .text import integers, read_lines, table
 
 NAMES = {"STIF": "K", "MASS": "M", "DMPV": "C", "DMPS": "S", "LOAD": None}
@@ -44,18 +42,16 @@ def read(path):
         raise BadInput(f"{path}: line {first}: {width} numbers; node, direction, node, direction, value or row, "
                        f"column, value belong there")
     rows = table(path, [line.rstrip().rstrip(",") for line in body], first, width, "," if "," in body[0] else None)
-    return [(labelled if width == 5 else numbered)(path, rows, symmetry)]
+    return [(by_nodes if width == 5 else numbered)(path, rows, symmetry)]
 
 
-def labelled(path, rows, symmetry):
+def by_nodes(path, rows, symmetry):
     """Nodes and directions, sorted, are the unknowns."""
     node = integers(path, rows[:, [0, 2]], "node")
     direction = integers(path, rows[:, [1, 3]], "direction")
     if (direction < 0).any() or (direction > 99).any():
         raise BadInput(f"{path}: a direction is {direction.min() if (direction < 0).any() else direction.max()}")
-    labels, index = numpy.unique(numpy.stack([node.T.ravel(), direction.T.ravel()], 1), axis=0, return_inverse=True)
-    row, column = index.reshape(2, -1)
-    return entries(name(path), path, (len(labels),) * 2, row, column, rows[:, 4], symmetry, [tuple(map(int, label)) for label in labels])
+    return labelled(name(path), path, node, direction, rows[:, 4], symmetry)
 
 
 def numbered(path, rows, symmetry):

@@ -1,6 +1,6 @@
 """What a reader returns: the entries of a matrix, and what its unknowns are called."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy
 import scipy.sparse
@@ -23,6 +23,10 @@ class Entries:
     value: numpy.ndarray
     labels: list = None  # of each unknown (node, direction), where the file tells
     how: str = ""  # in words, what was made of its storage
+    kind: str = None  # stiffness, mass, damping, or "" for none of these; None: the name tells
+    scale: float = 1.0  # of the term
+    chosen: bool = True  # False: the file names others
+    beside: list = field(default_factory=list)  # lines about what else the file holds
 
     def matrix(self):
         """As scipy has it."""
@@ -45,6 +49,13 @@ def entries(name, path, shape, row, column, value, symmetry="general", labels=No
         row, column, value = mirrored(path, (rows, columns), row, column, value, symmetry)
         how = how or f"half of a {symmetry} matrix, expanded"
     return Entries(name, path, (rows, columns), row, column, value, labels, how)
+
+
+def labelled(name, path, node, direction, value, symmetry):
+    """Entries between unknowns: node [n][2] and direction [n][2] of rows and columns; the unknowns are sorted by these."""
+    labels, index = numpy.unique(numpy.stack([node.T.ravel(), direction.T.ravel()], 1), axis=0, return_inverse=True)
+    row, column = index.reshape(2, -1)
+    return entries(name, path, (len(labels),) * 2, row, column, value, symmetry, [tuple(map(int, label)) for label in labels])
 
 
 def check_places(path, shape, row, column, value):

@@ -1,15 +1,34 @@
-"""Where nodes are: a table with the columns node, x, y, z, or *NODE of a deck of Abaqus or CalculiX."""
+"""Where nodes are: a table with the columns node, x, y, z, *NODE of a deck of Abaqus or CalculiX, or GRID of one of Nastran."""
 
 import csv
 import math
 import re
 
+from ..decks import nastran_mesh, nastran_systems
+from ..decks.deck import Deck
+from ..decks.nastran import read_tables
 from ..tables import BadInput
 from .text import real, read_lines, whole
 
 
+NASTRAN = ".bdf", ".dat", ".nas", ".pch"
+
+
+def grid_points(path):
+    """Of GRID. Points whose displacements are in axes of their own are at no place, since directions of unknowns are those of space."""
+    deck, mesh = Deck(path, "Nastran"), nastran_mesh.Mesh()
+    tables = read_tables(path, nastran_mesh.KNOWN | nastran_systems.KNOWN)[2]
+    if not any(table.name == "GRID" for table in tables):
+        raise BadInput(f"{path}: has no GRID")
+    nastran_mesh.read_grid(deck, mesh, tables)
+    ids, places = mesh.nodes.sorted("grid point")
+    return {node: tuple(deck.x[at].tolist()) for node, at in zip(ids.tolist(), places.tolist()) if at not in mesh.turned}
+
+
 def read_places(path):
     """Node -> (x, y, z)."""
+    if path.suffix.lower() in NASTRAN:
+        return grid_points(path)
     lines = read_lines(path)
     if not lines:
         raise BadInput(f"{path}: is empty")

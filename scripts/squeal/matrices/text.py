@@ -6,6 +6,7 @@ import warnings
 
 import numpy
 
+from ..decks.text import CONTROL
 from ..tables import BadInput, regular
 
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?$")  # Fortran may leave out the E
@@ -22,8 +23,9 @@ def read_lines(path):
         text = data.decode("ascii")
     except UnicodeDecodeError as error:
         raise BadInput(f"{path}: byte {error.start} is no text") from None
-    if "\0" in text:
-        raise BadInput(f"{path}: byte {text.index(chr(0))} is no text")
+    control = CONTROL.search(data)
+    if control:
+        raise BadInput(f"{path}: byte {control.start()} is no text")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     if lines[-1]:
         raise BadInput(f"{path}: its last line has no end; was it cut off?")

@@ -21,6 +21,11 @@ def kind_of(name):
     return None
 
 
+def kind_in(one):
+    """What a matrix is: as its file says, else by its name."""
+    return kind_of(one.name) if one.kind is None else one.kind or None
+
+
 def unknown_name(label):
     """Of an unknown, for people."""
     if isinstance(label, int):
@@ -91,7 +96,7 @@ def leave_out(found, labels, matrices):
 
 def odd_rows(found, labels, matrices):
     """Lines about unknowns without mass; an error for what has mass and no stiffness of its own, where nodes are known."""
-    kinds = {kind: [matrix for one, matrix in zip(found, matrices) if kind_of(one.name) == kind] for kind, _ in KINDS}
+    kinds = {kind: [matrix for one, matrix in zip(found, matrices) if kind_in(one) == kind] for kind, _ in KINDS}
     if not kinds["stiffness"] or not kinds["mass"]:
         return []
     own = numpy.max([abs(matrix.diagonal()) for matrix in kinds["stiffness"]], axis=0)
@@ -125,15 +130,15 @@ def write_unknowns(folder, labels, places):
 
 def write_scene(folder, found, table, lines):
     """The options file, whose terms are the matrices of known kind."""
-    known = [matrix for matrix in found if kind_of(matrix.name)]
+    known = [matrix for matrix in found if kind_in(matrix)]
     with whole(folder / "matrices.yaml") as part:
         with part.open("w") as out:
             out.write("".join(f"# {printable(line)}\n" for line in lines))
             out.write(f'terms: "{",".join(matrix.name.lower() for matrix in known)}"\n')
             for matrix in found:
-                kind = kind_of(matrix.name)
+                kind, scale = kind_in(matrix), f", scale: {matrix.scale:.17g}" if matrix.scale != 1 else ""
                 out.write(f"{'' if kind else '# give its kind, and add it to terms: '}{matrix.name.lower()}: "
-                          f"{{file: {matrix.name}.bin, kind: {kind or '?'}}}\n")
+                          f"{{file: {matrix.name}.bin, kind: {kind or '?'}{scale}}}\n")
             if table == "nodes.csv":
                 out.write("operators: {nodes: nodes.csv}\n")
 
