@@ -58,7 +58,8 @@ with : between, one for each swept parameter: inner_mu,outer_mu. Derivatives alo
 -sweep_uncertain moves all of a link, each by the same part of its own value
 .  -sweep_method <reduced>        - reduced; full solves every point in full, and nothing between; real projects on real modes
 .  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
-.  -sweep_real_modes <80>         - number of frictionless modes that -sweep_method real projects on
+.  -sweep_real_modes <80>         - real modes of each point that -sweep_method real projects on
+.  -sweep_real_stiffness <symmetrised> - of these modes: K + mu H made symmetric, or K alone (frictionless)
 .  -sweep_max_samples <20>        - most full solutions; by itself as many as there are points and ends of brackets
 around changes of contact status, where these are more
 .  -sweep_verify <0>              - full solutions at this many points between those of the sweep: true errors

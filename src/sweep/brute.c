@@ -148,7 +148,10 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   GridFill(&sweep->grid, &check->at, p);
-  PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
+  if (sweep->method == SWEEP_REAL)
+    PetscCall(SweepRealSolve(sweep, p, &wide, &reduced));
+  else
+    PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(PetscFree(p));
   if (sweep->parity < 0)

@@ -10,7 +10,7 @@ typedef struct {
   PetscReal    *p;        /* [n][n_parameters] */
   ReducedModes *modes;    /* [n] */
   PetscInt    **branch;   /* [n][modes]; -1 where branches are not followed */
-  /* of a sweep in full, whose modes are without vectors; else NULL */
+  /* of a sweep in full or on real modes, which has no vectors after its points; else NULL */
   BranchName **name;   /* [n][modes] */
   PetscInt   **parity; /* [n][modes] */
 } LinePoints;

@@ -130,7 +130,7 @@ static PetscErrorCode PartTakePoints(Sweep sweep, const Sweep part)
     PetscCall(PetscRealloc((size_t)PetscMax(1, all->n + own->n) * sizeof(*all->mode), &all->mode));
     PetscCall(PetscArraycpy(&all->mode[all->n], own->mode, own->n));
     for (PetscInt k = all->n; k < all->n + own->n; k++) {
-      all->mode[k].branch += sweep->n_branches;
+      if (all->mode[k].branch >= 0) all->mode[k].branch += sweep->n_branches;
       all->mode[k].parity = part->parity;
     }
     all->n += own->n;

@@ -18,7 +18,6 @@ PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
   (*sweep)->rtol        = 1e-6;
   (*sweep)->max_samples = 20;
   (*sweep)->n_real      = 80;
-  (*sweep)->onsets      = PETSC_TRUE;
   (*sweep)->restart     = PETSC_TRUE;
   (*sweep)->parity      = -1;
   (*sweep)->n_parities  = 1;
@@ -56,7 +55,8 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics)
 static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
 {
   static const char *const methods[] = {"reduced", "full", "real"};
-  PetscInt                 method    = SWEEP_REDUCED;
+  static const char *const stiffnesses[] = {"symmetrised", "frictionless"};
+  PetscInt                 method = SWEEP_REDUCED, stiffness = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsString("-sweep_parameter", "one or two options of the scene to vary, e.g. pad_young,contact_mu",
@@ -69,18 +69,22 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
     "-sweep_link", "parameters that take the swept one's value, e.g. inner_mu,outer_mu; several links with ':' between",
     "sweep.h", sweep->link, sweep->link, sizeof(sweep->link), &sweep->linked));
   PetscCall(PetscOptionsEList("-sweep_method",
-                              "reduced basis with error estimate, every point in full, or a basis of real modes",
+                              "reduced basis with error estimate, every point in full, or each on real modes of its own",
                               "sweep.h", methods, 3, methods[0], &method, NULL));
   PetscCall(PetscOptionsReal("-sweep_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)",
                              "sweep.h", sweep->rtol, &sweep->rtol, NULL));
   PetscCall(PetscOptionsInt("-sweep_max_samples",
                             "most full solutions; by itself more where contact status changes often", "sweep.h",
                             sweep->max_samples, &sweep->max_samples, &sweep->max_given));
-  PetscCall(PetscOptionsInt("-sweep_real_modes", "frictionless modes of -sweep_method real", "sweep.h", sweep->n_real,
+  PetscCall(PetscOptionsInt("-sweep_real_modes", "real modes of each point, with -sweep_method real", "sweep.h", sweep->n_real,
                             &sweep->n_real, NULL));
+  PetscCall(PetscOptionsEList("-sweep_real_stiffness", "of these modes: K + mu H made symmetric, or K alone", "sweep.h",
+                              stiffnesses, 2, stiffnesses[0], &stiffness, NULL));
+  sweep->real_friction = stiffness ? PETSC_FALSE : PETSC_TRUE;
   sweep->method = (SweepMethod)method;
+  sweep->onsets = method != SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
   if (method != SWEEP_REAL)
-    PetscCall(OptionsRefuse(sweep->comm, "-sweep_real_modes", "not used without -sweep_method real"));
+    PetscCall(OptionsRefuse(sweep->comm, "-sweep_real_modes -sweep_real_stiffness", "not used without -sweep_method real"));
   if (method == SWEEP_FULL)
     PetscCall(OptionsRefuse(sweep->comm, "-sweep_rtol -sweep_max_samples", "not used by -sweep_method full"));
   PetscFunctionReturn(0);
@@ -137,6 +141,8 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
              "-sweep_verify %" PetscInt_FMT " must not be negative", sweep->n_verify);
   PetscCheck(sweep->n_percent <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent has more than %d values", SWEEP_MAX_UNCERTAIN);
+  PetscCheck(sweep->method != SWEEP_REAL || !sweep->onsets, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_onsets true: -sweep_method real follows no branches, and finds no onsets");
   PetscCheck(sweep->method == SWEEP_REDUCED || (!sweep->uncertain[0] && !sweep->sensitivities), sweep->comm,
              PETSC_ERR_USER_INPUT, "-sweep_uncertain and -sweep_sensitivities need -sweep_method reduced");
   PetscCheck(sweep->method != SWEEP_FULL || !sweep->n_verify, sweep->comm, PETSC_ERR_USER_INPUT,
@@ -181,7 +187,7 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   PetscFunctionReturn(0);
 }
 
-/* Reduced model, by the method chosen */
+/* The reduced model */
 static PetscErrorCode ModelMake(Sweep sweep)
 {
   PetscReal *p;
@@ -201,20 +207,15 @@ static PetscErrorCode ModelMake(Sweep sweep)
   sweep->greedy.progress    = &sweep->progress;
   PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
-  if (sweep->method == SWEEP_REAL) {
-    GridPoint(&sweep->grid, GridSize(&sweep->grid) / 2, p);
-    PetscCall(BasisFillReal(&sweep->basis, sweep->modes, sweep->n_real, p));
-  } else {
-    PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
-    if (!sweep->whole && sweep->restart) { /* kept in the output folder as it grows */
-      PetscCall(SweepResume(sweep));
-      sweep->greedy.keep     = SweepKeep;
-      sweep->greedy.keep_ctx = sweep;
-    }
-    if (!sweep->whole) PetscCall(BasisMake(sweep, PETSC_FALSE));
-    if (sweep->greedy.reach > sweep->window.growth) sweep->window.rtol = sweep->rtol / POINTS_MARGIN;
-    if (sweep->whole) sweep->window.rtol = PETSC_MAX_REAL;
+  PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
+  if (!sweep->whole && sweep->restart) { /* kept in the output folder as it grows */
+    PetscCall(SweepResume(sweep));
+    sweep->greedy.keep     = SweepKeep;
+    sweep->greedy.keep_ctx = sweep;
   }
+  if (!sweep->whole) PetscCall(BasisMake(sweep, PETSC_FALSE));
+  if (sweep->greedy.reach > sweep->window.growth) sweep->window.rtol = sweep->rtol / POINTS_MARGIN;
+  if (sweep->whole) sweep->window.rtol = PETSC_MAX_REAL;
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
@@ -224,7 +225,7 @@ static PetscErrorCode LinesSolve(Sweep sweep)
 {
   PetscFunctionBeginUser;
   PetscCall(SweepLines(sweep));
-  for (int round = 1; round < MAX_ROUNDS && sweep->method == SWEEP_REDUCED && !sweep->whole; round++) {
+  for (int round = 1; round < MAX_ROUNDS && !sweep->whole; round++) {
     if (SweepWorst(sweep) <= sweep->rtol) break;
     PetscCall(BasisMake(sweep, PETSC_TRUE));
     PetscCall(SweepLinesForget(sweep));
@@ -234,7 +235,7 @@ static PetscErrorCode LinesSolve(Sweep sweep)
   sweep->groups.store = NULL;
   sweep->greedy.keep  = NULL;
   sweep->greedy.worst = SweepWorst(sweep);
-  PetscCheck(sweep->method != SWEEP_REDUCED || sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm,
+  PetscCheck(sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm,
              PETSC_ERR_NOT_CONVERGED, "-sweep_rtol %.6g was not reached, the estimate is %.2g; raise -sweep_rtol",
              (double)sweep->rtol, (double)sweep->greedy.worst);
   PetscFunctionReturn(0);
@@ -255,9 +256,13 @@ static PetscErrorCode Clock(Sweep sweep, int phase, PetscLogDouble *since)
 PetscErrorCode SweepReduced(Sweep sweep, PetscLogDouble *since)
 {
   PetscFunctionBeginUser;
-  PetscCall(ModelMake(sweep));
-  PetscCall(Clock(sweep, 0, since));
-  PetscCall(LinesSolve(sweep));
+  if (sweep->method == SWEEP_REAL) {
+    PetscCall(SweepReal(sweep));
+  } else {
+    PetscCall(ModelMake(sweep));
+    PetscCall(Clock(sweep, 0, since));
+    PetscCall(LinesSolve(sweep));
+  }
   PetscCall(Clock(sweep, 1, since));
   PetscCall(SweepVerify(sweep));
   PetscCall(Clock(sweep, 3, since));

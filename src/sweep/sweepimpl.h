@@ -71,6 +71,7 @@ struct _p_Sweep {
   SweepMethod method;
   PetscReal   rtol, *percent;
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
+  PetscBool   real_friction;                          /* real modes of the symmetrised stiffness, else without friction */
   PetscBool   linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
   PetscBool   max_given;                              /* -sweep_max_samples is */
   /* results */
@@ -155,6 +156,10 @@ PETSC_INTERN PetscErrorCode SweepViewOnsetCost(Sweep sweep, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode SweepBrute(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepCheckPlaces(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
+/* realmodes.c - every point on real modes of its own; one point */
+PETSC_INTERN PetscErrorCode SweepReal(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], const ReducedWindow *window,
+                                           ReducedModes *modes);
 /* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);

@@ -223,7 +223,7 @@ static PetscErrorCode FollowView(Sweep sweep, PetscViewer viewer)
   PetscBool affine = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  if (!sweep->n_branches)
+  if (!sweep->n_branches && sweep->method == SWEEP_FULL)
     PetscCall(PetscViewerASCIIPrintf(viewer, "branches and onsets: not followed without left vectors (-modes_left)\n"));
   if (!sweep->n_broken) PetscFunctionReturn(0);
   if (sweep->statics) PetscCall(StaticsIsAffine(sweep->statics, &affine));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/dense/reduced.h"
+#include "base/progress.h"
 #include <squeal/modes.h>
 #include "entryrows.h"
 
@@ -41,6 +42,6 @@ PetscErrorCode BasisDestroy(Basis *basis);
 /* fill.c - all unit vectors, for a small system; whole = whether the basis now is the whole space, which the mass
    matrix must allow */
 PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole);
-/* The lowest n_modes real modes of the frictionless, undamped system at p; sets to zero in p[] what friction and
-   damping are proportional to. PETSC_ERR_USER_INPUT where some of either remains. */
-PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscReal p[]);
+/* The n_modes real modes nearest to the shift, (rad/s)^2, of the undamped system at the pencil's present point, with the
+   symmetric part of its friction or without friction. PETSC_ERR_NOT_CONVERGED where fewer are found. */
+PetscErrorCode BasisFillReal(Basis *basis, PetscBool friction, PetscInt n_modes, PetscReal shift, Progress *progress);

@@ -1,11 +1,21 @@
 /*
-   Bases that need no choice of points: all unit vectors, for a small system, and, for comparison, the
-   lowest real modes of the frictionless, undamped system at one point, as brake models usually are projected. They know
-   nothing of friction, and no estimate of their error is to be had.
+   Bases that need no choice of points: all unit vectors, for a small system, and, for comparison, the lowest real modes at
+   one point, as complex modes of brakes usually are projected. They are those of the undamped system, either with the
+   symmetric part of the stiffness K + mu H (Abaqus 2024, Analysis, "Complex Eigenvalue Extraction": "the eigenmodes of the
+   undamped system with the symmetrized stiffness matrix must be extracted"), or without friction,
+
+      (K + mu (H + H')/2) x = kappa M x      or      K x = kappa M x
+
+   The symmetric part of one pair, k_n (N'N - mu (T'N + N'T)/2), has a negative eigenvalue, about -k_n mu^2 / 4: a pair stiffer
+   than the bodies is an obstacle to other directions than N. No estimate of the error of the projection is to be had.
 */
 #include "basis.h"
+#include "solver/shiftinvert.h"
+#include <slepceps.h>
 
-#define WHOLE 200 /* unknowns up to which the basis is the whole space */
+#define WHOLE         200   /* unknowns up to which the basis is the whole space */
+#define REAL_RTOL     1e-11 /* of the real modes */
+#define REAL_RESTARTS 200
 
 PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block)
 {
@@ -60,23 +70,70 @@ PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BasisFillReal(Basis *basis, Modes modes, PetscInt n_modes, PetscReal p[])
+/* (A + A')/2 */
+static PetscErrorCode SymmetricPart(Mat A, Mat *S)
 {
-  const Mode *mode;
-  PetscReal   band[2], growth;
-  PetscInt    n;
-  BV          block;
+  PetscFunctionBeginUser;
+  PetscCall(MatTranspose(A, MAT_INITIAL_MATRIX, S));
+  PetscCall(MatAXPY(*S, 1, A, DIFFERENT_NONZERO_PATTERN));
+  PetscCall(MatScale(*S, 0.5));
+  PetscCall(MatSetOption(*S, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* The n_modes eigenvalues kappa next to the shift of a symmetric problem, with factors there */
+static PetscErrorCode RealSolve(const PencilMatrices *m, PetscInt n_modes, ShiftInvert *si, EPS *eps)
+{
+  PetscInt n, n_found;
+  ST       st;
 
   PetscFunctionBeginUser;
-  PetscCheck(ReducedFrictionless(&basis->reduced, p), basis->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_method real: the matrices cannot be made symmetric without friction and spin; use reduced");
-  PetscCall(PencilSetParameters(basis->pencil, p));
-  PetscCall(ModesGetBand(modes, band, &growth));
-  PetscCall(ModesSetNearest(modes, 0, n_modes));
-  PetscCall(ModesSolve(modes));
-  PetscCall(ModesSetBand(modes, band));
-  PetscCall(ModesGet(modes, &n, &mode));
-  PetscCall(BasisCreateModes(basis, modes, n, 1, &block));
+  PetscCall(MatGetSize(m->K, &n, NULL));
+  n_modes = PetscMin(n_modes, n);
+  PetscCall(EPSCreate(si->comm, eps));
+  PetscCall(EPSSetOperators(*eps, m->K, m->M));
+  PetscCall(EPSSetProblemType(*eps, EPS_GHEP));
+  PetscCall(EPSSetDimensions(*eps, n_modes, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscCall(EPSSetTolerances(*eps, REAL_RTOL, REAL_RESTARTS));
+  PetscCall(EPSSetTarget(*eps, si->shift));
+  PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
+  PetscCall(EPSGetST(*eps, &st));
+  PetscCall(ShiftInvertAttach(si, PETSC_FALSE, st));
+  PetscCall(EPSSolve(*eps));
+  PetscCall(EPSGetConverged(*eps, &n_found));
+  PetscCheck(n_found >= n_modes, si->comm, PETSC_ERR_NOT_CONVERGED,
+             "-sweep_real_modes %" PetscInt_FMT ": %" PetscInt_FMT " converged; give fewer", n_modes, n_found);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisFillReal(Basis *basis, PetscBool friction, PetscInt n_modes, PetscReal shift, Progress *progress)
+{
+  PencilMatrices pencil, real = {.symmetric = PETSC_TRUE};
+  ShiftInvert    si;
+  EPS            eps;
+  BV             block;
+  Vec            q;
+
+  PetscFunctionBeginUser;
+  if (friction)
+    PetscCall(PencilGetMatrices(basis->pencil, &pencil));
+  else
+    PetscCall(PencilGetFrictionless(basis->pencil, &pencil));
+  PetscCall(SymmetricPart(pencil.K, &real.K));
+  PetscCall(SymmetricPart(pencil.M, &real.M));
+  PetscCall(ShiftInvertCreate(&real, shift, PETSC_FALSE, progress, &si));
+  PetscCall(RealSolve(&real, n_modes, &si, &eps));
+  PetscCall(EPSGetDimensions(eps, &n_modes, NULL, NULL));
+  PetscCall(BasisCreateBlock(basis, n_modes, &block));
+  for (PetscInt i = 0; i < n_modes; i++) {
+    PetscCall(BVGetColumn(block, i, &q));
+    PetscCall(EPSGetEigenvector(eps, i, q, NULL));
+    PetscCall(BVRestoreColumn(block, i, &q));
+  }
   PetscCall(BasisTake(basis, &block, NULL));
+  PetscCall(EPSDestroy(&eps));
+  PetscCall(ShiftInvertDestroy(&si));
+  PetscCall(MatDestroy(&real.K));
+  PetscCall(MatDestroy(&real.M));
   PetscFunctionReturn(0);
 }

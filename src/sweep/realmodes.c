@@ -1,0 +1,71 @@
+/*
+   Projection on real modes, for comparison with other programs: at each point the pencil is projected on real modes of that
+   point (basis/fill.c), as a deck for each value does it. Nothing joins two points: there are no branches and no onsets.
+*/
+#include "line.h"
+
+#define SHIFT_LOW  0.1  /* of the lower end of the band, */
+#define SHIFT_HIGH 1e-3 /* or of the upper one: distance of the shift below zero, where zeros are regular */
+
+/* The basis at a point, which is all that the sweep then knows of */
+static PetscErrorCode RealBasisMake(Sweep sweep, const PetscReal p[])
+{
+  const PetscReal omega = PetscMax(SHIFT_LOW * sweep->window.low, SHIFT_HIGH * sweep->window.high);
+
+  PetscFunctionBeginUser;
+  PetscCall(BasisDestroy(&sweep->basis));
+  PetscCall(PencilSetParameters(sweep->pencil, p));
+  PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
+  PetscCall(BasisFillReal(&sweep->basis, sweep->real_friction, sweep->n_real, -PetscSqr(omega), &sweep->progress));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], const ReducedWindow *window, ReducedModes *modes)
+{
+  const PointGroups groups = {sweep->comm, 1, NULL};
+
+  PetscFunctionBeginUser;
+  PetscCall(RealBasisMake(sweep, p));
+  PetscCall(PointsSolve(&groups, &sweep->basis.reduced, window, 1, p, modes));
+  PetscFunctionReturn(0);
+}
+
+/* Modes and names at place i of the line */
+static PetscErrorCode PlaceSolve(Sweep sweep, PetscInt i, LinePoints *points)
+{
+  const PetscReal *p     = &points->p[i * sweep->grid.n_parameters];
+  ReducedModes    *modes = &points->modes[i];
+  char(*label)[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(SweepRealSolve(sweep, p, &sweep->window, modes));
+  PetscCall(PetscMalloc1(modes->n, &points->branch[i]));
+  PetscCall(PetscCalloc1(modes->n, &points->parity[i]));
+  PetscCall(PetscCalloc1(modes->n, &points->name[i]));
+  PetscCall(PetscCalloc1(modes->n, &label));
+  PetscCall(SweepLabelModes(sweep, p, modes, label));
+  for (PetscInt k = 0; k < modes->n; k++) {
+    points->branch[i][k] = -1;
+    PetscCall(PetscStrncpy(points->name[i][k].text, label[k], sizeof(points->name[i][k].text)));
+  }
+  PetscCall(PetscFree(label));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepReal(Sweep sweep)
+{
+  LinePoints points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
+  for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
+    PetscCall(LineCreate(sweep, line, &points));
+    PetscCall(PetscCalloc1(points.n, &points.name));
+    PetscCall(PetscCalloc1(points.n, &points.parity));
+    for (PetscInt i = 0; i < points.n; i++)
+      if (sweep->grid.place[points.first + i].point >= 0) PetscCall(PlaceSolve(sweep, i, &points));
+    PetscCall(LineFinish(sweep, 0, 0, &points));
+    PetscCall(LineDestroy(&points));
+  }
+  PetscFunctionReturn(0);
+}

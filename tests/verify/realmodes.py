@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""The projection on real modes against LAPACK: verify/realmodes.py RUN MATRICES MU N symmetrised|frictionless RTOL. RUN has the
+sweep.csv of one value by -sweep_method real, MATRICES K.bin, M.bin and H.bin at that value. The N real modes x of the lowest kappa,
+A x = kappa M x, A = K + MU (H + H') / 2 or K, span V; -lambda^2 are then the eigenvalues of V' (K + MU H) V beside V' M V. The
+frequencies and growth rates of the table must be among them within RTOL of the frequency, and as many where the table has some."""
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+import scipy.linalg
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+from squeal.exact import Sparse
+
+
+def projected(folder, mu, n, symmetrised):
+    """Eigenvalues with positive frequency, rad/s."""
+    stiffness, mass, friction = (Sparse(folder / f"{name}.bin").dense() for name in "KMH")
+    whole = stiffness + mu * friction
+    values, V = scipy.linalg.eigh((whole + whole.T) / 2 if symmetrised else stiffness, mass)
+    V = V[:, np.argsort(np.abs(values))[:n]]
+    kappa = scipy.linalg.eigvals(V.T @ whole @ V, V.T @ mass @ V)
+    found = np.concatenate([np.sqrt(-kappa + 0j), -np.sqrt(-kappa + 0j)])
+    return found[found.imag > 0]
+
+
+def main():
+    run, folder, mu, n, kind, tolerance = sys.argv[1:]
+    found = projected(Path(folder), float(mu), int(n), kind == "symmetrised")
+    with (Path(run) / "sweep.csv").open(newline="") as file:
+        modes = [float(row["growth_rad_s"]) + 2j * np.pi * float(row["freq_hz"]) for row in csv.DictReader(file)]
+    low, high = min(mode.imag for mode in modes), max(mode.imag for mode in modes)
+    expected = sum(low * (1 - 1e-9) <= value.imag <= high * (1 + 1e-9) for value in found)
+    worst = max(min(abs(found - mode)) / mode.imag for mode in modes)
+    print(f"{len(modes)} of {expected} modes, {sum(mode.real > 0 for mode in modes)} grow: worst difference {worst:.2g}")
+    if len(modes) != expected or worst > float(tolerance):
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    main()
