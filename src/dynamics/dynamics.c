@@ -119,11 +119,19 @@ PetscErrorCode DynamicsFitEnd(Dynamics d, PetscReal *dt, PetscReal *end)
   PetscFunctionReturn(0);
 }
 
-/* The step asked for, or the stated fraction of the critical one; a larger one is refused */
+/* The largest number of six digits up to x: without the digits of an iteration, in which ranks and processors differ */
+static PetscReal SixDigits(PetscReal x)
+{
+  const PetscReal digit = PetscPowReal(10, PetscFloorReal(PetscLog10Real(x)) - 5);
+
+  return PetscFloorReal(x / digit) * digit;
+}
+
+/* The step asked for, or the stated fraction of the critical one, in six digits; a larger one is refused */
 static PetscErrorCode DynamicsChooseStep(Dynamics d, PetscReal *step, PetscReal *end)
 {
   const PetscReal critical = d->critical.assembled;
-  PetscReal       dt       = d->dt_asked > 0 ? d->dt_asked : d->fraction * critical;
+  PetscReal       dt       = d->dt_asked > 0 ? d->dt_asked : SixDigits(d->fraction * critical);
 
   PetscFunctionBeginUser;
   PetscCheck(

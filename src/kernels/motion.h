@@ -5,7 +5,7 @@
    With p_i -> q_i, i = 0..3, along the edges between the two faces, in the plane across the axis e: the angle phi of
    the turn is that from p_j - p_0 to q_j - q_0, j the farthest from 0, and its centre
       c = (p_0 + q_0)/2 + e x (q_0 - p_0) / (2 tan(phi/2)),
-   rounded to ten decimals of the size of the body, so that a centre at the origin is exactly there, and the cells of an
+   rounded to thirteen decimals of the size of the body, so that a centre at the origin is exactly there, and the cells of an
    arc have the same centre whichever of them is asked. Lengths in m, angles in rad.
 
    An axis of any direction is that of the turn R with R (p_j - p_0) = q_j - q_0: with a = p_1 - p_0, b = p_2 - p_0,
@@ -19,7 +19,7 @@
 
 #define MOTION_PAIRS       3    /* pairs of opposite faces */
 #define MOTION_LEAST_ANGLE 1e-6 /* a smaller turn is taken for a shift */
-#define MOTION_DECIMALS    10   /* of the centre, relative to the size */
+#define MOTION_DECIMALS    13   /* of the centre, relative to the size */
 #define MOTION_EDGES       4    /* edges between opposite faces */
 
 typedef struct {

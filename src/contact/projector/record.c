@@ -60,11 +60,12 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
     if (miss[i] < miss[p->order]) p->order = i;
 }
 
-INTO_VERSIONS void StateSet(const ProjectorPair *pair, const ContactStep *step, ContactState *state)
+/* State of a pair; one whose impulse is rounding, which bodies leave that touch and move together, is open */
+INTO_VERSIONS void StateSet(const ProjectorPair *pair, const ContactStep *step, PetscReal noise, ContactState *state)
 {
   *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
   if (pair->facet < 0) return;
-  state->status   = pair->status;
+  state->status   = pair->p[0] > noise ? pair->status : CONTACT_OPEN;
   state->gap      = pair->q[0] * step->dt;
   state->lambda_n = pair->p[0] / step->kick;
   for (int i = 0; i < 2; i++) {
@@ -150,7 +151,7 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
     const PetscInt       i     = pair->interface;
     ContactState        *state = &p->state[k];
 
-    StateSet(pair, step, state);
+    StateSet(pair, step, convergence->noise, state);
     p->sums[i].n[state->status]++;
     if (pair->facet < 0) continue;
     for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];

@@ -4,7 +4,9 @@
 #include <squeal/model.h>
 #include "kernels/motion.h"
 
-#define LINES_TOLERANCE 1e-9 /* largest difference of coordinates that are meant to be equal, of the size of the body */
+/* Largest difference of coordinates that are meant to be equal, of the size of the body: rounding alone, since whether a
+   rank takes its piece of a body for swept must not show in the forces */
+#define LINES_TOLERANCE 1e-12
 #define LINES_CORNERS   8
 
 /* The cells of a body, and the nodes that they have */
