@@ -195,12 +195,12 @@ def check_matrices(top):
     import scipy.io
     import scipy.linalg
     sys.path.insert(0, str(SOURCE / "scripts"))
-    from squeal.exact import Sparse
+    from squeal.exact import sparse
     made = run(EXPORT, "matrices", top / "matrices", "-o", top / "mm").split()
     check(sorted(Path(name).name for name in made) == ["F.mtx", "H.mtx", "K.mtx", "M.mtx"], "matrices: F, H, K, M")
     read = {name: scipy.io.mmread(top / f"mm/{name}.mtx") for name in "KMHF"}
     full = {name: read[name].toarray() for name in "KMH"}
-    check(all(np.array_equal(full[name], Sparse(top / f"matrices/{name}.bin").dense()) for name in full), "matrices: the same numbers")
+    check(all(np.array_equal(full[name], sparse(top / f"matrices/{name}.bin").toarray()) for name in full), "matrices: the same numbers")
     values = scipy.linalg.eig(full["K"] + 0.9 * full["H"], full["M"], right=False)
     roots = np.sqrt(-values.astype(complex))
     roots = np.concatenate([roots, -roots])

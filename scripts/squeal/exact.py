@@ -1,105 +1,95 @@
-"""Eigenvalues of small matrices far below double precision: Newton's method with both vectors, residuals in extended
-precision (64 bits of mantissa). Matrices are those of `-operators_save`, as squeal solves them."""
-
-from pathlib import Path
+"""Eigenvalues of sparse matrices far below double precision: two-sided Rayleigh quotients with residuals in extended precision (64
+bits of mantissa); the vectors by inverse iteration with a sparse LU in double precision. Matrices are those of `-operators_save`, as
+squeal solves them."""
 
 import numpy
+import scipy.sparse
+import scipy.sparse.linalg
 
 from .petsc_matrix import read_matrix
-from .tables import BadInput
 
 STEPS = 3
-SMALL = 0.01  # last step beside the stated error
+SMALL = 1e-14  # last step, relative
+BESIDE = 0.01  # the same beside the stated error
 CLOSE = 1e-6  # relative distance of eigenvalues whose vectors mean little one by one
-
-
-class Sparse:
-    """A matrix of a PETSc binary file, with products in extended precision."""
-
-    def __init__(self, path):
-        self.n, columns, self.row, self.column, self.value = read_matrix(Path(path))
-        if columns != self.n:
-            raise BadInput(f"{path}: no square matrix")
-
-    def dense(self):
-        full = numpy.zeros((self.n, self.n))
-        numpy.add.at(full, (self.row, self.column), self.value)
-        return full
-
-
-class Extended:
-    """A dense matrix with products in extended precision by its entries that are not zero."""
-
-    def __init__(self, full):
-        self.full = full
-        self.parts = {}
-        for transposed, matrix in ((False, full), (True, full.T)):
-            row, column = numpy.nonzero(matrix)
-            first = numpy.searchsorted(row, numpy.arange(len(full)))
-            if len(numpy.unique(row)) < len(full):  # an empty row would take the entries of the next
-                row, column = numpy.nonzero(numpy.ones_like(matrix))
-                first = numpy.arange(0, row.size, len(full))
-            self.parts[transposed] = first, column, matrix[row, column].astype(numpy.longdouble)
-
-    def times(self, x, transposed=False):
-        first, column, value = self.parts[transposed]
-        return numpy.add.reduceat(value * x[column], first)
-
-
-class Pencil:
-    """lambda^2 M + lambda C + K of a folder, with friction mu H."""
-
-    def __init__(self, folder, mu):
-        folder = Path(folder)
-        stiffness = Sparse(folder / "K.bin").dense()
-        if (folder / "H.bin").exists():
-            stiffness = stiffness + mu * Sparse(folder / "H.bin").dense()
-        self.stiffness, self.mass = Extended(stiffness), Extended(Sparse(folder / "M.bin").dense())
-        self.damping = Extended(Sparse(folder / "C.bin").dense()) if (folder / "C.bin").exists() else None
-
-    def at(self, value):
-        """Q(lambda) in double precision."""
-        full = self.stiffness.full + value * value * self.mass.full
-        return full + value * self.damping.full if self.damping else full
-
-    def residual(self, value, x, transposed=False):
-        result = self.stiffness.times(x, transposed) + value * value * self.mass.times(x, transposed)
-        return result + value * self.damping.times(x, transposed) if self.damping else result
-
-    def derivative(self, value, x, transposed=False):
-        result = 2 * value * self.mass.times(x, transposed)
-        return result + self.damping.times(x, transposed) if self.damping else result
-
-    def refine(self, guess):
-        """The eigenvalue that a guess of many digits belongs to, and how much the last step moved it."""
-        value = numpy.clongdouble(guess)
-        random = numpy.random.default_rng(1)
-        x, y = (random.standard_normal((2, len(self.mass.full))) + 0j).astype(numpy.clongdouble)
-        inverse = numpy.linalg.inv(self.at(complex(value) * (1 + 1e-9)))
-        for _ in range(3):  # nearest vectors, in double precision
-            x = unit((inverse @ self.derivative(value, x).astype(complex)).astype(numpy.clongdouble))
-            y = unit((inverse.T @ self.derivative(value, y, True).astype(complex)).astype(numpy.clongdouble))
-        step = numpy.inf
-        for _ in range(STEPS):
-            right = self.residual(value, x)
-            step = (y @ right) / (y @ self.derivative(value, x))
-            value = value - step
-            x = unit(x - (inverse @ self.residual(value, x).astype(complex)))
-            y = unit(y - (inverse.T @ self.residual(value, y, True).astype(complex)))
-        return value, abs(step)
 
 
 def unit(x):
     return x / numpy.sqrt(numpy.sum(abs(x)**2))
 
 
+def sparse(path):
+    """A matrix of a PETSc binary file."""
+    rows, columns, row, column, value = read_matrix(path)
+    return scipy.sparse.csr_matrix((value, (row, column)), shape=(rows, columns))
+
+
+class Product:
+    """Products with a matrix and its transpose in extended precision."""
+
+    def __init__(self, matrix):
+        self.ways = {}
+        for transposed, form in ((False, matrix.tocsr()), (True, matrix.T.tocsr())):
+            form.sort_indices()
+            filled = numpy.flatnonzero(numpy.diff(form.indptr))
+            self.ways[transposed] = filled, form.indptr[filled], form.indices, form.data.astype(numpy.longdouble)
+
+    def times(self, x, transposed=False):
+        filled, first, column, value = self.ways[transposed]
+        result = numpy.zeros(len(x), numpy.clongdouble)
+        result[filled] = numpy.add.reduceat(value * x[column], first)
+        return result
+
+
+class Pencil:
+    """lambda^2 M + lambda C + K of a folder of -operators_save, with friction mu H."""
+
+    def __init__(self, folder, mu=0.0):
+        parts = {name: sparse(folder / f"{name}.bin") for name in "KMCH" if (folder / f"{name}.bin").exists()}
+        self.k = parts["K"] + mu * parts["H"] if "H" in parts else parts["K"]
+        self.m = parts["M"]
+        self.c = parts.get("C", scipy.sparse.csr_matrix(self.m.shape))
+        self.products = [Product(matrix) for matrix in (self.k, self.c, self.m)]
+
+    def apply(self, factors, x, transposed=False):
+        """Sum of factor times matrix times x, over K, C, M."""
+        return sum(factor * product.times(x, transposed) for factor, product in zip(factors, self.products) if factor != 0)
+
+    def refine(self, guess):
+        """The eigenvalue near a guess of many digits, and how much the last step moved it, in extended precision."""
+        value = numpy.clongdouble(guess)
+        near = complex(guess) * (1 + 1e-10)
+        lu = scipy.sparse.linalg.splu((self.k + near * self.c + near * near * self.m).astype(complex).tocsc())
+        random = numpy.random.default_rng(1)
+        x, y = (unit((random.standard_normal(self.m.shape[0]) + 0j).astype(numpy.clongdouble)) for _ in range(2))
+        for _ in range(4):
+            slope = 0, 1, 2 * value
+            x = unit(lu.solve(self.apply(slope, x).astype(complex)).astype(numpy.clongdouble))
+            y = unit(lu.solve(self.apply(slope, y, True).astype(complex), trans="T").astype(numpy.clongdouble))
+        step = numpy.inf
+        for _ in range(STEPS):
+            step = (y @ self.apply((1, value, value * value), x)) / (y @ self.apply((0, 1, 2 * value), x))
+            value = value - step
+            all_parts = 1, value, value * value
+            x = unit(x - lu.solve(self.apply(all_parts, x).astype(complex)))
+            y = unit(y - lu.solve(self.apply(all_parts, y, True).astype(complex), trans="T"))
+        return value, abs(step)
+
+
+def refined(folder, mu, guesses):
+    """Exact eigenvalues near guesses; the distance of those that are not (a double one, a guess without digits) is nan."""
+    pencil = Pencil(folder, mu)
+    return numpy.array([complex(value) if step < SMALL * abs(value) else numpy.nan
+                        for value, step in map(pencil.refine, guesses)])
+
+
 def exact_values(pencil, guesses, stated):
-    """Exact eigenvalues of the guesses with their stated errors. nan for one that belongs to a cluster or whose last step
-    was not small beside what is stated: rounding in extended precision is 1 / 2048 of that in double."""
+    """Exact eigenvalues of the guesses with their stated errors, in extended precision. nan for one that belongs to a cluster or
+    whose last step was not small beside what is stated: rounding in extended precision is 1 / 2048 of that in double."""
     values = []
     for guess, error in zip(guesses, stated):
         value, step = pencil.refine(guess)
         near = [other for other in guesses if abs(other - guess) < CLOSE * abs(guess)]
-        good = len(near) == 1 and step < SMALL * error and abs(value - guess) < CLOSE * abs(guess)
+        good = len(near) == 1 and step < BESIDE * error and abs(value - guess) < CLOSE * abs(guess)
         values.append(value if good else numpy.clongdouble(numpy.nan))
     return values

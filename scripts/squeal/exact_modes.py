@@ -2,7 +2,7 @@
 
 import numpy
 
-from .exact_sparse import refined
+from .exact import refined
 from .program import scene
 from .tables import BadInput, read_table
 

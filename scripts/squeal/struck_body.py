@@ -5,7 +5,7 @@ v sin(n theta) h / sin(theta), 2 sin(theta / 2) = omega h."""
 import numpy
 import scipy.linalg
 
-from .exact_sparse import sparse
+from .exact import sparse
 from .tables import BadInput, read_table
 
 MATERIAL = ("-parts", "body", "-body_young", 210e9, "-body_poisson", 0.3, "-body_density", 7800)

@@ -123,12 +123,17 @@ def eigenvalues(path, kept=lambda row: True):
                  2 * math.pi * float(row["error_hz"] or "nan"), row) for row in csv.DictReader(lines) if kept(row)]
 
 
-def full_point(program, folder, words, value):
-    """Modes of one point in full with their exact eigenvalues: [(exact, found, stated error)]."""
+def full_point(program, folder, words, value, seen):
+    """Modes of one point in full with their exact eigenvalues: [(exact, found, stated error)]; None where its matrices are among
+    those that were seen."""
     reason = launch(program, [*scene_words(words, value), "-analysis", "modes", "-operators_save", folder / "ops",
                               "-output_dir", folder, "-output_fields", 0])
     if reason:
         raise RuntimeError(reason)
+    contents = (value["contact_mu"], *(path.read_bytes() for path in sorted((folder / "ops").glob("[KMCH].bin"))))
+    if hash(contents) in seen:
+        return None
+    seen.add(hash(contents))
     found = [(own, error) for own, error, _ in eigenvalues(folder / "modes.csv") if own != 0]
     pencil = Pencil(folder / "ops", value["contact_mu"])
     exact = exact_values(pencil, [own for own, _ in found], [error for _, error in found])
@@ -158,7 +163,7 @@ def grid_points(axes):
 
 def one_sweep(program, seed, every=1):
     """Errors of one sweep, at each `every`th point: (seed, name, [(true, stated, freq, point)] of the sweep, the same of its
-    full solutions, reason)."""
+    full solutions, reason). A point whose matrices are those of one before is left out, as where a load keeps the status."""
     words, value, axes, link = random_sweep(seed)
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top)
@@ -172,16 +177,18 @@ def one_sweep(program, seed, every=1):
         if reason:
             return seed, ",".join(axes), [], [], reason
         rows = eigenvalues(folder / "sweep/sweep.csv")
-        sweep, modes = [], []
+        sweep, modes, seen = [], [], set()
         for number, point in list(enumerate(grid_points(axes), 1))[::every]:
             place = folder / str(number)
             place.mkdir()
             if link:
                 point = {**point, link: next(iter(point.values()))}
             try:
-                full = full_point(program, place, words, {**value, **point})
+                full = full_point(program, place, words, {**value, **point}, seen)
             except RuntimeError as error:
                 return seed, ",".join(axes), sweep, modes, str(error)
+            if full is None:
+                continue
             sweep += [(*record, number) for record in
                       point_records([one for one in rows if int(one[2]["point"]) == number], full)]
             modes += [(float(abs(true - own)) / abs(own), error / abs(own), own.imag / (2 * math.pi), number)

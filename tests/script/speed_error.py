@@ -28,7 +28,7 @@ sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "tests")]
 from check import Failure, require
 from forked import run_script
 from squeal.exact_modes import worst
-from squeal.exact_sparse import refined
+from squeal.exact import refined
 from squeal.petsc_matrix import write_matrix
 from squeal.speed_error import Point, draw, sentence, write_points
 from squeal.struck_body import Struck

@@ -62,7 +62,7 @@ def matrices(results, saved):
     import scipy.linalg
     from squeal.exact import Pencil
     pencil, table = Pencil(saved, 0), rows(Path(results) / "modes.csv")
-    count = numpy.sqrt(abs(scipy.linalg.eigh(pencil.stiffness.full, pencil.mass.full, eigvals_only=True))) / (2 * math.pi)
+    count = numpy.sqrt(abs(scipy.linalg.eigh(pencil.k.toarray(), pencil.m.toarray(), eigvals_only=True))) / (2 * math.pi)
     found = numpy.array([row["freq_hz"] for row in table])
     count = (count > found.min() / 2) & (count < found.max() * (1 + 1e-6))
     if count.sum() != len(found):

@@ -10,26 +10,20 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
 import scipy.sparse.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.exact import Sparse
+from squeal.exact import sparse
 
 BESIDE = 1.02  # the shift beside the frequency, squared
 COUNT = 6
 
 
-def matrix(path):
-    read = Sparse(path)
-    return scipy.sparse.csc_matrix((read.value, (read.row, read.column)), shape=(read.n, read.n))
-
-
 def main():
     folder, mu, frequency = Path(sys.argv[1]), float(sys.argv[2]), float(sys.argv[3])
     shift = BESIDE * (2 * np.pi * frequency) ** 2
-    mass = matrix(folder / "M.bin")
-    factors = scipy.sparse.linalg.splu(matrix(folder / "K.bin") + mu * matrix(folder / "H.bin") - shift * mass,
+    mass = sparse(folder / "M.bin").tocsc()
+    factors = scipy.sparse.linalg.splu((sparse(folder / "K.bin") + mu * sparse(folder / "H.bin") - shift * mass).tocsc(),
                                        permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
     inverse = scipy.sparse.linalg.LinearOperator(mass.shape, matvec=lambda x: factors.solve(mass @ x))
     found = shift + 1 / scipy.sparse.linalg.eigs(inverse, k=COUNT, return_eigenvectors=False, tol=1e-13)

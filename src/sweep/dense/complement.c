@@ -1,0 +1,110 @@
+/*
+   The vectors Z of a basis [V Z] without what V can do in their place. With Q in blocks at a real shift h
+
+      T = Q_vv(h)^-1 Q_vz(h),   T' = Q_vv(h)^-T Q_zv(h)^T,   right Z - V T,   left Z - V T',
+
+   do not couple to V at h. Where V has vectors that are stiff, as the short ones of a stiff contact, what they and Z do
+   to each other is as large as what each does alone, and only the sum is small: elimination of Z alone changes those
+   vectors by more than they are. Without the couplings at h, those at an eigenvalue lambda are (lambda^2 - h^2) M
+   + (lambda - h) C, which has no stiffness in it. On the new vectors the matrices are, for A of C, M
+
+      A := A_zz - A_zv T - T'^T (A_vz - A_vv T),   Q(h) := Q_zz(h) - Q_zv(h) T,   K = Q(h) - h C - h^2 M.
+*/
+#include "estimate.h"
+#include <petscblaslapack.h>
+
+/* Y [m][rows] -= op(A) X, X [m][columns] */
+static PetscErrorCode Subtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[])
+{
+  const PetscReal minus = -1, one = 1;
+  PetscBLASInt    rows, columns, n, stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(A.rows, &rows));
+  PetscCall(PetscBLASIntCast(A.columns, &columns));
+  PetscCall(PetscBLASIntCast(m, &n));
+  PetscCall(PetscBLASIntCast(A.stride, &stride));
+  PetscCallBLAS("BLASgemm", BLASgemm_(transposed ? "T" : "N", "N", &rows, &n, &columns, &minus, A.A, &stride, X,
+                                      &columns, &one, Y, &rows));
+  PetscFunctionReturn(0);
+}
+
+/* The entries of a block, or of its transpose, side by side */
+static void BlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[])
+{
+  for (PetscInt j = 0; j < block.columns; j++)
+    for (PetscInt i = 0; i < block.rows; i++)
+      entries[transposed ? i * block.columns + j : j * block.rows + i] = block.A[j * block.stride + i];
+}
+
+/* A_zz of C or M on the new vectors */
+static PetscErrorCode ComplementMatrix(const Estimate *e, const PetscReal A[], PetscReal Z[])
+{
+  const PetscInt v = e->n_v, z = e->n_z, n = e->pencil.n;
+  PetscReal     *coupling;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(v * z, &coupling));
+  BlockGet((DenseBlock){A + v * n, v, z, n}, PETSC_FALSE, coupling);
+  PetscCall(Subtract((DenseBlock){A, v, v, n}, PETSC_FALSE, z, e->right, coupling));
+  BlockGet((DenseBlock){A + v * (n + 1), z, z, n}, PETSC_FALSE, Z);
+  PetscCall(Subtract((DenseBlock){A + v, z, v, n}, PETSC_FALSE, z, e->right, Z));
+  PetscCall(Subtract((DenseBlock){e->left, z, v, v}, PETSC_TRUE, z, coupling, Z));
+  PetscCall(PetscFree(coupling));
+  PetscFunctionReturn(0);
+}
+
+/* Q(h) [n * n] of the whole basis */
+static void PencilAt(const DensePencil *pencil, PetscReal h, PetscReal Q[])
+{
+  for (PetscInt i = 0; i < pencil->n * pencil->n; i++)
+    Q[i] = pencil->K[i] + h * h * pencil->M[i] + (pencil->damped ? h * pencil->C[i] : 0);
+}
+
+/* T and T' from Q(h) */
+static PetscErrorCode ComplementVectors(Estimate *e, const PetscReal Q[])
+{
+  const PetscInt v = e->n_v, z = e->n_z, n = e->pencil.n;
+  PetscReal     *LU;
+  PetscBLASInt  *pivot;
+  PetscBool      singular;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(v * v, &LU, v, &pivot));
+  BlockGet((DenseBlock){Q, v, v, n}, PETSC_FALSE, LU);
+  BlockGet((DenseBlock){Q + v * n, v, z, n}, PETSC_FALSE, e->right);
+  BlockGet((DenseBlock){Q + v, z, v, n}, PETSC_TRUE, e->left);
+  PetscCall(DenseFactor(v, LU, pivot, &singular));
+  if (singular) { /* as they are */
+    PetscCall(PetscArrayzero(e->right, v * z));
+    PetscCall(PetscArrayzero(e->left, v * z));
+  } else {
+    PetscCall(DenseSolve(v, LU, pivot, PETSC_FALSE, z, e->right));
+    PetscCall(DenseSolve(v, LU, pivot, PETSC_TRUE, z, e->left));
+  }
+  PetscCall(PetscFree2(LU, pivot));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EstimateComplement(Estimate *e, PetscReal h)
+{
+  const PetscInt v = e->n_v, z = e->n_z, n = e->pencil.n;
+  DensePencil   *own = &e->complement;
+  PetscReal     *Q;
+
+  PetscFunctionBeginUser;
+  own->n      = z;
+  own->damped = e->pencil.damped;
+  PetscCall(PetscMalloc3(z * z, &own->K, z * z, &own->C, z * z, &own->M));
+  PetscCall(PetscMalloc2(v * z, &e->right, v * z, &e->left));
+  PetscCall(PetscMalloc1(n * n, &Q));
+  PencilAt(&e->pencil, h, Q);
+  PetscCall(ComplementVectors(e, Q));
+  PetscCall(ComplementMatrix(e, e->pencil.M, own->M));
+  if (own->damped) PetscCall(ComplementMatrix(e, e->pencil.C, own->C));
+  BlockGet((DenseBlock){Q + v * (n + 1), z, z, n}, PETSC_FALSE, own->K);
+  PetscCall(Subtract((DenseBlock){Q + v, z, v, n}, PETSC_FALSE, z, e->right, own->K));
+  for (PetscInt i = 0; i < z * z; i++) own->K[i] -= h * h * own->M[i] + (own->damped ? h * own->C[i] : 0);
+  PetscCall(PetscFree(Q));
+  PetscFunctionReturn(0);
+}
