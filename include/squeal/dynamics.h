@@ -33,7 +33,7 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
    Options Database Keys:
 +  -ts_max_time <s>, -ts_max_steps <n> - how long; with them all of TS's own options
 .  -ts_dt <s>                    - the step, as long as the run at most; without it, and then cut to the run,
-.  -dynamics_step_fraction <0.9> - of the critical one
+.  -dynamics_step_fraction <0.9> - of the critical one, in six digits, not longer
 .  -dynamics_step_force <false>  - integrate with a step above the critical one
 .  -ts_central_b <0.5>           - b of the integrator, 0.5 to 1
 .  -dynamics_start <rest|static> - from rest, or from the sliding state under the loads

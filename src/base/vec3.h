@@ -1,4 +1,4 @@
-/* Vectors in space: a . b, a x b, |a| */
+/* Vectors in space: a . b, a x b, |a|; order of places */
 #pragma once
 
 #include <math.h>
@@ -28,4 +28,12 @@ static inline double Vec3Normalise(double a[3])
 
   for (int d = 0; d < 3 && length > 0; d++) a[d] /= length;
   return length;
+}
+
+/* By z, then y, then x: the order of pairs in tables, which does not depend on the ranks */
+static inline int Vec3ComparePlaces(const double a[3], const double b[3])
+{
+  for (int d = 2; d >= 0; d--)
+    if (a[d] != b[d]) return a[d] < b[d] ? -1 : 1;
+  return 0;
 }

@@ -9,7 +9,7 @@
 static PetscErrorCode DynamicsStepFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-)",
+  PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-); it has six digits",
                              "dynamics.h", d->fraction, &d->fraction, NULL));
   PetscCheck(d->fraction > 0 && d->fraction <= 1, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_step_fraction %.6g must be in (0, 1]", (double)d->fraction);

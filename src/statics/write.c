@@ -4,6 +4,7 @@
 */
 #include "staticsimpl.h"
 #include "base/gather.h"
+#include "base/vec3.h"
 #include <stdlib.h>
 
 /* One row of the table */
@@ -19,9 +20,7 @@ static int StaticsCompareRecords(const void *one, const void *other)
   const StaticsRecord *a = one, *b = other;
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
-  for (int d = 2; d >= 0; d--)
-    if (a->x[d] != b->x[d]) return a->x[d] < b->x[d] ? -1 : 1;
-  return 0;
+  return Vec3ComparePlaces(a->x, b->x);
 }
 
 /* Pressures of the pairs of one interface on this rank, Pa: what all nodes of the slave surface have (pressure.c) */

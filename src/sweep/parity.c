@@ -8,9 +8,9 @@
 */
 #include "sweepimpl.h"
 #include <petsctime.h>
-#include <stdlib.h>
 #include <string.h>
 
+#define PARITY_SAME 1e-7 /* relative difference of frequencies that no order rests on */
 #define PROOF_VALUES 4                           /* of each sign, of an axis that moves one parameter */
 #define PROOF_LINKED (OPERATORS_MAX_FACTORS + 2) /* of one that moves several */
 
@@ -216,11 +216,24 @@ static PetscErrorCode PartTake(Sweep sweep, Sweep part)
   PetscFunctionReturn(0);
 }
 
-static int ModeCompare(const void *a, const void *b)
+/* By frequency; modes of two parities that only rounding tells apart, by parity */
+static PetscBool ModeIsAfter(const SweepMode *a, const SweepMode *b)
 {
-  const PetscReal x = ((const SweepMode *)a)->omega, y = ((const SweepMode *)b)->omega;
+  const PetscReal close = PARITY_SAME * PetscMax(a->omega, b->omega);
 
-  return (x > y) - (x < y);
+  if (PetscAbsReal(a->omega - b->omega) > close) return a->omega > b->omega ? PETSC_TRUE : PETSC_FALSE;
+  return a->parity > b->parity ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void ModesSort(PetscInt n, SweepMode mode[])
+{
+  for (PetscInt i = 1; i < n; i++) {
+    const SweepMode own = mode[i];
+    PetscInt        k   = i;
+
+    for (; k > 0 && ModeIsAfter(&mode[k - 1], &own); k--) mode[k] = mode[k - 1];
+    mode[k] = own;
+  }
 }
 
 PetscErrorCode SweepParities(Sweep sweep)
@@ -241,7 +254,7 @@ PetscErrorCode SweepParities(Sweep sweep)
   PetscCall(ModesSetPencil(sweep->modes, sweep->pencil));
   if (sweep->is_confirmed) SweepSortOnsets(sweep);
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
-    qsort(sweep->point[i].mode, (size_t)sweep->point[i].n, sizeof(SweepMode), ModeCompare);
+    ModesSort(sweep->point[i].n, sweep->point[i].mode);
     n_modes += sweep->point[i].n;
   }
   PetscCall(ModesGetBand(sweep->modes, band, &growth));

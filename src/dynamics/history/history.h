@@ -16,7 +16,7 @@ typedef struct {
   const ContactState *state;     /* [n] */
   const PetscInt     *interface; /* [n] */
   const PetscInt     *number;    /* [n] global nodes */
-  const PetscReal    *x;         /* [n][3], m */
+  const PetscReal    *x;         /* [n][3] at rest, m */
 } HistoryPairs;
 
 /* Where motions come from that are in no state vectors: Cartesian displacement (m), velocity (m/s) and acceleration

@@ -1,9 +1,10 @@
 /*
-   contact_pairs.csv: the state of each pair of slave node and master surface in time. Pairs are numbered by interface
-   and global number of the slave, so that a pair keeps its number during the run.
+   contact_pairs.csv: the state of each pair of slave node and master surface in time. Pairs are numbered by interface and place
+   of the slave at rest, in the order of static.csv, so that a pair keeps its number during the run and on any number of ranks.
 */
 #include "historyimpl.h"
 #include "base/gather.h"
+#include "base/vec3.h"
 #include <stdlib.h>
 #include <math.h>
 
@@ -16,9 +17,10 @@ typedef struct {
 static int HistoryPairCompare(const void *one, const void *other)
 {
   const HistoryPairRecord *a = one, *b = other;
+  const int                order = Vec3ComparePlaces(a->x, b->x);
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
-  return a->number < b->number ? -1 : a->number > b->number;
+  return order ? order : (a->number > b->number) - (a->number < b->number); /* two nodes may be in one place */
 }
 
 /* Records of all ranks in order, on every rank */

@@ -1,0 +1,151 @@
+"""Every scene of options/ on several numbers of ranks: what `scripts/study/gallery` runs, and its lines."""
+
+import math
+import subprocess
+import time
+from typing import NamedTuple
+
+from .gmsh import make_mesh
+from .program import ROOT, scene
+from .table_difference import difference
+
+SAME = 1e-9  # of the scale of a column
+NUDGE = 2e-15  # relative change of a number of the scene, some roundings
+SPOKEN = "squeal: error", "collective: "  # how lines begin that say why a run ended
+
+
+class Run(NamedTuple):
+    """What is run of a scene: files of options/ in their order; the script of its mesh and, where it has one, its size, mm, and that of
+    the quick run; words that the head of the file gives; words that make it shorter, and why; words of the quick run; an option to nudge."""
+    files: str
+    mesh: str = ""
+    size: tuple = ()
+    words: str = ""
+    short: str = ""
+    why: str = ""
+    quick: str = ""
+    nudge: tuple = ("pad_young", 25.1e9)
+
+
+STEEL = 210e9
+SMALL = "-rig_disc_elements 8,40,1 -rig_pad_elements 4,4,2 "
+BLOCK = "block_young", 10e9
+IRON = "disc_young", 110e9
+RUNS = {
+    "affine": Run("affine", nudge=()),
+    "affine sweep": Run("affine", words="-analysis sweep -sweep_parameter speed -sweep_values 1:5:41", nudge=()),
+    "oscillator": Run("oscillator", nudge=()),
+    "cantilever": Run("cantilever", "cantilever", nudge=("beam_young", STEEL)),
+    "plate": Run("plate", nudge=("disc_young", STEEL), quick="-rig_disc_elements 8,48,1"),
+    "free_ring": Run("free_ring", nudge=("disc_young", STEEL), quick="-rig_disc_elements 8,48,1"),
+    "block": Run("block", "block", nudge=BLOCK),
+    "mirror": Run("mirror", "block", nudge=BLOCK),
+    "mirror sweep": Run("mirror", "block", words="-analysis sweep -sweep_parameter contact_mu -sweep_values 0:0.6:7", nudge=BLOCK),
+    "mirror static": Run("mirror", "block", words="-analysis static", nudge=BLOCK),
+    "bar_impact": Run("bar_impact", "bars", nudge=("right_young", STEEL)),
+    "sliding_block": Run("sliding_block", "sliding_block", nudge=("block_young", 1e9), short="-ts_max_time 50e-3",
+                         why="at 51 ms friction stops it, and which node sticks first hangs on rounding"),
+    "massi2005": Run("massi2005", quick=SMALL),
+    "massi2005 static": Run("massi2005", words="-analysis static", quick=SMALL),
+    "massi2005_coarse": Run("massi2005 massi2005_coarse", quick="-rig_disc_elements 9,67,1"),
+    "massi2005_frf": Run("massi2005 massi2005_frf", quick=SMALL + "-frf_frequencies 100:15000:150"),
+    "massi2005_sweep": Run("massi2005 massi2005_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),
+    "massi2005_fitted_sweep": Run("massi2005 massi2005_sweep massi2005_fitted_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),
+    "massi2005_reduced": Run("massi2005_reduced", short="-ts_max_time 5e-3", why="of 50 ms; growth from the blow",
+                             quick=SMALL + "-ts_max_time 2e-3"),
+    "massi2005_response": Run("massi2005_transient massi2005_response", short="-ts_max_time 1e-3", why="25 ms are half a million steps",
+                              quick=SMALL + "-ts_max_time 1e-3"),
+    "massi2005_transient": Run("massi2005_transient", short="-ts_max_time 1.5e-3", why="50 ms are a million steps",
+                               quick=SMALL + "-ts_max_time 1.5e-3"),
+    "brake": Run("brake", "brake", (14, 30), nudge=IRON),
+    "brake_sweep": Run("brake brake_sweep", "brake", (24, 30), why="7 full solutions, hence 24 mm for 14", quick="-sweep_values 0.3,0.5",
+                       nudge=IRON),
+    "brake_transient": Run("brake brake_transient", "brake", (24, 30), short="-ts_max_time 5e-4", why="6 ms are 52,000 steps; 24 mm for 14",
+                           quick="-ts_max_time 1e-4", nudge=IRON),
+    "small_brake_cycle": Run("small_brake_cycle"),
+    "small_brake_map": Run("small_brake_map"),
+}
+
+
+def end(process):
+    """Asks a launcher to end itself and its ranks, then insists."""
+    process.terminate()
+    try:
+        process.communicate(timeout=10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+
+
+class Gallery:
+    """Meshes and runs below one folder."""
+
+    def __init__(self, args):
+        self.program, self.folder, self.seconds, self.quick = args.program, args.output.resolve(), args.seconds, args.quick
+        self.ranks = [int(word) for word in args.ranks.split(",")]
+        self.preload = ["-x", f"LD_PRELOAD={args.collective.resolve()}"] if args.collective else []
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def mesh(self, run):
+        """Words for the mesh of a scene, which is made where it is not there."""
+        if not run.mesh:
+            return []
+        numbers = {"size": run.size[self.quick]} if run.size else {"n": 2} if run.mesh == "sliding_block" else {}
+        path = self.folder / f"{run.mesh}{''.join(f'-{value}' for value in numbers.values())}.msh"
+        if not path.exists():
+            make_mesh("block" if run.mesh == "sliding_block" else run.mesh, path, **numbers)
+        return ["-model_mesh", path]
+
+    def words(self, run):
+        """The command of a scene, without program and folder."""
+        short = run.quick if self.quick and run.quick else run.short
+        return [*scene(*run.files.split()), *self.mesh(run), *run.words.split(), *short.split(), "-output_fields", 0]
+
+    def made(self, name, run, ranks, more=()):
+        """The folder of a run and s of the clock; what happened in place of the folder where it did not end well."""
+        out = self.folder / f"{name.replace(' ', '-')}-{ranks}{'-nudged' if more else ''}"
+        command = [ROOT / "scripts/mpirun", "-n", ranks, *(self.preload if ranks > 1 else []), self.program, *self.words(run), *more,
+                   "-output_dir", out]
+        begun = time.monotonic()
+        with subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True) as process:
+            try:
+                _, said = process.communicate(timeout=self.seconds)
+            except subprocess.TimeoutExpired:
+                end(process)
+                return f"HANGS, no end in {self.seconds:g} s", self.seconds
+        if process.returncode:
+            out = f"EXIT {process.returncode}: {' | '.join(line for line in said.splitlines() if line.startswith(SPOKEN))}"
+        return out, time.monotonic() - begun
+
+    def nudged(self, name, run, first):
+        """What some roundings of one number of the scene change on one rank; none where there is no number to nudge."""
+        if not run.nudge:
+            return None
+        option, value = run.nudge
+        out, _ = self.made(name, run, 1, (f"-{option}", value * (1 + NUDGE)))
+        return math.inf if isinstance(out, str) else difference(first, out, SAME).value
+
+    def beside(self, name, run, first, ranks):
+        """What a run on several ranks is beside that on one: its difference, and in words."""
+        out, _ = self.made(name, run, ranks)
+        if isinstance(out, str):
+            return math.inf, f"{ranks}: {out}"
+        found = difference(first, out, SAME)
+        since = "" if math.isnan(found.since) else f", from {found.since:g} s"
+        return found.value, f"{ranks}: {found.value:.1e}" + (f" ({found.where}{since})" if found.value > SAME else "")
+
+    def compare(self, name):
+        """Prints the line of a scene; whether it is as asked for."""
+        run = RUNS[name]
+        first, seconds = self.made(name, run, 1)
+        if isinstance(first, str):
+            print(f"{name:24} 1: {first}", flush=True)
+            return False
+        found = [self.beside(name, run, first, ranks) for ranks in self.ranks]
+        same = max(value for value, _ in found) <= SAME
+        words = [word for _, word in found] + ["same" if same else "DIFFERS"]
+        if not same and run.nudge:
+            words.append(f"{NUDGE:.0e} of {run.nudge[0]} on one rank: {self.nudged(name, run, first):.1e}")
+        print(f"{name:24} {'; '.join(words)} ({seconds:.1f} s on one)", flush=True)
+        return same

@@ -1,0 +1,108 @@
+"""How far the tables of two runs of one scene are apart. A column is measured in units of its family: x, y and z of a vector, real and
+imaginary part, growth and frequency of eigenvalues, by the largest value that any of them has. What only says how well something is
+known (errors, residuals, conditions), and what it cost, is not compared."""
+
+import csv
+import math
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+IGNORED = re.compile("error|residual|condition|confirmed|projector|sweeps|iterations|worst_ratio|beyond|check|steps_changed|pairs_changed|cost")
+EIGENVALUE = re.compile(r"growth(_freq)?_(rad_s|hz)$|freq_hz$")
+DAMPING = "damping_ratio"  # -growth / |eigenvalue|, hence in units of 1
+PART = re.compile(r"_[va]?(x|y|z|re|im|n|t|b|\d+)(?=_)")
+GAPS, RESOLVED = ("gap_m", "slip_t_m", "slip_b_m"), 1e-6  # of the size of the model: its rounding is 1e-10 of that
+PAIRED = 1e-6  # relative difference of frequencies below which two modes are a pair whose shapes are any of a plane
+SHAPE = re.compile("label|class|part_.*_percent|partner|^mode$")
+
+
+class Difference(NamedTuple):
+    """The worst of two tables: in units of its family, where, and the first time at which it is beyond a limit (nan: never)."""
+    value: float = 0.0
+    where: str = ""
+    since: float = math.nan
+
+
+def family(table, name):
+    """What a column is measured with."""
+    if name == DAMPING:
+        return table, DAMPING
+    if EIGENVALUE.search(name):
+        return table, "eigenvalue"
+    if name.endswith("_j"):
+        return table, "energy"
+    return table, PART.sub("", name)
+
+
+def size(name, text):
+    """A number in the units of its family, or none where it is a word."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value * 2 * math.pi if name.endswith("hz") and EIGENVALUE.search(name) else value
+
+
+def read(path):
+    """Rows of a table."""
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def paired(rows):
+    """For each row whether another one has its frequency: of a pair of equal modes any two shapes may be found."""
+    found = [float(row.get("freq_hz") or "nan") for row in rows]
+    return [any(i != j and abs(a - b) <= PAIRED * abs(a) for j, b in enumerate(found) if abs(i - j) < 3) for i, a in enumerate(found)]
+
+
+def scales(table, rows):
+    """Largest finite size of each family; of a gap not less than what the place of a node resolves."""
+    found = {(table, DAMPING): 1.0}
+    for row in rows:
+        for name, text in row.items():
+            value = size(name, text)
+            if value is not None and math.isfinite(value):
+                key = family(table, name)
+                found[key] = max(found.get(key, 0.0), abs(value))
+    for name in GAPS:
+        found[family(table, name)] = max(found.get(family(table, name), 0.0), RESOLVED * found.get(family(table, "x_m"), 0.0))
+    return found
+
+
+def apart(name, one, other, scale):
+    """Of two entries, in units of their scale; words and what is not finite are alike or not."""
+    a, b = size(name, one), size(name, other)
+    if one == other:
+        return 0.0
+    if a is None or b is None or not (math.isfinite(a) and math.isfinite(b)):
+        return math.inf
+    return abs(a - b) / scale
+
+
+def of_table(name, one, other, limit):
+    """Of two tables."""
+    if len(one) != len(other):
+        return Difference(math.inf, f"{name}: {len(one)} and {len(other)} rows")
+    worst, since, scale = Difference(), math.nan, scales(name, one + other)
+    twins = paired(one)
+    for i, (a, b) in enumerate(zip(one, other)):
+        for column in a:
+            if IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
+                continue
+            value = apart(column, a[column], b[column], scale.get(family(name, column), 1.0))
+            if value > limit and math.isnan(since) and "time_s" in a:
+                since = float(a["time_s"])
+            if value > worst.value:
+                worst = Difference(value, f"{name} {column} row {i + 1}: {a[column]}, {b[column]}")
+    return worst._replace(since=since)
+
+
+def difference(one, other, limit):
+    """The worst of all tables of two folders."""
+    names = [{path.name for path in Path(folder).glob("*.csv")} for folder in (one, other)]
+    if names[0] != names[1] or not names[0]:
+        return Difference(math.inf, f"tables {' '.join(sorted(names[0] ^ names[1])) or 'none'}")
+    found = [of_table(name, read(one / name), read(other / name), limit) for name in sorted(names[0])]
+    worst = max(found, key=lambda one: one.value)
+    return worst._replace(since=min((one.since for one in found if not math.isnan(one.since)), default=math.nan))
