@@ -192,12 +192,55 @@ static PetscErrorCode TestMemory(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Forces of a step in which all pairs open, which makes factors of no row, and of one in which two of them close */
+static PetscErrorCode CloseTwo(ContactCompliance c, PetscReal lambda[STEP_ROWS], ComplianceReport *report)
+{
+  PetscReal q[STEP_ROWS], slip0[2 * STEP_PAIRS] = {0};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < STEP_ROWS; i++) {
+    q[i]      = i % 3 ? 1e-7 * (i % 5) : 1e-3;
+    lambda[i] = i % 3 ? 0 : 1;
+  }
+  PetscCall(ContactComplianceSolve(c, q, slip0, lambda, NULL, NULL));
+  q[0] = -1e-6;
+  q[9] = -2e-6;
+  PetscCall(ContactComplianceSolve(c, q, slip0, lambda, NULL, report));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: something that earlier steps left is used after the memory was cleared, as room for factors once was */
+static PetscErrorCode TestCleared(int *failed)
+{
+  SteppedRun       run, fresh;
+  ComplianceReport report[2];
+  PetscInt         unsolved = 0;
+  PetscReal        lambda[2][STEP_ROWS], apart = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(RunCreate(0.5, 8e-6, 1, 0.003, &run));
+  PetscCall(RunCreate(0.5, 8e-6, 1, 0.003, &fresh));
+  for (int k = 0; k < 77; k++) PetscCall(RunStep(&run, &unsolved));
+  PetscCall(ContactComplianceSetMemory(run.c, 0, NULL));
+  PetscCall(CloseTwo(run.c, lambda[0], &report[0]));
+  PetscCall(CloseTwo(fresh.c, lambda[1], &report[1]));
+  for (int i = 0; i < STEP_ROWS; i++) apart = fmax(apart, fabs(lambda[0][i] - lambda[1][i]));
+  *failed += CheckTrue("cleared: two pairs close", lambda[0][0] > 0 && lambda[0][9] > 0, lambda[0][0]);
+  *failed += CheckClose("cleared: bitwise a new one", apart, 0, 0);
+  *failed += CheckClose("cleared: as many factors", (double)report[0].factors, (double)report[1].factors, 0);
+  *failed += CheckClose("cleared: as many iterations", (double)report[0].iterations, (double)report[1].iterations, 0);
+  PetscCall(RunDestroy(&fresh));
+  PetscCall(RunDestroy(&run));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscFunctionBeginUser;
   (void)size;
   PetscCall(TestRuns(failed));
   PetscCall(TestMemory(failed));
+  PetscCall(TestCleared(failed));
   PetscFunctionReturn(0);
 }
 

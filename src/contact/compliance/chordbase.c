@@ -89,7 +89,7 @@ static inline PetscInt ChordMost(PetscInt m)
   return PetscMax(CHORD_LEAST, m / CHORD_SHARE);
 }
 
-/* Room for a base of m indices and its borders */
+/* Room for a base of m indices, one at least, and its borders: of a base of none PetscMalloc() makes V NULL, as where it is full */
 static PetscErrorCode ChordReserve(ContactCompliance c)
 {
   ComplianceChord *h = &c->chord;
@@ -97,7 +97,7 @@ static PetscErrorCode ChordReserve(ContactCompliance c)
   PetscFunctionBeginUser;
   h->most = ChordMost(h->m);
   if (h->LU && h->m <= h->room) PetscFunctionReturn(0);
-  h->room = PetscMin(3 * c->n, h->m + h->m / 4);
+  h->room = PetscMax(1, PetscMin(3 * c->n, h->m + h->m / 4));
   PetscCall(PetscFree6(h->LU, h->V, h->S, h->row, h->at, h->small));
   PetscCall(PetscMalloc6(h->room * h->room, &h->LU, ChordMost(h->room) * h->room, &h->V, PetscSqr(ChordMost(h->room)),
                          &h->S, 3 * h->room, &h->row, h->room, &h->at, ChordMost(h->room), &h->small));
