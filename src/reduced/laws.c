@@ -1,12 +1,11 @@
 /*
    Friction of a step by a second path (dynamics/laws.h): the slip s of each pair from its places before and after, by the
    coordinates of the modes and the forces on the residual, u = P eta + W q (m), not from the step's own account; Coulomb's law with
-   the interface's coefficient asks for lambda_T . s = mu lambda_n |s| (J), and for the heat of the ledger, mean of both ends.
+   the interface's coefficient asks for lambda_T . s = mu lambda_n |s| (J). The laws hold to REDUCED_RTOL of what displacements are made
+   of, |P| |eta| + |W| |q|, beside which rounding is small and the slip of a pair that sticks is nothing.
 */
 #include "reducedimpl.h"
 #include "kernels/friction.h"
-
-#define LOOK_NOISE 16 /* roundings of a displacement */
 
 /* Displacements of the pairs [3 n_pairs], m */
 static void LookPlace(const ReducedRun r, PetscReal place[])
@@ -27,25 +26,36 @@ PetscErrorCode ReducedLookBegin(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* What a displacement is made of, m: the sum of the sizes of its terms */
+static PetscReal LookSize(const ReducedRun r, PetscInt port)
+{
+  const ReducedModel *model = &r->model;
+  PetscReal           size  = 0;
+
+  for (PetscInt k = 0; k < model->m; k++) size += PetscAbsReal(model->P[k + model->m * port] * r->state.eta[k]);
+  for (PetscInt i = 0; i < model->n_ports; i++)
+    size += PetscAbsReal(model->W[i + model->n_ports * port] * r->shown[i]);
+  return size;
+}
+
 /* One pair: what its friction did and what the law asks for, J */
 static void LookAdd(const ReducedRun r, PetscInt i, const PetscReal after[], PetscReal sum[3])
 {
   const ContactInterface *c      = &r->run.interfaces[r->pair[i].interface];
   const ContactState     *state  = &r->pairs[i];
   const PetscReal        *before = &r->place[3 * i];
-  PetscReal               s[2], motion = 0, size = 0, length, mu, done;
+  PetscReal               s[2], motion = 0, noise = 0, length, mu, done;
 
   for (int d = 0; d < 3; d++) {
     motion = PetscMax(motion, PetscAbsReal(after[3 * i + d] - before[d]));
-    size   = PetscMax(size, PetscAbsReal(after[3 * i + d]));
+    noise  = PetscMax(noise, REDUCED_RTOL * LookSize(r, 3 * i + d));
   }
   for (int d = 0; d < 2; d++) s[d] = after[3 * i + 1 + d] - before[1 + d] + (d ? 0 : r->sliding[i]);
   length = hypot(s[0], s[1]);
   mu     = FrictionCoefficient(c->mu, c->mu_slope, r->pair[i].speed, length / r->dt);
   done   = state->lambda_t[0] * s[0] + state->lambda_t[1] * s[1];
-  sum[0] += PetscMax(0, PetscAbsReal(done - mu * state->lambda_n * length) -
-                          2 * mu * state->lambda_n * LOOK_NOISE * PETSC_MACHINE_EPSILON * size);
-  sum[1] += mu * state->lambda_n * PetscMax(PetscMax(length, motion), LOOK_NOISE * PETSC_MACHINE_EPSILON * size);
+  sum[0] += PetscMax(0, PetscAbsReal(done - mu * state->lambda_n * length) - 2 * mu * state->lambda_n * noise);
+  sum[1] += mu * state->lambda_n * PetscMax(PetscMax(length, motion), noise);
 }
 
 PetscErrorCode ReducedLookEnd(ReducedRun r)
@@ -64,5 +74,6 @@ PetscErrorCode ReducedLookEnd(ReducedRun r)
   laws->friction_alone = 1;
   PetscCall(PetscFree(after));
   PetscCall(PetscFree(r->place));
+  PetscCall(LedgerJudgeLaws(r->comm, laws, r->step, r->state.time));
   PetscFunctionReturn(0);
 }

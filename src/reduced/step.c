@@ -218,7 +218,8 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   PetscFunctionReturn(0);
 }
 
-/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
+/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1}. Heat is of pairs that are closed there: half of
+   what held a pair before it opened, or turned, still acts on a motion that it is no friction of */
 static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
 {
   for (PetscInt i = 0; i < s->model->n_pairs; i++) {
@@ -235,7 +236,9 @@ static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedS
     if (!report->works) continue;
     report->contact[i]  = mean[0] * dy[0];
     report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
-    report->heat[i]     = -report->friction[i] - mean[1] * drive->sliding[i];
+    report->heat[i]     = 0;
+    if (state->status[i] != CONTACT_OPEN)
+      report->heat[i] = PetscMax(0, -report->friction[i] - mean[1] * drive->sliding[i]);
   }
 }
 

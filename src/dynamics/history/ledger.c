@@ -11,6 +11,7 @@
 #include "ledger.h"
 
 #define LEDGER_RTOL 1e-6 /* of the throughput */
+#define LAWS_MOST   1e-3 /* an error beyond is no rounding: the run ends */
 
 void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old)
 {
@@ -114,5 +115,27 @@ PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *l, PetscReal fraction, P
              "the fastest oscillations of the mesh grow (kinetic %.3g J, strain %.3g J) at step %" PetscInt_FMT
              ", %.6g s: the step is above the critical one; take a smaller -ts_dt",
              (double)l->kinetic, (double)l->strain, step, (double)time);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt step, PetscReal time)
+{
+  const struct {
+    const char *name;
+    PetscReal   error;
+  } law[] = {
+    {"work of friction",   laws->friction },
+    {"change of momentum", laws->momentum },
+    {"K u of the kernels", laws->stiffness}
+  };
+  int worst = 0;
+
+  PetscFunctionBeginUser;
+  for (int k = 1; k < (int)PETSC_STATIC_ARRAY_LENGTH(law); k++)
+    if (law[k].error > law[worst].error) worst = k;
+  PetscCheck(law[worst].error <= LAWS_MOST, comm, PETSC_ERR_PLIB,
+             "%s is not what a second path says: off by %.3g of it in step %" PetscInt_FMT
+             ", %.6g s; -dynamics_check_interval 0 looks no more",
+             law[worst].name, (double)law[worst].error, step, (double)time);
   PetscFunctionReturn(0);
 }

@@ -72,3 +72,7 @@ PETSC_INTERN PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, P
 */
 PETSC_INTERN PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *ledger, PetscReal fraction, PetscInt step,
                                         PetscReal time);
+
+/* Raises PETSC_ERR_PLIB where a law does not hold to 1e-3, which is no rounding; moments miss what bodies have deformed, and are only
+   told. Collective. */
+PETSC_INTERN PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt step, PetscReal time);
