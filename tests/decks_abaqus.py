@@ -226,6 +226,8 @@ REFUSED = [
     (BODY.replace("6,7,8", "6,7,7"), "wrong.inp:10: element 1 of type C3D8I has a node twice"),
     (BODY + "1, 1,2,3,4,5,6,7,8\n", "wrong.inp:12: element 1 stands twice"),
     (BODY + "*BOUNDARY\nN, 1, 3\n", "wrong.inp:13: 'N' is neither a set of nodes"),
+    (BODY + "*CLOAD, OP=NEEW\n1, 1, 1.\n", "wrong.inp:12: *CLOAD, OP=NEEW: it is one of NEW, MOD"),
+    (BODY + "*STEP, NLGEOM=YE5\n*END STEP\n", "wrong.inp:12: *STEP, NLGEOM=YE5: it is one of YES, NO"),
     (BODY + "*NSET, NSET=N, GENERATE\n1, 0, 1\n", "wrong.inp:13: GENERATE: from 1 to 0 by 1 is no range"),
     (BODY + "*SURFACE, NAME=S\nE, S7\n", "wrong.inp:13: elements of type C3D8I have no face 7"),
     (BODY + STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=N\n", "wrong.inp:17: there is no *MATERIAL N"),

@@ -206,4 +206,6 @@ REFUSED = {"bdf": [
     (NBLOCK.replace("3i9,6e21.13e3", "3i9,6z21"), "wrong.cdb:3: format (3i9,6z21) is not read"),
     (NBLOCK + EBLOCK + "CMBLOCK,A,NODE,12\n(8i10)\n         1\n", "wrong.cdb:17: CMBLOCK announces 12 items, and the file ends"),
     ("ET,1,185\n", "there is no NBLOCK"),
+    (NBLOCK + EBLOCK + "ETBLOCK,1,1\n(2i9)\n        2      185\n        3      185\n -1\n",
+     "wrong.cdb:17: ETBLOCK announces 1 types and has 2"),
 ]}

@@ -159,39 +159,57 @@ def placed(system, x):
 SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}
 
 
+def ansys_fields(form, row):
+    """Texts of the fields of a line by a format of Fortran."""
+    kinds = re.findall(r"(\d*)p?[iaegf](\d+)", re.sub(r"\.\d+(e\d+)?", "", form.lower()))
+    widths = [int(width) for count, width in kinds for _ in range(int(count or 1))]
+    ends = np.cumsum([0, *widths])
+    return [row[a:b].strip() for a, b in zip(ends, ends[1:])]
+
+
+def ansys_types(rows):
+    """Numbers of ET, whose words may be parameters."""
+    said, kinds = {}, {}
+    for k, row in enumerate(rows):
+        row = row.partition("!")[0]
+        value = re.match(r"\s*(?:\*SET\s*,\s*(\w+)\s*,|(\w+)\s*=)\s*(\S+)\s*$", row, re.IGNORECASE)
+        if value:
+            said[(value[1] or value[2]).upper()] = value[3]
+        words = [word.strip().upper() for word in row.split(",")]
+        if words[0] == "ET":
+            number, kind = (said.get(word, word) for word in words[1:3])
+            kinds[int(number)] = int(re.sub("^[A-Z]+", "", kind))
+        if words[0] == "ETBLOCK":
+            for row in rows[k + 2:]:
+                if row.strip() == "-1":
+                    break
+                number, kind = ansys_fields(rows[k + 1], row)[:2]
+                kinds[int(number)] = int(kind)
+    return kinds
+
+
 def read_ansys(text):
-    rows, place, kinds, found, k = text.split("\n"), {}, {}, [], 0
-    for row in rows:
-        words = [word.strip() for word in row.partition("!")[0].split(",")]
-        if words[0].upper() == "ET":
-            kinds[int(words[1])] = int(re.sub("^[A-Za-z]+", "", words[2]))
+    rows, place, found, k = text.split("\n"), {}, [], 0
+    kinds = ansys_types(rows)
     while k < len(rows):
-        name = rows[k].split(",")[0].strip().upper()
+        head = [word.strip().upper() for word in rows[k].partition("!")[0].split(",")]
         k += 1
-        if name not in ("NBLOCK", "EBLOCK"):
+        if head[0] not in ("NBLOCK", "EBLOCK"):
             continue
-        form = [int(word) for word in re.findall(r"\d+", rows[k].split(".")[0])]
-        k, lines = k + 1, []
-        while not re.match(r"\s*-1\s*$", rows[k]) and not (name == "NBLOCK" and re.match(r"\s*N\s*,", rows[k], re.IGNORECASE)):
-            lines.append(rows[k])
+        form, lines = rows[k], []
+        k += 1
+        while not re.match(r"\s*-1\s*$", rows[k]) and not (head[0] == "NBLOCK" and re.match(r"\s*N\s*,", rows[k], re.IGNORECASE)):
+            lines.append(ansys_fields(form, rows[k]))
             k += 1
-        wide = form[1]
-        for at, row in enumerate(lines):
-            values = [int(row[c:c + wide] if row[c:c + wide].strip() else 0) for c in range(0, wide * form[0], wide)]
-            if name == "NBLOCK":
-                start = wide * form[0]
-                place[values[0]] = [float(re.sub("[dD]", "e", row[c:c + form[3]].strip() or "0"))
-                                    for c in range(start, start + 3 * form[3], form[3])]
-            else:
-                found.append((at, values))
-        if name == "EBLOCK":
-            blocks = found
-    elements, at = [], 0
-    for at_, values in skip_second(blocks):
-        n = SOLIDS.get(kinds[values[1]])
-        if n:
-            elements += [nodes for nodes in [unfolded(((values[11:19] + at_) + [0] * 20)[:n], place)] if nodes]
-    return elements
+        if head[0] == "NBLOCK":
+            n_whole = sum(int(count or 1) for count in re.findall(r"(\d*)i\d+", form.lower()))
+            place |= {int(words[0]): [float(re.sub("[dD]", "e", word or "0")) for word in words[n_whole:n_whole + 3]] for words in lines}
+        else:
+            lines = [[int(word or 0) for word in words] for words in lines]
+            found += [(kinds[head_[1]], nodes) for head_, nodes in (split_solids(lines) if head[2].startswith("SOLID") else
+                                                                   ((row, row[5:]) for row in lines))]
+    solids = [((nodes + [0] * 20)[:SOLIDS[kind]], place) for kind, nodes in found if kind in SOLIDS]
+    return [nodes for nodes in (unfolded(*solid) for solid in solids) if nodes]
 
 
 def unfolded(numbers, place):
@@ -215,13 +233,12 @@ def unfolded(numbers, place):
 SECOND = {4: "01 12 20 03 13 23", 8: "01 12 23 30 45 56 67 74 04 15 26 37"}
 
 
-def skip_second(rows):
-    """Elements with the numbers of their second line."""
+def split_solids(rows):
+    """The eleven numbers before the nodes of each element, and its nodes, of one line or two."""
     at = 0
     while at < len(rows):
-        values = rows[at][1]
-        long = values[8] > 8
-        yield (rows[at + 1][1] if long else []), values
+        long = rows[at][8] > 8
+        yield rows[at], rows[at][11:19] + (rows[at + 1] if long else [])
         at += 1 + long
 
 

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Damaged decks: for each format files that are cut off, or have bytes, digits, words, lines or whole pieces changed, lost
-or put twice. scripts/import must refuse each with one line that names the file and a line of it, or write what the damaged file
+or put twice, also of decks of several files and steps, and of what current versions of Ansys write (damaged_decks.py).
+scripts/import must refuse each with one line that names the file and a line of it, or write what the damaged file
 still says: the places of the nodes of every element, read back from the mesh file, are those that a plain reading of the
 damaged text, line by line, gives (texts; meshio's formats are checked for being whole and finite). A deck that ends early is
-never taken without saying so.
+never taken without saying so. Where a letter of a keyword, parameter or label is wrong, or an object of a file of MED is gone, another
+scene or balance comes with another list of what is not in it.
 
     test_import_fuzz.py [--count 500] [--seed 1] [--format inp]
 
@@ -21,14 +23,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.decks.convert import convert
 from squeal.tables import BadInput
 
-import decks
-import decks_abaqus
-import decks_others
 import numpy as np
+from damaged_decks import bases, damaged
 from plain_decks import READ
 
 KEEP = Path(os.environ["SQUEAL_KEEP"]) if "SQUEAL_KEEP" in os.environ else None  # a folder for files that fail
-MESSAGE = re.compile(r"[^\n]*deck\.\w+:\d+: [^\n]+$")
 GMSH_NODES = {15: (0, 1), 2: (2, 3), 9: (2, 6), 3: (2, 4), 16: (2, 8), 10: (2, 9), 4: (3, 4), 11: (3, 10), 6: (3, 6),
               18: (3, 15), 5: (3, 8), 17: (3, 20), 12: (3, 27)}
 
@@ -62,140 +61,87 @@ def sorted_rows(elements, size):
     return sorted(sorted(map(tuple, (np.round(np.asarray(nodes, float) / size, 9) + 0.0).tolist())) for nodes in elements)
 
 
-def cut(random, data):
-    return data[:random.integers(1, len(data))], True
+def outcome(folder, said):
+    """What a scene has, whatever it is called: its numbers, directions and models, those of the balance, and counts."""
+    scene = [line.partition("#")[0] for line in (folder / "out.yaml").read_text().split("\n")]
+    values = re.findall(r"(?m)(\w+): *\"?([-+.\d][-+.,\de]*|[xyz]{1,3}|constraint|penalty)\"?(?=[ ,}]|$)", "\n".join(scene))
+    at = next((k for k, line in enumerate(said) if "balance" in line), len(said))
+    return sorted(values), sorted(" ".join(line.split()[1:]) for line in said[at + 1:-1]), said[1:2]
 
 
-def flip(random, data):
-    data = bytearray(data)
-    for at in random.integers(0, len(data), random.integers(1, 4)):
-        data[at] ^= 1 << random.integers(0, 8)
-    return bytes(data), False
+def notes(said):
+    """The lines of what is lost or differs, without their places."""
+    return sorted(line.partition(": ")[2] for line in said if re.match(r"[^ ]+:\d+: ", line))
 
 
-def digits(random, data):
-    """Other digits: wrong counts, numbers, places."""
-    data = bytearray(data)
-    places = [k for k, letter in enumerate(data) if chr(letter).isdigit()]
-    for at in random.choice(places, min(len(places), random.integers(1, 4))) if places else ():
-        data[at] = ord("0") + random.integers(0, 10)
-    return bytes(data), False
+class Judge:
+    """What is wrong with what became of a deck."""
 
+    def __init__(self, folder, ending):
+        self.folder, self.ending, self.whole = folder, ending, {}
 
-def lines(random, data):
-    """A line lost, twice, or in another place."""
-    rows = data.split(b"\n")
-    a, b, how = random.integers(0, len(rows)), random.integers(0, len(rows)), random.integers(0, 3)
-    row = rows[a]
-    if how < 2:
-        del rows[a]
-    if how > 0:
-        rows.insert(min(b, len(rows)), row)
-    return b"\n".join(rows), a >= len(rows) - 3
-
-
-def words(random, data):
-    """A number becomes a word, nothing, or one that is none."""
-    found = list(re.finditer(rb"[-+.\w]+", data))
-    at = found[random.integers(0, len(found))]
-    new = [b"nan", b"", b"inf", b"1e999", b"-1", b"0", b"99999999999999999999", b"x", b"1,", b"0x10", b"1_0"][random.integers(0, 11)]
-    return data[:at.start()] + new + data[at.end():], at.end() > len(data) - 40
-
-
-def piece(random, data):
-    """A piece lost, twice, or random bytes."""
-    a = random.integers(0, len(data))
-    b = min(len(data), a + random.integers(1, 200))
-    how = random.integers(0, 3)
-    middle = [b"", data[a:b] * 2, random.bytes(b - a)][how]
-    return data[:a] + middle + data[b:], b > len(data) - 40
-
-
-DAMAGES = (cut, flip, digits, lines, words, piece)
-
-
-def bases(folder, ending):
-    """Whole files of a format."""
-    found = []
-    if ending in ("inp", "bdf", "cdb"):
-        small = decks.Solid("wedge+tet1", folder, "--elements", "2,1,2")
-        second = decks.Solid("hex20", folder, "--elements", "2,1,1")
-    if ending == "inp":
-        found = [decks.abaqus(small), decks.abaqus(second, decks.ORTHOTROPIC),
-                 decks_abaqus.Assembly.FILES["brake.inp"].replace(
-                     "*INCLUDE, INPUT=material.inc\n", decks_abaqus.Assembly.FILES["material.inc"]).split("\n"),
-                 decks_abaqus.Flat.FILES["flat.inp"].split("\n")]
-    elif ending == "bdf":
-        found = [decks.nastran(small, "free"), decks.nastran(second, "large", decks.ORTHOTROPIC), decks.nastran(small, "small"),
-                 decks_others.Nastran.FILES["pair.bdf"].split("\n")]
-    elif ending == "cdb":
-        found = [decks.ansys(small), decks.ansys(second, decks.ORTHOTROPIC), decks_others.Ansys.FILES["pair.cdb"].split("\n")]
-    else:
-        for kind in ("hex20", "wedge+tet1"):
-            path = folder / f"whole.{ending}"
-            decks.meshio_file(decks.Solid(kind, folder, "--elements", "2,1,1"), path)
-            found.append(path.read_bytes())
-    return [text if isinstance(text, bytes) else ("\n".join(text).rstrip("\n") + "\n").encode() for text in found]
-
-
-def units_of(ending, number):
-    """Those of flat.inp cannot be guessed by the decks of meshio, and are given elsewhere too, now and then."""
-    return "mm-kg-ms" if (ending, number % 4) == ("inp", 3) else "mm-t-s"
-
-
-def judge(folder, path, ending, number, ends):
-    """What is wrong with what became of a file, or None; and whether it was refused."""
-    for old in folder.glob("out.*"):
-        old.unlink()
-    try:
-        said = convert(path, units_of(ending, number), folder / "out")
-    except BadInput as error:
-        text = str(error)
-        return (None if MESSAGE.match(text) else f"the message is not one line with file and line: {text!r}"), True
-    except Exception as error:  # pylint: disable=broad-except
-        return f"{type(error).__name__}: {error}", False
-    found = read_gmsh(folder / "out.msh")
-    if not found or not all(np.isfinite(nodes).all() for nodes in found):
-        return "no elements, or places that are not finite", False
-    if ends and ending in READ and not any("whole?" in line for line in said):
-        return "the file ends early, and nothing says so", False
-    if ending in READ:
-        text = path.read_bytes().replace(b"\r\n", b"\n").replace(b"\r", b"\n").decode("latin-1")
+    def judge(self, base, ends=False, key=None):
+        """What is wrong, or None; and whether it was refused. `key`: only words of the deck were changed, the base of that number."""
+        for old in self.folder.glob("out.*"):
+            old.unlink()
         try:
-            wanted = READ[ending](text)
+            said = convert(self.folder / base.main, base.units, self.folder / "out")
+        except BadInput as error:
+            text = str(error)
+            half = [path.name for path in self.folder.glob("out.*")]
+            return (None if base.names.match(text) and not half
+                    else f"the message is not one line with file and line, or {half} are left: {text!r}"), True
+        except Exception as error:  # pylint: disable=broad-except
+            return f"{type(error).__name__}: {error}", False
+        found = read_gmsh(self.folder / "out.msh")
+        if not found or not all(np.isfinite(nodes).all() for nodes in found):
+            return "no elements, or places that are not finite", False
+        if ends and self.ending in READ and not any("whole?" in line for line in said):
+            return "the file ends early, and nothing says so", False
+        return self.elements(base, found) or self.words(key, said), False
+
+    def elements(self, base, found):
+        """Beside a plain reading."""
+        if self.ending not in READ or not base.plain:
+            return None
+        try:
+            wanted = READ[self.ending](base.text(self.folder))
         except (ArithmeticError, LookupError, ValueError, TypeError) as error:
-            return f"accepted, and a plain reading fails: {type(error).__name__}: {error}", False
+            return f"accepted, and a plain reading fails: {type(error).__name__}: {error}"
         wanted = [[[1e-3 * value for value in place] for place in nodes] for nodes in wanted]
         size = max(np.abs(nodes).max() for nodes in found)
-        if sorted_rows(wanted, size) != sorted_rows(found, size):
-            return f"elements are not those of the file: {len(found)} beside {len(wanted)}", False
-    return None, False
+        return f"elements are not those of the file: {len(found)} beside {len(wanted)}" \
+            if sorted_rows(wanted, size) != sorted_rows(found, size) else None
+
+    def words(self, key, said):
+        """Of a keyword, parameter or label that is none: another scene is told."""
+        if key is None:
+            return None
+        now = outcome(self.folder, said), notes(said)
+        whole = self.whole.setdefault(key, now)
+        return f"another scene, and no line says so: {whole[0]} became {now[0]}" if now[0] != whole[0] and now[1] == whole[1] else None
 
 
 def fuzz(folder, ending, count, seed):
-    """Whether all files of a format are treated well."""
-    whole, refused, faults = bases(folder, ending), 0, []
-    path = folder / f"deck.{ending}"
-    for number, data in enumerate(whole):
-        path.write_bytes(data)
-        fault, gone = judge(folder, path, ending, number, False)
+    """Whether all decks of a format are treated well."""
+    whole, refused, faults, judge = bases(folder, ending), 0, [], Judge(folder, ending)
+    for number, base in enumerate(whole):
+        base.write(folder)
+        fault, gone = judge.judge(base, key=number)
         if fault or gone:
-            faults.append(f"whole file {number}: {fault or 'refused'}")
+            faults.append(f"whole deck {number}: {fault or 'refused'}")
     for number in range(count):
-        random = np.random.default_rng([seed, number])
-        damage = DAMAGES[number % len(DAMAGES)]
-        base = whole[number % len(whole)]
-        data, _ = damage(random, base)
-        path.write_bytes(data)
-        fault, gone = judge(folder, path, ending, number % len(whole), damage is cut and len(data) < len(base) - 1)
+        random, at = np.random.default_rng([seed, number]), number // 7 % len(whole)
+        damage, ends, told = damaged(random, whole[at], number, folder, ending)
+        fault, gone = judge.judge(whole[at], ends, at if told else None)
         refused += gone
         if fault:
-            faults.append(f"file {number} ({damage.__name__}): {fault}")
-            if KEEP:
-                (KEEP / f"{number}.{ending}").write_bytes(data)
+            faults.append(f"deck {number} ({whole[at].main}, {damage.__name__}): {fault}")
+            for name in whole[at].files if KEEP else ():
+                (KEEP / f"{number}.{name}").write_bytes((folder / name).read_bytes())
     for fault in faults[:20]:
         print(f"FAILED {ending} {fault}")
-    print(f"{'FAILED' if faults else 'ok    '} {ending}: {count} damaged files, {refused} refused, {len(faults)} faults")
+    print(f"{'FAILED' if faults else 'ok    '} {ending}: {count} damaged decks, {refused} refused, {len(faults)} faults")
     return not faults and refused > count // 5
 
 

@@ -43,6 +43,7 @@ static PetscBool RowsAreAlike(PetscInt i, const AddRows *X, const AddRows *A)
   const PetscInt n = X->ia[i + 1] - X->ia[i];
 
   if (X->number || A->number || A->ia[i + 1] - A->ia[i] != n) return PETSC_FALSE;
+  if (!n) return PETSC_TRUE; /* a matrix without entries has no array of columns */
   return memcmp(&X->ja[X->ia[i]], &A->ja[A->ia[i]], (size_t)n * sizeof(*X->ja)) ? PETSC_FALSE : PETSC_TRUE;
 }
 

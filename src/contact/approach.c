@@ -103,7 +103,7 @@ static void BelowReduce(PetscInt *n, Below below[])
 {
   PetscInt last = -1;
 
-  qsort(below, (size_t)*n, sizeof(*below), BelowCompare);
+  if (*n) qsort(below, (size_t)*n, sizeof(*below), BelowCompare);
   for (PetscInt i = 0; i < *n; i++) {
     if (last < 0 || below[i].vertex != below[last].vertex)
       below[++last] = below[i];

@@ -68,7 +68,7 @@ static PetscErrorCode SurfaceSetNeighbours(ContactSurface *s)
       s->facet[f].beside[e] = -1;
     }
   }
-  qsort(edge, (size_t)n, sizeof(FacetEdge), FacetEdgeCompare);
+  if (n) qsort(edge, (size_t)n, sizeof(FacetEdge), FacetEdgeCompare);
   for (PetscInt i = 0; i + 1 < n; i++) {
     if (edge[i].a != edge[i + 1].a || edge[i].b != edge[i + 1].b) continue;
     s->facet[edge[i].facet].beside[edge[i].edge]         = edge[i + 1].facet;
@@ -140,7 +140,7 @@ PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSu
   PetscCall(ContactFacetsLocal(contact->model, set, &n_local, &local));
   PetscCall(GatherRecords(contact->comm, n_local, sizeof(ContactFacet), local, &s->n_facets, &s->facet));
   PetscCall(PetscFree(local));
-  qsort(s->facet, (size_t)s->n_facets, sizeof(ContactFacet), FacetCompare);
+  if (s->n_facets) qsort(s->facet, (size_t)s->n_facets, sizeof(ContactFacet), FacetCompare);
   for (PetscInt f = 0; f < s->n_facets; f++) {
     FacetMeasure(&s->facet[f]);
     s->size += s->facet[f].size / (PetscReal)s->n_facets;

@@ -130,7 +130,7 @@ static int RowCompare(const void *a, const void *b)
 /* Sorts, and looks for a node with two places and for a direction that stands twice */
 static void NodeFileSort(NodeFile *f, NodeTable *table)
 {
-  qsort(table->row, (size_t)table->n, sizeof(*table->row), RowCompare);
+  if (table->n) qsort(table->row, (size_t)table->n, sizeof(*table->row), RowCompare);
   for (PetscInt i = 1; i < table->n && !f->fault[0]; i++) {
     const NodeRow *a = &table->row[i - 1], *b = &table->row[i];
 

@@ -44,7 +44,7 @@ static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
     if (omega <= 0 || omega > 2 * PETSC_PI * r->cutoff || most <= 0) continue;
     r->growing[r->n_growing++] = (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
   }
-  qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
+  if (r->n_growing) qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
   PetscFunctionReturn(0);
 }
 

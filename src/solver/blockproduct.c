@@ -91,7 +91,7 @@ INTO_VERSIONS PetscBool RowsMatch(const Rows *rows, PetscInt i, PetscBool *alike
   const PetscInt *ia = rows->ia, *ja = rows->ja;
 
   *alike = PETSC_FALSE;
-  if (i + ROWS_TOGETHER > rows->n) return PETSC_FALSE;
+  if (i + ROWS_TOGETHER > rows->n || !ja) return PETSC_FALSE;
   for (PetscInt c = 1; c < ROWS_TOGETHER; c++)
     if (ia[i + c + 1] - ia[i + c] != ia[i + 1] - ia[i]) return PETSC_FALSE;
   *alike = PETSC_TRUE;

@@ -39,7 +39,7 @@ static PetscErrorCode MovedVerticesGather(MPI_Comm comm, const Mesh *mesh, Petsc
   }
   PetscCall(GatherRecords(comm, n_here, sizeof(MovedVertex), here, n, all));
   PetscCall(PetscFree(here));
-  qsort(*all, (size_t)*n, sizeof(MovedVertex), MovedVertexCompare);
+  if (*n) qsort(*all, (size_t)*n, sizeof(MovedVertex), MovedVertexCompare);
   PetscFunctionReturn(0);
 }
 

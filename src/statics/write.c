@@ -62,7 +62,7 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
   }
   for (PetscInt i = 0; i < rows->n_interfaces; i++) PetscCall(StaticsSetPressure(s, i, local));
   PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(StaticsRecord), local, n, all));
-  qsort(*all, (size_t)*n, sizeof(StaticsRecord), StaticsCompareRecords);
+  if (*n) qsort(*all, (size_t)*n, sizeof(StaticsRecord), StaticsCompareRecords);
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }

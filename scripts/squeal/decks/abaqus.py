@@ -8,7 +8,7 @@ import numpy
 
 from ..tables import BadInput
 from . import abaqus_loads, abaqus_material, abaqus_mesh, abaqus_model, abaqus_sets
-from .abaqus_words import KEYWORDS, PARAMETERS, label, spelled
+from .abaqus_words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from .deck import NOT_NEEDED, Deck, Index, Place
 from .text import read_bytes, real, shorter
 
@@ -86,6 +86,13 @@ class Card:
         if not self.options.get(name):
             raise self.place.wrong(f"*{self.keyword} needs {name}=")
         return label(self.options[name])
+
+    def choose(self, name, default, *values):
+        """The value of an option that has one of these, in full."""
+        value = choice(self.options.get(name) or default, *values)
+        if value not in values:
+            raise self.place.wrong(f"*{self.keyword}, {name}={self.options[name][:40]}: it is one of {', '.join(values)}")
+        return value
 
 
 def read_header(lines, place):
@@ -337,4 +344,7 @@ def read_abaqus(path):
     cards = list(read_cards(path))
     if not any(card.keyword == "NODE" for card in cards):
         raise BadInput(f"{path}:1: there is no *NODE; is this a deck of Abaqus or CalculiX?")
-    return reader.run(cards)
+    deck, word = reader.run(cards), half_word(path)
+    if word:
+        deck.note(cards[-1].place, f"the file ends in '{word}': is it whole?")
+    return deck

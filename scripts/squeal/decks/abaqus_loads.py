@@ -8,7 +8,6 @@ import numpy
 
 from .abaqus_model import direction, is_turned, set_name
 from .abaqus_sets import check_faces, reader_cells, reader_nodes, surface_of
-from .abaqus_words import choice
 from .deck import Load
 from .text import real
 
@@ -27,7 +26,7 @@ class Said:
 
 def forget(reader, card):
     """OP=NEW: the loads of earlier steps act no longer; *DLOAD and *DSLOAD are one in CalculiX."""
-    if choice(card.options.get("OP", "MOD"), "NEW", "MOD") != "NEW":
+    if card.choose("OP", "MOD", "NEW", "MOD") != "NEW":
         return
     for said in [reader.forces] if card.keyword == "CLOAD" else [reader.pressures, reader.gravity]:
         gone = {row.keyword for row in said if row.step != reader.steps}

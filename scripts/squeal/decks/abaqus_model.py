@@ -37,7 +37,7 @@ def do_boundary(reader, scope, card):
     if kind != "DISPLACEMENT" or from_elsewhere:
         reader.deck.note(card.place, f"*BOUNDARY, {from_elsewhere[0] if from_elsewhere else f'TYPE={kind}'}: not understood")
         return
-    if choice(card.options.get("OP", "MOD"), "NEW", "MOD") == "NEW":
+    if card.choose("OP", "MOD", "NEW", "MOD") == "NEW":
         reader.deck.note(card.place, "*BOUNDARY, OP=NEW: supports of earlier steps act no longer; see which you want")
         reader.supports = [row for row in reader.supports if row[0] == reader.steps]
     for place, fields in card.rows():
@@ -207,7 +207,7 @@ def do_step(reader, _, card):
     if reader.steps == 2:
         reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same node and "
                                      "direction the last one; see which you want")
-    if card.options.get("NLGEOM", "NO").upper() in ("", "YES"):
+    if "NLGEOM" in card.options and card.choose("NLGEOM", "YES", "YES", "NO") == "YES":
         reader.deck.differ(card.place, "*STEP, NLGEOM: motion of squeal is small; -static_geometric and -static_follower give "
                                        "modes the stiffness of the preload")
 
@@ -223,7 +223,7 @@ def do_frequency(reader, _, card):
 
 
 def do_complex(reader, _, card):
-    if card.options.get("FRICTION DAMPING", "NO").upper() == "YES":
+    if card.choose("FRICTION DAMPING", "NO", "YES", "NO") == "YES":
         reader.damping = card.place
     elif reader.deck.modes:
         reader.deck.note(card.place, f"*COMPLEX FREQUENCY: modes of squeal are complex, {NOT_NEEDED}")

@@ -164,6 +164,14 @@ def spelled(text, known):
     return found.pop() if len(found) == 1 else " ".join(text.upper().split())
 
 
+def half_word(path):
+    """A keyword in which a file ends, without the end of its line, and which is not spelled out: an abbreviation, or one cut off."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - 100))
+        tail = file.read().decode("latin-1").rpartition("\n")[2].strip()
+    return tail[:40] if tail.startswith("*") and compact(tail[1:].partition(",")[0]) not in {*KEYWORDS, ""} else ""
+
+
 def choice(text, *values):
     """The same of the value of a parameter."""
     return spelled(text.strip().strip('"'), {compact(value): value for value in values})

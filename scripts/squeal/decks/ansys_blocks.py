@@ -91,7 +91,7 @@ class Blocked:
         found = numpy.full((len(letters), last - first, most), ord(" "), numpy.uint8)
         for k in range(first, last):
             found[:, k - first, most - self.fields[k][1]:] = letters[:, ends[k]:ends[k + 1]]
-        return found.reshape(len(letters), -1), most
+        return found.reshape(len(letters), (last - first) * most), most
 
     def wholes(self, letters):
         part, width = self.part(letters, 0, self.n_whole)

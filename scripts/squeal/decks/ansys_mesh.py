@@ -206,7 +206,7 @@ def read_component(deck, mesh, block):
     name, kind = block.header.word(1).upper(), block.header.word(2).upper()
     count = block.header.whole(3)
     part, width = block.part(block.letters(), 0, len(block.fields))
-    filled = (part.reshape(len(part), -1, width) != ord(" ")).any(axis=2).ravel()
+    filled = (part.reshape(len(part), len(block.fields), width) != ord(" ")).any(axis=2).ravel()
     if filled[:count].sum() != count or filled[count:].any():
         raise block.header.place.wrong(f"CMBLOCK {name} announces {count} items and has {filled.sum()}: is the file damaged?")
     numbers = []
@@ -264,16 +264,26 @@ def turned(degrees):
     return (about_z @ about_x @ about_y).T
 
 
+def read_type_block(mesh, block):
+    """ETBLOCK, count, largest number: number, type and options a line."""
+    letters = block.letters()
+    rows = block.wholes(letters)[:, :2]
+    positive(block, rows[:, 0], "an element type")
+    if len(rows) not in (block.header.whole(1, len(rows)), block.header.whole(2)) or len(set(rows[:, 0].tolist())) < len(rows):
+        raise block.header.place.wrong(f"ETBLOCK announces {block.header.word(1)} types and has {len(rows)} lines, or two of a number: "
+                                       "is the file damaged?")
+    for row, (number, kind) in enumerate(rows.tolist()):
+        mesh.types[number] = kind
+        options = block.words(row, letters)[2:]
+        if len(options) > 11 and options[11].isdigit():
+            mesh.behaviour[number] = int(options[11])
+
+
 def read_types(mesh, blocks, commands):
-    """ET: number, type by number or name (SOLID185); ETBLOCK: both and options a line."""
+    """ET: number, type by number or name (SOLID185); ETBLOCK."""
     for block in blocks:
         if block.name == "ETBLOCK":
-            letters = block.letters()
-            for row, (number, kind) in enumerate(block.wholes(letters)[:, :2].tolist()):
-                mesh.types[number] = kind
-                options = block.words(row, letters)[2:]
-                if len(options) > 11 and options[11].isdigit():
-                    mesh.behaviour[number] = int(options[11])
+            read_type_block(mesh, block)
     for command in commands:
         if command.words[0] == "ET":
             name = re.match(r"[A-Za-z]*(\d{1,6})$", command.word(2))

@@ -130,6 +130,8 @@ class Assembly:
                 continue
             name = self.things.new(self.sets.new(section.name))
             self.result.volumes[name] = cells
+            if section.material and not used[section.material].young:
+                self.deck.note(section.place, f"part {name}: material {section.material} has no stiffness that squeal takes: give it")
             self.result.entries.append(part_entry(name, section, used[section.material]))
         if (part_of < 0).any():
             cell = int(numpy.flatnonzero(part_of < 0)[0])

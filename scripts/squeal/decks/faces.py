@@ -30,7 +30,7 @@ def all_faces(deck):
 
 def boundary_faces(deck, members=None):
     """Faces (cell, face) of one cell only; those whose nodes are all among `members`, where these are given."""
-    if not deck.blocks:
+    if not deck.n_cells:
         return numpy.empty((0, 2), int)
     if getattr(deck, "outer", None) is None or deck.outer[0] != deck.n_cells:
         keys, faces = all_faces(deck)
@@ -69,7 +69,7 @@ def surface_nodes(deck, faces):
 def faces_by_three(deck, three):
     """Faces (cell, face) with these three corners [n][3] among theirs, and which are none of a cell; of two cells that share
     one, the first."""
-    if not deck.blocks:
+    if not deck.n_cells:
         return numpy.zeros((len(three), 2), int), numpy.ones(len(three), bool)
     keys, faces = [], []
     for first, block in zip(deck.firsts(), deck.blocks):

@@ -75,6 +75,8 @@ def read_med(path):
             found.point_data["point_tags"] = step["NOE"]["FAM"][()]
         for kind, group in step.get("MAI", {}).items():
             n_nodes, name = TYPES.get(kind, (0, f"MED {kind}"))
+            if n_nodes and "NOD" not in group:
+                raise ValueError(f"cells {kind} have no nodes")
             n = int(group["NOD"].attrs["NBR"]) if "NOD" in group else 0
             data = group["NOD"][()].reshape((n, -1), order="F") - 1 if n_nodes and n else numpy.zeros((n, n_nodes), int)
             if data.shape[1] != n_nodes:

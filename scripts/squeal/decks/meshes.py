@@ -134,6 +134,18 @@ def read_meshes(path):
     return deck
 
 
+def note_families(deck, what, numbers, families):
+    """Says which families are not in the file, and which groups nothing is in: a file that lost some."""
+    place, used = Place(deck.path, 1), {int(number) for tags in numbers if tags is not None for number in numpy.unique(tags)}
+    gone = sorted(used - {0, *families})
+    if gone:
+        deck.note(place, f"family {gone[0]}{f' and {len(gone) - 1} more' if gone[1:] else ''} of {what} is not in the file: "
+                         "the groups of its members are not known")
+    kept = {name for number in used for name in families.get(number, [])}
+    for name in sorted({name for names in families.values() for name in names} - kept):
+        deck.note(place, f"group {name}: no {what} are in it")
+
+
 def add_groups(deck, mesh, groups, surfaces):
     """Groups of MED: a family, the tag, is in some of them."""
     place, members, faces, lost = Place(deck.path, 1), {}, {}, {}
@@ -155,6 +167,8 @@ def add_groups(deck, mesh, groups, surfaces):
         if any(map(len, parts)):
             deck.surfaces[name] = numpy.concatenate(parts), place
     tags = mesh.point_data.get("point_tags")
+    note_families(deck, "cells", mesh.cell_data["cell_tags"], mesh.cell_tags)
+    note_families(deck, "nodes", [tags], mesh.point_tags)
     for tag, names in (mesh.point_tags if tags is not None else {}).items():
         for name in names:
             nodes = numpy.flatnonzero(numpy.asarray(tags) == tag)

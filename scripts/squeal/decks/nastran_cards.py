@@ -47,7 +47,7 @@ class Table:
 
     def blank(self, first, last):
         """Which fields [n][last - first] are blank."""
-        return (self.part(first, last).reshape(len(self), last - first, -1) == ord(" ")).all(axis=2)
+        return (self.part(first, last).reshape(len(self), last - first, self.each) == ord(" ")).all(axis=2)
 
     def whole(self, first, last):
         """Whole numbers [n][last - first]; blank is 0."""

@@ -174,7 +174,7 @@ static void TouchesSum(PetscInt *n, BodyTouch touch[])
 {
   PetscInt last = -1;
 
-  qsort(touch, (size_t)*n, sizeof(BodyTouch), TouchCompare);
+  if (*n) qsort(touch, (size_t)*n, sizeof(BodyTouch), TouchCompare);
   for (PetscInt i = 0; i < *n; i++) {
     if (last >= 0 && !TouchCompare(&touch[last], &touch[i]))
       touch[last].n += touch[i].n;
@@ -212,7 +212,7 @@ static PetscErrorCode TouchesCount(const BodyGraph *b, PetscReal tol, PetscInt n
   PetscFunctionBeginUser;
   *n_touches = 0;
   *touch     = NULL;
-  qsort(node, (size_t)n, sizeof(BodyNode), KeyCompare);
+  if (n) qsort(node, (size_t)n, sizeof(BodyNode), KeyCompare);
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = j - 1; i >= 0 && node[j].key - node[i].key <= 3 * tol && !node[j].copy; i--) {
       if (!NodesTouch(b, &node[i], &node[j], tol)) continue;

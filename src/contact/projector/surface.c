@@ -150,7 +150,7 @@ static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlavesAppend(p->contact, i, &n_local, &local));
   PetscCall(RootFind(p->contact->comm, n_local, &p->share.root));
   PetscCall(GatherRecords(p->contact->comm, n_local, sizeof(Slave), local, &n, &all));
-  qsort(all, (size_t)n, sizeof(Slave), SlaveCompare);
+  if (n) qsort(all, (size_t)n, sizeof(Slave), SlaveCompare);
   PetscCall(PairsCreate(p, p->share.rank == p->share.root ? n : 0, all, unique));
   PetscCall(PetscFree(local));
   PetscCall(PetscFree(all));

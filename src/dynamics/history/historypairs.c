@@ -42,7 +42,7 @@ static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, const HistoryPairs *p, P
     PetscCall(PetscArraycpy(local[i].x, &p->x[3 * i], 3));
   }
   PetscCall(GatherRecords(comm, p->n, sizeof(*local), local, n_all, all));
-  qsort(*all, (size_t)*n_all, sizeof(*local), HistoryPairCompare);
+  if (*n_all) qsort(*all, (size_t)*n_all, sizeof(*local), HistoryPairCompare);
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }

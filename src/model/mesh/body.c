@@ -157,7 +157,7 @@ static PetscErrorCode BodiesSort(Model model, PetscInt n_vertices, PetscInt n_bo
   PetscCall(PetscMalloc2(n_bodies, &place, n_bodies, &key));
   for (PetscInt b = 0; b < n_bodies; b++) key[b].body = b;
   PetscCall(BodyKeysFind(model, n_vertices, body, n_bodies, key));
-  qsort(key, (size_t)n_bodies, sizeof(*key), BodyKeyCompare);
+  if (n_bodies) qsort(key, (size_t)n_bodies, sizeof(*key), BodyKeyCompare);
   for (PetscInt b = 0; b < n_bodies; b++) place[key[b].body] = b;
   for (PetscInt v = 0; v < n_vertices; v++)
     if (body[v] >= 0) body[v] = place[body[v]];

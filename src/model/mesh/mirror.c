@@ -177,7 +177,7 @@ static PetscErrorCode MirrorShare(MirrorNodes *s)
   s->n = n_sent;
   PetscCall(ExchangeRecords(s->comm, &s->n, sizeof(*sent), &sent, rank, &s->node));
   PetscCall(PetscFree(rank));
-  qsort(s->node, (size_t)s->n, sizeof(*s->node), MirrorCompare);
+  if (s->n) qsort(s->node, (size_t)s->n, sizeof(*s->node), MirrorCompare);
   PetscFunctionReturn(0);
 }
 
@@ -293,7 +293,7 @@ static PetscErrorCode MirrorFindPairs(Model model, ModelPlane *plane, PetscInt *
   if (!plane->has_at) plane->at = 0.5 * (low[plane->axis] + high[plane->axis]);
   s.near = MIRROR_NEAR * extent;
   for (PetscInt i = 0; i < s.n; i++) s.node[i].place = MirrorPlace(plane, s.node[i].x);
-  qsort(s.node, (size_t)s.n, sizeof(*s.node), MirrorCompare);
+  if (s.n) qsort(s.node, (size_t)s.n, sizeof(*s.node), MirrorCompare);
   PetscCall(MirrorCut(&s));
   PetscCall(MirrorShare(&s));
   PetscCall(MirrorMatchAll(&s, n_pairs, pairs));

@@ -79,7 +79,7 @@ static PetscInt LevelsFind(PetscInt n, SweptPlace place[], PetscReal tolerance, 
 {
   PetscInt n_levels = 0;
 
-  qsort(place, (size_t)n, sizeof(*place), LinePlaceCompare);
+  if (n) qsort(place, (size_t)n, sizeof(*place), LinePlaceCompare);
   for (PetscInt i = 0; i < n; i++) {
     if (!n_levels || place[i].value - at[n_levels - 1] > tolerance) at[n_levels++] = place[i].value;
     mark[place[i].node].level[d] = n_levels - 1;
@@ -148,7 +148,7 @@ static PetscBool SweptFindLines(PetscInt n_nodes, SweptColumn *swept)
   const PetscInt n = swept->n_levels[2];
 
   if (n < SHORTEST || n_nodes % n) return PETSC_FALSE;
-  qsort(swept->mark, (size_t)n_nodes, sizeof(*swept->mark), MarkCompare);
+  if (n_nodes) qsort(swept->mark, (size_t)n_nodes, sizeof(*swept->mark), MarkCompare);
   for (PetscInt i = 0; i < n_nodes; i++) {
     const PetscInt *level = swept->mark[i].level, *first = swept->mark[i - i % n].level;
 
@@ -210,7 +210,7 @@ static PetscBool SlabsOrder(PetscInt n_cells, const PetscBool has[], SweptColumn
 static PetscBool ColumnsHold(PetscInt n_cells, PetscInt n_slabs, Block block[])
 {
   if (n_slabs < 1 || n_cells % n_slabs) return PETSC_FALSE;
-  qsort(block, (size_t)n_cells, sizeof(*block), BlockCompare);
+  if (n_cells) qsort(block, (size_t)n_cells, sizeof(*block), BlockCompare);
   for (PetscInt c = 0; c < n_cells; c++) {
     const Block *first = &block[c - c % n_slabs];
 

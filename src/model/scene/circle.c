@@ -168,7 +168,7 @@ static PetscErrorCode CircleCheckNodes(Model model, const Circle *c)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * c->n, &x));
   for (PetscInt k = 0; k < c->n; k++) PetscCall(PetscArraycpy(&x[3 * k], c->probe[k].x, 3));
-  qsort(x, (size_t)c->n, 3 * sizeof(*x), PlaceCompare);
+  if (c->n) qsort(x, (size_t)c->n, 3 * sizeof(*x), PlaceCompare);
   for (PetscInt k = 1; k < c->n; k++) n_different += PlaceCompare(&x[3 * k], &x[3 * k - 3]) != 0;
   PetscCall(PetscFree(x));
   PetscCheck(n_different == c->n, model->comm, PETSC_ERR_USER_INPUT,

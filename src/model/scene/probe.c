@@ -113,7 +113,7 @@ PetscErrorCode ProbeLocate(Model model, Probe *probe)
   PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
   PetscCall(ProbeFindLocal(model, probe, &n, &best));
   PetscCall(GatherRecords(model->comm, n, sizeof(best), &best, &n_all, &all));
-  qsort(all, (size_t)n_all, sizeof(*all), CandidateCompare);
+  if (n_all) qsort(all, (size_t)n_all, sizeof(*all), CandidateCompare);
   probe->vertex = all[0].rank == rank ? all[0].vertex : -1;
   PetscCall(PetscArraycpy(probe->x, all[0].x, 3));
   PetscCall(PetscFree(all));
