@@ -61,6 +61,10 @@ PetscErrorCode OptionsDropUnlisted(MPI_Comm comm);
     Collective. @*/
 PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[]);
 
+/*@ OptionsDrop - takes out those of the options, "-modes_target -modes_count", that options files give and another option makes
+    useless, each with a warning that ends in `why`. Collective. @*/
+PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]);
+
 /*@
    OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
 

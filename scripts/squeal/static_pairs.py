@@ -12,8 +12,7 @@ from .tables import BadInput, header, prefixed, read_table
 STATUS = ("open", "stick", "slip")
 COLUMNS = {"pair": int, "x_m": float, "y_m": float, "z_m": float, "lambda_n_n": float, "lambda_t_n": float}
 OPTIONAL = {"interface": str, "gap_m": float, "slip_t_m": float, "area_m2": float, "pressure_pa": float,
-            "lambda_b_n": float, "t_x": float, "t_y": float,
-            "t_z": float}
+            "lambda_b_n": float} | {f"{vector}_{axis}": float for vector in "tn" for axis in "xyz"}
 UNITS = {"x_m": "m", "y_m": "m", "z_m": "m", "gap_m": "m", "slip_t_m": "m", "area_m2": "m2", "pressure_pa": "pa"}
 MM = 1e3
 SAME = 1e-6  # places within this part of the extent are one
@@ -57,11 +56,15 @@ class Surface:
         self.set_plane()
 
     def sliding_of(self, rows):
-        """Directions [pairs][3] in which the slave slides, zero where there is no friction; None when not given."""
-        if not all(f"t_{axis}" in rows[0] for axis in NAMES):
+        """Directions [pairs][3] in which the slave slides, that of its friction on the master, zero where there is none or the pair
+        does not slip; None when not given. Friction is lambda_t t + lambda_b b, b = n x t."""
+        if not all(f"{vector}_{axis}" in rows[0] for vector in "tn" for axis in NAMES):
             return None
-        sign = numpy.sign([row["lambda_t_n"] for row in rows]) * (self.status == "slip")
-        return sign[:, None] * numpy.array([[row[f"t_{axis}"] for axis in NAMES] for row in rows])
+        t, n = (numpy.array([[row[f"{vector}_{axis}"] for axis in NAMES] for row in rows]) for vector in "tn")
+        along, across = (numpy.array([row.get(key, 0.0) for row in rows])[:, None] for key in ("lambda_t_n", "lambda_b_n"))
+        friction = (along * t + across * numpy.cross(n, t)) * (self.status == "slip")[:, None]
+        length = numpy.linalg.norm(friction, axis=1, keepdims=True)
+        return numpy.divide(friction, length, out=numpy.zeros_like(friction), where=length > 0)
 
     def set_values(self, rows):
         """What is coloured: the pressure; the force per pair where pairs have no area, as along a line."""

@@ -213,6 +213,22 @@ PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[])
+{
+  char      option[MAX_NAME];
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  for (const char *word = options; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "%.*s", (int)strcspn(word, " "), word));
+    PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
+    if (!given) continue;
+    PetscCall(PetscOptionsClearValue(NULL, option));
+    PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: %s of an options file is not used: %s\n", option, why));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
 {
   char(*listed)[MAX_LIST], now[MAX_LIST], why[MAX_LIST], *name, *rest;

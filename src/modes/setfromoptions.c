@@ -28,6 +28,31 @@ static PetscErrorCode ModesCheckValues(Modes modes)
   PetscFunctionReturn(0);
 }
 
+/* A band or a number of modes nearest to a frequency: what the command line says before what files say, of files the number.
+   What is then not used is said, and taken out. */
+static PetscErrorCode ModesChooseRange(Modes modes, PetscBool has_target, PetscBool has_count)
+{
+  PetscBool band, target, count;
+
+  PetscFunctionBeginUser;
+  modes->has_nearest = has_target || has_count ? PETSC_TRUE : PETSC_FALSE;
+  if (!modes->has_band || !modes->has_nearest) PetscFunctionReturn(0);
+  PetscCall(OptionsCommandGives("modes_band", &band));
+  PetscCall(OptionsCommandGives("modes_target", &target));
+  PetscCall(OptionsCommandGives("modes_count", &count));
+  if (band && (target || count))
+    PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
+  if (band)
+    PetscCall(OptionsDrop(modes->comm, "-modes_target -modes_count", "the command line gives -modes_band"));
+  else
+    PetscCall(OptionsDrop(modes->comm, "-modes_band",
+                          has_count ? "-modes_count asks for the modes nearest to -modes_target"
+                                    : "-modes_target asks for the modes nearest to it"));
+  modes->has_band    = band;
+  modes->has_nearest = band ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesSetFromOptions(Modes modes)
 {
   static const char *const contacts[] = {"all", "static"};
@@ -63,9 +88,6 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscOptionsEnd();
   modes->is_static = contact ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModesCheckValues(modes));
-  if (modes->has_band && (has_target || has_count))
-    PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
-  modes->has_nearest = has_target || has_count ? PETSC_TRUE : PETSC_FALSE;
-  if (modes->has_nearest) modes->has_band = PETSC_FALSE;
+  PetscCall(ModesChooseRange(modes, has_target, has_count));
   PetscFunctionReturn(0);
 }

@@ -69,8 +69,9 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
       (double)m->backward_error, m->label, modes->parity ? ", " : "", modes->parity ? modes->parity[i] : "",
       m->unstable ? "  UNSTABLE" : ""));
   }
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes, %" PetscInt_FMT " unstable; %s\n", modes->n,
-                                   n_unstable, modes->completeness));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes", modes->n));
+  if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable; %s\n", n_unstable, modes->completeness));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));

@@ -112,8 +112,9 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     if (operators->nodes[0]) PetscCall(CloudCreate(operators));
   }
   for (PetscInt i = 0; i < operators->parameters.n; i++) {
-    const OperatorsParameter *q = &operators->parameters.list[i];
+    OperatorsParameter *q = &operators->parameters.list[i];
 
+    if (operators->model) PetscCall(ModelGetUnit(operators->model, q->unit, &q->unit));
     PetscCheck(PetscIsInfReal(q->value) || PetscAbsReal(q->value) <= MATRIX_LARGEST, operators->comm,
                PETSC_ERR_USER_INPUT, "-%s %.6g must be of at most %g", q->name, (double)q->value, MATRIX_LARGEST);
   }

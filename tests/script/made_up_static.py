@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy
 
 FORCE, MU, SIDE, N = 100.0, 0.5, 0.04, 11  # N, -, m, -
-HEADER = ("pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,area_m2,pressure_pa,lambda_b_n,t_x,t_y,t_z")
+HEADER = ("pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,area_m2,pressure_pa,lambda_b_n,t_x,t_y,t_z,n_x,n_y,n_z")
 
 
 class State:
@@ -35,12 +35,15 @@ class State:
         self.status = numpy.where(self.normal > 0, "slip", "open").astype(object)
         self.status[numpy.flatnonzero(self.normal > 0)[-1:-1 - stuck:-1]] = "stick"
         self.gap = 1e-6 * numpy.maximum(0, -1 - tilt * numpy.repeat(s, n))
-        self.mu, self.along = mu, along
+        self.mu, self.along, self.normal_vector = mu, along, numpy.cross(across, along)
+        self.turn = 0.0
 
     def rows(self, interface="contact", first=0):
-        """Records of the table."""
-        return [(first + i, *x, self.gap[i], self.normal[i], self.mu * self.normal[i], self.status[i], interface,
-                 self.area[i], self.pressure[i], 0.0, *self.along) for i, x in enumerate(self.x)]
+        """Records of the table, whose friction is turned from `along` by an angle (rad) about the normal."""
+        along, aside = numpy.cos(self.turn), numpy.sin(self.turn)
+        return [(first + i, *x, self.gap[i], self.normal[i], self.mu * self.normal[i] * along, self.status[i], interface,
+                 self.area[i], self.pressure[i], self.mu * self.normal[i] * aside, *self.along, *self.normal_vector)
+                for i, x in enumerate(self.x)]
 
 
 def write_rows(folder, rows, columns=None):

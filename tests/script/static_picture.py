@@ -149,6 +149,18 @@ def test_words(root):
         require(text in said[0], f"{text} is not in {said[0]}")
 
 
+def test_holding(root):
+    """Contacts that hold slip at the limit of friction anywhere in the plane: breaks when one component of friction is taken for
+    the direction."""
+    state = State()
+    state.turn = numpy.radians(46)
+    n, t = state.normal_vector, numpy.array(state.along, float)
+    surface = surface_of(root / "holding", state.rows())
+    turned = numpy.cos(state.turn) * t + numpy.sin(state.turn) * numpy.cross(n, t)
+    close(surface.direction, turned @ surface.axes.T, "direction of sliding")
+    picture(root / "holding")
+
+
 def test_old_columns(root):
     """A table that ends with the status: forces instead of pressures, all pairs one surface, no arrow."""
     state = State()
@@ -189,7 +201,7 @@ def test_errors(root):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_words, test_old_columns,
+        for test in (test_colours, test_numbers, test_orientation, test_millimetres, test_words, test_holding, test_old_columns,
                      test_several, test_errors):
             test(Path(folder))
 

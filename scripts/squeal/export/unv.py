@@ -36,10 +36,11 @@ def end(stream):
     stream.write(f"{-1:6d}\n")
 
 
-def write_units(stream):
-    """SI."""
+def write_units(metre, stream):
+    """Code, description and temperature mode; what a metre, a newton and a kelvin are in the units of the file. metre: 1 or 1e3."""
+    code, words = (1, "SI: m, N, kg") if metre == 1 else (10, "MN: mm, N, t")
     dataset(164, stream)
-    stream.write(f"{1:10d}{'SI: m, N, kg':<20}{2:10d}\n" + 3 * f"{1.0:25.17E}" + f"\n{0.0:25.17E}\n")
+    stream.write(f"{code:10d}{words:<20}{2:10d}\n{metre:25.17E}" + 2 * f"{1.0:25.17E}" + f"\n{0.0:25.17E}\n")
     end(stream)
 
 
@@ -124,15 +125,15 @@ def fields_of(state):
             yield stem if other is not None else name, array
 
 
-def write_unv(states, path):
-    """All states of one mesh in one file; returns what could not be said in it."""
+def write_unv(states, path, metre=1.0):
+    """All states of one mesh in one file, in whose unit of length a metre is so many; returns what could not be said in it."""
     said, grid = [], None
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole(path) as temporary, temporary.open("w", encoding="utf-8") as stream:
         for state in states:
             if grid is None:
                 grid = state.grid
-                write_units(stream)
+                write_units(metre, stream)
                 write_nodes(grid.points, stream)
                 write_elements(grid, stream)
                 write_groups(grid, stream)
