@@ -105,7 +105,8 @@ def large_fields(card):
     if card[2] == 0:
         return small_fields(card)
     words = [("%.9E" % word).replace("E", "D") if isinstance(word, float) else str(word) for word in card]
-    return [(words[0] + "*" if at == 1 else "*").ljust(8) + "".join(word.rjust(16) for word in words[at:at + 4]) for at in range(1, len(words), 4)]
+    return [(words[0] + "*" if at == 1 else "*").ljust(8) + "".join(word.rjust(16) for word in words[at:at + 4])
+            for at in range(1, len(words), 4)]
 
 
 def dmig(path, A):

@@ -39,7 +39,8 @@ class Head:
         self.place = table.place(row)
         _, self.form, self.kind, _, self.polar = table.whole(1, 6)[row].tolist()
         if self.form not in (*FORMS, *RECTANGULAR) or self.kind not in (1, 2, 3, 4):
-            raise self.place.wrong(f"DMIG {names_of(table)[row]}: form {self.form}, type {self.kind}; forms 1, 2, 6, 9 and types 1 to 4 exist")
+            raise self.place.wrong(f"DMIG {names_of(table)[row]}: form {self.form}, type {self.kind}; forms 1, 2, 6, 9 and types 1 to 4 "
+                                   "exist")
 
 
 def heads_of(tables):
@@ -110,7 +111,8 @@ def choices_of(before, tables):
     found = {}
     for data, file, first in before:
         for line in CHOICE.finditer(data):
-            word, text, place = line[1].decode().upper(), line[2].decode("latin-1"), Place(file, first + data.count(b"\n", 0, line.start(1)))
+            word, text = line[1].decode().upper(), line[2].decode("latin-1")
+            place = Place(file, first + data.count(b"\n", 0, line.start(1)))
             for part in re.split(r",(?![^()]*\))", text.strip()):
                 match = PART.match(part.strip())
                 if not match:
