@@ -25,6 +25,11 @@ PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt inter
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 
+/* cover.c - areas of n new pairs, of local nodes node[n], where faces of the slave lie partly over the master; takes out those
+   without. *lost: area over the master of faces without any pair, m^2. Collective. */
+PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
+                                              ContactPair pair[], PetscReal *lost);
+
 /* tie.c - the list of ties. Collective. */
 extern const OptionsList    ties_list;
 PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);

@@ -1,8 +1,8 @@
 /*
    Pairing by position. Every rank finds the feet of its own slave nodes on the master surface (surface.h): the nearest
    point, and from there the facet whose normal leads to the node. A node beyond the border of the master has no pair: a
-   distance along the surface is no gap. The master point moves with the facet's shape
-   functions, so that matching meshes give node-to-node pairs.
+   distance along the surface is no gap. Those beside it have the area that lies over the master (cover.c). The master point
+   moves with the facet's shape functions, so that matching meshes give node-to-node pairs.
 
    Slip: given, or the velocity of the slave relative to a master that turns with angular velocity w about c:
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
@@ -42,9 +42,10 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
 
 /* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the border of
    the master the farthest, and the nearest (its distance along the surface and in all, and where); whether a slip vanished;
-   slaves that are nodes of the master too, and whose surface looks towards the master's or with it */
+   area over the master of faces without any pair (m^2, complete on every rank); slaves that are nodes of the master too, and whose
+   surface looks towards the master's or with it */
 typedef struct {
-  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip;
+  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip, lost;
   PetscInt  n_common, n_towards, n_with, n, n_off;
 } PairFailure;
 
@@ -105,10 +106,11 @@ static PetscBool PairMake(const ContactInterface *c, const ContactSurface *surfa
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
                                 PairFailure *failure)
 {
-  const ContactInterface *c = &contact->interfaces[interface];
+  const ContactInterface *c     = &contact->interfaces[interface];
+  const PetscInt          first = contact->n_pairs;
   const Mesh             *mesh;
   PetscReal              *normals; /* [node][3], times area, m^2 */
-  PetscInt                n, *vertices;
+  PetscInt                n, n_new = 0, n_kept, *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
@@ -122,8 +124,15 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
     PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
-    if (PairMake(c, surface, &normals[3 * v], pair, failure)) contact->n_pairs++;
+    if (!PairMake(c, surface, &normals[3 * v], pair, failure)) continue;
+    vertices[n_new++] = v;
+    contact->n_pairs++;
   }
+  n_kept = n_new;
+  PetscCall(ContactCoverAreas(contact, interface, &n_kept, vertices, &contact->pairs[first], &failure->lost));
+  contact->n_pairs = first + n_kept;
+  failure->n -= n_new - n_kept;
+  failure->n_off += n_new - n_kept;
   PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
   PetscFunctionReturn(0);
@@ -183,15 +192,19 @@ static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *
 }
 
 /* Says how many slaves carry nothing */
-static PetscErrorCode OffWarn(MPI_Comm comm, const ContactInterface *c)
+static PetscErrorCode OffWarn(MPI_Comm comm, const ContactInterface *c, PetscReal lost)
 {
   PetscFunctionBeginUser;
   if (!c->n_off) PetscFunctionReturn(0);
   PetscCall(PetscFPrintf(comm, stderr,
                          "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
                          " nodes of %s have no master under them, and carry nothing; the farthest is %.3g m beyond the "
-                         "border of %s\n",
+                         "border of %s",
                          c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, c->master));
+  if (lost > 0)
+    PetscCall(PetscFPrintf(comm, stderr, "; %.3g m^2 over it carry nothing either, on faces none of whose nodes has a pair",
+                           (double)lost));
+  PetscCall(PetscFPrintf(comm, stderr, "\n"));
   PetscFunctionReturn(0);
 }
 
@@ -219,7 +232,7 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCheck(!c->slides || c->kt == 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt%s %.6g is of pairs that stick, and contact %s slides; leave it out, or -%s_slip and -%s_rotation",
              c->name, c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name, c->name, c->name);
-  PetscCall(OffWarn(comm, c));
+  PetscCall(OffWarn(comm, c, failure->lost));
   PetscFunctionReturn(0);
 }
 

@@ -11,7 +11,7 @@ from .ansys import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
 from .gmsh_file import write_mesh
-from .meshes import read_meshes
+from .meshes import MED, read_meshes
 from .nastran import read_nastran
 from .orientation import set_orientation
 from .scene_file import remarks, scene_lines, write_scene
@@ -19,7 +19,7 @@ from .units import guess, named
 from .written import of_scene
 
 READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".dat": read_nastran,
-           ".cdb": read_ansys, ".med": read_meshes, ".vtk": read_meshes, ".vtu": read_meshes}
+           ".cdb": read_ansys, **dict.fromkeys(MED, read_meshes), ".vtk": read_meshes, ".vtu": read_meshes}
 
 
 # Endings that decks of several programs have, and what only those of a program have at the beginning of a line

@@ -16,6 +16,7 @@ VOXEL = (0, 1, 3, 2, 4, 5, 7, 6)  # corners of a hexahedron among those of a vox
 # Without their nodes inside of faces and elements
 PLAINER = {"MED hexahedron27": "hex20", "MED wedge18": "wedge15", "wedge18": "wedge15", "hexahedron24": "hex20"}
 FACES = {"triangle": 3, "triangle6": 3, "triangle7": 3, "quad": 4, "quad8": 4, "quad9": 4}
+MED = ".med", ".mmed", ".rmed"  # as Code_Aster names inputs and results too
 THIN = ("vertex", "line", *FACES)
 MOST = 64  # values of a field of whole numbers that tells parts
 
@@ -29,7 +30,7 @@ def load(path):
     except ImportError:
         raise BadInput("meshio is missing: apt-get install python3-meshio") from None
     getattr(meshio._mesh, "topological_dimension", {}).setdefault("wedge15", 3)  # pylint: disable=protected-access
-    read = {".med": read_med, ".vtk": meshio.vtk.read, ".vtu": meshio.vtu.read}[path.suffix.lower()]
+    read = read_med if path.suffix.lower() in MED else {".vtk": meshio.vtk.read, ".vtu": meshio.vtu.read}[path.suffix.lower()]
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), numpy.errstate(all="ignore"):
@@ -45,6 +46,9 @@ def checked(deck, mesh):
     """Coordinates and blocks of nodes, without what cannot be."""
     place = Place(deck.path, 1)
     x = numpy.asarray(mesh.points, float)
+    if x.ndim == 2 and len(x) and x.shape[1] in (1, 2):
+        where = "in a plane" if x.shape[1] == 2 else "on a line"
+        raise place.wrong(f"there are no volume elements that squeal has: its points are {where}")
     if x.ndim != 2 or x.shape[1] != 3 or not len(x):
         raise place.wrong("its points are not in space")
     if not numpy.isfinite(x).all() or abs(x).max() > 1e100:
@@ -103,10 +107,10 @@ def add_cells(deck, cells, nodes, first):
 
 def read_meshes(path):
     """The deck of a file."""
-    mesh, deck, place = load(path), Deck(path, "mesh of MED" if path.suffix.lower() == ".med" else "mesh by meshio"), Place(str(path), 1)
+    mesh, deck, place = load(path), Deck(path, "mesh of MED" if path.suffix.lower() in MED else "mesh by meshio"), Place(str(path), 1)
     x = checked(deck, mesh)
     deck.add_nodes(x)
-    deck.all_mirrored = med = path.suffix.lower() == ".med"
+    deck.all_mirrored = med = path.suffix.lower() in MED
     for name in getattr(mesh, "others", ()):
         deck.note(place, f"mesh '{name}': a second one, not taken")
     field, first, groups, surfaces = "cell_tags" if med else field_of_parts(deck, mesh), 1, {}, []

@@ -37,7 +37,8 @@ class Table:
 
     def wrong(self, row, column, word, what):
         """The error for a field, which is the (column + 2)-th with the name."""
-        return self.place(row).wrong(f"{self.name}: field {column + 2} '{word}' should be {what}")
+        apart = "; blanks in it: is a number across the end of its columns?" if " " in word.strip() else ""
+        return self.place(row).wrong(f"{self.name}: field {column + 2} '{word}' should be {what}{apart}")
 
     def part(self, first, last):
         """Characters of fields first to last - 1; those beyond the end are blank."""

@@ -64,7 +64,97 @@ static PetscBool PointStands(const Joint *point)
   return PETSC_FALSE;
 }
 
-/* What joins bodies: bushings, points, ties by the nodes that follow, contacts */
+/* The body of each node of a master surface, [n_nodes], on every rank */
+static PetscErrorCode SurfaceBodies(const BodyGraph *b, const ContactSurface *s, PetscInt **of)
+{
+  PetscMPIInt count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(s->n_nodes, &count));
+  PetscCall(PetscMalloc1(s->n_nodes, of));
+  for (PetscInt i = 0; i < s->n_nodes; i++) (*of)[i] = -1;
+  for (PetscInt v = 0; v < b->mesh->n_nodes; v++) {
+    PetscInt at;
+
+    PetscCall(PetscFindInt(b->mesh->number[v], s->n_nodes, s->vertex, &at));
+    if (at >= 0) (*of)[at] = b->body[v];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, *of, count, MPIU_INT, MPI_MAX, b->contact->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Marks the bodies on which the pairs of an interface have a foot, of slaves of one body, and that one */
+static PetscErrorCode PairsMark(BodyGraph *b, PetscInt interface, const PetscInt slave[], PetscInt body,
+                                const ContactSurface *s, const PetscInt of[])
+{
+  const Contact c = b->contact;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n_pairs; p++) {
+    const ContactPair *pair = &c->pairs[p];
+
+    if (pair->interface != interface || slave[p] != body) continue;
+    b->has[body] = 1;
+    for (PetscInt i = 0; i < pair->n_master; i++) {
+      PetscInt at;
+
+      PetscCall(PetscFindInt(pair->corner[i], s->n_nodes, s->vertex, &at));
+      if (at >= 0 && of[at] >= 0) b->has[of[at]] = 1;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What the pairs of a contact join: the body of a slave and those under it, of slaves that have pairs alone; slave[n_pairs] */
+static PetscErrorCode PairsJoin(BodyGraph *b, PetscInt interface, const PetscInt slave[])
+{
+  const ContactSurface *s;
+  PetscInt             *of, *rubs;
+  PetscMPIInt           count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(b->n, &count));
+  PetscCall(ContactGetSurface(b->contact, interface, &s));
+  PetscCall(SurfaceBodies(b, s, &of));
+  PetscCall(PetscCalloc1(b->n, &rubs));
+  for (PetscInt p = 0; p < b->contact->n_pairs; p++)
+    if (b->contact->pairs[p].interface == interface) rubs[slave[p]] = 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rubs, count, MPIU_INT, MPI_MAX, b->contact->comm));
+  for (PetscInt i = 0; i < b->n; i++) {
+    if (!rubs[i]) continue;
+    PetscCall(PairsMark(b, interface, slave, i, s, of));
+    PetscCall(MarkedJoin(b, PETSC_FALSE));
+  }
+  PetscCall(PetscFree(rubs));
+  PetscCall(PetscFree(of));
+  PetscFunctionReturn(0);
+}
+
+/* What contacts join */
+static PetscErrorCode ContactsJoin(BodyGraph *b)
+{
+  const Contact c = b->contact;
+  PetscInt     *slave, *number, *node;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(c->n_pairs, &slave, b->mesh->n_nodes, &number, b->mesh->n_nodes, &node));
+  for (PetscInt v = 0; v < b->mesh->n_nodes; v++) {
+    number[v] = b->mesh->number[v];
+    node[v]   = v;
+  }
+  PetscCall(PetscSortIntWithArray(b->mesh->n_nodes, number, node));
+  for (PetscInt p = 0; p < c->n_pairs; p++) {
+    PetscInt at;
+
+    PetscCall(PetscFindInt(c->pairs[p].vertex, b->mesh->n_nodes, number, &at));
+    slave[p] = b->body[node[at]];
+  }
+  for (PetscInt i = 0; i < c->n_interfaces; i++) PetscCall(PairsJoin(b, i, slave));
+  PetscCall(PetscFree3(slave, number, node));
+  PetscFunctionReturn(0);
+}
+
+/* What joins bodies: bushings, points, ties by the nodes that follow, contacts by their pairs */
 static PetscErrorCode GraphJoin(BodyGraph *b)
 {
   const Contact     c = b->contact;
@@ -80,8 +170,7 @@ static PetscErrorCode GraphJoin(BodyGraph *b)
       if (c->links[i].tie == t) b->has[b->body[c->links[i].node]] = 1;
     PetscCall(SetsJoin(b, c->ties[t].master, NULL, PETSC_FALSE));
   }
-  for (PetscInt i = 0; i < c->n_interfaces; i++)
-    PetscCall(SetsJoin(b, c->interfaces[i].slave, c->interfaces[i].master, PETSC_FALSE));
+  PetscCall(ContactsJoin(b));
   for (PetscInt i = 0; i < b->n; i++) b->together[i] = RootOf(b->parent, i);
   PetscFunctionReturn(0);
 }
