@@ -91,5 +91,6 @@ PetscErrorCode ChainRun(Chain *chain)
   PetscCall(SquealStageEnd(run[chain->analysis].stage));
   PetscCall(ChainShow(chain, run[chain->analysis].shown, PETSC_TRUE));
   if (!ChainIsInTime(chain)) PetscCall(ChainWrite(chain)); /* which writes as it goes */
+  if (chain->analysis == ANALYSIS_MAP) PetscCall(MapJudge(chain->map));
   PetscFunctionReturn(0);
 }

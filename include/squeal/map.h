@@ -76,6 +76,10 @@ PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, con
 @*/
 PetscErrorCode MapSolve(Map map, Results results);
 
+/*@ MapJudge - a warning that counts the transients that failed, with the reason of the first. Errors: PETSC_ERR_NOT_CONVERGED where all
+    did. Collective. @*/
+PetscErrorCode MapJudge(Map map);
+
 /*@ MapView - regimes, hysteresis and cost in words. Collective. @*/
 PetscErrorCode MapView(Map map, PetscViewer viewer);
 

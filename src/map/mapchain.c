@@ -309,6 +309,7 @@ static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, Pet
              "a transient of the map ended by PETSc's error %d", (int)error);
   *good = begun && !error ? PETSC_TRUE : PETSC_FALSE;
   if (!*good) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
+  row->fault = !begun ? MAP_NO_STATE : error == PETSC_ERR_FP ? MAP_NO_NUMBER : MAP_NO_FORCES;
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,7 @@
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
+typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_N_FAULTS } MapFault; /* why a transient failed */
 typedef enum { MAP_HALF_STEP, MAP_TIGHT_LAWS, MAP_HIGHER_CUTOFF, MAP_N_CHECKS } MapCheckRun; /* of -map_verify */
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
@@ -31,6 +32,7 @@ typedef struct {
   PetscInt  line, place, down; /* indices of the values; 1: the values are gone through backwards */
   MapRegime regime;
   MapEnd    end;
+  MapFault  fault;            /* of one that failed */
   PetscReal freq, freq_error; /* Hz, of the main line; NAN without */
   PetscReal mean, rms, peak;  /* of the normal force */
   PetscReal open, stick;      /* shares of the time */

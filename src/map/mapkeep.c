@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define KEEP_VERSION  3
+#define KEEP_VERSION  4
 #define KEEP_MAX_ROWS 1000000
 #define N_DIMS        8
 #define N_BODIES      15
