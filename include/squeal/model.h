@@ -169,8 +169,8 @@ PetscErrorCode ModelCheckGiven(Model model);
    ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
 
    Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, for an element that is
-   inverted at one of its quadrature points or has no volume (number, part and centre are named), for elements of
-   different order that share an edge or face.
+   inverted at one of its quadrature points, has no volume (number, part and centre are named), or whose shape is lost in
+   the rounding of numbers at its distance from the origin, for elements of different order that share an edge or face.
 @*/
 PetscErrorCode ModelSetUp(Model model);
 

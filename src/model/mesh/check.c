@@ -1,10 +1,57 @@
 /*
    Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have a
-   positive Jacobian. Warnings of elements that are too stiff.
+   positive Jacobian, and be so near to the origin that its coordinates have digits. Warnings of elements that are too stiff.
 */
 #include "model/modelimpl.h"
 
-#define FLAT 1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
+#define FLAT      1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
+#define FAR       1e-9 /* relative rounding of the length of an edge above which digits of the results are lost, */
+#define SHAPELESS 1e-3 /* and above which its shape is */
+
+/* Shortest distance of two corners of a cell, 0 left out, and largest of their coordinates in absolute value, m */
+static PetscReal CellSmallest(const Element *element, const PetscReal x[], PetscReal *most)
+{
+  PetscReal least = PETSC_MAX_REAL;
+
+  *most = 0;
+  for (PetscInt i = 0; i < element->n_corners; i++) {
+    for (int d = 0; d < 3; d++) *most = PetscMax(*most, PetscAbsReal(x[3 * i + d]));
+    for (PetscInt j = 0; j < i; j++) {
+      PetscReal square = 0;
+
+      for (int d = 0; d < 3; d++) square += PetscSqr(x[3 * i + d] - x[3 * j + d]);
+      if (square > 0) least = PetscMin(least, PetscSqrtReal(square));
+    }
+  }
+  return least;
+}
+
+/* The largest relative rounding of an edge, that of the distance from the origin, eps |x|, over its length; writes a message
+   about its cell into text where it is too large */
+static PetscErrorCode FindFarCell(Model model, size_t size, char text[], PetscReal *rounding)
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  *rounding = FAR;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Element *element;
+    PetscInt       nodes[ELEMENT_MAX_NODES];
+    PetscReal      x[ELEMENT_MAX_DOFS], most, least;
+
+    if (!mesh->element[c]) continue;
+    PetscCall(ModelGetCell(model, c, &element, nodes, x));
+    least = CellSmallest(element, x, &most);
+    if (PETSC_MACHINE_EPSILON * most <= *rounding * least) continue;
+    *rounding = PETSC_MACHINE_EPSILON * most / least;
+    PetscCall(PetscSNPrintf(
+      text, size,
+      "element %" PetscInt_FMT " (%s, part %s) with an edge of %.3g m is %.3g m from the origin, where numbers "
+      "are rounded to %.2g of that edge; move the mesh to the origin",
+      c + 1, element->name, mesh->part[mesh->cell_part[c]], (double)least, (double)most, (double)*rounding));
+  }
+  PetscFunctionReturn(0);
+}
 
 /* Writes a message about the first bad cell into text, which stays empty when all are good */
 static PetscErrorCode FindBadCell(Model model, size_t size, char text[])
@@ -91,12 +138,18 @@ static PetscErrorCode ElementsWarn(Model model)
 PetscErrorCode MeshCheck(Model model)
 {
   char      text[512] = "";
+  PetscReal rounding;
   PetscBool used;
 
   PetscFunctionBeginUser;
   PetscCheck(ElementIsFormulation(model->formulation), model->comm, PETSC_ERR_USER_INPUT,
              "-model_element %s is no formulation; there are: %s", model->formulation, ElementFormulations());
-  PetscCall(FindBadCell(model, sizeof(text), text)); /* all cells are on rank 0 */
+  PetscCall(FindFarCell(model, sizeof(text), text, &rounding)); /* all cells are on rank 0 */
+  if (text[0] && rounding < SHAPELESS) {
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, stderr, "squeal: warning: %s\n", text));
+    text[0] = 0;
+  }
+  if (!text[0]) PetscCall(FindBadCell(model, sizeof(text), text));
   PetscCallMPI(MPI_Bcast(text, sizeof(text), MPI_CHAR, 0, model->comm));
   PetscCheck(!text[0], model->comm, PETSC_ERR_USER_INPUT, "%s", text);
   PetscCall(FormulationIsUsed(model, &used));
