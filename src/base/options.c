@@ -316,11 +316,15 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 {
   char        value[MAX_NAME];
   const char *wrong;
+  int         most;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
+  if (sscanf(message, "Number of options %*d < max number of options %d", &most) == 1)
+    PetscCall(PetscSNPrintf(text, size, "more than %d options, all that PETSc %d.%d takes: leave some out of the files", most,
+                            PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR));
   if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
-  PetscCall(OptionsWithValue(value, NULL, text, size));
+  PetscCall(OptionsWithValue(value + strspn(value, " "), NULL, text, size));
   if (!text[0]) PetscFunctionReturn(0);
   PetscCall(PetscStrlcat(text, ": ", size));
   PetscCall(PetscStrlcat(text, value, size));

@@ -6,6 +6,7 @@
    above it in front: disc: {young: 1} and disc_young: 1 in one file are the same key twice. What a merge (<<) or an
    alias brings may be overridden, as YAML has it, and is not looked at.
 */
+#include "yamlanchors.h"
 #include <squeal/options.h>
 #include <errno.h>
 #include <stdio.h>
@@ -17,6 +18,7 @@
 #define MAX_SIZE  (16 << 20) /* bytes of an options file */
 #define MAX_DEPTH 32
 #define MAX_KEY   512
+#define MAX_KEYS  10000  /* of a file */
 
 /* A mapping or a list that is open */
 typedef struct {
@@ -35,14 +37,23 @@ typedef struct {
   char        key[MAX_KEY]; /* the present one, as the option without its dash */
   char      **keys;         /* all options that the file gives */
   size_t     *lines;        /* where */
+  YamlAnchors anchors;      /* what aliases repeat */
 } YamlFile;
 
 /* Raises an error for an option that the file has already given */
 static PetscErrorCode YamlAddKey(YamlFile *f)
 {
-  PetscBool same;
+  PetscBool same, is_file, is_yaml;
+  char      option[MAX_KEY + 1] = "-";
 
   PetscFunctionBeginUser;
+  PetscCall(PetscStrlcat(option, f->key, sizeof(option)));
+  PetscCall(OptionsNamesFile(option, &is_file, &is_yaml));
+  PetscCheck(!is_file, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: %s within an options file; give each file by -options_file on the command line", f->file, f->line,
+             f->key);
+  PetscCheck(f->n_keys < MAX_KEYS, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: more than %d options in a file",
+             f->file, f->line, MAX_KEYS);
   for (PetscInt i = 0; i < f->n_keys; i++) {
     PetscCall(PetscStrcasecmp(f->keys[i], f->key, &same)); /* PETSc's names ignore case */
     PetscCheck(!same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s:%zu: %s stands twice, already in line %zu; keep one",
@@ -174,19 +185,26 @@ static PetscErrorCode YamlReadEvent(YamlFile *f, const yaml_event_t *event)
                "%s:%zu: a second document begins, of which nothing would be read", f->file, f->line);
     break;
   case YAML_SCALAR_EVENT:
+    PetscCall(YamlAnchorsAdd(&f->anchors, event->data.scalar.anchor, YAML_VALUE));
+    PetscCall(YamlAnchorsCount(&f->anchors, f->file, f->line, 1));
     PetscCall(YamlReadScalar(f, (const char *)event->data.scalar.value));
     break;
   case YAML_MAPPING_START_EVENT:
+    PetscCall(YamlAnchorsAdd(&f->anchors, event->data.mapping_start.anchor, f->depth));
     PetscCall(YamlOpen(f, PETSC_FALSE));
     break;
   case YAML_SEQUENCE_START_EVENT:
+    PetscCall(YamlAnchorsAdd(&f->anchors, event->data.sequence_start.anchor, f->depth));
     PetscCall(YamlOpen(f, PETSC_TRUE));
     break;
   case YAML_MAPPING_END_EVENT:
   case YAML_SEQUENCE_END_EVENT:
     PetscCall(YamlClose(f));
+    YamlAnchorsEnd(&f->anchors, f->depth);
     break;
   case YAML_ALIAS_EVENT:
+    PetscCall(YamlAnchorsRepeat(&f->anchors, f->file, f->line, level && level->list && !YamlIsSkipped(f),
+                                (const char *)event->data.alias.anchor));
     if (level && !level->list && level->wants_value && !YamlIsSkipped(f)) PetscCall(YamlAddKey(f));
     YamlValueEnds(f);
     break;
@@ -220,6 +238,7 @@ static PetscErrorCode YamlDestroy(YamlFile *f)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
   PetscCall(PetscFree(f->keys));
+  PetscCall(YamlAnchorsDestroy(&f->anchors));
   PetscCall(PetscFree(f->lines));
   PetscCall(PetscFree(f));
   PetscFunctionReturn(0);

@@ -70,6 +70,7 @@ static PetscBool  traced     = PETSC_FALSE; /* -squeal_traceback */
    it solves; 3.18 has another code than PETSC_ERR_MEM for its own */
 static PetscBool IsOfMemory(PetscErrorCode code, const char function[], const char message[])
 {
+  if (strstr(message, "max number of options")) return PETSC_FALSE;
   if (code == PETSC_ERR_MEM) return PETSC_TRUE;
   if (function && (strstr(function, "PetscMalloc") || strstr(function, "PetscRealloc"))) return PETSC_TRUE;
   if (!strstr(message, "MUMPS")) return PETSC_FALSE;
