@@ -12,12 +12,12 @@ import numpy as np
 import scipy.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.exact import Sparse
+from squeal.exact import sparse
 
 
 def projected(folder, mu, n, symmetrised):
     """Eigenvalues with positive frequency, rad/s."""
-    stiffness, mass, friction = (Sparse(folder / f"{name}.bin").dense() for name in "KMH")
+    stiffness, mass, friction = (sparse(folder / f"{name}.bin").toarray() for name in "KMH")
     whole = stiffness + mu * friction
     values, V = scipy.linalg.eigh((whole + whole.T) / 2 if symmetrised else stiffness, mass)
     V = V[:, np.argsort(np.abs(values))[:n]]
