@@ -3,7 +3,7 @@
 */
 #include "greedywork.h"
 
-#define SAFE         (1. / POINTS_MARGIN) /* what is asked at a point that corrections come from, beside rtol */
+#define SAFE         (1. / 30)    /* what is asked at a point that corrections come from, beside rtol */
 #define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
