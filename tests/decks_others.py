@@ -181,6 +181,8 @@ REFUSED = {"bdf": [
     (GRIDS + HEXA.replace(",8\n", ",8,9\n") + PROPERTY, "wrong.bdf:9: grid point 9 is not in the file"),
     (GRIDS.replace("10.,10.,0.", "10.,1x.,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 '1x.' should be a number"),
     (GRIDS.replace("10.,10.,0.", "10.,nan,0.") + HEXA + PROPERTY, "wrong.bdf:3: GRID: field 5 'nan' should be a number"),
+    (GRIDS + HEXA + "PSOLID,1,1\nMAT1           1          80769.2     .3  7.8-9\n",
+     "MAT1: field 5 '2     .3' should be a number; blanks in it: is a number across the end of its columns?"),
     (GRIDS + HEXA, "units are in doubt"),
     (GRIDS + HEXA + PROPERTY + "SPC1,1,123,77\n", "wrong.bdf:13: grid point 77 is not in the file"),
     (GRIDS + HEXA + PROPERTY + "SPC1,1,123\n", "wrong.bdf:13: SPC1 names no grid point"),

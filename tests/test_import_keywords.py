@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.decks import ansys_model, nastran
 from squeal.decks.abaqus import CARDS as ABAQUS
 from squeal.decks.convert import convert, read_deck
+from squeal.decks.names import RESERVED
 from squeal.decks.units import SYSTEMS
 from squeal.tables import BadInput
 
@@ -264,6 +265,15 @@ def page():
     check("every keyword stands in scripts/README.md", not missing, missing)
 
 
+def names():
+    """Names of parts and contacts that squeal refuses, since its own or its libraries' options begin with them."""
+    source = Path(__file__).resolve().parents[1] / "src/base"
+    library = re.search(r"library_prefixes\[\] = \{(.*?)NULL", (source / "unknown.c").read_text(), re.S)[1]
+    own = re.search(r"own\[\] = \{(.*?)\};", (source / "options.c").read_text(), re.S)[1]
+    refused = {*re.findall(r'"(\w+)_"', library), *re.findall(r'"(\w+)"', own)}
+    check("an import gives no name that is refused", len(refused) > 20 and refused <= RESERVED, refused - RESERVED)
+
+
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
@@ -274,6 +284,7 @@ def main():
         preloaded(Path(name))
         closed_pipe(Path(name))
         strict(Path(name))
+    names()
     page()
     return 1 if FAILED else 0
 
