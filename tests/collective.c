@@ -192,7 +192,8 @@ int MPI_Alltoall(const void *a, int n, MPI_Datatype t, void *b, int m, MPI_Datat
   return PMPI_Alltoall(a, n, t, b, m, u, comm);
 }
 
-int MPI_Alltoallv(const void *a, const int n[], const int at[], MPI_Datatype t, void *b, const int m[], const int to[], MPI_Datatype u, MPI_Comm comm)
+int MPI_Alltoallv(const void *a, const int n[], const int at[], MPI_Datatype t, void *b, const int m[], const int to[], MPI_Datatype u,
+                  MPI_Comm comm)
 {
   Check(comm, "MPI_Alltoallv", 0);
   return PMPI_Alltoallv(a, n, at, t, b, m, to, u, comm);

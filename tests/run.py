@@ -69,6 +69,7 @@ import tomllib
 from pathlib import Path
 
 from check import Checker, Failure, Line, require
+from cores import CORES, MIXED, choose_core, mixed
 from forked import run_command
 from processes import processes_naming
 from ranks import fault_of_ranks, ranks_of_runs
@@ -77,8 +78,6 @@ from served import own_words, served_program
 SOURCE = Path(__file__).resolve().parent.parent
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
 SKIPPED = 77
-# Kernels of OpenBLAS, and what a processor must be able to do to run them
-CORES = {"Nehalem": "sse4_2", "Haswell": "avx2", "Zen": "avx2", "SkylakeX": "avx512vl"}
 MOST_BEYOND, WORST_RATIO = 0.01, 3  # of the errors that a sweep states
 
 
@@ -90,17 +89,6 @@ def end(process):
     except subprocess.TimeoutExpired:
         process.kill()
         process.communicate()
-
-
-def choose_core(core):
-    """Has OpenBLAS take the kernels of a processor, by which results are rounded differently; another BLAS takes no
-    notice. Says why that cannot be, where this processor would not run them."""
-    try:
-        flags = Path("/proc/cpuinfo").read_text().split()
-    except OSError:
-        flags = []
-    os.environ["OPENBLAS_CORETYPE"] = core
-    return None if CORES[core] in flags else f"no {CORES[core]} here, which the kernels for {core} need"
 
 
 class Runner:
@@ -126,7 +114,8 @@ class Runner:
             (self.output(name) / link).symlink_to(target)
 
     def execute(self, name, run):
-        command = [self.arguments.launcher, "-n", str(self.ranks), self.arguments.squeal]
+        program = mixed(self.arguments.squeal) if self.arguments.core == MIXED else [self.arguments.squeal]
+        command = [self.arguments.launcher, "-n", str(self.ranks), *program]
         words = ["-output_dir", str(self.output(name)), "-malloc_dump", "-options_left"]
         night = run.get("night_options", "") if self.arguments.night else ""
         words += self.expand(" ".join((self.case.get("options", ""), run.get("options", ""), night)))
@@ -285,7 +274,7 @@ def command_line():
     parser.add_argument("--launcher", type=Path, default=SOURCE / "scripts/mpirun", help="mpirun")
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
     parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
-    parser.add_argument("--core", choices=CORES, help="processor whose kernels OpenBLAS takes")
+    parser.add_argument("--core", choices=(*CORES, MIXED), help="processor whose kernels OpenBLAS takes; mixed: another one on each rank")
     parser.add_argument("--night", action="store_true", help="runs on the ranks of the night as well")
     parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")
     return parser
@@ -330,7 +319,7 @@ def main():
     fault = fault_of_ranks(case)
     if fault:
         parser.error(fault)
-    arguments.served = served_program(arguments.squeal, arguments.timeout)
+    arguments.served = None if arguments.core == MIXED else served_program(arguments.squeal, arguments.timeout)  # has its kernels already
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
         make_files(case, Path(folder))
         results = results_of(arguments, case, Path(folder))

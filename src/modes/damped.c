@@ -66,6 +66,7 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
 {
   PetscInt n;
   BV       bv;
+  DS       ds;
   ST       st;
 
   PetscFunctionBeginUser;
@@ -79,6 +80,8 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
   /* lambda = scale * mu with |mu| <= 1 in the window; explicit, since the norms of transposed matrices are not at
      hand */
   PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, 3 * si->shift, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
+  PetscCall(PEPGetDS(*pep, &ds));
+  PetscCall(DSSetParallel(ds, DS_PARALLEL_SYNCHRONIZED)); /* as in blockkrylov.c */
   PetscCall(PEPGetST(*pep, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(PEPSetFromOptions(*pep));

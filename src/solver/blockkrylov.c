@@ -54,6 +54,7 @@ static PetscErrorCode EPSSetUp_BlockKrylov(EPS eps)
   PetscCall(BlockKrylovSizes(eps));
   PetscCall(EPSAllocateSolution(eps, ctx->block));
   PetscCall(BVSetMatrix(eps->V, NULL, PETSC_FALSE));
+  PetscCall(DSSetParallel(eps->ds, DS_PARALLEL_SYNCHRONIZED)); /* ranks on processors of two kinds round differently */
   PetscCall(DSSetType(eps->ds, eps->ishermitian ? DSHEP : DSNHEP));
   PetscCall(DSAllocate(eps->ds, eps->ncv));
   PetscFunctionReturn(0);

@@ -225,7 +225,7 @@ static PetscBool ModeIsAfter(const SweepMode *a, const SweepMode *b)
   return a->parity > b->parity ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static void ModesSort(PetscInt n, SweepMode mode[])
+static void PointSort(PetscInt n, SweepMode mode[])
 {
   for (PetscInt i = 1; i < n; i++) {
     const SweepMode own = mode[i];
@@ -254,7 +254,7 @@ PetscErrorCode SweepParities(Sweep sweep)
   PetscCall(ModesSetPencil(sweep->modes, sweep->pencil));
   if (sweep->is_confirmed) SweepSortOnsets(sweep);
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
-    ModesSort(sweep->point[i].n, sweep->point[i].mode);
+    PointSort(sweep->point[i].n, sweep->point[i].mode);
     n_modes += sweep->point[i].n;
   }
   PetscCall(ModesGetBand(sweep->modes, band, &growth));
