@@ -1,0 +1,126 @@
+"""Tables of two runs of one scene, which may differ by rounding alone: what differs more, in words."""
+
+import csv
+import math
+
+SAME = 1e-9  # of the largest number of a column
+GROWN = 1e3  # times what the last digit of a density has changed on one rank up to a row
+# Columns that share a unit, and so a scale, as parts of multipliers do; longer ones before their ends
+UNITS = "_percent", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s", "_m"
+# In names of columns that tell what rounding leaves
+ESTIMATES = "error", "condition", "damping_ratio", "check", "residual", "period_slope", "worst_ratio", "sweeps", "pairs_changed", \
+    "steps_changed", "onset_distance"
+VALUES = {"onsets.csv": ("critical_value", "error_estimate")}  # with the column that states its error
+
+
+def read(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def eigenvalue(row):
+    return complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"]))
+
+
+def stated(row):
+    """Error that a row states of its eigenvalue, rad/s."""
+    error = 2 * math.pi * float(row.get("error_hz") or 0)
+    return error if math.isfinite(error) else 0
+
+
+def apart(x, y):
+    """Difference of two fields; none where they are the same, infinite where one is no number."""
+    if x == y:
+        return 0
+    x, y = number(x), number(y)
+    if x is None or y is None:
+        return math.inf
+    return 0 if math.isnan(x) and math.isnan(y) else abs(x - y) if math.isfinite(x - y) else math.inf
+
+
+class Comparison:
+    """Differences of the rows of one table; `digit` has those of one rank with another last digit."""
+
+    def __init__(self, name, one, other, digit=None):
+        self.name, self.one, self.other = name, one, other
+        self.found, self.worst, self.first = [], 0.0, len(one)
+        self.columns = [column for column in (one[0] if one else ()) if not any(word in column for word in ESTIMATES)]
+        self.grown = self.growth(digit) if digit is not None else [0] * len(one)
+
+    def growth(self, digit):
+        """How far the run with another digit has come from the first one up to each row, of the largest numbers."""
+        largest, grown = 0, []
+        for i, row in enumerate(self.one):
+            changes = [math.inf] if i >= len(digit) else [
+                apart(row[column], digit[i][column]) / self.scale(column) for column in self.columns]
+            largest = max([largest, *changes])
+            grown.append(largest)
+        return grown if self.columns and "time_s" in self.columns else [largest] * len(grown)
+
+    def scale(self, column):
+        """The largest number of all columns of its unit."""
+        unit = next((unit for unit in UNITS if column.endswith(unit)), column)
+        names = [name for name in self.one[0] if name.endswith(unit) or "multiplier_" in name and "multiplier_" in column]
+        values = (number(row[name]) for row in self.one for name in names)
+        return max((abs(v) for v in values if v is not None and math.isfinite(v)), default=0) or 1
+
+    def say(self, i, text, size):
+        """A difference in a row, which is one of the size."""
+        if size > max(SAME, GROWN * self.grown[i]):
+            self.found.append(f"{self.name} row {i + 1}: {text}")
+        elif size > SAME:
+            self.first = min(self.first, i)
+        else:
+            self.worst = max(self.worst, size)
+
+    def values(self, column):
+        """A column in rows that both runs have in this order."""
+        scale = self.scale(column)
+        for i, (p, q) in enumerate(zip(self.one, self.other)):
+            self.say(i, f"{column} '{p[column]}' '{q[column]}', scale {scale:.3g}", apart(p[column], q[column]) / scale)
+
+    def eigenvalues(self):
+        for i, (p, q) in enumerate(zip(self.one, self.other)):
+            x, y, allowed = eigenvalue(p), eigenvalue(q), max(stated(p) + stated(q), 1e-6)
+            size = 0 if abs(x - y) <= allowed else abs(x - y) / abs(x) if x else math.inf
+            self.say(i, f"{x:.12g} and {y:.12g} rad/s, which state {stated(p):.2g} and {stated(q):.2g}", size)
+
+    def stated_values(self, column, error):
+        """A column with its errors."""
+        for i, (p, q) in enumerate(zip(self.one, self.other)):
+            x, y, allowed = float(p[column]), float(q[column]), float(p[error] or 0) + float(q[error] or 0)
+            size = 0 if abs(x - y) <= allowed else abs(x - y) / (abs(x) or 1)
+            self.say(i, f"{column} {x:.15g} and {y:.15g}, which state {allowed:.2g}", size)
+
+    def compare(self):
+        if len(self.one) != len(self.other) or self.one and list(self.one[0]) != list(self.other[0]):
+            if not self.grown or GROWN * self.grown[-1] < 1:
+                self.found.append(f"{self.name}: {len(self.one)} and {len(self.other)} rows")
+            return self
+        columns = set(self.columns)
+        if self.name in ("modes.csv", "sweep.csv"):
+            self.eigenvalues()
+            columns -= {"growth_rad_s", "freq_hz"}
+        if self.name in VALUES:
+            self.stated_values(*VALUES[self.name])
+            columns -= {VALUES[self.name][0], "freq_hz"}
+        for column in self.columns:
+            if column in columns:
+                self.values(column)
+        return self
+
+
+def compared(one, other, digit=None):
+    """Comparisons of the tables of two folders, beside those of a third one, and the names of tables that one of them lacks."""
+    names = sorted({path.name for folder in (one, other) for path in folder.glob("*.csv")})
+    missing = [f"no {name} in one" for name in names if not ((one / name).exists() and (other / name).exists())]
+    both = [name for name in names if (one / name).exists() and (other / name).exists()]
+    third = {name: read(digit / name) if (digit / name).exists() else [] for name in both} if digit else {}
+    return [Comparison(name, read(one / name), read(other / name), third.get(name)).compare() for name in both], missing
