@@ -16,6 +16,12 @@
       p = mu l_n e + alpha E (p + s)   hence   p = mu l_n e - alpha E z,   s = - e e'z - (1 - alpha) E z
 
    for any z in the plane, from slip without a direction of its own (alpha = 0) to the border of stick (alpha = 1).
+
+   A yielding pair (soft > 0) slips by soft p before it gives way, s - soft p in the normal cone of C at p; p does not
+   change when it is written p = Proj_C(q), q = (1 - rho soft) p + rho s, rho = min(1, 1 / soft), which is Coulomb's law
+   for soft = 0, a function of s alone for soft >= 1. Stick is s = soft p, and slip has rho E and E - alpha (1 - rho
+   soft) E in the place of E and (1 - alpha) E. An open pair may pull: l_n = pull (w_n - g0) < 0.
+
    Where mu falls with the length of slip, fall = d mu / d|s| (1/m), p has fall l_n e (e's - |s|) more, of which |s| is
    that at the present l, w: |q| - mu l_n.
 */
@@ -31,6 +37,8 @@ typedef struct {
   double g0;       /* m */
   double slip0[2]; /* w_t, w_b from which slip counts, m */
   double fall;     /* d mu / d|s| at the present slip, 1/m */
+  double soft;     /* slip over friction before it gives way, 0 for Coulomb's law itself; none with a fall */
+  double pull;     /* force over gap of an open pair, 0 for the laws themselves */
 } CoulombPair;
 
 /* Linear law of one status; only the leading d rows and columns are used */
@@ -38,10 +46,18 @@ typedef struct {
   double P[3][3], Q[3][3], p0[3], q0[3];
 } CoulombLaw;
 
-/* Friction that the natural map projects, p + s, and its length */
+/* rho of s in what the natural map projects */
+static inline double CoulombShare(const CoulombPair *pair)
+{
+  return pair->soft > 1 ? 1 / pair->soft : 1;
+}
+
+/* Friction that the natural map projects, q, and its length */
 static inline double CoulombTrial(const CoulombPair *pair, const double l[], const double w[], double q[2])
 {
-  for (int i = 0; i < 2; i++) q[i] = -l[1 + i] - (w[1 + i] - pair->slip0[i]);
+  const double rho = CoulombShare(pair), keep = 1 - rho * pair->soft;
+
+  for (int i = 0; i < 2; i++) q[i] = -keep * l[1 + i] - rho * (w[1 + i] - pair->slip0[i]);
   return sqrt(q[0] * q[0] + q[1] * q[1]);
 }
 
@@ -62,7 +78,7 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
   double       q[2], e[2] = {1, 0};
   const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
   const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1;
-  const double fall  = pair->fall * fmax(0, l[0]);
+  const double fall = pair->fall * fmax(0, l[0]), rho = CoulombShare(pair), keep = 1 - rho * pair->soft;
 
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
@@ -72,8 +88,8 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
     for (int j = 0; j < 2; j++) {
       const double E = (i == j) - e[i] * e[j];
 
-      law->P[1 + i][1 + j] = alpha * E + fall * e[i] * e[j];
-      law->Q[1 + i][1 + j] = (i == j) - alpha * E;
+      law->P[1 + i][1 + j] = alpha * rho * E + fall * e[i] * e[j];
+      law->Q[1 + i][1 + j] = (i == j) - alpha * keep * E;
     }
   }
 }
@@ -85,6 +101,8 @@ static inline void CoulombLinearise(const CoulombPair *pair, ContactStatus statu
   *law = (CoulombLaw){.p0 = {0}};
   if (status == CONTACT_OPEN) {
     for (int i = 0; i < pair->d; i++) law->Q[i][i] = 1;
+    law->P[0][0] = pair->pull;
+    law->p0[0]   = -pair->pull * pair->g0;
     return;
   }
   CoulombClosedNormal(pair, law);
@@ -95,6 +113,7 @@ static inline void CoulombLinearise(const CoulombPair *pair, ContactStatus statu
   }
   for (int i = 1; i < 3; i++) {
     law->P[i][i] = 1;
+    law->Q[i][i] = pair->soft;
     law->q0[i]   = pair->slip0[i - 1];
   }
 }
@@ -119,7 +138,7 @@ static inline ContactStatus CoulombDecide(const CoulombPair *pair, ContactStatus
   return beyond > (before == CONTACT_SLIP ? -tol : tol) ? CONTACT_SLIP : CONTACT_STICK;
 }
 
-/* Residual of the friction law, |p - Proj_C(p + s)|, m */
+/* Residual of the friction law, |p - Proj_C(q)|, m */
 static inline double CoulombResidual(const CoulombPair *pair, const double l[], const double w[])
 {
   double q[2];

@@ -74,8 +74,7 @@ static void LawsSet(const Active *a, LawRow law[])
   }
 }
 
-/* One small system at the present status, for l and w, or with homogeneous laws for what is added to them */
-static PetscErrorCode Solve(Active *a, PetscBool homogeneous, const PetscReal rhs[], PetscReal l[], PetscReal w[],
+PetscErrorCode ActiveLinear(Active *a, PetscBool homogeneous, const PetscReal rhs[], PetscReal l[], PetscReal w[],
                             SmallOutcome *outcome)
 {
   LawRow *law;
@@ -89,8 +88,7 @@ static PetscErrorCode Solve(Active *a, PetscBool homogeneous, const PetscReal rh
   PetscFunctionReturn(0);
 }
 
-/* Largest contact displacement or force, m */
-static PetscErrorCode ActiveFindScale(Active *a)
+PetscErrorCode ActiveFindScale(Active *a)
 {
   PetscReal scale = 0;
 
@@ -246,7 +244,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
     if (n_changed && !(sure && guard.linear)) PetscCall(RepeatFind(a, &seen, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
-    PetscCall(Solve(a, PETSC_FALSE, a->free, a->l, a->w, &small));
+    PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, &small));
     if (small != SMALL_GOOD || repeats) {
       *outcome = repeats ? ACTIVE_REPEATS : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
       break;
@@ -274,7 +272,7 @@ PetscErrorCode ActiveCorrect(Active *a, const PetscReal rhs[])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
   a->rtol = CORRECT;
-  PetscCall(Solve(a, PETSC_TRUE, rhs, l, w, &outcome));
+  PetscCall(ActiveLinear(a, PETSC_TRUE, rhs, l, w, &outcome));
   for (PetscInt i = 0; i < a->rows->n && outcome == SMALL_GOOD; i++) {
     a->l[i] += l[i];
     a->w[i] += w[i];

@@ -1,5 +1,6 @@
 /*
-   What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: statuses
+   What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: with
+   Coulomb's law by way of pairs that yield (soften.c); statuses
    of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per iteration; then
    all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with half the step
    after a failure. Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the
@@ -109,6 +110,11 @@ PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
   a->first = *outcome;
   if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(CertificateCheck(a));
+  if (PairRowsCoulomb(a->rows)) {
+    PetscCall(Restart(a));
+    PetscCall(ActiveSoften(a, outcome));
+    if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
+  }
   PetscCall(IterateSurely(a, outcome));
   if (*outcome != ACTIVE_CONVERGED) PetscCall(Raise(a, outcome));
   PetscFunctionReturn(0);

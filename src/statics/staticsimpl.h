@@ -222,12 +222,20 @@ PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, 
 /* repeat.c - whether the iterate was there before, among the last ones seen; remembers it */
 PETSC_INTERN PetscErrorCode RepeatFind(const Active *active, Repeat *seen, PetscBool *repeats);
 
-/* activeset.c - iterates from the present status at the present friction; sure changes fewer pairs at a time */
+/* activeset.c - one small system at the present status, for l and w, or with homogeneous laws for what is added to them;
+   the largest contact displacement, force or gap, m */
+PETSC_INTERN PetscErrorCode ActiveLinear(Active *a, PetscBool homogeneous, const PetscReal rhs[], PetscReal l[],
+                                         PetscReal w[], SmallOutcome *outcome);
+PETSC_INTERN PetscErrorCode ActiveFindScale(Active *active);
+/* Iterates from the present status at the present friction; sure changes fewer pairs at a time */
 PETSC_INTERN PetscErrorCode ActiveIterate(Active *active, PetscBool sure, ActiveOutcome *outcome);
 /* Whether the small system at the present status and a factor of friction has a determinant of the wrong sign */
 PETSC_INTERN PetscErrorCode ActiveIsReversed(const Active *active, PetscReal friction, PetscBool *reversed);
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
+
+/* soften.c - the same by way of pairs that yield before they slip, ever less, from the present l and w */
+PETSC_INTERN PetscErrorCode ActiveSoften(Active *active, ActiveOutcome *outcome);
 
 /* continuation.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
    outcome and active->friction tell where it ended. */

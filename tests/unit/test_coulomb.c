@@ -245,6 +245,48 @@ static int TestBorders(void)
   return failed;
 }
 
+/* Breaks when: a yielding pair is not p = Proj_C(s / soft), its stick or slip has another slope, d p / d s = 1 / soft, or
+   mu l_n / |s| across s, or an open pair pulls otherwise than in proportion to its gap. References: those three */
+static int TestYielding(void)
+{
+  uint64_t seed     = 11;
+  double   residual = 0, stick = 0, slip = 0, pull = 0;
+
+  for (int i = 0; i < 1000; i++) {
+    CoulombPair  pair = DrawPair(&seed);
+    const double ln = 1 + Draw(&seed), angle = 3 * DrawSigned(&seed), s = Draw(&seed) + 0.01;
+    double       l[3] = {ln}, w[3] = {0}, l1[3], w1[3];
+    CoulombLaw   law;
+
+    pair.soft = pow(10, 3 * DrawSigned(&seed));
+    pair.pull = Draw(&seed);
+    for (int k = 0; k < 2; k++) {
+      const double e = k ? sin(angle) : cos(angle);
+
+      l[1 + k] = -fmin(s / pair.soft, pair.mu * ln) * e;
+      w[1 + k] = pair.slip0[k] - s * e;
+    }
+    residual = fmax(residual, CoulombResidual(&pair, l, w));
+    CoulombLinearise(&pair, CONTACT_STICK, l, w, &law);
+    LawAt(&law, 3, (const double[3]){0, 0.3, -0.7}, l1, w1);
+    stick =
+      fmax(stick, hypot(w1[1] - pair.slip0[0] - pair.soft * 0.3, w1[2] - pair.slip0[1] + pair.soft * 0.7) / pair.soft);
+    CoulombLinearise(&pair, CONTACT_OPEN, l, w, &law);
+    LawAt(&law, 3, (const double[3]){0.5, 0, 0}, l1, w1);
+    pull = fmax(pull, fabs(l1[0] - pair.pull * (w1[0] - pair.g0)));
+    if (s / pair.soft < pair.mu * ln) continue;
+    CoulombLinearise(&pair, CONTACT_SLIP, l, w, &law);
+    for (int k = 1; k < 3; k++) { /* along z across s: changes of l and w, without the constants */
+      const double *P = law.P[k], *Q = law.Q[k], a = -sin(angle), b = cos(angle);
+
+      slip = fmax(slip, fabs((P[1] * a + P[2] * b) * s / (pair.mu * ln) - (Q[1] * a + Q[2] * b)));
+    }
+  }
+  return CheckClose("yielding: residual of p = Proj(s / soft)", residual, 0, 1e-14) +
+         CheckClose("yielding: stick", stick, 0, 1e-12) + CheckClose("yielding: slip across s", slip, 0, 1e-12) +
+         CheckClose("open: pull in proportion to the gap", pull, 0, 1e-15);
+}
+
 /* Breaks when: stick and slip are not parted by |p + s| = mu l_n. l_n = 2, mu = 0.5: the cone is 1 */
 static int TestStickBorder(void)
 {
@@ -284,7 +326,7 @@ static int TestCoefficient(void)
 int main(void)
 {
   const int failed = TestOpenAndStick() + TestOneRow() + TestSlipTangent() + TestSlipFixed() + TestFrictionless() +
-                     TestBorders() + TestStickBorder() + TestCoefficient();
+                     TestBorders() + TestYielding() + TestStickBorder() + TestCoefficient();
 
   printf("%d failed\n", failed);
   return failed ? 1 : 0;

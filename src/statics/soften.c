@@ -1,0 +1,148 @@
+/*
+   Equilibrium with Coulomb's law by way of pairs that yield: one slips by soft p under friction p before it gives way,
+   and pulls with a force in proportion to its gap when it is open (kernels/coulomb.h), so that no body ever floats. While
+   they yield much, friction is small wherever slip is. Softness and pull are lowered in steps, each begun from the
+   equilibrium before it, until the laws themselves settle.
+
+   At each softness Newton's method is made global by a line search: equilibrium is linear and holds all the way once a
+   whole step was made, so that the residual of the laws alone decides how far to go (M. Hintermueller, K. Ito, K.
+   Kunisch, SIAM J. Optim. 13, 2002, 865, for the active set as Newton's method).
+*/
+#include "staticsimpl.h"
+
+#define SOFTEST       1e4  /* softness that begins, over 1 / kappa */
+#define PULL          1e-5 /* of an open pair over the softness */
+#define HARD          4.0  /* softness from which on Coulomb's law itself is tried */
+#define MOST_FACTOR   1e4  /* of the softness from step to step: at most, at first, and at last */
+#define FIRST_FACTOR  16.0
+#define LAST_FACTOR   1.03
+#define DESCENT       1e-4 /* of the residual along a step */
+#define SHORTEST_STEP (1.0 / 256)
+#define ENOUGH        1e-10 /* residual of the laws, relative to the scale */
+
+/* Where a softness begins from, and what is kept of it */
+typedef struct {
+  PetscReal *l, *w; /* [rows] */
+} Kept;
+
+static void SoftenSet(Active *a, PetscReal soft)
+{
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
+    a->rows->law[p].soft = soft;
+    a->rows->law[p].pull = PULL * soft;
+  }
+}
+
+/* Statuses that l and w ask for, and the 2-norm of the residuals of all laws, m */
+static PetscErrorCode SoftenMeasure(Active *a, PetscReal *residual)
+{
+  PetscReal sum = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
+    const PetscReal *l = &a->l[a->rows->first[p]], *w = &a->w[a->rows->first[p]];
+    CoulombPair      pair   = a->rows->law[p];
+    PetscReal        normal = l[0];
+
+    pair.mu *= a->friction;
+    a->status[p] = CoulombDecide(&pair, a->status[p], l, w, 0);
+    if (a->status[p] == CONTACT_OPEN) {
+      pair.mu = 0;
+      normal  = l[0] - pair.pull * (w[0] - pair.g0);
+    } else {
+      normal = pair.k > 1 ? l[0] / pair.k - w[0] + pair.g0 : l[0] - pair.k * (w[0] - pair.g0);
+    }
+    sum += PetscSqr(normal) + PetscSqr(CoulombResidual(&pair, l, w));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, a->rows->comm));
+  *residual = PetscSqrtReal(sum);
+  PetscFunctionReturn(0);
+}
+
+/* Goes back from l, w towards where the step began until the residual falls; whether it does */
+static PetscErrorCode SoftenSearch(Active *a, const Kept *from, PetscReal *residual, PetscBool *falls)
+{
+  const PetscReal before = *residual;
+
+  PetscFunctionBeginUser;
+  *falls = PETSC_FALSE;
+  for (PetscReal step = 1; step >= SHORTEST_STEP; step /= 2) {
+    PetscCall(SoftenMeasure(a, residual));
+    *falls = *residual <= (1 - DESCENT * step) * before ? PETSC_TRUE : PETSC_FALSE;
+    if (*falls) break;
+    for (PetscInt i = 0; i < a->rows->n; i++) {
+      a->l[i] = (from->l[i] + a->l[i]) / 2;
+      a->w[i] = (from->w[i] + a->w[i]) / 2;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Newton's method at the present softness; l and w are in equilibrium (balanced), or the first step is a whole one from
+   the statuses given */
+static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *converged)
+{
+  PetscReal    residual = PETSC_MAX_REAL;
+  PetscBool    falls    = PETSC_TRUE;
+  SmallOutcome small    = SMALL_GOOD;
+  Kept         from;
+
+  PetscFunctionBeginUser;
+  *converged = PETSC_FALSE;
+  PetscCall(PetscMalloc2(a->rows->n, &from.l, a->rows->n, &from.w));
+  if (balanced) PetscCall(SoftenMeasure(a, &residual));
+  for (PetscInt it = 0; it < a->max_it && falls && !*converged; it++, a->n_it++) {
+    PetscCall(PetscArraycpy(from.l, a->l, a->rows->n));
+    PetscCall(PetscArraycpy(from.w, a->w, a->rows->n));
+    PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, &small));
+    if (small != SMALL_GOOD) break;
+    PetscCall(ActiveFindScale(a));
+    PetscCall(SoftenSearch(a, &from, &residual, &falls));
+    *converged = residual <= ENOUGH * a->scale ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscCall(PetscFree2(from.l, from.w));
+  PetscFunctionReturn(0);
+}
+
+/* Lowers the softness, with a smaller step after a failure; converged at softness 0 */
+static PetscErrorCode SoftenLower(Active *a, const Kept *kept, PetscBool *converged)
+{
+  PetscReal soft = SOFTEST, factor = FIRST_FACTOR;
+
+  PetscFunctionBeginUser;
+  while (*converged && factor > LAST_FACTOR) {
+    PetscReal next = soft <= HARD ? 0 : soft / factor;
+
+    PetscCall(PetscArraycpy(kept->l, a->l, a->rows->n));
+    PetscCall(PetscArraycpy(kept->w, a->w, a->rows->n));
+    do {
+      SoftenSet(a, next);
+      PetscCall(SoftenIterate(a, PETSC_TRUE, converged));
+      if (*converged) break;
+      if (next > 0) factor = PetscSqrtReal(factor);
+      next = soft / factor;
+      PetscCall(PetscArraycpy(a->l, kept->l, a->rows->n));
+      PetscCall(PetscArraycpy(a->w, kept->w, a->rows->n));
+    } while (factor > LAST_FACTOR);
+    if (next == 0) break;
+    soft   = next;
+    factor = PetscMin(PetscSqr(factor), MOST_FACTOR);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ActiveSoften(Active *a, ActiveOutcome *outcome)
+{
+  PetscBool converged;
+  Kept      kept;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(a->rows->n, &kept.l, a->rows->n, &kept.w));
+  SoftenSet(a, SOFTEST);
+  PetscCall(SoftenIterate(a, PETSC_FALSE, &converged));
+  PetscCall(SoftenLower(a, &kept, &converged));
+  SoftenSet(a, 0);
+  PetscCall(PetscFree2(kept.l, kept.w));
+  if (converged) PetscCall(ActiveIterate(a, PETSC_FALSE, outcome));
+  PetscFunctionReturn(0);
+}
