@@ -5,7 +5,10 @@
 
       x = x_0 + a Re(v exp(i omega t)),    T = 2 pi / omega,
 
-   from which Newton's method goes on at that amplitude: the plane of pseudo-arclength is normal to v, and the parameter is left free.
+   with the phase of v at which the normal forces of the pairs are largest, the root of the sum of their squares, at t = 0, and its
+   sign by that of the pair of the largest, later pairs counting up to twice as much: the phase of an eigensolver hangs on the signs
+   of the bodies' modes, hence on ranks, and tells where the steps lie. From there Newton's method goes on at that amplitude: the
+   plane of pseudo-arclength is normal to v, and the parameter is left free.
    While all pairs stay closed and slide the motion is linear, and the parameter that of the onset whatever a; it moves when
    pairs begin to open. Amplitude 1 is that at which normal forces of the pairs change by as much as they are at rest, in the root
    of the sum of their squares.
@@ -163,6 +166,43 @@ static void OnsetSizes(const ReducedModel *model, const OnsetLook *look, PetscRe
   for (int i = 0; i < 3; i++) size[i] = scale * PetscSqrtReal(0.5 * square[i]);
 }
 
+/* Cosine and sine of the phase at which the normal forces p of the mode are largest: the half of the argument of sum p^2 conjugate */
+static void OnsetPhase(const OnsetLook *look, PetscInt n_pairs, PetscReal turn[2])
+{
+  PetscReal square[2] = {0, 0}, largest = 0, phase, sign = 1;
+
+  for (PetscInt i = 0; i < n_pairs; i++) {
+    const PetscReal p[2] = {look->mode[0].p[3 * i], look->mode[1].p[3 * i]};
+
+    square[0] += p[0] * p[0] - p[1] * p[1];
+    square[1] += 2 * p[0] * p[1];
+  }
+  phase = -0.5 * atan2(square[1], square[0]);
+  for (PetscInt i = 0; i < n_pairs; i++) {
+    const PetscReal p     = look->mode[0].p[3 * i] * cos(phase) - look->mode[1].p[3 * i] * sin(phase);
+    const PetscReal weigh = PetscAbsReal(p) * (PetscReal)(n_pairs + i);
+
+    if (weigh <= largest) continue;
+    largest = weigh;
+    sign    = p < 0 ? -1 : 1;
+  }
+  turn[0] = sign * cos(phase);
+  turn[1] = sign * sin(phase);
+}
+
+/* x = Re(v exp(i phase)) as the shooting sees it; work [as long as x] */
+static PetscErrorCode OnsetPackMode(const CycleFlow *flow, const OnsetLook *look, PetscReal work[], PetscReal x[])
+{
+  PetscReal turn[2];
+
+  PetscFunctionBeginUser;
+  OnsetPhase(look, flow->model->n_pairs, turn);
+  PetscCall(CycleFlowPack(flow, &look->mode[0], x));
+  PetscCall(CycleFlowPack(flow, &look->mode[1], work));
+  for (PetscInt i = 0; i < flow->n; i++) x[i] = turn[0] * x[i] - turn[1] * work[i];
+  PetscFunctionReturn(0);
+}
+
 /* All pairs slide: the states whose modes are looked at are those of sliding */
 static PetscErrorCode OnsetCheckSliding(LimitCycle c)
 {
@@ -205,7 +245,7 @@ static PetscErrorCode OnsetAdvance(LimitCycle c, PetscReal length, const Shootin
 PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *growing)
 {
   const ReducedModel *model = c->flow.model;
-  PetscReal           scale, size[3], length = 0;
+  PetscReal           scale, size[3], length = 0, *work;
   OnsetLook           look;
 
   PetscFunctionBeginUser;
@@ -218,7 +258,9 @@ PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *grow
   at->value  = look.value;
   at->period = 2 * PETSC_PI / look.eigenvalue[1];
   PetscCall(CycleFlowPack(&c->flow, &look.rest, at->x));
-  PetscCall(CycleFlowPack(&c->flow, &look.mode[0], growing->x));
+  PetscCall(PetscMalloc1(c->flow.n, &work));
+  PetscCall(OnsetPackMode(&c->flow, &look, work, growing->x));
+  PetscCall(PetscFree(work));
   for (PetscInt i = 0; i < c->flow.n; i++) length += PetscSqr(c->shooting.weight[i] * growing->x[i]);
   length          = PetscSqrtReal(length);
   growing->period = growing->value = 0;
