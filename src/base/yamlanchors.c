@@ -4,7 +4,7 @@
 */
 #include "yamlanchors.h"
 
-#define MAX_VALUES 100000 /* of a file, what aliases repeat included */
+#define ANCHORS_MAX_VALUES 100000 /* of a file, what aliases repeat included */
 
 PetscErrorCode YamlAnchorsAdd(YamlAnchors *a, const yaml_char_t name[], PetscInt depth)
 {
@@ -33,8 +33,8 @@ PetscErrorCode YamlAnchorsCount(YamlAnchors *a, const char file[], size_t line, 
 {
   PetscFunctionBeginUser;
   a->n_values += more;
-  PetscCheck(a->n_values <= MAX_VALUES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s:%zu: more than %d values, with those that aliases (*) repeat", file, line, MAX_VALUES);
+  PetscCheck(a->n_values <= ANCHORS_MAX_VALUES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s:%zu: more than %d values, with those that aliases (*) repeat", file, line, ANCHORS_MAX_VALUES);
   PetscFunctionReturn(0);
 }
 
