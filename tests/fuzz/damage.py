@@ -110,7 +110,7 @@ def unicode_mark(random, data):
 
 
 def windows(random, data):
-    return data.replace(b"\n", b"\r\n"), True
+    return re.sub(rb"\r?\n", b"\r\n", data), True
 
 
 def blanks(random, data):

@@ -113,7 +113,7 @@ def term(work, said, name):
 def words(work, found, words):
     """Of the command line alone."""
     words = [word.decode() if isinstance(word, bytes) else word for word in words]
-    said = dict(zip(words[::2], words[1::2]))
+    said = dict(zip(map(str.lower, words[::2]), words[1::2]))  # as PETSc takes names
     K, M, H = (square(said[f"-operators_dense_{name}"]) for name in "kmh")
     count, target = int(number(said["-modes_count"])), number(said["-modes_target"])
     if str(count) != said["-modes_count"].strip().lstrip("+"):

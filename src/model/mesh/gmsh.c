@@ -84,15 +84,17 @@ static PetscErrorCode ReadFormat(MeshReader *r, GmshMesh *mesh)
 
   PetscFunctionBeginUser;
   (void)mesh;
-  if (!fgets(line, sizeof(line), r->file) || sscanf(line, "%lf %d %d", &version, &binary, &bytes) != 3) {
+  if (!fgets(line, sizeof(line), r->file) || sscanf(line, "%lf %d %d", &version, &binary, &bytes) != 3 ||
+      (binary != 0 && binary != 1)) {
     ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "the file has no valid $MeshFormat");
   }
   r->version = (PetscInt)(10 * version + 0.5);
   r->binary  = binary ? PETSC_TRUE : PETSC_FALSE;
   if ((r->version != 22 && r->version != 41) || bytes != SIZE_BYTES) {
-    ReaderErrorSet(r->error, PETSC_ERR_SUP,
-                   "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are (Mesh.MshFileVersion)",
-                   version, bytes);
+    ReaderErrorSet(
+      r->error, PETSC_ERR_SUP,
+      "format %.6g with numbers of %d bytes is unsupported; 2.2 and 4.1 with 8 bytes are (Mesh.MshFileVersion)",
+      version, bytes);
   }
   if (r->binary && ReadInteger(r, INT_BYTES) != 1) {
     ReaderErrorSet(r->error, PETSC_ERR_SUP, "the file was written with another byte order; write it here, or as text");
@@ -197,7 +199,8 @@ static void ReadElements41(MeshReader *r, GmshMesh *mesh, PetscInt n_blocks)
 
     if (entity < 0 && mesh->n_entities)
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ,
-                     "$Elements has entity %" PetscInt_FMT " of dimension %" PetscInt_FMT ", which $Entities does not hold",
+                     "$Elements has entity %" PetscInt_FMT " of dimension %" PetscInt_FMT
+                     ", which $Entities does not hold",
                      tag, dim);
     if (last > mesh->n_elements)
       ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$Elements holds more than it announces");
@@ -245,6 +248,8 @@ static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *me
   PetscFunctionBeginUser;
   sscanf(line, "$%31s", r->section);
   for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(sections); s++) {
+    if (!strncmp(r->section, "End", 3) && !strcmp(r->section + 3, sections[s].name))
+      ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "a line $%s ends no section", r->section);
     if (strcmp(r->section, sections[s].name)) continue;
     if (r->seen & 1U << s) ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "section $%s stands twice", r->section);
     known = PETSC_TRUE;
