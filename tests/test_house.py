@@ -200,7 +200,7 @@ def owner(source, f, at):
 def read_options(source):
     """Option, its owner, function and line for each literal name that is handed to a function that reads it."""
     first = r'(?:[\w>.-]+(?:\([^)]*\))?, (NULL, |"\w+", )?)?'
-    reader = re.compile(rf'\b(?!OptionsRefuse)(\w*Option\w*)\(\s*{first}"-(\w+)"')
+    reader = re.compile(rf'\b(?!OptionsRefuse|OptionsDrop)(\w*Option\w*)\(\s*{first}"-(\w+)"')
     for f in source.functions:
         for found in reader.finditer(source.text, f.begin, f.end):
             whose = found[2].strip('", ') if found[2] else owner(source, f, found.start() - f.begin)
