@@ -17,7 +17,7 @@
 #define FIRST_FACTOR  16.0
 #define LAST_FACTOR   1.03
 #define DESCENT       1e-4 /* of the residual along a step */
-#define SHORTEST_STEP (1.0 / 256)
+#define SHORTEST_STEP (1.0 / 65536)
 #define ENOUGH        1e-10 /* residual of the laws, relative to the scale */
 
 /* Where a softness begins from, and what is kept of it */
