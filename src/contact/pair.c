@@ -45,7 +45,8 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
    area over the master of faces without any pair (m^2, complete on every rank); slaves that are nodes of the master too, and whose
    surface looks towards the master's or with it */
 typedef struct {
-  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip, lost;
+  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip;
+  const char *metre; /* what the scene has for m */
   PetscInt  n_common, n_towards, n_with, n, n_off;
 } PairFailure;
 
@@ -102,39 +103,55 @@ static PetscBool PairMake(const ContactInterface *c, const ContactSurface *surfa
   return PETSC_TRUE;
 }
 
-/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure */
+/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure. vertices: of the new
+   pairs, which the caller frees */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
-                                PairFailure *failure)
+                                PairFailure *failure, PetscInt **vertices)
 {
   const ContactInterface *c     = &contact->interfaces[interface];
-  const PetscInt          first = contact->n_pairs;
   const Mesh             *mesh;
   PetscReal              *normals; /* [node][3], times area, m^2 */
-  PetscInt                n, n_new = 0, n_kept, *vertices;
+  PetscInt                n, n_new = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
-  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &n, &vertices));
+  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &n, vertices));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v    = vertices[i];
+    const PetscInt v    = (*vertices)[i];
     ContactPair   *pair = &contact->pairs[contact->n_pairs];
 
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
     PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
     if (!PairMake(c, surface, &normals[3 * v], pair, failure)) continue;
-    vertices[n_new++] = v;
+    (*vertices)[n_new++] = v;
     contact->n_pairs++;
   }
-  n_kept = n_new;
-  PetscCall(ContactCoverAreas(contact, interface, &n_kept, vertices, &contact->pairs[first], &failure->lost));
-  contact->n_pairs = first + n_kept;
-  failure->n -= n_new - n_kept;
-  failure->n_off += n_new - n_kept;
-  PetscCall(PetscFree(vertices));
   PetscCall(PetscFree(normals));
+  PetscFunctionReturn(0);
+}
+
+/* Areas of the pairs from the first on; those on the border of the master, none of whose faces lies over it, are taken out: an
+   error where they are all. lost: area over the master that no pair gets, m^2 */
+static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt first, const PetscInt vertices[],
+                                 PetscReal *lost)
+{
+  ContactInterface *c = &contact->interfaces[interface];
+  PetscInt          n = contact->n_pairs - first, kept = n, all[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactCoverAreas(contact, interface, &kept, vertices, &contact->pairs[first], lost));
+  contact->n_pairs = first + kept;
+  all[0]           = n - kept;
+  all[1]           = kept;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCheck(all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT,
+             "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "
+             "-%s_surfaces that lie over each other",
+             c->name, c->slave, c->master, c->name);
+  c->n_off += all[0];
   PetscFunctionReturn(0);
 }
 
@@ -184,26 +201,31 @@ static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *
   PetscCall(ContactShareWorst(comm, &(PetscReal){order}, x));
   PetscCall(ContactShareWorst(comm, &order, away));
   PetscCheck(failure->n, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g m, is %.6g m away, %.6g m of "
+             "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g %s, is %.6g %s away, %.6g %s of "
              "it beyond the border along the surface; give two of -%s_surfaces that touch",
-             c->name, c->slave, c->master, (double)x[0], (double)x[1], (double)x[2], (double)away[1], (double)away[0],
-             c->name);
+             c->name, c->slave, c->master, (double)x[0], (double)x[1], (double)x[2], failure->metre, (double)away[1],
+             failure->metre, (double)away[0], failure->metre, c->name);
   PetscFunctionReturn(0);
 }
 
 /* Says how many slaves carry nothing */
-static PetscErrorCode OffWarn(MPI_Comm comm, const ContactInterface *c, PetscReal lost)
+static PetscErrorCode OffWarn(Contact contact, const ContactInterface *c, PetscReal lost)
 {
+  const MPI_Comm comm = contact->comm;
+  const char    *metre, *area;
+
   PetscFunctionBeginUser;
   if (!c->n_off) PetscFunctionReturn(0);
+  PetscCall(ModelGetUnit(contact->model, "m", &metre));
+  PetscCall(ModelGetUnit(contact->model, "m^2", &area));
   PetscCall(PetscFPrintf(comm, stderr,
                          "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
-                         " nodes of %s have no master under them, and carry nothing; the farthest is %.3g m beyond the "
+                         " nodes of %s have no master under them, and carry nothing; the farthest is %.3g %s beyond the "
                          "border of %s",
-                         c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, c->master));
+                         c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, metre, c->master));
   if (lost > 0)
-    PetscCall(PetscFPrintf(comm, stderr, "; %.3g m^2 over it carry nothing either, on faces none of whose nodes has a pair",
-                           (double)lost));
+    PetscCall(PetscFPrintf(comm, stderr, "; %.3g %s over it carry nothing either, on faces none of whose nodes has a pair",
+                           (double)lost, area));
   PetscCall(PetscFPrintf(comm, stderr, "\n"));
   PetscFunctionReturn(0);
 }
@@ -219,10 +241,10 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCheck(failure->distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the node of %s at %.6g, %.6g, %.6g m finds no partner on %s: it is %.6g m above or below it, "
-             "-%s_tolerance is %.6g m; give a larger one for a gap that may close, or a set of the nodes that touch",
-             c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], c->master,
-             (double)failure->distance, c->name, (double)c->tolerance);
+             "contact %s: the node of %s at %.6g, %.6g, %.6g %s finds no partner on %s: it is %.6g %s above or below it, "
+             "-%s_tolerance is %.6g %s; give a larger one for a gap that may close, or a set of the nodes that touch",
+             c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2],
+             failure->metre, c->master, (double)failure->distance, failure->metre, c->name, (double)c->tolerance, failure->metre);
   PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
@@ -232,7 +254,6 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCheck(!c->slides || c->kt == 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt%s %.6g is of pairs that stick, and contact %s slides; leave it out, or -%s_slip and -%s_rotation",
              c->name, c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name, c->name, c->name);
-  PetscCall(OffWarn(comm, c, failure->lost));
   PetscFunctionReturn(0);
 }
 
@@ -242,12 +263,17 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   const PetscInt        first   = contact->n_pairs;
   PairFailure           failure = {.distance = 0};
   const ContactSurface *surface;
-  PetscReal             area = 0;
+  PetscReal             area = 0, lost;
+  PetscInt             *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &surface));
-  PetscCall(PairNodes(contact, interface, surface, &failure));
+  PetscCall(ModelGetUnit(contact->model, "m", &failure.metre));
+  PetscCall(PairNodes(contact, interface, surface, &failure, &vertices));
   PetscCall(PartnerCheck(contact->comm, c, &failure));
+  PetscCall(PairsCover(contact, interface, first, vertices, &lost));
+  PetscCall(OffWarn(contact, c, lost));
+  PetscCall(PetscFree(vertices));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));
   for (PetscInt p = first; p < contact->n_pairs; p++)

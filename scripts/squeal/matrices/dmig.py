@@ -29,7 +29,7 @@ LONGEST = 80  # columns of a line in fixed fields
 def names_of(table):
     """Name of the matrix of each card."""
     letters = numpy.ascontiguousarray(table.part(0, 1)).view(f"S{table.each}")[:, 0]
-    return numpy.char.upper(numpy.char.strip(letters)).astype(str)
+    return numpy.char.decode(numpy.char.upper(numpy.char.strip(letters)), "latin-1")
 
 
 class Head:

@@ -116,6 +116,7 @@ PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit)
 {
   static const char *const names[][2] = {
     {"m",         "mm"        },
+    {"m^2",       "mm^2"      },
     {"m^3",       "mm^3"      },
     {"m/s",       "mm/s"      },
     {"s/m",       "s/mm"      },
