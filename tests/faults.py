@@ -58,6 +58,8 @@ FAULTS = (
      "return square <= radius * radius ? 1 : -radius / sqrt(square)", "slipwork-1 transient_laws"),
     ("heat of friction that the ledger does not need, 1e-6 more", "src/contact/projector/record.c", "sums->heat += dt *",
      "sums->heat += (1 + 1e-6) * dt *", "transient_laws"),
+    ("heat of friction in a reduced model, 2e-4 more", "src/reduced/step.c", "? -0.5 * (1 +", "? -(0.5 + 1e-4) * (1 +",
+     "transient_laws"),
     ("kernels are 1e-6 too stiff, elements not", "src/dynamics/bodies/bodies.c", ".dt = step->dt,", ".dt = (1 + 1e-6) * step->dt,",
      "transient_laws"),
     ("weights on the master sum to 1 - 1e-6", "src/contact/projector/record.c", "-= pair->weight[j] * lambda[d];",

@@ -218,12 +218,21 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   PetscFunctionReturn(0);
 }
 
-/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1}. Heat is of pairs that are closed there: half of
-   what held a pair before it opened, or turned, still acts on a motion that it is no friction of */
-static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
+/* Heat of a pair's friction in a step, J: its slip s (m) along -p, p the friction at t_{n+1}, for which Coulomb's law holds
+   together with s, so that p . s <= 0; times the mean of |p| and of |last| at t_n (N), second order in the step. None of a
+   pair that is open at t_{n+1}, nor of one that sticks beyond the rounding of s */
+static PetscReal FrictionHeat(const PetscReal p[2], const PetscReal last[2], const PetscReal s[2])
+{
+  const PetscReal size = hypot(p[0], p[1]);
+
+  return size > 0 ? -0.5 * (1 + hypot(last[0], last[1]) / size) * (p[0] * s[0] + p[1] * s[1]) : 0;
+}
+
+/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
+static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport *report)
 {
   for (PetscInt i = 0; i < s->model->n_pairs; i++) {
-    const PetscReal *mean = &s->mean[3 * i];
+    const PetscReal *mean = &s->mean[3 * i], *slip = &s->slip[3 * i + 1];
     PetscReal        dy[3];
 
     for (int d = 0; d < 3; d++) {
@@ -232,13 +241,11 @@ static void StepperAccount(ReducedStepper s, const ReducedDrive *drive, ReducedS
       dy[d]               = y - state->y[3 * i + d];
       state->y[3 * i + d] = y;
     }
-    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = s->slip[3 * i + 1 + d];
+    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = slip[d];
     if (!report->works) continue;
     report->contact[i]  = mean[0] * dy[0];
     report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
-    report->heat[i]     = 0;
-    if (state->status[i] != CONTACT_OPEN)
-      report->heat[i] = PetscMax(0, -report->friction[i] - mean[1] * drive->sliding[i]);
+    report->heat[i]     = FrictionHeat(&state->p[3 * i + 1], &state->last[3 * i + 1], slip);
   }
 }
 
@@ -307,7 +314,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   StepperSetMean(s, state, PETSC_FALSE);
   StepperAddForces(s, state, report->works);
   if (s->HW) ReducedStepperSettle(s, state->p);
-  StepperAccount(s, drive, state, report);
+  StepperAccount(s, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);
   if (report->works) PetscCall(ReducedStepperSetDamping(s));
   if (report->works) report->damping = -StepperDamping(s);
