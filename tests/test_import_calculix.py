@@ -131,14 +131,14 @@ def included(folder):
 
 def overlapping(folder):
     """A later section counts for the elements that it names; squeal's frequency is that of the plain deck."""
-    text = PLAIN.replace(SECTION, SECTION + "*MATERIAL, NAME=N\n*ELASTIC\n70000., .3\n*DENSITY\n2.7E-9\n*ELSET, ELSET=SUB\n2\n"
-                                            "*SOLID SECTION, ELSET=SUB, MATERIAL=N\n")
+    text = PLAIN.replace(SECTION, SECTION + "*MATERIAL, NAME=N\n*ELASTIC\n70000., .3\n*DENSITY\n2.7E-9\n*ELSET, ELSET=TOP\n2\n"
+                                            "*SOLID SECTION, ELSET=TOP, MATERIAL=N\n")
     options, lines, model = brought(folder, text)
     rows, total, _ = sums(model)
-    check("a later section: its part", (options["parts"], options["sub_density"], [row.cells for row in rows]) == ("e,sub", "2700", [1, 1]),
+    check("a later section: its part", (options["parts"], options["top_density"], [row.cells for row in rows]) == ("e,top", "2700", [1, 1]),
           options)
     check("a later section: mass of 1000 mm^3 of each", abs(total.mass - (7.8e-3 + 2.7e-3)) < 1e-15, total.mass)
-    check("a later section: listed", sum("1 elements of E have the later section of SUB" in line for line in lines) == 1, lines)
+    check("a later section: listed", sum("1 elements of E have the later section of TOP" in line for line in lines) == 1, lines)
     wedges = PLAIN.replace("C3D8I", "C3D6").replace("1, 1,2,3,4, 5,6,7,8\n2, 5,6,7,8, 9,10,11,12", "1, 1,2,3, 5,6,7\n2, 1,3,4, 5,7,8")
     _, lines, _ = brought(folder, wedges)
     check("C3D6: differs", sum("differs: C3D6: squeal has 6 points, CalculiX 2" in line for line in lines) == 1, lines)
