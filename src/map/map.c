@@ -247,19 +247,22 @@ PetscErrorCode MapSolve(Map map, Results results)
 PetscErrorCode MapJudge(Map map)
 {
   static const char *const why[MAP_N_FAULTS] = {[MAP_NO_STATE]  = "no sliding state balances the loads",
-                                                [MAP_NO_FORCES] = "the contact laws have no solution",
+                                                [MAP_NO_FORCES] = "the contact forces do not converge",
                                                 [MAP_NO_NUMBER] = "the motion grows beyond all numbers"};
   const MapPoint *first = NULL;
   PetscInt        n     = 0;
-  char            text[512];
+  char            text[512], other[320] = "";
 
   PetscFunctionBeginUser;
   for (PetscInt i = map->n_rows - 1; i >= 0; i--)
     if (map->row[i].end == MAP_FAILED) first = &map->row[i], n++;
   if (!n) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(text, sizeof(text), "point %" PetscInt_FMT ", %s %.6g: %s",
+  if (map->n_axes > 1)
+    PetscCall(PetscSNPrintf(other, sizeof(other), ", %s %.6g", map->axis[1].moved[0].name,
+                            (double)map->axis[1].value[first->line]));
+  PetscCall(PetscSNPrintf(text, sizeof(text), "point %" PetscInt_FMT ", %s %.6g%s: %s",
                           first->line * map->axis[0].n + first->place + 1, map->axis[0].moved[0].name,
-                          (double)map->axis[0].value[first->place], why[first->fault]));
+                          (double)map->axis[0].value[first->place], other, why[first->fault]));
   PetscCheck(n < map->n_rows, map->comm, PETSC_ERR_NOT_CONVERGED,
              "-analysis map: none of %" PetscInt_FMT " transients succeeded; the first is %s", n, text);
   PetscCall(PetscFPrintf(map->comm, stderr,
