@@ -5,6 +5,7 @@ import math
 
 SAME = 1e-9  # of the largest number of a column
 GROWN = 1e3  # times what the last digit of a density has changed on one rank up to a row
+ROWS = 3  # times as many as that has added or taken
 # Columns that share a unit, and so a scale, as parts of multipliers do; longer ones before their ends
 UNITS = "_percent", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s", "_m"
 # In names of columns that tell what rounding leaves
@@ -53,13 +54,14 @@ class Comparison:
         self.found, self.worst, self.first = [], 0.0, len(one)
         self.columns = [column for column in (one[0] if one else ()) if not any(word in column for word in ESTIMATES)]
         self.grown = self.growth(digit) if digit is not None else [0] * len(one)
+        self.rows = ROWS * abs(len(digit) - len(one)) if digit else 0
 
     def growth(self, digit):
-        """How far the run with another digit has come from the first one up to each row, of the largest numbers."""
+        """How far the run with another digit has come from the first one up to each row, of the largest numbers; a row that it lacks
+        says nothing."""
         largest, grown = 0, []
         for i, row in enumerate(self.one):
-            changes = [math.inf] if i >= len(digit) else [
-                apart(row[column], digit[i][column]) / self.scale(column) for column in self.columns]
+            changes = [apart(row[column], digit[i].get(column)) / self.scale(column) for column in self.columns] if i < len(digit) else []
             largest = max([largest, *changes])
             grown.append(largest)
         return grown if self.columns and "time_s" in self.columns else [largest] * len(grown)
@@ -100,9 +102,11 @@ class Comparison:
             self.say(i, f"{column} {x:.15g} and {y:.15g}, which state {allowed:.2g}", size)
 
     def compare(self):
-        if len(self.one) != len(self.other) or self.one and list(self.one[0]) != list(self.other[0]):
-            if not self.grown or GROWN * self.grown[-1] < 1:
-                self.found.append(f"{self.name}: {len(self.one)} and {len(self.other)} rows")
+        if self.one and self.other and list(self.one[0]) != list(self.other[0]):
+            self.found.append(f"{self.name}: other columns")
+            return self
+        if abs(len(self.one) - len(self.other)) > self.rows:
+            self.found.append(f"{self.name}: {len(self.one)} and {len(self.other)} rows")
             return self
         columns = set(self.columns)
         if self.name in ("modes.csv", "sweep.csv"):
@@ -122,5 +126,5 @@ def compared(one, other, digit=None):
     names = sorted({path.name for folder in (one, other) for path in folder.glob("*.csv")})
     missing = [f"no {name} in one" for name in names if not ((one / name).exists() and (other / name).exists())]
     both = [name for name in names if (one / name).exists() and (other / name).exists()]
-    third = {name: read(digit / name) if (digit / name).exists() else [] for name in both} if digit else {}
+    third = {name: read(digit / name) for name in both if (digit / name).exists()} if digit else {}
     return [Comparison(name, read(one / name), read(other / name), third.get(name)).compare() for name in both], missing

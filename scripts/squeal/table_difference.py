@@ -81,22 +81,48 @@ def apart(name, one, other, scale):
     return abs(a - b) / scale
 
 
-def of_table(name, one, other, limit):
-    """Of two tables."""
-    if len(one) != len(other):
-        return Difference(math.inf, f"{name}: {len(one)} and {len(other)} rows")
-    worst, since, scale = Difference(), math.nan, scales(name, one + other)
-    twins = paired(one)
+def of_rows(name, one, other):
+    """For each row of two tables the worst entry."""
+    scale, twins = scales(name, one + other), paired(one)
     for i, (a, b) in enumerate(zip(one, other)):
+        worst = Difference()
         for column in a:
             if IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
                 continue
             value = apart(column, a[column], b[column], scale.get(family(name, column), 1.0))
-            if value > limit and math.isnan(since) and "time_s" in a:
-                since = float(a["time_s"])
             if value > worst.value:
                 worst = Difference(value, f"{name} {column} row {i + 1}: {a[column]}, {b[column]}")
-    return worst._replace(since=since)
+        yield worst._replace(since=float(a["time_s"]) if "time_s" in a else math.nan)
+
+
+def of_table(name, one, other, limit):
+    """Of two tables."""
+    if len(one) != len(other):
+        return Difference(math.inf, f"{name}: {len(one)} and {len(other)} rows")
+    found = list(of_rows(name, one, other))
+    since = next((row.since for row in found if row.value > limit and not math.isnan(row.since)), math.nan)
+    return max(found, key=lambda row: row.value, default=Difference())._replace(since=since)
+
+
+def calm(rows):
+    """Which rows of map.csv come before the first loss of contact of their chain upwards; transients after it are chaotic."""
+    lost, found = set(), []
+    for row in rows:
+        chain = row.get("value_2")
+        if row["direction"] != "up" or float(row["open_share"]) > 0:
+            lost.add(chain)
+        found.append(chain not in lost)
+    return found
+
+
+def of_map(one, other, limit):
+    """Of the rows of two maps of as many: the worst of those that are calm; how many others are beyond the limit, and in how many of
+    these words differ, as the regime."""
+    quiet = calm(one)
+    first, second = ([row for row, still in zip(rows, quiet) if still] for rows in (one, other))
+    rest = [row.value for row, still in zip(of_rows("map.csv", one, other), quiet) if not still]
+    found = of_table("map.csv", first, second, limit) if first else Difference(math.inf, "map.csv: no row before a loss of contact")
+    return found, (sum(value > limit for value in rest), sum(map(math.isinf, rest)))
 
 
 def difference(one, other, limit):
