@@ -122,9 +122,8 @@ static PetscErrorCode DampedRunSolver(Modes modes, PEP pep, PetscBool *failed)
   PetscFunctionReturn(0);
 }
 
-/* By SLEPc's PEP */
-static PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
-                                     PetscBool transposed, Spectrum *spectrum)
+PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
+                              PetscBool transposed, Spectrum *spectrum)
 {
   Mat       problem[3] = {pencil->K, pencil->C, pencil->M};
   PetscInt  n, nev;
@@ -168,12 +167,15 @@ static PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, 
 PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                            PetscBool transposed, Spectrum *spectrum)
 {
-  PetscBool dense;
+  PetscBool dense, empty;
 
   PetscFunctionBeginUser;
+  PetscCall(DampedHasEmpty(pencil->K, &empty));
   PetscCall(DampedIsDense(modes, pencil->K, DampedFirst(window), 0, &dense));
   if (dense)
     PetscCall(DampedSolveDense(modes, pencil, window, si->shift, transposed, spectrum));
+  else if (empty)
+    PetscCall(DampedSolveSpread(modes, pencil, window, si->shift, transposed, spectrum));
   else
     PetscCall(DampedSolvePep(modes, pencil, window, si, transposed, spectrum));
   PetscFunctionReturn(0);

@@ -1,7 +1,7 @@
 /*
    Damped problem of few unknowns: all 2 n eigenvalues by LAPACK, on rank 0, whose answer all ranks take. TOAR would converge
-   most of them for those of a window amid overdamped ones, and breaks down in the whole space: where it does so hangs on
-   rounding, which ranks without unknowns do not share.
+   most of them for those of a window amid overdamped ones, and breaks down in the whole space, where rounding decides.
+   Ranks without unknowns: dampedlayout.c.
 */
 #include "modesimpl.h"
 #include "solver/densepencil.h"
@@ -10,20 +10,20 @@
 #define DENSE_MOST   400 /* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */
 #define DENSE_SHARE  4    /* many: one of so many */
 
-/* Where a rank has no unknowns only LAPACK answers; else PEP does where it is asked for */
+/* PEP does where it is asked for, but for few unknowns of which a rank has none */
 PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense)
 {
-  PetscInt  n, least;
-  PetscBool given;
+  PetscInt  n;
+  PetscBool given, empty;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(K, &n, NULL));
-  PetscCall(MatGetLocalSize(K, &least, NULL));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)K)));
+  PetscCall(DampedHasEmpty(K, &empty));
   PetscCall(SolverOptionsGiven("pep_", &given));
   given  = given || modes->damping == DAMPING_PEP ? PETSC_TRUE : PETSC_FALSE;
   *dense = n <= DENSE_ALWAYS || (n <= DENSE_MOST && (attempt || DENSE_SHARE * nev > 2 * n)) ? PETSC_TRUE : PETSC_FALSE;
-  if (given || !least) *dense = least ? PETSC_FALSE : PETSC_TRUE;
+  if (given) *dense = PETSC_FALSE;
+  if (empty && n <= DENSE_MOST) *dense = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

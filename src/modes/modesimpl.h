@@ -148,6 +148,13 @@ PETSC_INTERN PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pen
                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window,
                                         ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+/* The same by SLEPc's PEP; all ranks have unknowns */
+PETSC_INTERN PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                           ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
+/* dampedlayout.c - whether a rank has no unknowns; and by PEP where one has none, with factors of its own about the shift */
+PETSC_INTERN PetscErrorCode DampedHasEmpty(Mat K, PetscBool *empty);
+PETSC_INTERN PetscErrorCode DampedSolveSpread(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                              PetscReal shift, PetscBool transposed, Spectrum *spectrum);
 /* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the window; for
    modes near a target those at most as far from it as the count-th nearest that was found */
 PETSC_INTERN PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
