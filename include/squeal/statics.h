@@ -18,8 +18,8 @@
    from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
    forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,
    K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
-   kappa is only a device: it drops out of the solution. Where the iteration does not settle, pairs with Coulomb's law
-   yield and pull at first, ever less (soften.c); where that does not either, friction is raised in steps. Rigid motions
+   kappa is only a device: it drops out of the solution. Where the iteration does not settle with Coulomb's law,
+   continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid motions
    that neither supports nor springs nor any pair resists are held at single unknowns,
    whose reactions vanish in equilibrium; u has no part of them. With planes of symmetry (-symmetry) loads and pairs must be
    their own mirror images, and the even half of K_a is factored alone (mirror.c).

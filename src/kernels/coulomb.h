@@ -17,7 +17,7 @@
 
    for any z in the plane, from slip without a direction of its own (alpha = 0) to the border of stick (alpha = 1).
 
-   A yielding pair (soft > 0) slips by soft p before it gives way, s - soft p in the normal cone of C at p; p does not
+   With regularised friction (soft > 0) a pair slips by soft p before it gives way, s - soft p in the normal cone of C at p; p does not
    change when it is written p = Proj_C(q), q = (1 - rho soft) p + rho s, rho = min(1, 1 / soft), which is Coulomb's law
    for soft = 0, a function of s alone for soft >= 1. Stick is s = soft p, and slip has rho E and E - alpha (1 - rho
    soft) E in the place of E and (1 - alpha) E. An open pair may pull: l_n = pull (w_n - g0) < 0.

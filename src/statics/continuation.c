@@ -1,11 +1,11 @@
 /*
    What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: with
-   Coulomb's law by way of pairs that yield (soften.c); statuses
-   of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per iteration; then
-   all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with half the step
-   after a failure. Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the
-   wrong sign (small.c, determinant.c) is none that can be reached from there, hence a failure too: on the way forces grow
-   beyond any bound, the bodies jam. So they do where the last equilibrium's pairs would have such a system with the whole
+   Coulomb's law by continuation in a regularisation of friction (soften.c); statuses of sliding pairs, and of all
+   without friction, are found by pivoting (pivot.c); then fewer change per iteration; then all friction coefficients
+   are raised from 0 in steps, each begun from the equilibrium before it, with half the step after a failure.
+   Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the wrong sign
+   (small.c, determinant.c) is none that can be reached from there, hence a failure too: on the way forces grow beyond
+   any bound, the bodies jam. So they do where the last equilibrium's pairs would have such a system with the whole
    friction.
 */
 #include "staticsimpl.h"
@@ -24,8 +24,7 @@ static PetscErrorCode Restart(Active *a)
   PetscFunctionReturn(0);
 }
 
-/* Whether many iterations are worth their time */
-static PetscBool IsFew(const Active *a)
+PetscBool ActiveIsFew(const Active *a)
 {
   return a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -36,7 +35,7 @@ static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (!ActiveIsLinear(a) && !IsFew(a)) PetscFunctionReturn(0);
+  if (!ActiveIsLinear(a) && !ActiveIsFew(a)) PetscFunctionReturn(0);
   PetscCall(Restart(a));
   if (ActiveIsLinear(a) && a->compliance->W) {
     PetscCall(PivotSolve(a->compliance, a->friction, a->free, a->status, &found));
@@ -66,7 +65,7 @@ static PetscErrorCode RaiseOutcome(Active *a, ActiveOutcome *outcome)
 /* Raises friction in steps from the equilibrium without it */
 static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 {
-  const PetscBool few      = IsFew(a);
+  const PetscBool few      = ActiveIsFew(a);
   const PetscReal min_step = few ? MIN_STEP : LARGE_STEP;
   PetscReal       reached = 0, step = 0.25, *l, *w;
   ContactStatus  *status;

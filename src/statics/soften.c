@@ -1,21 +1,27 @@
 /*
-   Equilibrium with Coulomb's law by way of pairs that yield: one slips by soft p under friction p before it gives way,
-   and pulls with a force in proportion to its gap when it is open (kernels/coulomb.h), so that no body ever floats. While
-   they yield much, friction is small wherever slip is. Softness and pull are lowered in steps, each begun from the
-   equilibrium before it, until the laws themselves settle.
+   Equilibrium with Coulomb's law by continuation in a regularisation of friction and contact: a pair slips by soft p under
+   friction p before it gives way, and an open one pulls with a force in proportion to its gap (kernels/coulomb.h), so that
+   no body ever floats. While the regularisation is strong, friction is small wherever slip is. It is lowered in steps, each
+   begun from the equilibrium before it, until the laws themselves settle.
 
    At each softness Newton's method is made global by a line search: equilibrium is linear and holds all the way once a
    whole step was made, so that the residual of the laws alone decides how far to go (M. Hintermueller, K. Ito, K.
    Kunisch, SIAM J. Optim. 13, 2002, 865, for the active set as Newton's method).
+
+   Cost: at most log(SOFTEST / HARDEST) / log(LAST_FACTOR) = 1246 softnesses are reached, 387 with LARGE_FACTOR in large
+   problems; each with a step that failed before it and a try of the laws themselves, and each of these tries solves at most
+   max_it small systems.
 */
 #include "staticsimpl.h"
 
 #define SOFTEST       1e4  /* softness that begins, over 1 / kappa */
 #define PULL          1e-5 /* of an open pair over the softness */
 #define HARD          4.0  /* softness from which on Coulomb's law itself is tried */
+#define HARDEST       1e-12 /* softness that is rounding */
 #define MOST_FACTOR   1e4  /* of the softness from step to step: at most, at first, and at last */
 #define FIRST_FACTOR  16.0
 #define LAST_FACTOR   1.03
+#define LARGE_FACTOR  1.1 /* at last in large problems */
 #define DESCENT       1e-4 /* of the residual along a step */
 #define SHORTEST_STEP (1.0 / 65536)
 #define ENOUGH        1e-10 /* residual of the laws, relative to the scale */
@@ -41,8 +47,8 @@ static PetscErrorCode SoftenMeasure(Active *a, PetscReal *residual)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
     const PetscReal *l = &a->l[a->rows->first[p]], *w = &a->w[a->rows->first[p]];
-    CoulombPair      pair   = a->rows->law[p];
-    PetscReal        normal = l[0];
+    CoulombPair      pair = a->rows->law[p];
+    PetscReal        normal;
 
     pair.mu *= a->friction;
     a->status[p] = CoulombDecide(&pair, a->status[p], l, w, 0);
@@ -104,13 +110,14 @@ static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *co
   PetscFunctionReturn(0);
 }
 
-/* Lowers the softness, with a smaller step after a failure; converged at softness 0 */
+/* Lowers the softness down to HARDEST, with a smaller step after a failure; converged at softness 0 */
 static PetscErrorCode SoftenLower(Active *a, const Kept *kept, PetscBool *converged)
 {
-  PetscReal soft = SOFTEST, factor = FIRST_FACTOR;
+  const PetscReal last = ActiveIsFew(a) ? LAST_FACTOR : LARGE_FACTOR;
+  PetscReal       soft = SOFTEST, factor = FIRST_FACTOR;
 
   PetscFunctionBeginUser;
-  while (*converged && factor > LAST_FACTOR) {
+  while (*converged && factor > last) {
     PetscReal next = soft <= HARD ? 0 : soft / factor;
 
     PetscCall(PetscArraycpy(kept->l, a->l, a->rows->n));
@@ -123,8 +130,9 @@ static PetscErrorCode SoftenLower(Active *a, const Kept *kept, PetscBool *conver
       next = soft / factor;
       PetscCall(PetscArraycpy(a->l, kept->l, a->rows->n));
       PetscCall(PetscArraycpy(a->w, kept->w, a->rows->n));
-    } while (factor > LAST_FACTOR);
+    } while (factor > last);
     if (next == 0) break;
+    if (next < HARDEST) *converged = PETSC_FALSE;
     soft   = next;
     factor = PetscMin(PetscSqr(factor), MOST_FACTOR);
   }

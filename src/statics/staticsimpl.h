@@ -234,7 +234,10 @@ PETSC_INTERN PetscErrorCode ActiveIsReversed(const Active *active, PetscReal fri
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
-/* soften.c - the same by way of pairs that yield before they slip, ever less, from the present l and w */
+/* continuation.c - whether many iterations are worth their time */
+PETSC_INTERN PetscBool ActiveIsFew(const Active *active);
+
+/* soften.c - the same by continuation in a regularisation of friction, from the present l and w */
 PETSC_INTERN PetscErrorCode ActiveSoften(Active *active, ActiveOutcome *outcome);
 
 /* continuation.c - status, l and w that obey all laws, from the status given; friction is raised in steps if need be.
