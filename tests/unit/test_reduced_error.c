@@ -12,14 +12,16 @@
 
 #define N_ALL  50
 #define N_USED 30
+#define DIVERGES 2500 /* of which the real eigenvalue, 50, is the largest of the window */
 #define BESIDE 1e-4 /* motion of other vectors in the stiff spring, beside that of those it joins */
 
 static const ReducedWindow wide = {0, 1e3, 1e3, 0};
 
 /* K of kappa = 1, 4, 9, ... with random couplings: strong (1) inside the model, and inside the rest, weak between them,
    symmetric or not; M near the identity; p0 times the unsymmetric part, C = p1 times random. A stiff spring, if any, joins
-   the last vector of the model and the last one of the rest, and holds the others a little */
-static PetscErrorCode SystemRandom(PetscReal weak, PetscReal spring, unsigned long long seed, System *s)
+   the last vector of the model and the last one of the rest, and holds the others a little. Negative stiffness, if any, makes the
+first vector of the model diverge */
+static PetscErrorCode SystemRandom(PetscReal weak, PetscReal spring, PetscReal negative, unsigned long long seed, System *s)
 {
   const PetscInt n = N_ALL;
   PetscReal     *K, *M, *H, *C, b[N_ALL];
@@ -37,6 +39,7 @@ static PetscErrorCode SystemRandom(PetscReal weak, PetscReal spring, unsigned lo
       H[i * n + j]                = size * NextNumber(&seed);
       H[j * n + i]                = size * NextNumber(&seed);
     }
+  K[0] -= negative;
   for (PetscInt i = 0; i < n; i++) b[i] = i == N_USED - 1 || i == n - 1 ? 1 : BESIDE * NextNumber(&seed);
   for (PetscInt i = 0; i < n && spring > 0; i++)
     for (PetscInt j = 0; j < n; j++) K[i * n + j] += spring * b[i] * b[j];
@@ -52,7 +55,7 @@ static PetscErrorCode SystemRandom(PetscReal weak, PetscReal spring, unsigned lo
    unknowns; the estimate is of leading order, so the quotient is one up to terms of the size of the coupling. With a
    stiff spring it breaks when what a stiff vector of the model and the rest do to each other is left out: the first order of
    the rest alone is then up to hundreds of times too small */
-static PetscErrorCode TestRandom(PetscReal weak, PetscReal spring, PetscReal tolerance, int *failed)
+static PetscErrorCode TestRandom(PetscReal weak, PetscReal spring, PetscReal negative, PetscReal tolerance, int *failed)
 {
   const PetscReal points[][2] = {
     {0,   0   },
@@ -67,7 +70,7 @@ static PetscErrorCode TestRandom(PetscReal weak, PetscReal spring, PetscReal tol
     System       s;
     ReducedModes m, truth;
 
-    PetscCall(SystemRandom(weak, spring, 20u + (unsigned)k, &s));
+    PetscCall(SystemRandom(weak, spring, negative, 20u + (unsigned)k, &s));
     PetscCall(SolveBoth(&s, points[k], &wide, &m, &truth));
     for (PetscInt i = 0; i < m.n; i++) {
       const PetscReal error = Nearest(&truth, m.lambda[i]), ratio = m.sharp[i] / error;
@@ -166,7 +169,7 @@ static PetscErrorCode TestSensitivity(PetscReal damping, int *failed)
   ReducedModes    m, below, above;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemRandom(1, 0, 31, &s));
+  PetscCall(SystemRandom(1, 0, 0, 31, &s));
   s.term[1].n               = 1; /* M / p0: a reciprocal */
   s.term[1].factor[0].power = -1;
   PetscCall(ReducedSolve(&s.reduced, p, &wide, &m));
@@ -198,8 +201,9 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscFunctionBeginUser;
   (void)size;
-  PetscCall(TestRandom(1e-2, 0, 0.001, failed));
-  PetscCall(TestRandom(0, 1e7, 0.01, failed));
+  PetscCall(TestRandom(1e-2, 0, 0, 0.001, failed));
+  PetscCall(TestRandom(0, 1e7, 0, 0.01, failed));
+  PetscCall(TestRandom(0, 1e7, DIVERGES, 0.01, failed));
   PetscCall(TestFloor(failed));
   PetscCall(TestNothingLeftOut(failed));
   PetscCall(TestSensitivity(0, failed));

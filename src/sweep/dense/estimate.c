@@ -36,6 +36,7 @@
 #define MESH_ROUNDING   3    /* roundings of K on the mesh: its terms in a sum, products with it, their sums */
 #define SOLVER_ROUNDING 16   /* errors of LU and QR of a dense problem beside rounding in its matrix: 8 were measured */
 #define MEETING         1e-4 /* modes closer than this, relative, may meet */
+#define ESTIMATE_ABOVE  1.7  /* shift of the complement, times the largest |lambda| */
 #define EQUAL           1e-9 /* closer than this, relative, they always do */
 
 /* Qx [m][n] = Q(lambda) V x, or Q(lambda)^T V x, in coordinates of the whole basis */
@@ -116,7 +117,8 @@ PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m,
   PetscFunctionReturn(0);
 }
 
-/* Where Z is made free of V: above all modes, where no eigenvalue is but one that grows without oscillation */
+/* Where Z is made free of V: far enough above all modes for Q_vv to be regular, the largest of which may grow without
+   oscillation, a real eigenvalue */
 static PetscReal EstimateShift(const Estimate *e)
 {
   PetscReal shift = 0;
@@ -124,7 +126,7 @@ static PetscReal EstimateShift(const Estimate *e)
   for (PetscInt i = 0; i < e->modes->n; i++) shift = PetscMax(shift, cabs(e->modes->lambda[i]));
   for (PetscInt i = 0; i < e->n_v && shift == 0; i++)
     shift = PetscSqrtReal(PetscAbsReal(e->pencil.K[i * (e->pencil.n + 1)] / e->pencil.M[i * (e->pencil.n + 1)]));
-  return shift > 0 ? shift : 1;
+  return shift > 0 ? ESTIMATE_ABOVE * shift : 1;
 }
 
 static PetscErrorCode EstimateCreate(const Reduced *reduced, const PetscReal p[], const ReducedModes *modes,
