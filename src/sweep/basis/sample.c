@@ -3,7 +3,8 @@
 */
 #include "greedywork.h"
 
-#define SAFE         (1. / 30)    /* what is asked at a point that corrections come from, beside rtol */
+/* Asked where corrections are made, beside rtol: a tenth of what POINTS_MARGIN leaves of it at other points */
+#define SAFE         (1. / 30)
 #define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
