@@ -14,6 +14,7 @@
    of the single elements.
 */
 #include "dynamicsimpl.h"
+#include "solver/shiftinvert.h"
 #include <slepceps.h>
 
 #define CRITICAL_MAX_IT 50
@@ -93,6 +94,7 @@ static PetscErrorCode StepPencilCreateSolver(StepPencil *p, Mat *A, EPS *eps)
 {
   const Dynamics d = p->dynamics;
   PetscInt       n;
+  DS             ds;
   Vec            x;
 
   PetscFunctionBeginUser;
@@ -107,6 +109,8 @@ static PetscErrorCode StepPencilCreateSolver(StepPencil *p, Mat *A, EPS *eps)
   PetscCall(EPSSetProblemType(*eps, EPS_HEP));
   PetscCall(EPSSetWhichEigenpairs(*eps, EPS_LARGEST_REAL));
   PetscCall(EPSSetTolerances(*eps, 1e-7, 1000));
+  PetscCall(EPSGetDS(*eps, &ds));
+  PetscCall(SolverSynchronize(ds));
   PetscFunctionReturn(0);
 }
 

@@ -81,7 +81,7 @@ static PetscErrorCode DampedCreateSolver(Mat problem[3], ShiftInvert *si, PetscB
      hand */
   PetscCall(PEPSetScale(*pep, PEP_SCALE_SCALAR, 3 * si->shift, NULL, NULL, PETSC_DECIDE, PETSC_DECIDE));
   PetscCall(PEPGetDS(*pep, &ds));
-  PetscCall(DSSetParallel(ds, DS_PARALLEL_SYNCHRONIZED)); /* as in blockkrylov.c */
+  PetscCall(SolverSynchronize(ds));
   PetscCall(PEPGetST(*pep, &st));
   PetscCall(ShiftInvertAttach(si, transposed, st));
   PetscCall(PEPSetFromOptions(*pep));

@@ -166,6 +166,7 @@ static PetscErrorCode UndampedCreateSolver(const Undamped *u, PetscBool transpos
 {
   const Window *window = u->window;
   BV            bv;
+  DS            ds;
   ST            st;
 
   PetscFunctionBeginUser;
@@ -175,6 +176,8 @@ static PetscErrorCode UndampedCreateSolver(const Undamped *u, PetscBool transpos
   PetscCall(EPSSetType(*eps, EPSBLOCKKRYLOVSCHUR));
   PetscCall(EPSSetDimensions(*eps, nev, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscCall(EPSSetTolerances(*eps, 1e-11, 200));
+  PetscCall(EPSGetDS(*eps, &ds));
+  PetscCall(SolverSynchronize(ds)); /* of other types by -eps_type too */
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(u->si, transposed, st));
   PetscCall(BlockKrylovSetLeast(*eps, u->modes->block[0]));

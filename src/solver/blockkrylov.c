@@ -2,6 +2,7 @@
    Block Krylov-Schur eigensolver, see blockkrylov.h: the type. Its iteration is in blockiterate.c.
 */
 #include "blockiterate.h"
+#include "shiftinvert.h"
 
 /* Right-hand sides that are solved at once: vectors in a block, or in both blocks where two problems are solved together. On
    the default brake (36,453 unknowns, 51 modes with friction, right and left) blocks of 1, 4, 8, 16 take 238, 296, 392, 560
@@ -54,7 +55,7 @@ static PetscErrorCode EPSSetUp_BlockKrylov(EPS eps)
   PetscCall(BlockKrylovSizes(eps));
   PetscCall(EPSAllocateSolution(eps, ctx->block));
   PetscCall(BVSetMatrix(eps->V, NULL, PETSC_FALSE));
-  PetscCall(DSSetParallel(eps->ds, DS_PARALLEL_SYNCHRONIZED)); /* ranks on processors of two kinds round differently */
+  PetscCall(SolverSynchronize(eps->ds));
   PetscCall(DSSetType(eps->ds, eps->ishermitian ? DSHEP : DSNHEP));
   PetscCall(DSAllocate(eps->ds, eps->ncv));
   PetscFunctionReturn(0);

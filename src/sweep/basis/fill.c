@@ -70,10 +70,15 @@ PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
   PetscFunctionReturn(0);
 }
 
-/* (A + A')/2 */
-static PetscErrorCode SymmetricPart(Mat A, Mat *S)
+/* (A + A')/2, which is A itself where A is symmetric */
+static PetscErrorCode SymmetricPart(Mat A, PetscBool symmetric, Mat *S)
 {
   PetscFunctionBeginUser;
+  if (symmetric) {
+    *S = A;
+    PetscCall(PetscObjectReference((PetscObject)A));
+    PetscFunctionReturn(0);
+  }
   PetscCall(MatTranspose(A, MAT_INITIAL_MATRIX, S));
   PetscCall(MatAXPY(*S, 1, A, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatScale(*S, 0.5));
@@ -85,6 +90,7 @@ static PetscErrorCode SymmetricPart(Mat A, Mat *S)
 static PetscErrorCode RealSolve(const PencilMatrices *m, PetscInt n_modes, ShiftInvert *si, EPS *eps)
 {
   PetscInt n, n_found;
+  DS       ds;
   ST       st;
 
   PetscFunctionBeginUser;
@@ -97,6 +103,8 @@ static PetscErrorCode RealSolve(const PencilMatrices *m, PetscInt n_modes, Shift
   PetscCall(EPSSetTolerances(*eps, REAL_RTOL, REAL_RESTARTS));
   PetscCall(EPSSetTarget(*eps, si->shift));
   PetscCall(EPSSetWhichEigenpairs(*eps, EPS_TARGET_MAGNITUDE));
+  PetscCall(EPSGetDS(*eps, &ds));
+  PetscCall(SolverSynchronize(ds));
   PetscCall(EPSGetST(*eps, &st));
   PetscCall(ShiftInvertAttach(si, PETSC_FALSE, st));
   PetscCall(EPSSolve(*eps));
@@ -119,8 +127,8 @@ PetscErrorCode BasisFillReal(Basis *basis, PetscBool friction, PetscInt n_modes,
     PetscCall(PencilGetMatrices(basis->pencil, &pencil));
   else
     PetscCall(PencilGetFrictionless(basis->pencil, &pencil));
-  PetscCall(SymmetricPart(pencil.K, &real.K));
-  PetscCall(SymmetricPart(pencil.M, &real.M));
+  PetscCall(SymmetricPart(pencil.K, pencil.symmetric, &real.K));
+  PetscCall(SymmetricPart(pencil.M, pencil.symmetric, &real.M));
   PetscCall(ShiftInvertCreate(&real, shift, PETSC_FALSE, progress, &si));
   PetscCall(RealSolve(&real, n_modes, &si, &eps));
   PetscCall(EPSGetDimensions(eps, &n_modes, NULL, NULL));
