@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/progress.h"
+#include "base/synchronize.h"
 #include <squeal/pencil.h>
 #include <math.h>
 #include <slepcds.h>
@@ -62,11 +63,6 @@ PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, Pets
 PETSC_INTERN PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
-/* All ranks take the small projected problem of an eigensolver from one: on processors of two kinds they round differently */
-static inline PetscErrorCode SolverSynchronize(DS ds)
-{
-  return DSSetParallel(ds, DS_PARALLEL_SYNCHRONIZED);
-}
 /* Counts n steps of the eigensolver, and calls what is to be called after them */
 PETSC_INTERN PetscErrorCode ShiftInvertStepped(const ShiftInvert *si, PetscInt n);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
