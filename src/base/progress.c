@@ -28,7 +28,7 @@ PetscErrorCode ProgressSetFromOptions(MPI_Comm comm)
   PetscOptionsBegin(comm, NULL, "Progress", NULL);
   PetscCall(OptionsGetBool(
     PetscOptionsObject, "-squeal_progress",
-    "time left on stderr; by default where it is a terminal, else a line each 5 s; also -progress", &screen.on));
+    "show the time left (default: on in a terminal; otherwise one line every 5 s); also -progress", &screen.on));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-squeal_progress", &given));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-progress", given ? &other : &screen.on, NULL));
   PetscOptionsEnd();

@@ -1,6 +1,7 @@
 /*
-   What a solution says about its completeness. Without damping and friction inertia proves it. Else right and left
-   vectors are compared, and the frictionless, undamped count stands beside the modes found. There a mode is a pair of
+   What a solution says about its completeness. Without damping and friction the inertia of K - s M at the ends of the band
+   proves it. Else two independent searches are compared, those of right and of left vectors, which begin from different
+   starts on one shared factorisation a shift, and the frictionless, undamped count stands beside the modes found. There a mode is a pair of
    eigenvalues lambda: conjugates, of which one is listed, or two real ones where damping keeps it from oscillating. A
    rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
 */
@@ -36,15 +37,13 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
                             at_zero));
   if (rows != pairs)
     PetscCall(PetscSNPrintf(real, sizeof(real),
-                            "; %" PetscInt_FMT
-                            " of these do not oscillate and are the real eigenvalues of %" PetscInt_FMT
-                            " mode%s, which makes %" PetscInt_FMT,
-                            rows, pairs, pairs == 1 ? "" : "s", modes->n - rows + pairs));
+                            "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s",
+                            rows, pairs, pairs == 1 ? "" : "s"));
   if (modes->n - rows + pairs != window->expected)
-    PetscCall(PetscStrncpy(other, "; the others lie beyond that growth or have left the band", sizeof(other)));
+    PetscCall(PetscStrncpy(other, ", the others lie beyond that growth or have left the band", sizeof(other)));
   if (modes->n - rows + pairs > window->expected)
-    PetscCall(PetscStrncpy(other, "; the others came into the band by friction, damping or spin", sizeof(other)));
-  PetscCall(PetscSNPrintf(text, size, "%s%s; the count without friction and damping is %" PetscInt_FMT " (inertia)%s",
+    PetscCall(PetscStrncpy(other, ", the others came into the band by friction, damping or spin", sizeof(other)));
+  PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s",
                           zeros, real, window->expected, other));
   PetscFunctionReturn(0);
 }
@@ -53,19 +52,14 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
 static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
                                          size_t size)
 {
-  char undamped[192] = "inertia of K - s M counts the undamped modes in the band";
+  char undamped[192] = "inertia counts the undamped modes in the band";
 
   PetscFunctionBeginUser;
   if (!window->counted)
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
-                            "undamped right and left vectors, sought from different starts with one shared "
-                            "factorisation, give the same eigenvalues, to %.1e",
-                            (double)window->worst));
-  PetscCall(PetscSNPrintf(
-    text, size,
-    "none was found missing: %s; damping brings none%s from beyond them, since its estimated strength there is "
-    "%.2g, and 1 would be needed%s",
-    undamped, region, (double)window->beyond, rest));
+                            "two independent searches of the undamped modes agree to %.1e", (double)window->worst));
+  PetscCall(PetscSNPrintf(text, size, "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
+                          undamped, region, (double)window->beyond, rest));
   PetscFunctionReturn(0);
 }
 
@@ -97,30 +91,27 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   if (window->most < INFINITY)
     PetscCall(
       PetscSNPrintf(massless, sizeof(massless),
-                    "; unknowns have no mass, and with these modes of |lambda| above %.6g 1/s are not looked for",
+                    "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
                     (double)window->most));
   if (!window->count)
-    PetscCall(PetscSNPrintf(region, sizeof(region), " with |growth| below %.6g 1/s", (double)window->growth));
+    PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
   if (window->proven && window->count)
     PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia of K - s M counts %" PetscInt_FMT " up to the outermost",
+                            "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
                             window->expected));
   else if (window->proven)
     PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia of K - s M at the ends of the band counts %" PetscInt_FMT,
+                            "none is missing: inertia counts %" PetscInt_FMT " in the band",
                             window->expected));
   else if (window->project && (modes->left || window->counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)
     PetscCall(PetscSNPrintf(text, size,
-                            "none was found missing: LAPACK finds all eigenvalues of the matrices and of their transposes, which are "
-                            "the same%s, to %.1e%s",
-                            region, (double)window->worst, frictionless));
+                            "none was found missing: LAPACK finds the same from the matrices and from their transposes, to %.1e%s%s",
+                            (double)window->worst, region, frictionless));
   else if (modes->left)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none was found missing: right and left vectors, sought from different starts with one "
-                            "shared factorisation%s, give the same eigenvalues%s, to %.1e%s",
-                            modes->shifts > 1 ? " a shift" : "", region, (double)window->worst, frictionless));
+    PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",
+                            (double)window->worst, region, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscCall(PetscStrlcat(text, route, size));

@@ -102,7 +102,7 @@ static PetscErrorCode ScenePrintGiven(Results results, OutFile *file, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* What nobody gave: the defaults in force, as comments */
+/* Defaults, as comments */
 static PetscErrorCode ScenePrintDefaults(const HelpList *list, OutFile *file)
 {
   PetscBool given;
