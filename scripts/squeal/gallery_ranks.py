@@ -34,6 +34,7 @@ class Run(NamedTuple):
 STEEL = 210e9
 SMALL = "-rig_disc_elements 8,40,1 -rig_pad_elements 4,4,2 "
 BLOCK = "block_young", 10e9
+COARSE = {"fist_brake": {"vanes": 4, "order": 1}}  # numbers of the script of a mesh beside its size, of the quick run
 IRON = "disc_young", 110e9
 RUNS = {
     "affine": Run("affine", nudge=()),
@@ -66,6 +67,7 @@ RUNS = {
                        nudge=IRON),
     "brake_transient": Run("brake brake_transient", "brake", (24, 24), short="-ts_max_time 5e-4", why="6 ms are 52,000 steps; 24 mm for 14",
                            quick="-ts_max_time 1e-4", nudge=IRON),
+    "fist_brake": Run("fist_brake", "fist_brake", (24, 30), why="24 mm for 12", nudge=IRON),
     "small_brake_cycle": Run("small_brake_cycle"),
     "small_brake_map": Run("small_brake_map", grows="impacts: transients with loss of contact are chaotic"),
 }
@@ -95,6 +97,7 @@ class Gallery:
         if not run.mesh:
             return []
         numbers = {"size": run.size[self.quick]} if run.size else {"n": 2} if run.mesh == "sliding_block" else {}
+        numbers |= COARSE.get(run.mesh, {}) if self.quick else {}
         path = self.folder / f"{run.mesh}{''.join(f'-{value}' for value in numbers.values())}.msh"
         if not path.exists():
             make_mesh("block" if run.mesh == "sliding_block" else run.mesh, path, **numbers)
