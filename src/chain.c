@@ -227,19 +227,18 @@ PetscErrorCode ChainLinearise(Chain *chain)
 static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 {
   const char *folder;
-  PetscBool   is_static;
+  PetscBool   sliding;
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
-  PetscCall(ModesGetContact(chain->modes, &is_static));
-  PetscCall(StaticsCheckUse(chain->statics, is_static && chain->analysis != ANALYSIS_STATIC));
   PetscCall(OperatorsCreatePoint(chain->operators, NULL, &chain->p));
   PetscCall(StaticsIdentifyAll(chain->statics, chain->p, viewer));
   PetscCall(SweepSetOperators(chain->sweep, chain->operators, chain->p));
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
-  if (is_static) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(ModesGetContact(chain->modes, &sliding));
+  if (sliding) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));

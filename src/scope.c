@@ -221,11 +221,12 @@ static PetscErrorCode ScopeCheckIntegrator(MPI_Comm comm, const Scope *s)
   char              why[160];
 
   PetscFunctionBeginUser;
-  PetscCall(
-    PetscSNPrintf(why, sizeof(why), "not used, the steps of -analysis %s are explicit and of one length", s->analysis));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used, -analysis %s takes explicit steps of one length", s->analysis));
   PetscCall(OptionsRefusePrefix(comm, others, why));
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used by -analysis %s, whose mass is lumped", s->analysis));
   PetscCall(OptionsRefuse(comm, "-operators_mass", why));
+  PetscCall(OptionsRefuse(comm, "-modes_target -modes_count",
+                          "not used by -dynamics_model reduced, which compares the modes of -modes_band"));
   PetscFunctionReturn(0);
 }
 
@@ -240,6 +241,9 @@ static PetscErrorCode ScopeCheckEquilibrium(MPI_Comm comm, const Scope *s, Petsc
                             "makes no difference"));
   if (s->modes || s->transient)
     PetscCall(OptionsRefuse(comm, "-static_view_kkt", "printed by -analysis static alone; leave it out"));
+  if (!s->modes)
+    PetscCall(OptionsRefuse(comm, "-static_rows -static_geometric -static_follower",
+                            "used by modes, sweeps and frequency responses about the sliding state"));
   PetscFunctionReturn(0);
 }
 
@@ -270,11 +274,9 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
                             "not used by -analysis frf, whose residual term stands for the modes left out"));
   if (s->modes && !s->frf) PetscCall(ScopeCheckEigensolver(comm, s)); /* which takes both */
   if (s->transient) PetscCall(ScopeCheckIntegrator(comm, s));
-  if (s->transient)
-    PetscCall(OptionsRefuse(comm, "-modes_target -modes_count",
-                            "not used by -dynamics_model reduced, which compares the modes of -modes_band"));
-  if (!s->transient && !s->modes) PetscCall(OptionsRefuse(comm, "-operators_mass", "not used by -analysis static"));
-  if (!s->modes) PetscCall(OptionsRefuse(comm, "-operators_factors", "used by modes, sweeps and frequency responses"));
+  if (s->modes) PetscFunctionReturn(0);
+  if (!s->transient) PetscCall(OptionsRefuse(comm, "-operators_mass", "not used by -analysis static"));
+  PetscCall(OptionsRefuse(comm, "-operators_factors", "used by modes, sweeps and frequency responses"));
   PetscFunctionReturn(0);
 }
 

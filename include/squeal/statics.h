@@ -72,10 +72,6 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
 @*/
 PetscErrorCode StaticsSetFromOptions(Statics statics);
 
-/*@ StaticsCheckUse - raises the error for options that do nothing: what concerns modes, unless they are asked for about
-    the sliding state. Collective. @*/
-PetscErrorCode StaticsCheckUse(Statics statics, PetscBool modes);
-
 /*@
    StaticsSolve - the equilibrium at a point p of the operators' parameters, NULL for the values of the scene. Starts
    from the status of the solution before, else with all pairs closed. Collective.

@@ -79,18 +79,6 @@ PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsCheckUse(Statics s, PetscBool modes)
-{
-  const char *option = s->rows_more ? "-static_rows" : s->geometric ? "-static_geometric" : "-static_follower";
-
-  PetscFunctionBeginUser;
-  PetscCheck(
-    modes || (!s->rows_more && !s->geometric && !s->follower), s->comm, PETSC_ERR_USER_INPUT,
-    "%s does nothing without modes about the sliding state: give -modes_contact static, and no -analysis static",
-    option);
-  PetscFunctionReturn(0);
-}
-
 /* Pairs, rows and room for the results; all pairs closed */
 /* Motions that nothing resists are sought body by body: a point must not join two bodies rigidly */
 static PetscErrorCode StaticsCheckRigid(Statics s)
