@@ -1,6 +1,4 @@
-/*
-   What stands on the command line and nothing in this analysis has a use for: see base/arguments.c.
-*/
+/* What stands on the command line and nothing in this analysis has a use for: see base/arguments.c */
 #include "scope.h"
 #include "base/vec3.h"
 
