@@ -30,6 +30,7 @@ typedef struct {
     error; /* first-order error of lambda from left and right vectors, |y'Q(lambda)x| / |y'Q'(lambda)x|, rad/s */
   PetscBool unstable; /* sigma exceeds its error */
   PetscBool rigid;    /* zero within its error */
+  PetscBool slowing;  /* a rigid motion that damping slows down, a real eigenvalue */
   char      label[32];
 } Mode;
 

@@ -24,6 +24,7 @@
 
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
+#define LABEL_TIE  1e-6 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
@@ -77,6 +78,7 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
   PetscReal     share[MAX_PARTS] = {0}, total = 0;
   PetscInt      most = 0;
   Mode         *mode = &modes->mode[i];
+  PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) {
@@ -84,15 +86,15 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
 
     share[part] = PetscSqrtReal(z[0] * z[0] + z[1] * z[1]);
     total += share[part];
-    if (share[part] > share[most]) most = part;
+    if (share[part] > (1 + LABEL_TIE) * share[most]) most = part;
   }
   for (PetscInt part = 0; part < l->n_parts; part++)
     percent[part] = total > 0 ? 100 * (double)(share[part] / total) : 0;
-  if (l->disc >= 0 && share[l->disc] > DISC_SHARE * total && l->energy[2 * i + 1] > 0.5 * l->energy[2 * i] &&
-      !mode->rigid)
+  if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total &&
+      l->energy[2 * i + 1] > (1 + LABEL_TIE) * 0.5 * l->energy[2 * i] && !rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
-  else if (!l->by_unknown || mode->rigid)
-    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], mode->rigid ? " rigid" : ""));
+  else if (!l->by_unknown || rigid)
+    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
   PetscFunctionReturn(0);
 }
 
@@ -231,14 +233,31 @@ static PetscErrorCode LabelsDestroy(Labels *l)
   PetscFunctionReturn(0);
 }
 
+/* The first entry that is the largest. Collective */
+static PetscErrorCode FirstOfLargest(Vec size, PetscInt *at)
+{
+  const PetscScalar *s;
+  PetscReal          largest;
+  PetscInt           first, last, k;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecMax(size, NULL, &largest));
+  PetscCall(VecGetOwnershipRange(size, &first, &last));
+  PetscCall(VecGetArrayRead(size, &s));
+  for (k = 0; k < last - first && s[k] < (1 - LABEL_TIE) * largest;) k++;
+  PetscCall(VecRestoreArrayRead(size, &s));
+  *at = k < last - first ? first + k : PETSC_MAX_INT;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)size)));
+  PetscFunctionReturn(0);
+}
+
 /* Matrices without a mesh: the unknown that moves most */
 static PetscErrorCode LabelUnknown(Modes modes)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < modes->n; i++) {
-    PetscInt  at;
-    PetscReal value;
-    Vec       size;
+    PetscInt at;
+    Vec      size;
 
     PetscCall(VecDuplicate(modes->right.xr[i], &size));
     PetscCall(VecPointwiseMult(size, modes->right.xr[i], modes->right.xr[i]));
@@ -250,7 +269,7 @@ static PetscErrorCode LabelUnknown(Modes modes)
       PetscCall(VecAXPY(size, 1, part));
       PetscCall(VecDestroy(&part));
     }
-    PetscCall(VecMax(size, &at, &value));
+    PetscCall(FirstOfLargest(size, &at));
     PetscCall(VecDestroy(&size));
     PetscCall(PetscSNPrintf(modes->mode[i].label, sizeof(modes->mode[i].label), "u%" PetscInt_FMT, at + 1));
   }

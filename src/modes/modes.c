@@ -282,6 +282,7 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   *none = modes->right.n ? PETSC_FALSE : PETSC_TRUE;
   if (*none) window->below = -1; /* which says nothing of a mode with friction or damping */
   if (*none) PetscFunctionReturn(0);
+  PetscCall(NullDecaysCorrect(modes, &pencil, window));
   PetscCall(QualityMeasure(modes, &pencil));
   PetscCall(ShiftInvertDestroy(&modes->counter));
   if (window->rigid) PetscCall(TwinsDrop(modes, window));

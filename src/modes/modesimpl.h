@@ -227,6 +227,13 @@ PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
    where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
+/* n vectors x of the null space of K, or of K', M-orthonormal, by a factorisation far below all elastic modes; error [n] is
+   |K x| / (|K| |x|) */
+PETSC_INTERN PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
+                                        Vec x[], PetscReal error[]);
+
+/* nulldecays.c - decays of rigid motions without the rounding of K. Collective */
+PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);
 
 /* label.c - names of the shapes */
 PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);

@@ -53,8 +53,7 @@ static PetscErrorCode NullMeasure(Mat K, PetscBool transposed, PetscInt n, Vec x
   PetscFunctionReturn(0);
 }
 
-/* n vectors of the null space of K, or K', and their backward errors */
-static PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
+PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
                                   Vec x[], PetscReal error[])
 {
   PetscReal   worst = PETSC_MAX_REAL;

@@ -13,6 +13,8 @@
 #define QUALITY_BLOCK    16   /* modes whose products are made at once */
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
 #define ROUNDINGS        3
+#define QUALITY_NULL     1e-10 /* |K x| / (|K| |x|) of a rigid motion */
+#define QUALITY_ENERGY   0.1   /* x'K x / (lambda^2 x'M x) of one, at most; of an elastic one that does not oscillate 1 at least */
 #define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
@@ -172,6 +174,23 @@ static PetscErrorCode QualityNoise(const Quality *q, ComplexVec x, PetscReal *no
   PetscFunctionReturn(0);
 }
 
+/* Whether a real x of an eigenvalue of that size is a rigid motion, from Mx and z = K x */
+static PetscErrorCode QualityIsSlowing(const Quality *q, PetscReal size, ComplexVec x, PetscReal noise, PetscBool *slowing)
+{
+  PetscReal energy, mass, length, force;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDot(x.r, q->z.r, &energy));
+  PetscCall(VecDot(x.r, q->Mx.r, &mass));
+  PetscCall(VecNorm(x.r, NORM_2, &length));
+  PetscCall(VecNorm(q->z.r, NORM_2, &force));
+  *slowing = PetscAbsReal(energy) <= QUALITY_ENERGY * size * size * mass + QUALITY_NOISE * noise &&
+                 force <= QUALITY_NULL * q->norms[0] * length
+               ? PETSC_TRUE
+               : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 /* Backward error of an eigenpair, |y^T Q x|, |y^T D x| */
 typedef struct {
   PetscReal    backward, y_Qx, y_Dx;
@@ -239,8 +258,9 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
 
   PetscFunctionBeginUser;
   PetscCall(QualityNext(q, x, y, &norm_x, &norm_y));
-  PetscCall(QualityResidual(q, lambda, x, y, &p));
   PetscCall(QualityNoise(q, x, &noise));
+  if (cimag(lambda) == 0 && q->pencil->C) PetscCall(QualityIsSlowing(q, size, x, noise, &mode->slowing));
+  PetscCall(QualityResidual(q, lambda, x, y, &p));
   PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
   if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
   mode->backward_error = p.backward;
@@ -255,6 +275,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
   mode->error = mode->rigid ? PetscSqrtReal(size * size + square) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
+  if (mode->rigid) mode->slowing = PETSC_FALSE;
   mode->unstable =
     mode->sigma > mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModeCheck(modes, mode, cimag(lambda) / (2 * PETSC_PI)));

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #define INERTIA_LEAST 1e-3 /* of the angular frequency: what smaller growth is off by is relative to that */
+#define INERTIA_ZERO  1e-6 /* of the cut-off, rad/s: a zero of a rigid motion, which rounding moves by its own root */
 #define INERTIA_WARN  0.05 /* relative error of growth that is told before the run */
 
 /* The nearest of n eigenvalues to sigma, omega */
@@ -42,6 +43,7 @@ static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
     const PetscReal most = PetscMax(sigma, z[1][0][k]), scale = PetscMax(most, INERTIA_LEAST * omega);
 
     if (omega <= 0 || omega > 2 * PETSC_PI * r->cutoff || most <= 0) continue;
+    if (hypot(omega, most) < INERTIA_ZERO * 2 * PETSC_PI * r->cutoff) continue;
     r->growing[r->n_growing++] = (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
   }
   if (r->n_growing) qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
