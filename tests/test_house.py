@@ -28,13 +28,13 @@ from house import Script, Source
 
 MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS = 350, 80, 80, 6, 25, 140
 
-CHAIN = ("base", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
+CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
 BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
 BELOW["map"] = BELOW["reduced"] | {"map"}
-BELOW |= {"results": {"base", "kernels", "results"},
-          "dynamics": {"base", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
+BELOW |= {"results": {"base", "quantity", "kernels", "results"},
+          "dynamics": {"base", "quantity", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",

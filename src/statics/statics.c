@@ -5,17 +5,12 @@
 #include "base/events.h"
 #include <squeal/options.h>
 
-#define STATICS_MOST_DENSE 20000
-
 PetscErrorCode StaticsCreate(MPI_Comm comm, Statics *statics)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, statics));
-  (*statics)->comm           = comm;
-  (*statics)->max_it         = 50;
-  (*statics)->load_steps     = 1;
-  (*statics)->dense          = 2000;
-  (*statics)->identify_steps = 10;
+  (*statics)->comm = comm;
+  PetscCall(QuantitiesInit(&statics_quantities, *statics));
   PetscFunctionReturn(0);
 }
 
@@ -27,55 +22,19 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators)
   PetscFunctionReturn(0);
 }
 
-/* An option that is a count of at least `least` */
-static PetscErrorCode StaticsCheckCount(Statics s, const char option[], PetscInt value, PetscInt least)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(value >= least, s->comm, PETSC_ERR_USER_INPUT, "%s %" PetscInt_FMT " must be at least %" PetscInt_FMT,
-             option, value, least);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode StaticsSetFromOptions(Statics s)
 {
   PetscFunctionBeginUser;
-  PetscOptionsBegin(s->comm, NULL, "Statics", NULL);
-  PetscCall(PetscOptionsInt("-static_max_it", "most iterations of the active set at one load", "statics.h", s->max_it,
-                            &s->max_it, NULL));
-  PetscCall(PetscOptionsInt("-static_load_steps", "equal steps of the loads (matter for sticking pairs)", "statics.h",
-                            s->load_steps, &s->load_steps, NULL));
-  PetscCall(PetscOptionsInt("-static_dense", "most rows of the contact problem for a dense one, beyond: GMRES",
-                            "statics.h", s->dense, &s->dense, NULL));
-  PetscCall(PetscOptionsInt("-static_rows",
-                            "for modes: rows of pairs closed at the edge of the contact (> 0), or opened there (< 0)",
-                            "statics.h", s->rows_more, &s->rows_more, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-static_geometric", "for modes: geometric stiffness of the preload",
-                           &s->geometric));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-static_follower",
-                           "for modes: contact forces turn with the master surface", &s->follower));
-  PetscCall(PetscOptionsInt("-static_identify_steps", "steps of the force ramp of -contact_kn identify", "statics.h",
-                            s->identify_steps, &s->identify_steps, NULL));
-  PetscCall(
-    OptionsGetBool(PetscOptionsObject, "-static_view_kkt", "print the residuals of the contact laws", &s->view_kkt));
-  PetscOptionsEnd();
-  PetscCall(StaticsCheckCount(s, "-static_max_it", s->max_it, 1));
-  PetscCall(StaticsCheckCount(s, "-static_load_steps", s->load_steps, 1));
-  PetscCall(StaticsCheckCount(s, "-static_dense", s->dense, 0));
-  PetscCheck(s->dense <= STATICS_MOST_DENSE, s->comm, PETSC_ERR_USER_INPUT,
-             "-static_dense %" PetscInt_FMT " must be at most %d: more rows do not fit a dense matrix", s->dense,
-             STATICS_MOST_DENSE);
-  PetscCall(StaticsCheckCount(s, "-static_identify_steps", s->identify_steps, 2));
+  PetscCall(QuantitiesRead(s->comm, &statics_quantities, s));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
 {
-  const PetscInt all[] = {s->load_steps, s->dense, s->rows_more, s->identify_steps, s->geometric, s->follower};
-
   PetscFunctionBeginUser;
   if (s->model) PetscCall(ModelAddLoadsChecksum(s->model, c));
   PetscCall(ChecksumSetPart(c, "options of statics"));
-  PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  PetscCall(QuantitiesAddChecksum(&statics_quantities, s, c));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 /* Private to statics/: the contact problem, its small system, and the record of the solver */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/statics.h>
 #include "kernels/coulomb.h"
 #include "solver/shiftinvert.h"
@@ -157,6 +158,8 @@ struct _p_Statics {
   PetscBool         even;        /* there are planes of symmetry */
 };
 
+/* quantities.c - what options set in struct _p_Statics */
+extern const QuantityTable statics_quantities;
 /* statics.c - pairs, rows and room for results, once; the point of what follows, NULL for the values of the scene */
 PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics, const PetscReal p[]);
 /* statics.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */

@@ -1,0 +1,75 @@
+/*
+   Quantity - what an option sets, in one row: its name, help, unit, limits, where it lies in the struct of its owner, when
+   nothing reads it, and whether a restart depends on it. A table of rows is read, checked, refused and summed by one call
+   each. Rows stand in quantities.c of their room, options that need more in its SetFromOptions().
+*/
+#pragma once
+
+#include <squeal/checksum.h>
+#include <squeal/options.h>
+#include <stddef.h>
+
+typedef enum {
+  QUANTITY_INT,   /* PetscInt */
+  QUANTITY_REAL,  /* PetscReal */
+  QUANTITY_REALS, /* PetscReal [n], all of them */
+  QUANTITY_BOOL,  /* PetscBool */
+  QUANTITY_WORD,  /* one of .words, as int: an enumeration or PetscBool */
+  QUANTITY_TEXT,  /* char [n] */
+  QUANTITY_PATH,  /* char [PETSC_MAX_PATH_LEN], relative to its options file */
+} QuantityKind;
+
+typedef struct {
+  const char        *name; /* with its dash, e.g. "-sweep_rtol" */
+  const char        *help; /* one sentence, without the unit */
+  const char        *unit; /* e.g. "Hz"; NULL for what has none */
+  QuantityKind       kind;
+  PetscReal          initial; /* default of a number, a logical or a word; texts are empty, arrays zero */
+  size_t             at;      /* offset in the owner's struct */
+  size_t             size;  /* in bytes */
+  size_t             given; /* offset of a PetscBool: whether it is given; 0 for none */
+  const char *const *words; /* of QUANTITY_WORD, NULL at the end */
+  PetscReal          least, most;  /* of a number; most 0 where there is no upper limit */
+  PetscBool          bounded;      /* least and most are limits */
+  PetscBool          open;         /* the limits themselves are refused */
+  const char        *why;          /* of the limits, for their message; or NULL */
+  const char *(*idle)(const void *owner); /* NULL where it is read, else why not; NULL: always read */
+  PetscBool restart;                      /* another value is another run: a restart must not go on */
+} Quantity;
+
+typedef struct {
+  const char     *title;  /* heads the rows in -help */
+  const char     *header; /* with the manual page, e.g. "sweep.h" */
+  PetscInt        n;
+  const Quantity *row;
+} QuantityTable;
+
+/* Where a member lies, as in {"-sweep_rtol", "...", .kind = QUANTITY_REAL, QUANTITY_AT(struct _p_Sweep, rtol)} */
+#define QUANTITY_AT(type, member) .at = offsetof(type, member), .size = sizeof(((type *)0)->member)
+
+/* Limits */
+#define QUANTITY_POSITIVE     .bounded = PETSC_TRUE, .open = PETSC_TRUE
+#define QUANTITY_NOT_NEGATIVE .bounded = PETSC_TRUE
+#define QUANTITY_LEAST(a)     .bounded = PETSC_TRUE, .least = (a)
+#define QUANTITY_WITHIN(a, b) .bounded = PETSC_TRUE, .least = (a), .most = (b)
+
+/*@ QuantitiesInit - sets the defaults of all rows. Not collective. @*/
+PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
+
+/*@
+   QuantitiesRead - reads the options of a table into their owner and checks them. Collective.
+
+   Input Parameters:
++  comm  - ranks that read, all alike
+-  table - its rows
+   Input/Output Parameter:
+.  owner - the struct that the rows' offsets are of; unchanged where an option is not given
+
+   Errors: PETSC_ERR_USER_INPUT for a value that is none, or beyond the row's limits, and for an option of the command line
+   whose row is idle in this owner. Files may give such options.
+@*/
+PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
+
+/*@ QuantitiesAddChecksum - adds the values of the rows that decide a restart, in their order, to the
+    part of the checksum that is set. Not collective. @*/
+PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *owner, Checksum checksum);

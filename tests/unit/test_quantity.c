@@ -1,0 +1,153 @@
+/*
+   Unit test of squeal/quantity.h: rows of every kind, read into a struct.
+
+   References: the definitions of the rows below.
+*/
+#include "check.h"
+#include <squeal/quantity.h>
+#include <string.h>
+
+enum { FAST, SLOW };
+
+typedef struct {
+  PetscInt  count;
+  PetscReal speed, box[3];
+  PetscBool loud, has_box, has_count;
+  int       way;
+  char      name[16], file[PETSC_MAX_PATH_LEN];
+} Owner;
+
+static const char *Idle(const void *owner)
+{
+  return ((const Owner *)owner)->way == SLOW ? "not used without -way fast" : NULL;
+}
+
+#define ROW(member) QUANTITY_AT(Owner, member)
+static const char *const words[] = {"fast", "slow", NULL};
+static const Quantity    rows[]  = {
+  {"-count", "how many", NULL, QUANTITY_INT, ROW(count), .initial = 3, .given = offsetof(Owner, has_count), QUANTITY_LEAST(2),
+   .restart = PETSC_TRUE},
+  {"-speed", "how fast", "m/s", QUANTITY_REAL, ROW(speed), .initial = 0.5, QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE,
+   .why = "a share", .idle = Idle, .restart = PETSC_TRUE},
+  {"-box", "edges", "m", QUANTITY_REALS, ROW(box), .given = offsetof(Owner, has_box), .restart = PETSC_TRUE},
+  {"-loud", "prints", NULL, QUANTITY_BOOL, ROW(loud), .initial = PETSC_TRUE},
+  {"-way", "which way", NULL, QUANTITY_WORD, ROW(way), .words = words, .initial = FAST, .restart = PETSC_TRUE},
+  {"-name", "a name", NULL, QUANTITY_TEXT, ROW(name), .restart = PETSC_TRUE},
+  {"-file", "a file", NULL, QUANTITY_PATH, ROW(file)},
+};
+static const QuantityTable table = {"Test", "test.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+
+static PetscErrorCode Read(const char options[], Owner *owner)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(owner, sizeof(*owner)));
+  PetscCall(QuantitiesInit(&table, owner));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscOptionsInsertString(NULL, options));
+  PetscCall(QuantitiesRead(PETSC_COMM_WORLD, &table, owner));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a default is lost, a kind is read into another place or as another type, or what is given is not said */
+static PetscErrorCode TestRead(int *failed)
+{
+  Owner o;
+
+  PetscFunctionBeginUser;
+  PetscCall(Read("", &o));
+  *failed += CheckTrue("defaults", o.count == 3 && o.speed == 0.5 && o.loud && o.way == FAST && !o.name[0], o.speed);
+  *failed += CheckTrue("nothing is given", !o.has_count && !o.has_box, 0);
+  PetscCall(Read("-count 2 -speed 0.25 -box 1,2,-3 -loud 0 -way slow -name pad -file /dev/null", &o));
+  *failed += CheckTrue("integer and word", o.count == 2 && o.way == SLOW, o.count);
+  *failed += CheckTrue("numbers", o.speed == 0.25 && o.box[0] == 1 && o.box[1] == 2 && o.box[2] == -3, o.box[2]);
+  *failed += CheckTrue("texts", !strcmp(o.name, "pad") && !strcmp(o.file, "/dev/null"), 0);
+  *failed += CheckTrue("logical, and what is given", !o.loud && o.has_count && o.has_box, 0);
+  PetscFunctionReturn(0);
+}
+
+static char last[512]; /* message of the last error */
+
+static PetscErrorCode Keep(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                           PetscErrorType type, const char *message, void *ctx)
+{
+  (void)comm, (void)line, (void)function, (void)file, (void)ctx;
+  if (type == PETSC_ERROR_INITIAL) snprintf(last, sizeof(last), "%s", message);
+  return code;
+}
+
+/* Breaks when: a limit lets a value pass, its ends count otherwise, or the message says something else */
+static PetscErrorCode TestLimits(int *failed)
+{
+  static const char *const bad[][2] = {
+    {"-count 1", "-count 1 must be at least 2"},
+    {"-speed 1", "-speed 1 must lie between 0 and 1 (m/s): a share"},
+    {"-speed -2", "-speed -2 must lie between 0 and 1 (m/s): a share"},
+    {"-box 1,2", "-box has 2 values; give 3"},
+  };
+  Owner o;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(bad); i++) {
+    PetscErrorCode code;
+
+    PetscCall(PetscPushErrorHandler(Keep, NULL));
+    code = Read(bad[i][0], &o);
+    PetscCall(PetscPopErrorHandler());
+    *failed += CheckTrue(bad[i][1], code == PETSC_ERR_USER_INPUT && !strcmp(last, bad[i][1]), code);
+  }
+  PetscCall(Read("-count 2 -speed 0.999", &o));
+  *failed += CheckTrue("values at and inside the limits", o.count == 2 && o.speed == 0.999, o.speed);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Sum(const char options[], uint64_t *sum)
+{
+  const ChecksumPart *part;
+  Checksum            c;
+  PetscInt            n;
+  Owner               o;
+
+  PetscFunctionBeginUser;
+  PetscCall(Read(options, &o));
+  PetscCall(ChecksumCreate(PETSC_COMM_WORLD, &c));
+  PetscCall(ChecksumSetPart(c, "options"));
+  PetscCall(QuantitiesAddChecksum(&table, &o, c));
+  PetscCall(ChecksumGetParts(c, &n, &part));
+  *sum = part[0].sum;
+  PetscCall(ChecksumDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: a row that decides a restart is left out of the sum, or one that does not is in it */
+static PetscErrorCode TestChecksum(int *failed)
+{
+  static const char *const decides[] = {"-count 4", "-speed 0.6", "-box 0,0,1", "-way slow", "-name pad"};
+  static const char *const free[]    = {"-loud 0", "-file /dev/null", "-count 3"};
+  uint64_t                 none, other;
+
+  PetscFunctionBeginUser;
+  PetscCall(Sum("", &none));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(decides); i++) {
+    PetscCall(Sum(decides[i], &other));
+    *failed += CheckTrue(decides[i], other != none, 0);
+  }
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(free); i++) {
+    PetscCall(Sum(free[i], &other));
+    *failed += CheckTrue(free[i], other == none, 0);
+  }
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  int failed = 0;
+
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(TestRead(&failed));
+  PetscCall(TestLimits(&failed));
+  PetscCall(TestChecksum(&failed));
+  PetscCall(PetscOptionsClear(NULL));
+  PetscCall(PetscFinalize());
+  printf("%d failed\n", failed);
+  return failed ? 1 : 0;
+}
