@@ -159,6 +159,21 @@ PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char o
 @*/
 PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size);
 
+/*@ OptionsFindList - the list of the scene that holds a name, with its value, "-parts disc,pad"; empty for none. Not collective. @*/
+PetscErrorCode OptionsFindList(const char name[], size_t size, char text[]);
+
+/*@ ValueExplainUnit - what to write in place of a number with a unit, such as "210 GPa"; text is empty where it is no such
+    number. Not collective. @*/
+PetscErrorCode ValueExplainUnit(const char value[], char text[], size_t size);
+
+/*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. The file has been
+    checked by OptionsCheckFile(). Not collective. @*/
+PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line);
+
+/*@ OptionsFindPlace - for a message "FILE:LINE: " of the last options file of the command line that gives an option, named without
+    its dash; empty where none does, or the command line itself. Not collective. @*/
+PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size);
+
 /*@
    OptionsExplainValue - rewrites PETSc's message about a value that is no number, integer or logical so that it names
    the option. Not collective.

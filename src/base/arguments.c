@@ -59,6 +59,25 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size)
+{
+  char    **word;
+  int       n;
+  size_t    line = 0;
+  PetscBool file, is_yaml, given;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  PetscCall(OptionsCommandGives(name, &given));
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = n - 2; i > 0 && !line && !given; i--) {
+    PetscCall(OptionsNamesFile(word[i], &file, &is_yaml));
+    if (file) PetscCall(OptionsFindLine(word[i + 1], is_yaml, name, &line));
+    if (line) PetscCall(PetscSNPrintf(text, size, "%s:%zu: ", word[i + 1], line));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Whether a word is a number that is not finite; 1e999 is none either */
 static PetscBool WordIsInfinite(const char word[])
 {

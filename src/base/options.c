@@ -54,6 +54,19 @@ static PetscErrorCode GivenText(const char option[], size_t size, char text[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsFindList(const char name[], size_t size, char text[])
+{
+  char list[MAX_LIST];
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists) && !text[0]; i++) {
+    PetscCall(GivenText(lists[i], sizeof(list), list));
+    if (list[0] && ListHolds(list, name)) PetscCall(PetscSNPrintf(text, size, "%s %s", lists[i], list));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
@@ -314,7 +327,7 @@ PetscErrorCode OptionsWithValue(const char value[], const char *const endings[],
 
 PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size)
 {
-  char        value[MAX_NAME];
+  char        value[MAX_NAME], names[MAX_LIST], place[PETSC_MAX_PATH_LEN], unit[MAX_NAME];
   const char *wrong;
   int         most;
 
@@ -324,10 +337,10 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
     PetscCall(PetscSNPrintf(text, size, "more than %d options, all that PETSc %d.%d takes: leave some out of the files", most,
                             PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR));
   if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
-  PetscCall(OptionsWithValue(value + strspn(value, " "), NULL, text, size));
-  if (!text[0]) PetscFunctionReturn(0);
-  PetscCall(PetscStrlcat(text, ": ", size));
-  PetscCall(PetscStrlcat(text, value, size));
-  PetscCall(PetscStrlcat(text, wrong, size));
+  PetscCall(OptionsWithValue(value + strspn(value, " "), NULL, names, sizeof(names)));
+  if (!names[0]) PetscFunctionReturn(0);
+  PetscCall(OptionsFindPlace(names + 1, place, sizeof(place)));
+  PetscCall(ValueExplainUnit(value, unit, sizeof(unit)));
+  PetscCall(PetscSNPrintf(text, size, "%s%s: %s%s%s", place, names, value, unit[0] ? " has a unit: " : wrong, unit));
   PetscFunctionReturn(0);
 }

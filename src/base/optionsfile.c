@@ -233,9 +233,16 @@ static PetscErrorCode YamlReadEvents(YamlFile *f, yaml_parser_t *parser)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode YamlDestroy(YamlFile *f)
+/* The line of an option; the file is then no longer needed */
+static PetscErrorCode YamlFinish(YamlFile *f, const char name[], size_t *line)
 {
+  PetscBool same;
+
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < f->n_keys && name; i++) {
+    PetscCall(PetscStrcasecmp(f->keys[i], name, &same));
+    if (same) *line = f->lines[i];
+  }
   for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
   PetscCall(PetscFree(f->keys));
   PetscCall(YamlAnchorsDestroy(&f->anchors));
@@ -244,7 +251,7 @@ static PetscErrorCode YamlDestroy(YamlFile *f)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode YamlCheck(const char file[], FILE *stream)
+static PetscErrorCode YamlCheck(const char file[], FILE *stream, const char name[], size_t *found)
 {
   YamlFile     *f;
   yaml_parser_t parser;
@@ -256,12 +263,12 @@ static PetscErrorCode YamlCheck(const char file[], FILE *stream)
   yaml_parser_set_input_file(&parser, stream);
   PetscCall(YamlReadEvents(f, &parser));
   yaml_parser_delete(&parser);
-  PetscCall(YamlDestroy(f));
+  PetscCall(YamlFinish(f, name, found));
   PetscFunctionReturn(0);
 }
 
 /* Of PETSc's own form, -NAME VALUE line by line: raises an error for an option that stands in it twice */
-static PetscErrorCode TextCheck(const char file[], FILE *stream)
+static PetscErrorCode TextCheck(const char file[], FILE *stream, const char name[], size_t *found)
 {
   YamlFile *f;
   char     *line = NULL;
@@ -271,15 +278,15 @@ static PetscErrorCode TextCheck(const char file[], FILE *stream)
   PetscCall(PetscCalloc1(1, &f));
   f->file = file;
   for (f->line = 1; getline(&line, &room, stream) >= 0; f->line++) {
-    const char  *name   = line + strspn(line, " \t");
-    const size_t length = strcspn(name, " \t\r\n");
+    const char  *option = line + strspn(line, " \t");
+    const size_t length = strcspn(option, " \t\r\n");
 
-    if (name[0] != '-' || length < 2 || length > MAX_KEY) continue;
-    PetscCall(PetscStrncpy(f->key, name + 1, length));
+    if (option[0] != '-' || length < 2 || length > MAX_KEY) continue;
+    PetscCall(PetscStrncpy(f->key, option + 1, length));
     PetscCall(YamlAddKey(f));
   }
   free(line);
-  PetscCall(YamlDestroy(f));
+  PetscCall(YamlFinish(f, name, found));
   PetscFunctionReturn(0);
 }
 
@@ -307,10 +314,20 @@ static PetscErrorCode FileIsYaml(const char file[], FILE *stream, PetscBool *is_
 
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
 {
+  size_t line;
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsFindLine(file, is_yaml, NULL, &line));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line)
+{
   struct stat what;
   FILE       *stream;
 
   PetscFunctionBeginUser;
+  *line = 0;
   PetscCheck(!stat(file, &what), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
   PetscCheck(S_ISREG(what.st_mode), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "-options_file %s is no regular file; give a YAML file", file);
@@ -320,7 +337,7 @@ PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
   stream = fopen(file, "rb");
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
   PetscCall(FileIsYaml(file, stream, &is_yaml));
-  PetscCall(is_yaml ? YamlCheck(file, stream) : TextCheck(file, stream));
+  PetscCall(is_yaml ? YamlCheck(file, stream, name, line) : TextCheck(file, stream, name, line));
   (void)fclose(stream);
   PetscFunctionReturn(0);
 }

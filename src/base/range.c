@@ -22,6 +22,17 @@ typedef struct {
   const char *name, *text;
 } ValuesOption;
 
+/* Raises an error for a number with a unit */
+static PetscErrorCode WordCheckUnit(const ValuesOption *option, const char word[])
+{
+  char text[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(ValueExplainUnit(word, text, sizeof(text)));
+  PetscCheck(!text[0], option->comm, PETSC_ERR_USER_INPUT, "%s '%s': %s has a unit: %s", option->name, option->text, word, text);
+  PetscFunctionReturn(0);
+}
+
 /* first:last:n[:log] */
 static PetscErrorCode RangeParse(const ValuesOption *option, int n_words, char *words[], PetscInt *n,
                                  PetscReal *value[], PetscBool *ratio)
@@ -32,6 +43,7 @@ static PetscErrorCode RangeParse(const ValuesOption *option, int n_words, char *
   PetscFunctionBeginUser;
   PetscCheck(n_words == 3 || is_log, option->comm, PETSC_ERR_USER_INPUT,
              "%s '%s' is no range: give first:last:n or first:last:n:log", option->name, option->text);
+  for (int i = 0; i < 2; i++) PetscCall(WordCheckUnit(option, words[i]));
   PetscCheck(NumberParse(words[0], &first) && NumberParse(words[1], &last) && NumberParse(words[2], &count),
              option->comm, PETSC_ERR_USER_INPUT,
              "%s '%s' holds what is no number: give first:last:n or first:last:n:log", option->name, option->text);
@@ -67,6 +79,7 @@ static PetscErrorCode ListParse(const ValuesOption *option, PetscInt *n, PetscRe
   *n = n_words;
   PetscCall(PetscMalloc1(*n, value));
   for (PetscInt i = 0; i < *n; i++) {
+    PetscCall(WordCheckUnit(option, words[i]));
     PetscCheck(NumberParse(words[i], &(*value)[i]), option->comm, PETSC_ERR_USER_INPUT, "%s: '%s' is no number",
                option->name, words[i]);
     PetscCheck(i < 2 || ((*value)[i] - (*value)[i - 1]) * ((*value)[1] - (*value)[0]) > 0, option->comm,

@@ -97,6 +97,7 @@ static int EditDistance(const char a[], const char b[])
 
 #define ONE_EDIT     2 /* distances are in halves of an edit */
 #define OTHER_PREFIX 5
+#define MAX_UNKNOWN  64 /* options that are looked at: of support: hub and hub_fix the first is the error */
 
 /* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
 static int NameDistance(const char unknown[], const char valid[], PetscBool is_librarys)
@@ -170,54 +171,83 @@ static PetscErrorCode UnknownCompare(UnknownOption *u, const char valid[])
   PetscFunctionReturn(0);
 }
 
-/* The first unknown option; an empty name for none */
-static PetscErrorCode UnknownTakeFirst(UnknownOption *u)
+/* All unknown options, at most `most` of them */
+static PetscErrorCode UnknownTake(UnknownOption list[], PetscInt most, PetscInt *n_unknown)
 {
   PetscInt n;
   char   **names, **values;
 
   PetscFunctionBeginUser;
-  *u = (UnknownOption){.distance = PETSC_MAX_INT};
+  *n_unknown = 0;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n && !u->name[0]; i++) {
-    PetscBool unknown = PETSC_TRUE;
+  for (PetscInt i = 0; i < n && *n_unknown < most; i++) {
+    UnknownOption *u       = &list[*n_unknown];
+    PetscBool      unknown = PETSC_TRUE;
 
+    *u = (UnknownOption){.distance = PETSC_MAX_INT};
     PetscCall(OptionIsLibrarys(names[i], &u->is_librarys));
     u->is_librarys = u->is_librarys && !OptionIsSolvers(names[i]) ? PETSC_TRUE : PETSC_FALSE;
     if (u->is_librarys && OptionIsReadLater(names[i])) continue;
     if (u->is_librarys) PetscCall(OptionsCommandGives(names[i], &unknown));
-    if (unknown) PetscCall(PetscStrncpy(u->name, names[i], sizeof(u->name)));
+    if (!unknown) continue;
+    PetscCall(PetscStrncpy(u->name, names[i], sizeof(u->name)));
+    ++*n_unknown;
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
+/* What may be missing where only the name before the tail differs, as of -pad_density and -disc_density: in which list the other is */
+static PetscErrorCode UnknownFindList(const UnknownOption *u, size_t size, char text[])
+{
+  const size_t length = strlen(u->name), other = strlen(u->nearest);
+  size_t       tail   = 0;
+  char         name[HELP_MAX_NAME], list[HELP_MAX_NAME];
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  while (tail < PetscMin(length, other) && u->name[length - tail - 1] == u->nearest[other - tail - 1]) tail++;
+  while (tail && u->nearest[other - tail] != '_') tail--;
+  if (!tail || tail == length) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(name, u->nearest, other - tail + 1));
+  PetscCall(OptionsFindList(name, sizeof(list), list));
+  if (list[0]) PetscCall(PetscSNPrintf(text, size, ", for %.*s is not in %s", (int)(length - tail), u->name, list));
   PetscFunctionReturn(0);
 }
 
 /* Raises the error; the names of the libraries are near each other */
 static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
 {
+  char      missing[3 * HELP_MAX_NAME];
   const int length = (int)strlen(u->name), near = ONE_EDIT * (u->is_librarys ? 1 + length / 6 : 2 + length / 3);
 
   PetscFunctionBeginUser;
-  PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s",
-             u->name, u->nearest);
+  PetscCall(UnknownFindList(u, sizeof(missing), missing));
+  PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s%s", u->name, u->nearest,
+             missing);
   PetscCheck(!u->is_librarys, comm, PETSC_ERR_USER_INPUT, "-%s: nothing in squeal reads it; leave it out", u->name);
   SETERRQ(comm, PETSC_ERR_USER_INPUT, "unknown option -%s; -help lists the valid ones", u->name);
 }
 
 PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
 {
-  UnknownOption unknown;
-  HelpList      valid = {0};
+  UnknownOption *unknown;
+  PetscInt       n, best = 0;
+  HelpList       valid = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(UnknownTakeFirst(&unknown));
-  if (!unknown.name[0]) PetscFunctionReturn(0);
-  PetscCall(HelpCollect(comm, read_again, ctx, &valid));
-  for (int i = 0; i < valid.n; i++) PetscCall(UnknownCompare(&unknown, valid.option[i].name));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++) PetscCall(UnknownCompare(&unknown, read_later[i]));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++) PetscCall(UnknownCompare(&unknown, read_first[i]));
+  PetscCall(PetscCalloc1(MAX_UNKNOWN, &unknown));
+  PetscCall(UnknownTake(unknown, MAX_UNKNOWN, &n));
+  if (n) PetscCall(HelpCollect(comm, read_again, ctx, &valid));
+  for (PetscInt k = 0; k < n; k++) {
+    for (int i = 0; i < valid.n; i++) PetscCall(UnknownCompare(&unknown[k], valid.option[i].name));
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++) PetscCall(UnknownCompare(&unknown[k], read_later[i]));
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++) PetscCall(UnknownCompare(&unknown[k], read_first[i]));
+    if (unknown[k].distance < unknown[best].distance) best = k;
+  }
   free(valid.option);
-  PetscCall(UnknownComplain(comm, &unknown));
+  if (n) PetscCall(UnknownComplain(comm, &unknown[best]));
+  PetscCall(PetscFree(unknown));
   PetscFunctionReturn(0);
 }
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LARGEST_MU 1.5 /* of rubber on dry concrete */
+
 const char *const ContactStatusNames[CONTACT_N_STATUS] = {"open", "stick", "slip"};
 
 PetscErrorCode ContactCreate(Model model, Contact *contact)
@@ -21,7 +23,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
 /* Reads the stiffness: a number, or the word `identify` */
 static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInterface *c)
 {
-  char      text[128] = "", *end;
+  char      text[128] = "", unit[256], *end;
   PetscBool set, per_area;
   PetscReal value = 0;
 
@@ -36,6 +38,8 @@ static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInte
   if (per_area) c->kn = value;
   if (!set) PetscFunctionReturn(0);
   c->identify = !strcmp(text, "identify") ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ValueExplainUnit(text, unit, sizeof(unit)));
+  PetscCheck(!unit[0], PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s_kn: %s has a unit: %s", c->name, text, unit);
   c->kn       = c->identify ? 1 : strtod(text, &end);
   PetscCheck(c->identify || (end != text && !*end), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
              "-%s_kn '%s' must be a positive number (N/m) or the word identify", c->name, text);
@@ -150,6 +154,9 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              c->name, c->name);
   PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
              (double)c->speed);
+  if (PetscAbsReal(c->mu) > LARGEST_MU)
+    PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_mu %.6g is above %g; in per cent? %.6g %% are %.6g\n", c->name,
+                           (double)c->mu, LARGEST_MU, (double)c->mu, (double)(c->mu / 100)));
   PetscFunctionReturn(0);
 }
 

@@ -184,6 +184,9 @@ PETSC_INTERN PetscErrorCode MeshCheck(Model model);
 /* check.c - the elements of the mesh in words: "8-node hexahedron", or "100 tet10, 20 hex20". Collective */
 PETSC_INTERN PetscErrorCode MeshDescribe(Model model, size_t size, char words[]);
 
+/* set.c - whether a label is of the mesh itself, and no set */
+PETSC_INTERN PetscErrorCode ModelLabelIsOwn(const char name[], PetscBool *own);
+
 /* set.c - raises the error for a name that the mesh does not have, with the names that it has; what = "volume" or
    "set" */
 PETSC_INTERN PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[]);

@@ -50,12 +50,21 @@ static PetscErrorCode SetHasCells(Model model, const char set[], PetscBool *has)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelLabelIsOwn(const char name[], PetscBool *own)
+{
+  static const char *const names[] = {"depth", "celltype", "dim"};
+
+  PetscFunctionBeginUser;
+  *own = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names) && !*own; i++) PetscCall(PetscStrcmp(name, names[i], own));
+  PetscFunctionReturn(0);
+}
+
 /* The named sets of the mesh as "'disc', 'pad'", or those that have cells, for messages; the same text on all ranks */
 static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], size_t size)
 {
-  PetscInt                 n;
-  const char              *name;
-  static const char *const own[] = {"depth", "celltype", "dim", NULL};
+  PetscInt    n;
+  const char *name;
 
   PetscFunctionBeginUser;
   list[0] = 0;
@@ -64,7 +73,7 @@ static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], si
     PetscBool skip = PETSC_FALSE, has = PETSC_TRUE;
 
     PetscCall(DMGetLabelName(model->dm, i, &name));
-    for (const char *const *o = own; *o && !skip; o++) PetscCall(PetscStrcmp(name, *o, &skip));
+    PetscCall(ModelLabelIsOwn(name, &skip));
     if (skip) continue;
     if (cells) PetscCall(SetHasCells(model, name, &has));
     if (!has) continue;

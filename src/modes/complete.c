@@ -7,6 +7,8 @@
 */
 #include "modesimpl.h"
 
+#define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
+
 /* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero is one
    mode with another zero, which is not listed, or with a decay; two decays are one mode */
 static void CountReal(Modes modes, PetscInt *rows, PetscInt *pairs, PetscInt *at_zero)
@@ -119,17 +121,41 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[])
+/* Why there may be too many modes; empty where nothing tells */
+static PetscErrorCode WindowDoubt(Modes modes, const Window *window, size_t size, char doubt[])
 {
   Operators operators;
   Model     model;
-  char      doubt[512] = "";
 
   PetscFunctionBeginUser;
+  doubt[0] = '\0';
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  if (model)
-    PetscCall(ModelDescribeDoubt(model, PetscMax(window->high, window->target) / (2 * PETSC_PI), sizeof(doubt), doubt));
+  if (model) PetscCall(ModelDescribeDoubt(model, PetscMax(window->high, window->target) / (2 * PETSC_PI), size, doubt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WindowCheckCount(Modes modes, const Window *window)
+{
+  char doubt[512] = "", below[64] = "";
+
+  PetscFunctionBeginUser;
+  if (!modes->has_band || window->expected < 0) PetscFunctionReturn(0);
+  if (!modes->has_most) PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
+  if (modes->most == 0 || window->expected <= (doubt[0] ? MODES_DOUBTED : modes->most)) PetscFunctionReturn(0);
+  if (window->below > 0) PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->below));
+  SETERRQ(modes->comm, PETSC_ERR_USER_INPUT,
+          "-modes_band %.6g,%.6g holds %" PetscInt_FMT " modes%s%s%s; narrow the band (Hz), or give -modes_most %" PetscInt_FMT
+          " to compute them",
+          (double)modes->band[0], (double)modes->band[1], window->expected, below, doubt[0] ? ": " : "", doubt, window->expected);
+}
+
+PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[])
+{
+  char doubt[512];
+
+  PetscFunctionBeginUser;
+  PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
   PetscCheck(!doubt[0], modes->comm, PETSC_ERR_NOT_CONVERGED,
              "the eigensolver did not converge all modes of the window: %s", doubt);
   SETERRQ(

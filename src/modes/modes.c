@@ -19,6 +19,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   (*modes)->left     = PETSC_TRUE;
   (*modes)->count    = 20;
   (*modes)->max_time = 3600;
+  (*modes)->most     = 3000;
   (*modes)->damping  = DAMPING_AUTO;
   PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
   PetscCall(OrderingRegister());
@@ -273,6 +274,7 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, window));
+  PetscCall(WindowCheckCount(modes, window));
   *none = window->expected == 0 && pencil.symmetric && !pencil.C ? PETSC_TRUE : PETSC_FALSE;
   if (*none) PetscFunctionReturn(0);
   PetscCall(ShiftsChoose(modes, &pencil, window));

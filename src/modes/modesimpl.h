@@ -49,6 +49,8 @@ struct _p_Modes {
   /* set by options */
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscInt  most;            /* modes that a band may hold; 0: any number */
+  PetscBool has_most;        /* given */
   PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, has_nearest, has_route, has_disc, left, is_static, keep, filters;
   PetscInt  count;
@@ -131,6 +133,9 @@ PETSC_INTERN PetscReal      WindowMiddle(const Window *window); /* of a part, in
 PETSC_INTERN PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *spectrum, PetscBool *complete);
 /* complete.c - in words, how it was checked that no mode is missing */
 PETSC_INTERN PetscErrorCode WindowDescribe(Modes modes, const Window *window);
+/* Raises an error where more modes were counted than -modes_most */
+PETSC_INTERN PetscErrorCode WindowCheckCount(Modes modes, const Window *window);
+
 /* The error of a window that the eigensolver, eps or pep, did not cover, with its likely cause */
 PETSC_INTERN PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[]);
 

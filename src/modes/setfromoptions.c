@@ -19,6 +19,7 @@ static PetscErrorCode ModesCheckValues(Modes modes)
              "-modes_band, -modes_target (Hz) and -modes_growth (1/s) must be of at most %g", MODES_LARGEST);
   PetscCheck(modes->count > 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_count %" PetscInt_FMT " must be positive",
              modes->count);
+  PetscCheck(modes->most >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_most %" PetscInt_FMT " must not be negative", modes->most);
   PetscCheck(modes->growth >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_growth %.6g must not be negative (1/s)",
              (double)modes->growth);
   PetscCheck(modes->max_time >= 0, modes->comm, PETSC_ERR_USER_INPUT, "-modes_max_time %.6g must not be negative (s)",
@@ -71,6 +72,9 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
     "-modes_growth", "modes of a band with growth and decay up to this must be found, 1/s (0: a tenth of the angular frequency f2)",
     "modes.h", modes->growth, &modes->growth, NULL));
   PetscCall(ShiftsSetFromOptions(modes, PetscOptionsObject));
+  PetscCall(PetscOptionsInt(
+    "-modes_most", "modes that a band may hold, counted before they are computed; more are an error (0: any number)", "modes.h",
+    modes->most, &modes->most, &modes->has_most));
   PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
                              "modes.h", modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",

@@ -5,6 +5,7 @@
    which is exact at omega_ref and grows with the frequency elsewhere.
 */
 #include "model/modelimpl.h"
+#include "base/fault.h"
 #include <squeal/options.h>
 
 /* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */
@@ -122,23 +123,45 @@ static PetscErrorCode PartMarkCells(Model model, PetscInt part, PetscInt cell_pa
   PetscFunctionReturn(0);
 }
 
+/* Notes the fault of a cell in none of the parts: the volume that it is of */
+static PetscErrorCode CellNoteVolume(Model model, PetscInt cell, Fault *fault)
+{
+  PetscInt    n, value = -1;
+  const char *name;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetNumLabels(model->dm, &n));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool own;
+
+    PetscCall(DMGetLabelName(model->dm, i, &name));
+    PetscCall(ModelLabelIsOwn(name, &own));
+    if (own) continue;
+    PetscCall(DMGetLabelValue(model->dm, name, cell, &value));
+    if (value != 1) continue;
+    PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT, "the mesh has a volume %s that is not in -parts: name it there", name));
+  }
+  PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT, "the mesh has cells in no named volume, hence in none of the -parts: name all"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[])
 {
-  PetscInt bad[2] = {-1, -1}, n_local, n_cells;
+  PetscInt twice = -1, without = -1, n_local, n_cells;
+  Fault    fault = {0};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < model->mesh.n_cells; c++) cell_part[c] = -1;
   for (PetscInt part = 0; part < model->scene.n_parts; part++) {
-    PetscCall(PartMarkCells(model, part, cell_part, &n_local, &bad[0]));
+    PetscCall(PartMarkCells(model, part, cell_part, &n_local, &twice));
     PetscCallMPI(MPI_Allreduce(&n_local, &n_cells, 1, MPIU_INT, MPI_SUM, model->comm));
     if (!n_cells) PetscCall(ModelComplainSet(model, "volume", model->scene.parts[part].volume));
   }
-  for (PetscInt c = 0; c < model->mesh.n_cells; c++)
-    if (cell_part[c] < 0) bad[1] = c;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bad, 2, MPIU_INT, MPI_MAX, model->comm));
-  PetscCheck(bad[0] < 0, model->comm, PETSC_ERR_USER_INPUT,
-             "a cell belongs to two of the -parts; volumes must not overlap");
-  PetscCheck(bad[1] < 0, model->comm, PETSC_ERR_USER_INPUT,
-             "some cells belong to none of the -parts; name every volume of the mesh that has cells");
+  for (PetscInt c = model->mesh.n_cells; c-- > 0;)
+    if (cell_part[c] < 0) without = c;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, model->comm));
+  PetscCheck(twice < 0, model->comm, PETSC_ERR_USER_INPUT, "a cell belongs to two of the -parts; volumes must not overlap");
+  if (without >= 0) PetscCall(CellNoteVolume(model, without, &fault));
+  PetscCall(FaultsRaise(model->comm, &fault));
   PetscFunctionReturn(0);
 }
