@@ -92,5 +92,6 @@ PetscErrorCode ChainRun(Chain *chain)
   PetscCall(ChainShow(chain, run[chain->analysis].shown, PETSC_TRUE));
   if (!ChainIsInTime(chain)) PetscCall(ChainWrite(chain)); /* which writes as it goes */
   if (chain->analysis == ANALYSIS_MAP) PetscCall(MapJudge(chain->map));
+  if (chain->analysis == ANALYSIS_TRANSIENT) PetscCall(ReducedJudgeVerified(chain->reduced));
   PetscFunctionReturn(0);
 }

@@ -91,7 +91,8 @@ typedef struct {
                                NULL for none */
 } ReducedDrive;
 
-/* What a step did: works on the bodies, J; without `works`, which cost a tenth of a step, slip alone */
+/* What a step did: works on the bodies, J; without `works`, which cost a tenth of a step, slip and the works of contact, friction
+   and impulses alone */
 typedef struct {
   PetscBool  works;
   PetscReal  external, damping;
@@ -131,6 +132,14 @@ PetscErrorCode ReducedStepperTakeFriction(ReducedStepper stepper);
     Errors: PETSC_ERR_NOT_CONVERGED from the contact laws. @*/
 PetscErrorCode ReducedStep(ReducedStepper stepper, const ReducedDrive *drive, ReducedState *state,
                            ReducedReport *report);
+
+/*@ ReducedGetContactWork - adds the works of contact and friction in a step to the sums, J. Not collective. @*/
+void ReducedGetContactWork(const ReducedModel *model, const ReducedReport *report, PetscReal *contact,
+                           PetscReal *friction);
+
+/*@ ReducedContactFeeds - whether contact gave so much of the energy that the motion is that of the steps: more than a tenth of
+    what others gave, J. Not collective. @*/
+PetscBool ReducedContactFeeds(PetscReal contact, PetscReal others);
 
 /*@ ReducedEnergy - kinetic energy of the modes, and strain energy of modes and residual, J. Not collective. @*/
 void ReducedEnergy(const ReducedModel *model, const ReducedState *state, PetscReal *kinetic, PetscReal *strain);
@@ -231,6 +240,10 @@ PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *
    naming what a reduced model cannot do.
 @*/
 PetscErrorCode ReducedIntegrate(ReducedRun reduced, Results results);
+
+/*@ ReducedJudgeVerified - raises PETSC_ERR_NOT_CONVERGED where -dynamics_verify has found that the level of the vibration or the time
+    without contact is another one by more than 10 % beyond twice its standard error. After ReducedView(). Collective. @*/
+PetscErrorCode ReducedJudgeVerified(ReducedRun reduced);
 
 /*@ ReducedView - modes, cut-off, step, cost, errors, ledger in words. Collective. @*/
 PetscErrorCode ReducedView(ReducedRun reduced, PetscViewer viewer);

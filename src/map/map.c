@@ -248,7 +248,9 @@ PetscErrorCode MapJudge(Map map)
 {
   static const char *const why[MAP_N_FAULTS] = {[MAP_NO_STATE]  = "no sliding state balances the loads",
                                                 [MAP_NO_FORCES] = "the contact forces do not converge",
-                                                [MAP_NO_NUMBER] = "the motion grows beyond all numbers"};
+                                                [MAP_NO_NUMBER] = "the motion grows beyond all numbers",
+                                                [MAP_MADE]      = "normal contact, which does no work, feeds the "
+                                                                  "motion: take a smaller -ts_dt"};
   const MapPoint *first = NULL;
   PetscInt        n     = 0;
   char            text[512], other[320] = "";

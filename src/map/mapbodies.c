@@ -83,6 +83,21 @@ PetscBool MapBodiesAreHit(const MapBodies *b, PetscReal t)
   return PETSC_TRUE;
 }
 
+const PetscReal *MapBodiesKick(const MapBodies *b, PetscReal t, PetscReal dt, PetscReal kick[])
+{
+  const PetscInt m   = b->model.m;
+  PetscBool      any = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < b->n_hits; i++) {
+    const PetscReal share = 1 - PetscAbsReal(b->hits[m * b->n_hits + i] - t) / dt;
+
+    if (!(share > 0)) continue;
+    for (PetscInt k = 0; k < m; k++) kick[k] = (any ? kick[k] : 0) + share * b->hits[m * i + k];
+    any = PETSC_TRUE;
+  }
+  return any ? kick : NULL;
+}
+
 PetscErrorCode MapBodiesDestroy(MapBodies *b)
 {
   PetscFunctionBeginUser;

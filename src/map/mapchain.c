@@ -19,6 +19,7 @@ struct _p_MapMarch {
   ReducedReport  report;
   PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
   PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
+  PetscReal      contact, friction, given; /* works in the point; of impulses, with the energy that it began with, J */
   PetscReal     *slip;                   /* [n_most n] mean slip speed along t, m/s */
   PetscReal     *force;                  /* [n_most n] N */
   ContactStatus *status;                 /* [n_pairs] at the beginning of the window */
@@ -97,23 +98,6 @@ static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
-/* Sum of the impulses that act at t_n, or NULL: one between two steps acts at both in shares, as in any reduced run */
-static const PetscReal *MarchKick(MapMarch w)
-{
-  const MapBodies *b   = w->bodies;
-  const PetscInt   m   = b->model.m;
-  PetscBool        any = PETSC_FALSE;
-
-  for (PetscInt i = 0; i < b->n_hits; i++) {
-    const PetscReal share = 1 - PetscAbsReal(b->hits[m * b->n_hits + i] - w->state.time) / w->dt;
-
-    if (!(share > 0)) continue;
-    for (PetscInt k = 0; k < m; k++) w->kick[k] = (any ? w->kick[k] : 0) + share * b->hits[m * i + k];
-    any = PETSC_TRUE;
-  }
-  return any ? w->kick : NULL;
-}
-
 /* Statuses at t_{n+1}: whether they are those at the beginning of the window, and whether all closed pairs stick */
 static void MarchLook(MapMarch w, MapSample *sample)
 {
@@ -129,6 +113,12 @@ static void MarchLook(MapMarch w, MapSample *sample)
   sample->stick += (n_closed && n_stick == n_closed) / (PetscReal)w->n;
 }
 
+/* Whether contact feeds the motion */
+static PetscBool MarchIsMade(const MapMarch w)
+{
+  return ReducedContactFeeds(w->contact, PetscAbsReal(w->friction) + w->given);
+}
+
 /* The steps of the next window, and what its forces are like */
 static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
 {
@@ -141,10 +131,12 @@ static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
   *now = (MapSample){0};
   PetscCall(PetscArraycpy(w->status, w->state.status, n_pairs));
   for (PetscInt k = 0; k < w->n; k++) {
-    const PetscReal *kick = MarchKick(w);
+    const PetscReal *kick = MapBodiesKick(w->bodies, w->state.time, w->dt, w->kick);
 
     if (kick) now->changed = PETSC_TRUE;
     PetscCall(ReducedStep(w->stepper, &(ReducedDrive){w->loads, w->sliding, kick}, &w->state, &w->report));
+    w->given += kick ? PetscAbsReal(w->report.external) : 0;
+    ReducedGetContactWork(&w->bodies->model, &w->report, &w->contact, &w->friction);
     force[k] = slip[k] = 0;
     for (PetscInt i = 0; i < n_pairs; i++) {
       force[k] += w->state.p[3 * i];
@@ -155,6 +147,7 @@ static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
   }
   MapForceMeasure(w->n, force, now);
   w->n_windows++;
+  PetscCheck(!MarchIsMade(w), PETSC_COMM_SELF, PETSC_ERR_FP, "contact gives %g J", (double)w->contact);
   PetscFunctionReturn(0);
 }
 
@@ -273,6 +266,7 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   const ReducedModel *model   = &w->bodies->model;
   MapFastest          fastest = {NAN, NAN, NAN};
   PetscBool           found;
+  PetscReal           kinetic;
 
   PetscFunctionBeginUser;
   PetscCall(MapBodiesMove(w->map, row, w->bodies, w->sliding, w->loads));
@@ -288,6 +282,9 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   row->mode_freq = fastest.freq;
   row->index     = fastest.index;
   w->state.time  = 0;
+  w->contact = w->friction = 0;
+  ReducedEnergy(model, &w->state, &kinetic, &w->given);
+  w->given += kinetic;
   *begun         = found || go_on ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -309,7 +306,10 @@ static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, Pet
              "a transient of the map ended by PETSc's error %d", (int)error);
   *good = begun && !error ? PETSC_TRUE : PETSC_FALSE;
   if (!*good) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
-  row->fault = !begun ? MAP_NO_STATE : error == PETSC_ERR_FP ? MAP_NO_NUMBER : MAP_NO_FORCES;
+  row->fault = !begun                ? MAP_NO_STATE
+               : MarchIsMade(w)        ? MAP_MADE
+               : error == PETSC_ERR_FP ? MAP_NO_NUMBER
+                                       : MAP_NO_FORCES;
   PetscFunctionReturn(0);
 }
 

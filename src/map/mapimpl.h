@@ -16,7 +16,7 @@
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
-typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_N_FAULTS } MapFault; /* why a transient failed */
+typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_MADE, MAP_N_FAULTS } MapFault; /* why a transient failed */
 typedef enum { MAP_HALF_STEP, MAP_TIGHT_LAWS, MAP_HIGHER_CUTOFF, MAP_N_CHECKS } MapCheckRun; /* of -map_verify */
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
@@ -142,6 +142,9 @@ PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 
 /* mapbodies.c - whether all impulses of the bodies are due at t (s) at the latest. Not collective. */
 PETSC_INTERN PetscBool MapBodiesAreHit(const MapBodies *bodies, PetscReal t);
+/* mapbodies.c - sum [m] of the impulses that act at t in steps of dt (s), or NULL: one between two steps acts at both in shares, as in
+   any reduced run. Not collective. */
+PETSC_INTERN const PetscReal *MapBodiesKick(const MapBodies *bodies, PetscReal t, PetscReal dt, PetscReal kick[]);
 
 /* mapshare.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
 PETSC_INTERN PetscErrorCode MapShareCreate(MPI_Comm comm, MapShare *share);

@@ -24,7 +24,6 @@
 
 #define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
-#define LABEL_TIE  1e-6 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
@@ -233,49 +232,6 @@ static PetscErrorCode LabelsDestroy(Labels *l)
   PetscFunctionReturn(0);
 }
 
-/* The first entry that is the largest. Collective */
-static PetscErrorCode FirstOfLargest(Vec size, PetscInt *at)
-{
-  const PetscScalar *s;
-  PetscReal          largest;
-  PetscInt           first, last, k;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecMax(size, NULL, &largest));
-  PetscCall(VecGetOwnershipRange(size, &first, &last));
-  PetscCall(VecGetArrayRead(size, &s));
-  for (k = 0; k < last - first && s[k] < (1 - LABEL_TIE) * largest;) k++;
-  PetscCall(VecRestoreArrayRead(size, &s));
-  *at = k < last - first ? first + k : PETSC_MAX_INT;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)size)));
-  PetscFunctionReturn(0);
-}
-
-/* Matrices without a mesh: the unknown that moves most */
-static PetscErrorCode LabelUnknown(Modes modes)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n; i++) {
-    PetscInt at;
-    Vec      size;
-
-    PetscCall(VecDuplicate(modes->right.xr[i], &size));
-    PetscCall(VecPointwiseMult(size, modes->right.xr[i], modes->right.xr[i]));
-    if (modes->right.xi[i]) {
-      Vec part;
-
-      PetscCall(VecDuplicate(size, &part));
-      PetscCall(VecPointwiseMult(part, modes->right.xi[i], modes->right.xi[i]));
-      PetscCall(VecAXPY(size, 1, part));
-      PetscCall(VecDestroy(&part));
-    }
-    PetscCall(FirstOfLargest(size, &at));
-    PetscCall(VecDestroy(&size));
-    PetscCall(PetscSNPrintf(modes->mode[i].label, sizeof(modes->mode[i].label), "u%" PetscInt_FMT, at + 1));
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModesLabel(Modes modes)
 {
   Labels      l = {0};
@@ -289,13 +245,13 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(OperatorsGetMesh(operators, &mesh));
   if (!mesh) {
-    PetscCall(LabelUnknown(modes));
+    PetscCall(ModesLabelUnknowns(modes));
     PetscFunctionReturn(0);
   }
   n = modes->n * mesh->n_parts;
   PetscCall(LabelsCreate(modes, operators, mesh, &l));
   l.by_unknown = !model && mesh->n_parts == 1 ? PETSC_TRUE : PETSC_FALSE; /* better than one name for all */
-  if (l.by_unknown) PetscCall(LabelUnknown(modes));
+  if (l.by_unknown) PetscCall(ModesLabelUnknowns(modes));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, operators, i, &l));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));

@@ -216,6 +216,11 @@ PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal
 /* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 
+#define LABEL_TIE 1e-6 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
+
+/* labelunknown.c - names after the unknowns that move most */
+PETSC_INTERN PetscErrorCode ModesLabelUnknowns(Modes modes);
+
 /* twins.c - of the zeros of a damped system at most one for each rigid mode; trims the list to the modes asked for */
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);
 PETSC_INTERN PetscErrorCode TwinsTrim(Modes modes, const Window *window);

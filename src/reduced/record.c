@@ -109,6 +109,7 @@ static PetscErrorCode RecordBalance(ReducedRun r, PetscBool first)
   if (rank) *part = (LedgerPart){0};
   PetscCall(LedgerClose(r->comm, &r->ledger, r->run.n_interfaces, r->sums, first));
   PetscCall(LedgerJudge(r->comm, &r->ledger.total, 0, r->step, r->state.time));
+  PetscCall(LedgerJudgeContact(r->comm, &r->ledger.total, r->step, r->state.time));
   PetscFunctionReturn(0);
 }
 

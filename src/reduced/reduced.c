@@ -40,7 +40,9 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",
-                           "after a reduced run once more with half the step, and with 2.25 times the cut-off",
+                           "after a reduced run once more with half the step, and with 2.25 times the cut-off; an "
+                           "error where the rms of the normal force in the last half of the time, or the share of "
+                           "the time without contact, differs by more than 10 % beyond twice its standard error",
                            &r->verify));
   PetscOptionsEnd();
   PetscCheck(r->cutoff >= 0 && r->cutoff < 1e30, r->comm, PETSC_ERR_USER_INPUT,

@@ -49,6 +49,7 @@ typedef struct {
   PetscReal level;        /* rms about the mean in the last half of the time, relative difference */
   PetscReal open;         /* share of the last half without force, difference */
   PetscReal level_error, open_error; /* standard errors of the two, from pieces of the time */
+  PetscBool loud;                    /* there is a vibration that has a level */
 } ReducedDifference;
 
 /* Shares of v'M v that the modes hold; 0 for what is not there */

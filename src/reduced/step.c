@@ -242,10 +242,10 @@ static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport 
       state->y[3 * i + d] = y;
     }
     for (int d = 0; d < 2; d++) report->slip[2 * i + d] = slip[d];
-    if (!report->works) continue;
     report->contact[i]  = mean[0] * dy[0];
     report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
-    report->heat[i]     = FrictionHeat(&state->p[3 * i + 1], &state->last[3 * i + 1], slip);
+    if (!report->works) continue;
+    report->heat[i] = FrictionHeat(&state->p[3 * i + 1], &state->last[3 * i + 1], slip);
   }
 }
 
@@ -323,4 +323,18 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   PetscCall(PetscArraycpy(state->rate, &s->next[m], m));
   state->time += s->dt;
   PetscFunctionReturn(0);
+}
+
+void ReducedGetContactWork(const ReducedModel *model, const ReducedReport *report, PetscReal *contact,
+                           PetscReal *friction)
+{
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    *contact += report->contact[i];
+    *friction += report->friction[i];
+  }
+}
+
+PetscBool ReducedContactFeeds(PetscReal contact, PetscReal others)
+{
+  return LedgerContactFeeds(contact, others);
 }

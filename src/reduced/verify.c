@@ -6,7 +6,9 @@
 */
 #include "reducedimpl.h"
 
-#define PIECES 8 /* of the last half of the time */
+#define PIECES       8    /* of the last half of the time */
+#define VERIFY_MOST  0.1  /* of the rms, and of the time: what a run may be off by, beyond twice the standard errors */
+#define VERIFY_SMALL 1e-3 /* of the largest force: a vibration whose rms nobody asks for */
 
 PetscErrorCode ReducedKeepForce(ReducedRun r)
 {
@@ -97,9 +99,35 @@ static PetscErrorCode VerifyOne(ReducedRun r, PetscReal cutoff, PetscInt every, 
                            .largest     = largest > 0 ? miss / largest : 0,
                            .level       = rms[1] > 0 ? rms[2] / rms[1] - 1 : 0,
                            .open        = open[2] - open[1],
+                           .loud        = PetscMax(rms[1], rms[2]) > VERIFY_SMALL * largest ? PETSC_TRUE : PETSC_FALSE,
                            .level_error = rms[1] > 0 ? hypot(error[0][0], error[1][0]) / rms[1] : 0,
                            .open_error  = hypot(error[0][1], error[1][1])};
   PetscCall(ReducedDestroy(&other));
+  PetscFunctionReturn(0);
+}
+
+/* Whether the level of the vibration, or the time without contact, is another one */
+static PetscBool VerifyIsOff(const ReducedDifference *d)
+{
+  return (d->loud && PetscAbsReal(d->level) > VERIFY_MOST + 2 * d->level_error) ||
+             PetscAbsReal(d->open) > VERIFY_MOST + 2 * d->open_error
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+PetscErrorCode ReducedJudgeVerified(ReducedRun r)
+{
+  static const char *const more[2] = {"take a smaller -ts_dt", "take a higher -dynamics_cutoff"};
+  const ReducedDifference *both[2] = {&r->finer, &r->higher};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2 && r->verify && r->n_force; i++)
+    PetscCheck(!VerifyIsOff(both[i]), r->comm, PETSC_ERR_NOT_CONVERGED,
+               "-dynamics_verify: with steps of %.6g s below %.6g Hz the rms of the normal force is another one by "
+               "%+.2g %% +- %.2g %%, and the time without contact by %+.2g %% +- %.2g %%, must be %.3g %% at most: %s",
+               (double)both[i]->dt, (double)both[i]->cutoff, 100 * (double)both[i]->level,
+               100 * (double)both[i]->level_error, 100 * (double)both[i]->open, 100 * (double)both[i]->open_error,
+               100 * VERIFY_MOST, more[i]);
   PetscFunctionReturn(0);
 }
 

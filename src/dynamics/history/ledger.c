@@ -11,6 +11,7 @@
 #include "ledger.h"
 
 #define LEDGER_RTOL 1e-6 /* of the throughput */
+#define LEDGER_MADE 0.1  /* of the energy that others give: what contact may make of nothing within the steps */
 #define LAWS_MOST   1e-3 /* an error beyond is no rounding: the run ends */
 
 void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old)
@@ -115,6 +116,25 @@ PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *l, PetscReal fraction, P
              "the fastest oscillations of the mesh grow (kinetic %.3g J, strain %.3g J) at step %" PetscInt_FMT
              ", %.6g s: the step is above the critical one; take a smaller -ts_dt",
              (double)l->kinetic, (double)l->strain, step, (double)time);
+  PetscFunctionReturn(0);
+}
+
+PetscBool LedgerContactFeeds(PetscReal contact, PetscReal others)
+{
+  return contact > LEDGER_MADE * others ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode LedgerJudgeContact(MPI_Comm comm, const Ledger *l, PetscInt step, PetscReal time)
+{
+  const PetscReal others =
+    PetscAbsReal(l->start) + PetscAbsReal(l->external) + PetscAbsReal(l->friction) + PetscAbsReal(l->damping);
+
+  PetscFunctionBeginUser;
+  PetscCheck(l->contact <= LEDGER_RTOL * l->throughput || !LedgerContactFeeds(l->contact, others), comm, PETSC_ERR_FP,
+             "normal contact, which does no work, gives %.3g J to the motion beside %.3g J of all else at step "
+             "%" PetscInt_FMT ", %.6g s: pairs that open within steps make energy; take a smaller -ts_dt, or "
+             "-dynamics_model full",
+             (double)l->contact, (double)others, step, (double)time);
   PetscFunctionReturn(0);
 }
 

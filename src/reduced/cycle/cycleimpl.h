@@ -47,6 +47,7 @@ typedef struct {
   PetscReal              *way;             /* [n_pairs] in a step, m */
   PetscInt                n_steps, n;      /* in a period; unknowns of the state */
   PetscInt                first, n_looked; /* ports of the probes */
+  PetscReal               contact, friction; /* works in a period that is measured, J */
   PetscReal              *force; /* [n_steps] normal force after each, N; NULL but while a cycle is measured */
   PetscReal              *shown; /* [n_steps][3][n_looked] displacement, residual part of it, velocity of the modes */
   PetscReal               dt;    /* of the stepper */
@@ -62,6 +63,7 @@ typedef struct {
   PetscReal freq;                   /* Hz */
   PetscReal mean, rms, peak, least; /* of the normal force, N; rms about the mean */
   PetscReal open;                   /* share of the steps without force */
+  PetscBool made;                   /* contact, which does no work, feeds it */
 } CycleMeasure;
 
 typedef struct {

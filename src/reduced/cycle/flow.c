@@ -164,6 +164,7 @@ static PetscErrorCode FlowSteps(CycleFlow *f, PetscReal M[])
     PetscCall(ReducedStep(f->stepper, &drive, &f->state, &f->report));
     if (M) PetscCall(ReducedTangentApply(f->tangent, f->n, M));
     if (f->force) FlowLook(f, k);
+    if (f->force) ReducedGetContactWork(f->model, &f->report, &f->contact, &f->friction);
   }
   PetscFunctionReturn(0);
 }

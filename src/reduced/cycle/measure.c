@@ -32,6 +32,7 @@ static void PeriodMeasure(const CycleFlow *f, PetscReal period, CycleMeasure *m)
   *m      = (CycleMeasure){.freq = 1 / period, .least = f->force[0]};
   m->rms  = PeriodRms(f->n_steps, 1, f->force, &m->mean);
   m->peak = PeriodLargest(f->n_steps, 1, f->force, 1, 0);
+  m->made = ReducedContactFeeds(f->contact, PetscAbsReal(f->friction));
   for (PetscInt k = 0; k < f->n_steps; k++) {
     m->least = PetscMin(m->least, f->force[k]);
     m->open += (f->force[k] <= 0) / (PetscReal)f->n_steps;
@@ -72,6 +73,7 @@ PetscErrorCode CycleFlowMeasure(CycleFlow *f, const ShootingCycle *cycle, CycleM
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(f->n, &y));
   PetscCall(PetscMalloc2(steps, &f->force, steps * 3 * (size_t)f->n_looked, &f->shown));
+  f->contact = f->friction = 0;
   PetscCall(CycleFlowRun(f, cycle->x, cycle->period, cycle->value, y, NULL));
   PetscCheck(!PetscIsInfOrNanReal(y[0]), PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
              CYCLE_BY ": a cycle of %.6g Hz was found, but the contact laws have no solution when it is run once more: "

@@ -64,6 +64,8 @@ const char *CycleClass(const CyclePoint *p, PetscReal rtol, const char **why)
     *why = "the multiplier is nearer to 1 than its error";
   else if (side != MultiplierSide(p->stability.worst, margin))
     *why = "another multiplier may be that of the phase";
+  else if (p->found.made)
+    *why = "normal contact, which does no work, gives more than a tenth of what friction does: take more steps";
   if (*why) return "numerical";
   return side > 0 ? "unstable" : "stable";
 }
