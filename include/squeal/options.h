@@ -232,6 +232,17 @@ PetscErrorCode OptionsCheckNumbers(void);
 /*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/
 PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[]);
 
+/*@ OptionsGetReal, OptionsGetInt - reads a number between PetscOptionsBegin() and PetscOptionsEnd(), as PetscOptionsReal() and
+    PetscOptionsInt() do. Collective. Errors: PETSC_ERR_USER_INPUT for words that PETSc takes for numbers, such as default, and
+    integers that PetscInt does not hold. @*/
+PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                              PetscReal now, PetscReal *value, PetscBool *set);
+PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                             PetscInt now, PetscInt *value, PetscBool *set);
+
+/*@ OptionsCheckWords - raises these errors for one option, or for an item of its array, before it is read otherwise. Not collective. @*/
+PetscErrorCode OptionsCheckWords(OptionsItems PetscOptionsObject, const char option[], PetscBool integer);
+
 /*@ OptionsGetBool - reads a logical option between PetscOptionsBegin() and PetscOptionsEnd(); without a value it is
     true. Collective. @*/
 PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option[], const char help[],

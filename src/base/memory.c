@@ -6,6 +6,7 @@
    give anything back (mallopt(3), M_MMAP_MAX 0 and M_TRIM_THRESHOLD -1) for the whole process. For small problems that
    spares the system's work; large ones would hold matrices and factors that are long gone.
 */
+#include <squeal/options.h>
 #include "memory.h"
 #include <malloc.h>
 #include <math.h>
@@ -167,10 +168,10 @@ PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
   PetscCallMPI(MPI_Comm_free(&machine));
   PetscOptionsBegin(comm, NULL, "Memory", NULL);
   PetscCall(
-    PetscOptionsReal("-squeal_memory",
-                     "MB that factors, or models over -cycle_parameter, may take on one machine, of all ranks there "
-                     "(0: what is free)",
-                     "sys.h", allowed, &allowed, NULL));
+    OptionsGetReal(PetscOptionsObject, "-squeal_memory",
+                   "MB that factors, or models over -cycle_parameter, may take on one machine, of all ranks there "
+                   "(0: what is free)",
+                   allowed, &allowed, NULL));
   PetscOptionsEnd();
   PetscCheck(allowed >= 0, comm, PETSC_ERR_USER_INPUT, "-squeal_memory %.6g must not be negative (MB)", allowed);
   PetscFunctionReturn(0);

@@ -14,7 +14,7 @@ static PetscErrorCode TimeSetFromOptions(OptionsItems PetscOptionsObject, const 
 
   PetscFunctionBeginUser;
   PetscCall(OptionsCheckNumber(PetscOptionsObject, option));
-  PetscCall(PetscOptionsReal(option, help, "ramp.h", value, &value, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, option, help, value, &value, NULL));
   PetscCheck(value >= 0, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s%s %.6g must be a time of at least 0 (s)",
              prefix, option + 1, (double)value);
   *time = value;

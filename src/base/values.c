@@ -121,6 +121,7 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
 
   PetscFunctionBeginUser;
   PetscCall(ArrayPrint(n, values, NULL, initial));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_FALSE));
   PetscCall(
     PetscOptionsGetRealArray(PetscOptionsObject->options, PetscOptionsObject->prefix, option, values, &count, NULL));
   PetscCall(ArrayPrint(n, values, NULL, now));
@@ -139,6 +140,7 @@ PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char o
   PetscBool   given;
 
   PetscFunctionBeginUser;
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_FALSE));
   PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
   *n = given ? count : 0;
   PetscCheck(*n <= 3, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
@@ -158,6 +160,7 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
 
   PetscFunctionBeginUser;
   PetscCall(ArrayPrint(n, NULL, values, initial));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_TRUE));
   PetscCall(
     PetscOptionsGetIntArray(PetscOptionsObject->options, PetscOptionsObject->prefix, option, values, &count, NULL));
   PetscCall(ArrayPrint(n, NULL, values, now));

@@ -28,8 +28,9 @@ static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInte
   PetscReal value = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-kn_per_area", "instead: normal stiffness per area of the slave, N/m^3 (penalty)",
-                             "contact.h", value, &value, &per_area));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-kn_per_area",
+                           "instead: normal stiffness per area of the slave, N/m^3 (penalty)", value, &value,
+                           &per_area));
   PetscCall(PetscOptionsString("-kn", "normal stiffness per pair, N/m (penalty), or: identify", "contact.h", "0", text,
                                sizeof(text), &set));
   PetscCheck(!set || !per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
@@ -52,11 +53,11 @@ static PetscErrorCode HoldRead(OptionsItems PetscOptionsObject, ContactInterface
   PetscBool set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-kt",
-                             "modes, holding by friction: stiffness along the surface of a pair that sticks, N/m",
-                             "contact.h", c->kt, &c->kt, &set));
-  PetscCall(PetscOptionsReal("-kt_per_area", "instead: that per area of the slave, N/m^3", "contact.h", c->kt, &c->kt,
-                             &c->kt_per_area));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-kt",
+                           "modes, holding by friction: stiffness along the surface of a pair that sticks, N/m", c->kt,
+                           &c->kt, &set));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-kt_per_area", "instead: that per area of the slave, N/m^3", c->kt,
+                           &c->kt, &c->kt_per_area));
   PetscCheck(!set || !c->kt_per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
              "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
   PetscCheck((!set && !c->kt_per_area) || (c->kt > 0 && !PetscIsInfReal(c->kt)), PetscOptionsObject->comm,
@@ -96,20 +97,20 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
     PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", "contact.h", surfaces, &n, &set));
   PetscCall(
     PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
-  PetscCall(PetscOptionsReal("-mu", "friction coefficient", "contact.h", c->mu, &c->mu, NULL));
-  PetscCall(PetscOptionsReal("-mu_slope", "its slope with the slip speed about the stated one, s/m", "contact.h",
-                             c->mu_slope, &c->mu_slope, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-mu", "friction coefficient", c->mu, &c->mu, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-mu_slope", "its slope with the slip speed about the stated one, s/m",
+                           c->mu_slope, &c->mu_slope, NULL));
   PetscCall(StiffnessRead(PetscOptionsObject, c));
   PetscCall(HoldRead(PetscOptionsObject, c));
-  PetscCall(
-    PetscOptionsReal("-tolerance", "largest distance of a slave node from the master along the normal, m", "contact.h",
-                     c->tolerance, &c->tolerance, NULL));
-  PetscCall(PetscOptionsReal(
-    "-overhang", "slave nodes farther beyond the master's border have no pair, m; 0: 1 % of a facet", "contact.h",
-    c->overhang, &c->overhang, NULL));
-  PetscCall(
-    PetscOptionsReal("-force", "total normal force in the sliding state, N", "contact.h", c->force, &c->force, NULL));
-  PetscCall(PetscOptionsReal("-speed", "sliding speed, m/s", "contact.h", c->speed, &c->speed, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-tolerance",
+                           "largest distance of a slave node from the master along the normal, m", c->tolerance,
+                           &c->tolerance, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-overhang",
+                           "slave nodes farther beyond the master's border have no pair, m; 0: 1 % of a facet",
+                           c->overhang, &c->overhang, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-force", "total normal force in the sliding state, N", c->force,
+                           &c->force, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-speed", "sliding speed, m/s", c->speed, &c->speed, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-friction_damping",
                            "damping mu N/v across the slip, mu_slope N along it", &c->damping));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,

@@ -38,9 +38,9 @@ static PetscErrorCode TieRead(OptionsItems PetscOptionsObject, void *owner, void
   (void)owner;
   PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
                                     "contact.h", surfaces, &n, NULL));
-  PetscCall(PetscOptionsReal(
-    "-distance", "largest distance of a node of the slave from its foot, m; default 5 % of the facet's size",
-    "contact.h", tie->distance, &tie->distance, &given));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-distance",
+                           "largest distance of a node of the slave from its foot, m; default 5 % of the facet's size",
+                           tie->distance, &tie->distance, &given));
   PetscCall(PetscOptionsEList("-far", "nodes farther off are an error, or stay free", "contact.h", far, 2, far[0],
                               &left, NULL));
   PetscCheck(n == 2 && surfaces[0] && surfaces[1], comm, PETSC_ERR_USER_INPUT,

@@ -9,13 +9,15 @@
 static PetscErrorCode DynamicsStepFromOptions(Dynamics d, OptionsItems PetscOptionsObject)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-dynamics_step_fraction", "step, where -ts_dt is not given, of the critical one (-); it has six digits",
-                             "dynamics.h", d->fraction, &d->fraction, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_step_fraction",
+                           "step, where -ts_dt is not given, of the critical one (-); it has six digits",
+                           d->fraction, &d->fraction, NULL));
   PetscCheck(d->fraction > 0 && d->fraction <= 1, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_step_fraction %.6g must be in (0, 1]", (double)d->fraction);
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_step_force",
                            "integrate with a -ts_dt above the critical step", &d->step_force));
-  PetscCall(PetscOptionsReal("-ts_time_step", "the same as -ts_dt, s", "dynamics.h", d->dt_asked, &d->dt_asked, NULL));
+  PetscCall(
+    OptionsGetReal(PetscOptionsObject, "-ts_time_step", "the same as -ts_dt, s", d->dt_asked, &d->dt_asked, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -29,10 +31,10 @@ static PetscErrorCode DynamicsStartFromOptions(Dynamics d, OptionsItems PetscOpt
                               N_STARTS, starts[start], &start, NULL));
   PetscCall(OptionsGetPath(PetscOptionsObject, "-dynamics_shape",
                            "folder of a run of modes: one of them is added to the start", d->shape, NULL));
-  PetscCall(PetscOptionsInt("-dynamics_shape_mode", "its number in modes.csv", "dynamics.h", d->shape_mode,
-                            &d->shape_mode, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_shape_amplitude", "its largest displacement, m", "dynamics.h",
-                             d->shape_amplitude, &d->shape_amplitude, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-dynamics_shape_mode", "its number in modes.csv", d->shape_mode,
+                          &d->shape_mode, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_shape_amplitude", "its largest displacement, m",
+                           d->shape_amplitude, &d->shape_amplitude, NULL));
   if (!d->shape[0])
     PetscCall(
       OptionsRefuse(d->comm, "-dynamics_shape_mode -dynamics_shape_amplitude", "not used without -dynamics_shape"));
@@ -49,6 +51,7 @@ static PetscErrorCode DynamicsFiltersFromOptions(Dynamics d, OptionsItems PetscO
   PetscCall(OptionsGetPath(PetscOptionsObject, "-dynamics_filters",
                            "folder of a run of modes with -modes_filters: their amplitudes in amplitudes.csv",
                            d->filters_dir, NULL));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, "-dynamics_filters_modes", PETSC_TRUE));
   PetscCall(PetscOptionsIntArray("-dynamics_filters_modes", "their numbers in modes.csv, 0 for all unstable ones",
                                  "dynamics.h", modes, &n, &given));
   if (!d->filters_dir[0])
@@ -69,10 +72,11 @@ static PetscErrorCode DynamicsRunFromOptions(Dynamics d, OptionsItems PetscOptio
                            &d->centrifugal));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-contact_view_kkt",
                            "print the residuals of the contact laws at the end", &d->view_kkt));
-  PetscCall(PetscOptionsInt("-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none", "dynamics.h",
-                            d->checkpoint_interval, &d->checkpoint_interval, NULL));
-  PetscCall(PetscOptionsInt("-dynamics_check_interval", "steps between looks at the laws by second paths, 0 for none",
-                            "dynamics.h", d->laws.interval, &d->laws.interval, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none",
+                          d->checkpoint_interval, &d->checkpoint_interval, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-dynamics_check_interval",
+                          "steps between looks at the laws by second paths, 0 for none", d->laws.interval,
+                          &d->laws.interval, NULL));
   PetscCheck(d->laws.interval >= 0, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_check_interval %" PetscInt_FMT " must be a number of steps, 0 for none", d->laws.interval);
   PetscCheck(d->checkpoint_interval >= 0, d->comm, PETSC_ERR_USER_INPUT,

@@ -100,10 +100,11 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
                                "frf.h", frf->times, frf->times, sizeof(frf->times), &has_times));
   PetscCall(PetscOptionsEList("-frf_method", "superposition of modes, or the whole system at each frequency", "frf.h",
                               methods, N_FRF_METHODS, methods[0], &method, NULL));
-  PetscCall(PetscOptionsReal("-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)",
-                             "frf.h", frf->rtol, &frf->rtol, NULL));
-  PetscCall(PetscOptionsInt("-frf_max_steps", "most steps of the residual term", "frf.h", frf->max_steps,
-                            &frf->max_steps, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-frf_rtol",
+                           "largest estimated relative error of superposition (an estimate, no bound)", frf->rtol,
+                           &frf->rtol, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-frf_max_steps", "most steps of the residual term", frf->max_steps,
+                          &frf->max_steps, NULL));
   PetscOptionsEnd();
   if (method == FRF_DIRECT)
     PetscCall(OptionsRefuse(frf->comm, "-frf_rtol -frf_max_steps", "not used by -frf_method direct"));

@@ -43,16 +43,16 @@ PetscErrorCode MapSetFromOptions(Map map)
                               "ways through the values of the first parameter, each from the end of "
                               "its neighbour, or every point from its own sliding state",
                               "map.h", directions, 4, directions[0], &direction, NULL));
-  PetscCall(PetscOptionsReal("-map_window", "of which amplitude and frequency are taken, s", "map.h", map->window,
-                             &map->window, NULL));
-  PetscCall(PetscOptionsReal(
-    "-map_rtol",
-    "change of the rms between windows, or standard error of its mean, below which an amplitude is settled", "map.h",
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-map_window", "of which amplitude and frequency are taken, s",
+                           map->window, &map->window, NULL));
+  PetscCall(OptionsGetReal(
+    PetscOptionsObject, "-map_rtol",
+    "change of the rms between windows, or standard error of its mean, below which an amplitude is settled",
     map->rtol, &map->rtol, NULL));
-  PetscCall(PetscOptionsInt("-map_verify",
-                            "points, spread over the map, run again with half the step, with the contact laws "
-                            "to 1e-12, and with 2.25 times the cut-off",
-                            "map.h", map->n_verify, &map->n_verify, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-map_verify",
+                          "points, spread over the map, run again with half the step, with the contact laws "
+                          "to 1e-12, and with 2.25 times the cut-off",
+                          map->n_verify, &map->n_verify, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
                            "go on where a map of the same scene in -output_dir was "
                            "stopped",

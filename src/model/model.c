@@ -32,8 +32,8 @@ static PetscErrorCode ModelReadSource(Model model, PetscBool *is_rig)
                                &model->has_formulation));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
                             scene->gravity, NULL));
-  PetscCall(PetscOptionsReal("-loss_frequency", "where the loss factors of the parts are exact, Hz", "model.h",
-                             scene->loss_frequency, &scene->loss_frequency, &has_loss));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_frequency", "where the loss factors of the parts are exact, Hz",
+                           scene->loss_frequency, &scene->loss_frequency, &has_loss));
   PetscOptionsEnd();
   PetscCheck(!has_loss || (scene->loss_frequency > 0 && isfinite(scene->loss_frequency)), model->comm,
              PETSC_ERR_USER_INPUT, "-loss_frequency %.6g must be positive and finite (Hz)",

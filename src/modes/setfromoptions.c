@@ -65,18 +65,23 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscOptionsBegin(modes->comm, NULL, "Modes", NULL);
   PetscCall(OptionsGetReals(PetscOptionsObject, "-modes_band", "all modes with frequency in f1,f2, Hz", 2, modes->band,
                             &modes->has_band));
-  PetscCall(PetscOptionsReal("-modes_target", "instead of a band: the modes nearest to this frequency, Hz", "modes.h",
-                             modes->target, &modes->target, &has_target));
-  PetscCall(PetscOptionsInt("-modes_count", "how many of them", "modes.h", modes->count, &modes->count, &has_count));
-  PetscCall(PetscOptionsReal(
-    "-modes_growth", "modes of a band with growth and decay up to this must be found, 1/s (0: a tenth of the angular frequency f2)",
-    "modes.h", modes->growth, &modes->growth, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-modes_target",
+                           "instead of a band: the modes nearest to this frequency, Hz", modes->target, &modes->target,
+                           &has_target));
+  PetscCall(
+    OptionsGetInt(PetscOptionsObject, "-modes_count", "how many of them", modes->count, &modes->count, &has_count));
+  PetscCall(OptionsGetReal(
+    PetscOptionsObject, "-modes_growth",
+    "modes of a band with growth and decay up to this must be found, 1/s (0: a tenth of the angular frequency f2)",
+    modes->growth, &modes->growth, NULL));
   PetscCall(ShiftsSetFromOptions(modes, PetscOptionsObject));
-  PetscCall(PetscOptionsInt(
-    "-modes_most", "modes that a band may hold, counted before they are computed; more are an error (0: any number)", "modes.h",
-    modes->most, &modes->most, &modes->has_most));
-  PetscCall(PetscOptionsReal("-modes_max_time", "time that a solution may take, s (0: any); asked after every solve",
-                             "modes.h", modes->max_time, &modes->max_time, NULL));
+  PetscCall(
+    OptionsGetInt(PetscOptionsObject, "-modes_most",
+                  "modes that a band may hold, counted before they are computed; more are an error (0: any number)",
+                  modes->most, &modes->most, &modes->has_most));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-modes_max_time",
+                           "time that a solution may take, s (0: any); asked after every solve",
+                           modes->max_time, &modes->max_time, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_left", "left vectors: condition and error of each eigenvalue",
                            &modes->left));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-modes_filters",

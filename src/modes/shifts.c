@@ -20,13 +20,15 @@ PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject
   PetscMPIInt size;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsInt("-modes_shifts", "shifts that share a band without damping (0: by the count of modes)",
-                            "modes.h", modes->n_shifts, &modes->n_shifts, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-modes_shifts",
+                          "shifts that share a band without damping (0: by the count of modes)", modes->n_shifts,
+                          &modes->n_shifts, NULL));
   PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
   modes->n_groups = PetscMax(1, modes->n_groups);
-  PetscCall(PetscOptionsInt("-modes_groups", "groups of ranks that share the shifts, each with the whole matrices",
-                            "modes.h", modes->n_groups, &modes->n_groups, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-modes_groups",
+                          "groups of ranks that share the shifts, each with the whole matrices", modes->n_groups,
+                          &modes->n_groups, NULL));
   PetscCallMPI(MPI_Comm_size(modes->comm, &size));
   PetscCheck(modes->n_groups > 0 && size % modes->n_groups == 0, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_groups %" PetscInt_FMT " must be positive and divide the number of ranks, %d", modes->n_groups,

@@ -29,6 +29,7 @@ PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsOb
     PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
     PetscCall(PetscCalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
     o->n_dense[i] = OPERATORS_MAX_DENSE;
+    PetscCall(OptionsCheckWords(PetscOptionsObject, name, PETSC_FALSE));
     PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
     if (!set) o->n_dense[i] = 0;
     PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,

@@ -25,6 +25,7 @@ static PetscErrorCode MatrixTermReadDense(OptionsItems PetscOptionsObject, Matri
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &value));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, "-dense", PETSC_FALSE));
   PetscCall(PetscOptionsRealArray("-dense", "or all entries of a small matrix, rows one after another", "operators.h",
                                   value, &n, &set));
   if (set) {
@@ -48,6 +49,7 @@ static PetscErrorCode MatrixTermReadFactors(OptionsItems PetscOptionsObject, Mat
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsString("-parameter", "numbers that it is proportional to, options of their own, e.g. speed",
                                "operators.h", text, text, sizeof(text), &set));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, "-power", PETSC_TRUE));
   PetscCall(
     PetscOptionsIntArray("-power", "power of each of them, e.g. 2 or -1", "operators.h", power, &n_powers, &powers));
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameter", term->name));
@@ -88,8 +90,8 @@ static PetscErrorCode MatrixTermRead(OptionsItems PetscOptionsObject, void *owne
   PetscCall(PetscOptionsEList("-symmetry", "what it must be, else the run stops", "operators.h", symmetries, 3,
                               symmetries[0], &symmetry, NULL));
   term->scale = 1;
-  PetscCall(
-    PetscOptionsReal("-scale", "a number that it is multiplied with", "operators.h", term->scale, &term->scale, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-scale", "a number that it is multiplied with", term->scale,
+                           &term->scale, NULL));
   PetscCall(MatrixTermReadFactors(PetscOptionsObject, term));
   term->kind     = (OperatorsTermKind)kind;
   term->symmetry = (MatrixSymmetry)symmetry;
@@ -127,7 +129,7 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
     PetscOptionsBegin(o->comm, NULL, "Parameters of matrices", NULL);
     if (strcmp(name, "contact_mu")) /* which is read beside H */
-      PetscCall(PetscOptionsReal(option, "value of the parameter of this name", "operators.h", 0, &value, &set));
+      PetscCall(OptionsGetReal(PetscOptionsObject, option, "value of the parameter of this name", 0, &value, &set));
     PetscOptionsEnd();
     PetscCheck(set, o->comm, PETSC_ERR_USER_INPUT, "%s is missing: the value of the parameter of -%s_parameter", option,
                term->name);

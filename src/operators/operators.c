@@ -54,8 +54,8 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCheck(!have || !operators->n_planes, operators->comm, PETSC_ERR_USER_INPUT,
              "-symmetry needs a mesh, on which mirror images are found; loaded matrices have none");
   if (have)
-    PetscCall(PetscOptionsReal("-contact_mu", "friction coefficient of K + mu H", "operators.h", operators->loaded_mu,
-                               &operators->loaded_mu, NULL));
+    PetscCall(OptionsGetReal(PetscOptionsObject, "-contact_mu", "friction coefficient of K + mu H",
+                             operators->loaded_mu, &operators->loaded_mu, NULL));
   PetscOptionsEnd();
   PetscCall(MatrixTermsAddParameters(operators));
   operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;

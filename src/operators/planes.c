@@ -41,10 +41,11 @@ PetscErrorCode MirrorsSetFromOptions(Operators o, OptionsItems PetscOptionsObjec
                                "planes of which the scene is its own mirror image, by their normals: x, y, z (in the "
                                "middle of the mesh), x=0.05 (m); each parity is solved by itself",
                                "operators.h", text, text, sizeof(text), &set));
-  PetscCall(PetscOptionsReal("-symmetry_rtol",
-                             "by which part of the largest entry of its row a matrix may differ from its mirror image; more "
-                             "for modes of a mesh that is mirrored to few digits",
-                             "operators.h", o->mirror_rtol, &o->mirror_rtol, NULL));
+  PetscCall(
+    OptionsGetReal(PetscOptionsObject, "-symmetry_rtol",
+                   "by which part of the largest entry of its row a matrix may differ from its mirror image; more "
+                   "for modes of a mesh that is mirrored to few digits",
+                   o->mirror_rtol, &o->mirror_rtol, NULL));
   PetscCheck(o->mirror_rtol >= MIRROR_ROUNDING && o->mirror_rtol <= PLANES_MOST, o->comm, PETSC_ERR_USER_INPUT,
              "-symmetry_rtol %g must lie between %g, which is rounding, and %g", (double)o->mirror_rtol, MIRROR_ROUNDING,
              PLANES_MOST);

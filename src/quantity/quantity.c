@@ -30,17 +30,17 @@ static PetscErrorCode QuantityReadText(OptionsItems PetscOptionsObject, const ch
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
-                                         const char help[], void *value, PetscBool *given)
+static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
+                                         void *value, PetscBool *given)
 {
   PetscInt  *integer = value;
   PetscReal *real    = value;
 
   PetscFunctionBeginUser;
   if (row->kind == QUANTITY_INT)
-    PetscCall(PetscOptionsInt(row->name, help, header, *integer, integer, given));
+    PetscCall(OptionsGetInt(PetscOptionsObject, row->name, help, *integer, integer, given));
   else if (row->kind == QUANTITY_REAL)
-    PetscCall(PetscOptionsReal(row->name, help, header, *real, real, given));
+    PetscCall(OptionsGetReal(PetscOptionsObject, row->name, help, *real, real, given));
   else
     PetscCall(OptionsGetReals(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*real)), real, given));
   PetscFunctionReturn(0);
@@ -69,7 +69,7 @@ static PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char h
     PetscCall(OptionsGetPath(PetscOptionsObject, row->name, help, value, &given));
     break;
   default:
-    PetscCall(QuantityReadNumber(PetscOptionsObject, header, row, help, value, &given));
+    PetscCall(QuantityReadNumber(PetscOptionsObject, row, help, value, &given));
   }
   if (row->given) *(PetscBool *)((char *)owner + row->given) = given;
   PetscFunctionReturn(0);

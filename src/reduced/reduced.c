@@ -29,14 +29,13 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
   PetscOptionsBegin(r->comm, NULL, "Reduced model", "Dynamics");
   PetscCall(PetscOptionsEList("-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance",
                               "reduced.h", models, 2, models[0], &model, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_cutoff",
-                             "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
-                             "reduced.h", r->cutoff, &r->cutoff, NULL));
-  PetscCall(
-    PetscOptionsReal("-dynamics_growth_rtol",
-                     "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
-                     "are chosen",
-                     "reduced.h", r->growth_rtol, &r->growth_rtol, &r->has_rtol));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_cutoff",
+                           "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
+                           r->cutoff, &r->cutoff, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_growth_rtol",
+                           "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
+                           "are chosen",
+                           r->growth_rtol, &r->growth_rtol, &r->has_rtol));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
                            "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",

@@ -1,6 +1,7 @@
 /*
    Block Krylov-Schur eigensolver, see blockkrylov.h: the type. Its iteration is in blockiterate.c.
 */
+#include <squeal/options.h>
 #include "blockiterate.h"
 #include "shiftinvert.h"
 
@@ -107,9 +108,9 @@ static PetscErrorCode EPSSetFromOptions_BlockKrylov(EPS eps, PetscOptionItems *P
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "EPS block Krylov-Schur options");
-  PetscCall(PetscOptionsInt(BLOCKKRYLOV_SIZE,
-                            "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)",
-                            "blockkrylov.h", ctx->size, &ctx->size, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, BLOCKKRYLOV_SIZE,
+                          "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)",
+                          ctx->size, &ctx->size, NULL));
   PetscOptionsHeadEnd();
   PetscCheck(ctx->size >= 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
              BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must not be negative", ctx->size);

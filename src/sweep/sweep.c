@@ -71,13 +71,14 @@ static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCall(PetscOptionsEList("-sweep_method",
                               "reduced basis with error estimate, every point in full, or each on real modes of its own",
                               "sweep.h", methods, 3, methods[0], &method, NULL));
-  PetscCall(PetscOptionsReal("-sweep_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)",
-                             "sweep.h", sweep->rtol, &sweep->rtol, NULL));
-  PetscCall(PetscOptionsInt("-sweep_max_samples",
-                            "most full solutions; by itself more where contact status changes often", "sweep.h",
-                            sweep->max_samples, &sweep->max_samples, &sweep->max_given));
-  PetscCall(PetscOptionsInt("-sweep_real_modes", "real modes of each point, with -sweep_method real", "sweep.h", sweep->n_real,
-                            &sweep->n_real, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-sweep_rtol",
+                           "largest estimated relative error of an eigenvalue (an estimate, no bound)", sweep->rtol,
+                           &sweep->rtol, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_max_samples",
+                          "most full solutions; by itself more where contact status changes often", sweep->max_samples,
+                          &sweep->max_samples, &sweep->max_given));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_real_modes", "real modes of each point, with -sweep_method real",
+                          sweep->n_real, &sweep->n_real, NULL));
   PetscCall(PetscOptionsEList("-sweep_real_stiffness", "of these modes: K + mu H made symmetric, or K alone", "sweep.h",
                               stiffnesses, 2, stiffnesses[0], &stiffness, NULL));
   sweep->real_friction = stiffness ? PETSC_FALSE : PETSC_TRUE;
@@ -96,9 +97,9 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscBool set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsInt("-sweep_verify",
-                            "compare with full solutions at this many points between those of the sweep", "sweep.h",
-                            sweep->n_verify, &sweep->n_verify, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_verify",
+                          "compare with full solutions at this many points between those of the sweep", sweep->n_verify,
+                          &sweep->n_verify, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_onsets",
                            "critical values of the first parameter, confirmed on the full problem", &sweep->onsets));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_sensitivities",
@@ -107,6 +108,7 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
                                "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
   PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
   sweep->n_percent = SWEEP_MAX_UNCERTAIN + 1;
+  PetscCall(OptionsCheckWords(PetscOptionsObject, "-sweep_percent", PETSC_FALSE));
   PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value or one for each", "sweep.h",
                                   sweep->percent, &sweep->n_percent, &set));
   PetscCheck(!set || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
@@ -114,8 +116,9 @@ static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
   PetscCheck(set || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each",
              sweep->uncertain);
-  PetscCall(PetscOptionsInt("-sweep_groups", "ranks that share the points (0: all; the full solutions use all ranks)",
-                            "sweep.h", sweep->n_groups, &sweep->n_groups, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_groups",
+                          "ranks that share the points (0: all; the full solutions use all ranks)", sweep->n_groups,
+                          &sweep->n_groups, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_restart",
                            "go on where a sweep of the same scene in -output_dir was stopped", &sweep->restart));
   PetscFunctionReturn(0);

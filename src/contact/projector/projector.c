@@ -23,9 +23,10 @@ PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 {
   PetscFunctionBeginUser;
   PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
-  PetscCall(PetscOptionsReal("-projector_rtol", "natural map residual, relative to the largest impulse", "projector.h",
-                             p->rtol, &p->rtol, NULL));
-  PetscCall(PetscOptionsInt("-projector_max_it", "sweeps of Gauss-Seidel", "projector.h", p->max_it, &p->max_it, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-projector_rtol",
+                           "natural map residual, relative to the largest impulse", p->rtol, &p->rtol, NULL));
+  PetscCall(
+    OptionsGetInt(PetscOptionsObject, "-projector_max_it", "sweeps of Gauss-Seidel", p->max_it, &p->max_it, NULL));
   PetscOptionsEnd();
   PetscCheck(p->rtol > 0 && p->rtol < 1, p->contact->comm, PETSC_ERR_USER_INPUT,
              "-projector_rtol %.6g must lie between 0 and 1", (double)p->rtol);

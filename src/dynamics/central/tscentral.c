@@ -175,8 +175,8 @@ static PetscErrorCode TSSetFromOptions_Central(TS ts, OptionsItems PetscOptionsO
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "Central differences");
-  PetscCall(PetscOptionsReal("-ts_central_b", "1/2: central differences; up to 1: dissipative", "tscentral.h", c->b,
-                             &c->b, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-ts_central_b", "1/2: central differences; up to 1: dissipative", c->b,
+                           &c->b, NULL));
   PetscOptionsHeadEnd();
   PetscCheck(c->b >= 0.5 && c->b <= 1, PetscObjectComm((PetscObject)ts), PETSC_ERR_USER_INPUT,
              "-ts_central_b %.6g must lie between 0.5 (central differences) and 1", (double)c->b);

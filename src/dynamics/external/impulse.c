@@ -37,7 +37,7 @@ static PetscErrorCode ImpulseRead(OptionsItems PetscOptionsObject, void *owner, 
     PetscOptionsString("-part", "body of the node; any without it", "dynamics.h", part, part, sizeof(part), NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required); zeros for none", 3,
                             hit->impulse, &strong));
-  PetscCall(PetscOptionsReal("-time", "when, s", "dynamics.h", hit->time, &hit->time, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-time", "when, s", hit->time, &hit->time, NULL));
   PetscCall(PetscStrallocpy(part, &hit->part));
   PetscCall(ImpulseCheck(owner, hit, placed, strong));
   PetscFunctionReturn(0);

@@ -2,6 +2,7 @@
    History - life cycle, what is due, and what a restart needs. Tables are opened when they get their first row, so
    that a restart finds those of the run before.
 */
+#include <squeal/options.h>
 #include "historyimpl.h"
 
 #define N_TABLES 4 /* rows, pairs, amplitudes, circles */
@@ -69,14 +70,15 @@ PetscErrorCode HistorySetFromOptions(History h)
 {
   PetscFunctionBeginUser;
   PetscOptionsBegin(h->comm, NULL, "History", "Dynamics");
-  PetscCall(PetscOptionsReal("-dynamics_history_interval", "s between rows of transient.csv", "dynamics.h",
-                             h->rows.interval, &h->rows.interval, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_pairs_interval", "s between the states in contact_pairs.csv, 0 for none",
-                             "dynamics.h", h->pairs.interval, &h->pairs.interval, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_snapshot_interval", "s between fields, 0 for none", "dynamics.h",
-                             h->frames.interval, &h->frames.interval, NULL));
-  PetscCall(PetscOptionsReal("-dynamics_live", "s of the clock between live lines, 0 for none", "dynamics.h",
-                             h->live.interval, &h->live.interval, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_history_interval", "s between rows of transient.csv",
+                           h->rows.interval, &h->rows.interval, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_pairs_interval",
+                           "s between the states in contact_pairs.csv, 0 for none", h->pairs.interval,
+                           &h->pairs.interval, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_snapshot_interval", "s between fields, 0 for none",
+                           h->frames.interval, &h->frames.interval, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_live", "s of the clock between live lines, 0 for none",
+                           h->live.interval, &h->live.interval, NULL));
   PetscOptionsEnd();
   PetscCall(HistoryCheckInterval(h->comm, "-dynamics_history_interval", h->rows.interval, PETSC_FALSE));
   PetscCall(HistoryCheckInterval(h->comm, "-dynamics_pairs_interval", h->pairs.interval, PETSC_TRUE));

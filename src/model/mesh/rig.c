@@ -81,12 +81,12 @@ static PetscErrorCode RigReadDisc(OptionsItems PetscOptionsObject, Rig *rig)
   PetscInt          mesh     = 1, elements[3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-disc_inner", "Inner radius of the disc (m)", "model.h", rig->disc_inner,
-                             &rig->disc_inner, NULL));
-  PetscCall(PetscOptionsReal("-disc_outer", "Outer radius of the disc (m)", "model.h", rig->disc_outer,
-                             &rig->disc_outer, NULL));
-  PetscCall(PetscOptionsReal("-disc_thickness", "Thickness of the disc (m)", "model.h", rig->disc_thickness,
-                             &rig->disc_thickness, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-disc_inner", "Inner radius of the disc (m)", rig->disc_inner,
+                           &rig->disc_inner, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-disc_outer", "Outer radius of the disc (m)", rig->disc_outer,
+                           &rig->disc_outer, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-disc_thickness", "Thickness of the disc (m)", rig->disc_thickness,
+                           &rig->disc_thickness, NULL));
   PetscCall(PetscOptionsEList("-disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad",
                               "model.h", meshes, 2, meshes[mesh], &mesh, NULL));
   rig->patch = mesh ? PETSC_TRUE : PETSC_FALSE;
@@ -97,8 +97,9 @@ static PetscErrorCode RigReadDisc(OptionsItems PetscOptionsObject, Rig *rig)
   rig->disc_nr     = elements[0];
   rig->disc_ntheta = elements[1];
   rig->disc_nz     = elements[2];
-  PetscCall(PetscOptionsReal("-disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)",
-                             "model.h", rig->disc_spread, &rig->disc_spread, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-disc_spread",
+                           "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", rig->disc_spread,
+                           &rig->disc_spread, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -106,8 +107,8 @@ static PetscErrorCode RigReadPad(OptionsItems PetscOptionsObject, Rig *rig)
 {
   PetscFunctionBeginUser;
   PetscCall(OptionsGetBool(PetscOptionsObject, "-pad", "Pad and beam as well as the disc", &rig->with_pad));
-  PetscCall(PetscOptionsReal("-pad_radius", "Radius of the pad's centre (m)", "model.h", rig->pad_radius,
-                             &rig->pad_radius, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-pad_radius", "Radius of the pad's centre (m)", rig->pad_radius,
+                           &rig->pad_radius, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", 3,
                             rig->pad_size, NULL));
   PetscCall(
@@ -118,10 +119,10 @@ static PetscErrorCode RigReadPad(OptionsItems PetscOptionsObject, Rig *rig)
 static PetscErrorCode RigReadBeam(OptionsItems PetscOptionsObject, Rig *rig)
 {
   PetscFunctionBeginUser;
-  PetscCall(
-    PetscOptionsReal("-beam_height", "Height of the beam (m)", "model.h", rig->beam_height, &rig->beam_height, NULL));
-  PetscCall(PetscOptionsInt("-beam_elements", "Elements of the beam over its height (-)", "model.h", rig->beam_nz,
-                            &rig->beam_nz, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-beam_height", "Height of the beam (m)", rig->beam_height,
+                           &rig->beam_height, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-beam_elements", "Elements of the beam over its height (-)",
+                          rig->beam_nz, &rig->beam_nz, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-beam_rows",
                             "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", 2, rig->beam_rows,
                             NULL));

@@ -48,17 +48,17 @@ static PetscErrorCode CircleRead(OptionsItems PetscOptionsObject, void *owner, v
   char        part[256] = "disc", face[8] = "z+";
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-radius", "m (required)", "model.h", 0, &circle->radius, NULL));
-  PetscCall(PetscOptionsInt("-count", "nodes at equal angles (required)", "model.h", 0, &circle->n, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-radius", "m (required)", 0, &circle->radius, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-count", "nodes at equal angles (required)", 0, &circle->n, NULL));
   PetscCall(PetscOptionsString("-part", "body that has them", "model.h", part, part, sizeof(part), NULL));
   PetscCall(PetscOptionsString("-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", "model.h",
                                face, face, sizeof(face), NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-centre", "x,y,z, m; default " CHOOSE_PLACE, 3, circle->centre,
                             &circle->has_centre));
   circle->tolerance = NEAR * circle->radius;
-  PetscCall(PetscOptionsReal("-tolerance",
-                             "most distance of a node from its place, m; default a twentieth of the radius", "model.h",
-                             circle->tolerance, &circle->tolerance, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-tolerance",
+                           "most distance of a node from its place, m; default a twentieth of the radius",
+                           circle->tolerance, &circle->tolerance, NULL));
   PetscCall(PetscStrallocpy(part, &circle->part));
   PetscCall(CircleSetFace(model, face, circle));
   PetscCall(CircleCheck(model, circle));

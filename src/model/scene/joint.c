@@ -109,7 +109,8 @@ static PetscErrorCode PointReadMass(OptionsItems PetscOptionsObject, Joint *join
   PetscBool      given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-mass", "mass, kg", "model.h", joint->mass, &joint->mass, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-mass", "mass, kg", joint->mass, &joint->mass, NULL));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, "-inertia", PETSC_FALSE));
   PetscCall(PetscOptionsRealArray("-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz, kg m^2",
                                   "model.h", J, &n, &given));
   PetscCheck(joint->mass >= 0 && isfinite(joint->mass), comm, PETSC_ERR_USER_INPUT,

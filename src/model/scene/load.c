@@ -50,8 +50,9 @@ static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, voi
   PetscFunctionBeginUser;
   PetscCall(LoadReadPlace(PetscOptionsObject, owner, load));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, &has_force));
-  PetscCall(PetscOptionsReal("-pressure", "instead of a force: pressure on a surface, into the body, Pa", "model.h",
-                             load->pressure, &load->pressure, &load->is_pressure));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-pressure",
+                           "instead of a force: pressure on a surface, into the body, Pa", load->pressure,
+                           &load->pressure, &load->is_pressure));
   PetscCheck(!has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
   PetscCheck(!load->is_pressure || !load->on_point, comm, PETSC_ERR_USER_INPUT,

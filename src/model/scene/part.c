@@ -21,11 +21,14 @@ static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, voi
                                volume, sizeof(volume), &given));
   PetscCall(PetscStrallocpy(given ? volume : part->name, &part->volume));
   PetscCall(PartReadElasticity(PetscOptionsObject, part));
-  PetscCall(PetscOptionsReal("-density", "density, kg/m^3 (required)", "model.h", part->density, &part->density, NULL));
-  PetscCall(PetscOptionsReal("-alpha", "Rayleigh factor of the mass, 1/s", "model.h", part->alpha, &part->alpha, NULL));
-  PetscCall(PetscOptionsReal("-beta", "Rayleigh factor of the stiffness, s", "model.h", part->beta, &part->beta, NULL));
-  PetscCall(PetscOptionsReal("-loss_factor", "loss factor at -loss_frequency, adds to beta", "model.h", part->loss,
-                             &part->loss, NULL));
+  PetscCall(
+    OptionsGetReal(PetscOptionsObject, "-density", "density, kg/m^3 (required)", part->density, &part->density, NULL));
+  PetscCall(
+    OptionsGetReal(PetscOptionsObject, "-alpha", "Rayleigh factor of the mass, 1/s", part->alpha, &part->alpha, NULL));
+  PetscCall(
+    OptionsGetReal(PetscOptionsObject, "-beta", "Rayleigh factor of the stiffness, s", part->beta, &part->beta, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_factor", "loss factor at -loss_frequency, adds to beta",
+                           part->loss, &part->loss, NULL));
   PetscCall(PartReadSpin(PetscOptionsObject, part));
   PetscFunctionReturn(0);
 }

@@ -28,8 +28,9 @@ PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part)
   PetscBool      has_axis, has_centre, named;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsReal("-spin", "rad/s about -spin_axis, in modes: gyroscopic and centrifugal terms", "model.h",
-                             s->rate, &s->rate, &s->given));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-spin",
+                           "rad/s about -spin_axis, in modes: gyroscopic and centrifugal terms", s->rate, &s->rate,
+                           &s->given));
   PetscCall(PetscOptionsHasName(PetscOptionsObject->options, PetscOptionsObject->prefix, "-spin", &named));
   PetscCheck(!named || s->given, comm, PETSC_ERR_USER_INPUT, "-%s_spin has no value; give one, or leave the option out",
              part->name);

@@ -46,11 +46,13 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
 
   PetscFunctionBeginUser;
   PetscOptionsBegin(c->comm, NULL, "Limit cycles", "Cycle");
-  PetscCall(PetscOptionsInt("-cycle_steps", "steps in a period, odd; 0: as long as those of the transient", "cycle.h",
-                            c->steps, &c->steps, NULL));
-  PetscCall(PetscOptionsReal("-cycle_rtol", "how far a period may end from where it began, over the vibration's size",
-                             "cycle.h", c->rtol, &c->rtol, NULL));
-  PetscCall(PetscOptionsInt("-cycle_max_it", "iterations of Newton's method", "cycle.h", c->max_it, &c->max_it, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-cycle_steps",
+                          "steps in a period, odd; 0: as long as those of the transient", c->steps, &c->steps, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-cycle_rtol",
+                           "how far a period may end from where it began, over the vibration's size", c->rtol, &c->rtol,
+                           NULL));
+  PetscCall(
+    OptionsGetInt(PetscOptionsObject, "-cycle_max_it", "iterations of Newton's method", c->max_it, &c->max_it, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify",
                            "errors, by the cycles of twice the steps and of steps that begin elsewhere", &c->verify));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify_cutoff",
@@ -61,16 +63,17 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
                                "cycle.h", c->parameter, c->parameter, sizeof(c->parameter), NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-cycle_range", "where it ends, least and largest value", 2, c->range,
                             &has_range));
-  PetscCall(PetscOptionsInt("-cycle_points", "cycles on the branch, at most; half of them the first way", "cycle.h",
-                            c->max_points, &c->max_points, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-cycle_points",
+                          "cycles on the branch, at most; half of them the first way", c->max_points, &c->max_points,
+                          NULL));
   PetscCall(PetscOptionsEList("-cycle_start",
                               "the first cycle: at the end of a transient, or near the value at which "
                               "a mode of the sliding state becomes unstable",
                               "cycle.h", starts, 2, starts[0], &start, NULL));
-  PetscCall(PetscOptionsReal("-cycle_amplitude",
-                             "change of the pairs' normal forces in the first cycle of -cycle_start mode, of those at "
-                             "rest",
-                             "cycle.h", c->amplitude, &c->amplitude, NULL));
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-cycle_amplitude",
+                           "change of the pairs' normal forces in the first cycle of -cycle_start mode, of those at "
+                           "rest",
+                           c->amplitude, &c->amplitude, NULL));
   PetscOptionsEnd();
   c->from_mode = start == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps <= CYCLE_MOST_STEPS && c->steps % 2), c->comm,

@@ -1,0 +1,74 @@
+/*
+   Numbers between PetscOptionsBegin() and PetscOptionsEnd(). PETSc reads `default`, `decide` and `mouse` as -2 and -1, which are codes of
+   its own functions and no numbers of a scene, and an integer that its type does not hold as another one: both are refused.
+*/
+#include <squeal/options.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define MAX_NUMBER 256
+
+/* Whether a word is one that PETSc takes for a number */
+static PetscBool WordIsCode(const char word[])
+{
+  static const char *const codes[] = {"default", "decide", "determine", "unlimited", "current", "mouse"};
+
+  if (!strncasecmp(word, "petsc_", 6)) word += 6;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(codes); i++)
+    if (!strcasecmp(word, codes[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Raises an error for one word of a value */
+static PetscErrorCode WordCheck(MPI_Comm comm, const char name[], const char word[], PetscBool integer)
+{
+  char        *end;
+  const double value = strtod(word, &end);
+
+  PetscFunctionBeginUser;
+  PetscCheck(!WordIsCode(word), comm, PETSC_ERR_USER_INPUT,
+             "%s: %s has no numeric value: write it as 0.3 or 16e9, without a unit, several with commas", name, word);
+  PetscCheck(!integer || end == word || *end || (value <= PETSC_MAX_INT && value >= -PETSC_MAX_INT), comm,
+             PETSC_ERR_USER_INPUT, "%s %s must be an integer from -%" PetscInt_FMT " to %" PetscInt_FMT, name, word,
+             PETSC_MAX_INT, PETSC_MAX_INT);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsCheckWords(OptionsItems PetscOptionsObject, const char option[], PetscBool integer)
+{
+  const char *value, *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+  char        name[MAX_NUMBER], word[MAX_NUMBER];
+  PetscBool   set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsFindPair(PetscOptionsObject->options, prefix, option, &value, &set));
+  if (!set || !value) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", prefix, option + 1));
+  for (const char *c = value; *c; c += strspn(c, ", ")) {
+    const size_t length = strcspn(c, ", ");
+
+    PetscCall(PetscStrncpy(word, c, PetscMin(length + 1, sizeof(word))));
+    PetscCall(WordCheck(PetscOptionsObject->comm, name, word, integer));
+    c += length;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscReal now,
+                              PetscReal *value, PetscBool *set)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_FALSE));
+  PetscCall(PetscOptionsReal(option, help, "options.h", now, value, set));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt now,
+                             PetscInt *value, PetscBool *set)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_TRUE));
+  PetscCall(PetscOptionsInt(option, help, "options.h", now, value, set));
+  PetscFunctionReturn(0);
+}
