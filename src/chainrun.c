@@ -44,7 +44,7 @@ static PetscErrorCode ChainSolve(Chain *chain)
   const Analysis analysis = chain->analysis;
 
   PetscFunctionBeginUser;
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolveParities(chain->modes));
+  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));

@@ -88,13 +88,6 @@ typedef struct {
   PetscBool direction[3];
 } PrescribedMotion;
 
-/* A plane across an axis of coordinates */
-typedef struct {
-  int       axis;   /* 0, 1, 2: its normal is x, y, z */
-  PetscBool has_at; /* its place is given, else it is the middle of the mesh */
-  PetscReal at;     /* m */
-} ModelPlane;
-
 /* What the options name */
 typedef struct {
   PetscInt          n_parts, n_supports, n_springs, n_dashpots, n_loads, n_motions, n_probes, n_circles;
@@ -287,19 +280,6 @@ PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
 /*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a node; every one of them gets the
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
-
-/*@
-   ModelMirror - the unknown of the mirror image in a plane of each unknown of this rank. Collective; after ModelSetUp().
-
-   Input/Output Parameter:
-.  plane - its place is found where it is not given
-   Output Parameter:
-.  image - [unknowns of this rank] j >= 0: the displacement of unknown j has the same sign in the mirror; j < 0: that of
-           unknown -1 - j, normal to the plane, the opposite one
-
-   Errors: PETSC_ERR_USER_INPUT for a node without mirror image, and for one that is held otherwise than its image.
-@*/
-PetscErrorCode ModelMirror(Model model, ModelPlane *plane, PetscInt image[]);
 
 /*@ ModelDescribeDoubt - for a message that something does not come to an end: the part that a wave takes longest to cross,
     and what its units probably are; empty where none takes more than 50 periods of hz (Hz). Not collective; after

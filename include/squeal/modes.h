@@ -80,9 +80,6 @@ PetscErrorCode ModesGetRoutes(Modes modes, PetscBool *may_project, PetscBool *ma
 /*@ ModesSetBand - another band, Hz. Not collective. @*/
 PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 
-/*@ ModesSetNearest - instead of a band the `count` modes nearest to `target` (Hz). Not collective. @*/
-PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count);
-
 /*@ ModesWant - whether the options ask for the modes nearest to a frequency, and for left vectors. Not collective. @*/
 PetscErrorCode ModesWant(Modes modes, PetscBool *nearest, PetscBool *left);
 
@@ -95,18 +92,6 @@ PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
-
-/*@ ModesSolveParities - the same with -symmetry: the modes of each parity (pencil.h) by themselves, one after the other, and
-    all of them in one table, with the vectors of all unknowns; without planes of symmetry ModesSolve(). Collective.
-    Errors: those of PencilGetParities(). @*/
-PetscErrorCode ModesSolveParities(Modes modes);
-
-/*@ ModesSolveAny - ModesSolve() where a band may hold no mode: n is their number, 0 then. Collective. @*/
-PetscErrorCode ModesSolveAny(Modes modes, PetscInt *n);
-
-/*@ ModesGetParity - "even" or "odd", a word for each plane of -symmetry (borrowed); NULL for modes of ModesSolve(). Not
-    collective. @*/
-PetscErrorCode ModesGetParity(Modes modes, PetscInt i, const char **parity);
 
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);

@@ -51,9 +51,6 @@ _parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
 .  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
 pairs; auto takes what needs less memory
-.  -symmetry <x,y=0.05,..>               - planes of which the scene is its own mirror image, by their normals, and their
-places (m) where they are not in the middle of the mesh: each parity is solved by itself (pencil.h)
-.  -symmetry_rtol <1e-11>                - by which part of the largest entry of its row a matrix may differ from its mirror image
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
 -  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads F.bin;
                                           with the contact constraint, ties or rigid points the projected ones, friction in
@@ -141,23 +138,6 @@ PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], Petsc
     those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint are those with
     Z'f = 0. Not collective. @*/
 PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
-
-/*@ OperatorsGetMirrors - the planes of -symmetry (their number is 0 without), and for each the signed permutation R of all
-    unknowns that takes displacements to their mirror image (borrowed). Collective; after OperatorsSetUp().
-    Errors: those of ModelMirror(). @*/
-PetscErrorCode OperatorsGetMirrors(Operators operators, PetscInt *n, const ModelPlane **plane, const Mat **R);
-
-/*@ OperatorsGetEven - orthonormal columns S of all unknowns that span what is even in every plane, R S = S; NULL without planes
-    (borrowed). Collective. Errors: PETSC_ERR_SUP for points that are joined rigidly, and for ties. @*/
-PetscErrorCode OperatorsGetEven(Operators operators, Mat *S);
-
-/*@ OperatorsNeedMirrors - raises the error PETSC_ERR_USER_INPUT where -symmetry_rtol lets matrices differ from their mirror
-    images by more than rounding, for `what`, in the plural, whose errors do not cover that. Collective. @*/
-PetscErrorCode OperatorsNeedMirrors(Operators operators, const char what[]);
-
-/*@ OperatorsProveEven - raises the error PETSC_ERR_USER_INPUT where the stiffness of the bodies at p, or a force f on all
-    unknowns, N, that `what` names, is not its own mirror image; nothing without planes. Collective. @*/
-PetscErrorCode OperatorsProveEven(Operators operators, const PetscReal p[], Vec f, const char what[]);
 
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
    into a local vector of three values per node in the layout of the coordinates, held directions included: at a

@@ -113,42 +113,9 @@ PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
 
 /*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are
-    formed: half of the memory, where no other point will be asked for; with -symmetry those of a parity alone. Afterwards
-    PencilSetParameters() and PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay. Collective.
-    @*/
+    formed: half of the memory, where no other point will be asked for. Afterwards PencilSetParameters() and
+    PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay. Collective. @*/
 PetscErrorCode PencilReleaseTerms(Pencil pencil);
-
-/*@
-   PencilGetParities - into how many parts the planes of -symmetry part the pencil at its present point: 2^planes, 1 without
-   planes. Collective.
-
-   With R u the mirror image of displacements u, a vector is even in a plane where R u = u, odd where R u = -u. Where K, M
-   and C are their own images, R Q R = Q, each mode is one or the other: there are orthonormal maps S_c with S_c' Q S_d = 0
-   for two parities c and d, and the modes of all S_c' Q S_c are those of the whole.
-
-   Output Parameters:
-+  n         - parities c = 0 .. n - 1, of which bit p tells that c is odd in plane p
--  asymmetry - largest entry by which a matrix was found to differ from its image, of the largest of its row; or NULL
-
-   Errors: PETSC_ERR_USER_INPUT where nodes have no image, or the matrix that it names is not its own at this point, as
-   where the slip of a contact leads across the plane; PETSC_ERR_SUP for points that are joined rigidly.
-@*/
-PetscErrorCode PencilGetParities(Pencil pencil, PetscInt *n, PetscReal *asymmetry);
-
-/*@ PencilCountParities - their number without the proof, 1 without planes. Not collective. @*/
-PetscErrorCode PencilCountParities(Pencil pencil, PetscInt *n);
-
-/*@ PencilNameParity - "even" or "odd", one word for each plane. Not collective. @*/
-PetscErrorCode PencilNameParity(Pencil pencil, PetscInt c, size_t size, char name[]);
-
-/*@ PencilCreateParity - the pencil of one parity, at the point of the whole, whose terms it shares: its unknowns are q of
-    u = S_c q (u = Zr S_c q with constraints), so that PencilExpand() gives vectors of all unknowns. Collective. The whole
-    must stay until PencilDestroy(). @*/
-PetscErrorCode PencilCreateParity(Pencil pencil, PetscInt c, Pencil *parity);
-
-/*@ PencilReleaseParity - frees all matrices of the pencil of a parity. Terms and their coefficients stay; nothing can be got
-    afterwards. Collective. @*/
-PetscErrorCode PencilReleaseParity(Pencil parity);
 
 /*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
     before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it again, as

@@ -21,8 +21,7 @@
    kappa is only a device: it drops out of the solution. Where the iteration does not settle with Coulomb's law,
    continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid motions
    that neither supports nor springs nor any pair resists are held at single unknowns,
-   whose reactions vanish in equilibrium; u has no part of them. With planes of symmetry (-symmetry) loads and pairs must be
-   their own mirror images, and the even half of K_a is factored alone (mirror.c).
+   whose reactions vanish in equilibrium; u has no part of them.
 */
 #pragma once
 

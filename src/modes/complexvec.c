@@ -38,7 +38,8 @@ PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z)
+/* z += a A x */
+static PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z)
 {
   PetscFunctionBeginUser;
   PetscCall(MatMult(A, x.r, work));

@@ -19,10 +19,9 @@ static inline PetscComplex SpectrumLambda(const Spectrum *s, PetscInt i)
 
 /* x^T z without conjugation */
 PETSC_INTERN PetscErrorCode ComplexVecDot(ComplexVec x, ComplexVec z, PetscComplex *dot);
-/* z += a x, z = A x, z += a A x; z.i must be there */
+/* z += a x, z = A x; z.i must be there */
 PETSC_INTERN PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, ComplexVec z);
 PETSC_INTERN PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z);
-PETSC_INTERN PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec work, ComplexVec z);
 /* z = D(lambda) x */
 PETSC_INTERN PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work,
                                              ComplexVec z);

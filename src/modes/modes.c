@@ -108,15 +108,6 @@ PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSetNearest(Modes modes, PetscReal target, PetscInt count)
-{
-  PetscFunctionBeginUser;
-  modes->target   = target;
-  modes->count    = count;
-  modes->has_band = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
 /* Right or left spectrum by the solver that fits the pencil */
 static PetscErrorCode SpectrumSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                                     PetscBool transposed, Spectrum *spectrum)
@@ -202,14 +193,14 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesReset(Modes modes)
+/* Forgets the last solution */
+static PetscErrorCode ModesReset(Modes modes)
 {
   PetscFunctionBeginUser;
   PetscCall(SpectrumDestroy(&modes->right));
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->part_percent));
-  PetscCall(PetscFree(modes->parity));
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));
@@ -264,7 +255,8 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
+/* All modes of the pencil in the window, but for their names; none = there is none in it */
+static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
 {
   PencilMatrices pencil;
 
@@ -295,7 +287,8 @@ PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesComplainNone(Modes modes, PetscInt below)
+/* A band without a mode */
+static PetscErrorCode ComplainNone(Modes modes, PetscInt below)
 {
   char lower[64] = "";
 
@@ -307,11 +300,15 @@ PetscErrorCode ModesComplainNone(Modes modes, PetscInt below)
 
 PetscErrorCode ModesSolve(Modes modes)
 {
-  PetscInt n;
+  Window    window;
+  PetscBool none;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesSolveAny(modes, &n));
-  if (!n) PetscCall(ModesComplainNone(modes, modes->below));
+  PetscCall(ModesReset(modes));
+  PetscCall(LimitBegin(modes));
+  PetscCall(FindAll(modes, &window, &none));
+  if (!modes->n) PetscCall(ComplainNone(modes, window.below));
+  PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }
 

@@ -23,11 +23,11 @@ PETSC_INTERN PetscReal      SpectrumDistance(const Spectrum *spectrum, PetscInt 
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
 PETSC_INTERN PetscErrorCode SpectrumTake(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi); /* no copies */
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
-PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
-PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt order[]);
 /* In place of its entries copies of n of them, some more than once */
 PETSC_INTERN PetscErrorCode SpectrumTakeFrom(Spectrum *spectrum, PetscInt n, const PetscInt from[]);
 PETSC_INTERN PetscErrorCode SpectrumKeep(Spectrum *spectrum, PetscInt first, PetscInt n);
+PETSC_INTERN PetscErrorCode SpectrumOrder(const Spectrum *spectrum, PetscInt order[]); /* entry order[k] stands at k */
+PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt order[]);
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* moves the entries; `from` is destroyed */
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
@@ -38,10 +38,9 @@ enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
 #define MODES_DAMPING "-modes_damping"
 
 /* What a choice saved, in words */
-enum { SAVED_FACTORS, SAVED_DAMPING, SAVED_SYMMETRY, N_SAVED };
+enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 
 #define SAVED_LENGTH 512
-#define PARITY_LENGTH 16 /* of "even odd even" */
 
 struct _p_Modes {
   MPI_Comm comm;
@@ -63,14 +62,11 @@ struct _p_Modes {
   Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode       *mode;
   PetscInt    n;
-  PetscInt    below;        /* modes below the band where it holds none; -1: not known */
   double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
   PetscBool   dense;        /* LAPACK found all eigenvalues */
   PetscInt    shifts;       /* in use */
-  char (*parity)[PARITY_LENGTH]; /* [n] with -symmetry, else NULL */
   char        completeness[4096];
   char        saved[N_SAVED][SAVED_LENGTH];
-  double      entries;     /* of the factors of the undamped eigensolver, about; 0: not known */
   char        solver[96];  /* type of the undamped eigensolver, its block and factors */
   ShiftInvert factor;      /* of the solution where keep is set */
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
@@ -181,11 +177,6 @@ PETSC_INTERN PetscReal UndampedRadius(const Window *window, PetscReal shift, con
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
 
-/* modes.c - all modes of the pencil in the window, but for their names; none = there is none in it. Collective. */
-PETSC_INTERN PetscErrorCode ModesFind(Modes modes, Window *window, PetscBool *none);
-PETSC_INTERN PetscErrorCode ModesReset(Modes modes); /* forgets the last solution */
-PETSC_INTERN PetscErrorCode ModesComplainNone(Modes modes, PetscInt below);
-
 /* copies.c - whether as many equal eigenvalues of the spectrum were found as a block of the eigensolver has vectors, and no count
    says that these are all; makes the next blocks larger, also where it is known that eigenvalues are missing */
 PETSC_INTERN PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum *spectrum);
@@ -207,9 +198,6 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
 
-/* asymmetry.c - adds to the errors of modes of each parity what -symmetry_rtol leaves out, once they are in one table */
-PETSC_INTERN PetscErrorCode AsymmetryMeasure(Modes modes);
-
 /* weigh.c - masses of the nodes of each part, mass[parts][local nodes], kg; the caller frees each */
 PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[]);
 
@@ -225,10 +213,7 @@ PETSC_INTERN PetscErrorCode ModesLabelUnknowns(Modes modes);
 PETSC_INTERN PetscErrorCode TwinsDrop(Modes modes, const Window *window);
 PETSC_INTERN PetscErrorCode TwinsTrim(Modes modes, const Window *window);
 
-/* saved.c - keep in words what factors, the route of damping, and symmetry saved; and show them. n [parities] unknowns of n_whole,
-   entries of the largest factors */
-PETSC_INTERN PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt n[], PetscInt n_whole,
-                                            double entries);
+/* saved.c - keep in words what factors and the route of damping saved; and show them */
 PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
 PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);

@@ -5,8 +5,7 @@
 #include "modesimpl.h"
 #include "solver/lowrank.h"
 
-#define BYTES_TO_MB    1e-6
-#define SAVED_ROUNDING 1e-11 /* of a row, that is not worth a word */
+#define BYTES_TO_MB 1e-6
 
 PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si)
 {
@@ -14,7 +13,6 @@ PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si)
   char        *text = modes->saved[SAVED_FACTORS], what[64] = "no friction, a symmetric problem";
 
   PetscFunctionBeginUser;
-  modes->entries = si->even ? si->cost.entries : 2 * si->cost.entries;
   if (si->update)
     PetscCall(PetscSNPrintf(what, sizeof(what), "friction by an update of %" PetscInt_FMT " pairs", si->update->p));
   if (si->even && mb > 0)
@@ -52,33 +50,6 @@ PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const W
     PetscCall(PetscSNPrintf(text, SAVED_LENGTH,
                             "nothing by damping: a quadratic problem of %" PetscInt_FMT " unknowns%s%s", 2 * n,
                             window->why[0] ? ", since " : "", window->why));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SavedBySymmetry(Modes modes, PetscInt n_parities, const PetscInt n[], PetscInt n_whole, double entries)
-{
-  char         *text = modes->saved[SAVED_SYMMETRY], part[96], name[PARITY_LENGTH];
-  const double  mb   = BYTES_TO_MB * sizeof(PetscScalar) * entries;
-  PetscInt      most = 0;
-  PetscReal     asymmetry;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(text, "symmetry:", SAVED_LENGTH));
-  for (PetscInt c = 0; c < n_parities; c++) {
-    PetscCall(PencilNameParity(modes->pencil, c, sizeof(name), name));
-    PetscCall(PetscSNPrintf(part, sizeof(part), "%s %" PetscInt_FMT " %s", c ? "," : "", n[c], name));
-    PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
-    most = PetscMax(most, n[c]);
-  }
-  PetscCall(PetscSNPrintf(part, sizeof(part), " unknowns instead of %" PetscInt_FMT, n_whole));
-  PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
-  if (mb > 0)
-    PetscCall(PetscSNPrintf(part, sizeof(part), "; factors of %.3g MB at a time instead of about %.3g MB (estimate)", mb,
-                            mb * FactorEntriesTimes((double)n_whole / (double)most)));
-  if (mb > 0) PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
-  PetscCall(PencilGetParities(modes->pencil, &most, &asymmetry));
-  PetscCall(PetscSNPrintf(part, sizeof(part), "; left out: %.1e of a row, which is no mirror image", (double)asymmetry));
-  if (asymmetry > SAVED_ROUNDING) PetscCall(PetscStrlcat(text, part, SAVED_LENGTH));
   PetscFunctionReturn(0);
 }
 

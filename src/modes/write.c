@@ -56,18 +56,16 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscInt n_unstable = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label%s\n",
-                                   modes->parity ? ", symmetry" : ""));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 
     if (m->unstable) n_unstable++;
     PetscCall(PetscViewerASCIIPrintf(
-      viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s%s%s\n", i + 1, (double)ModeFrequency(m),
+      viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1, (double)ModeFrequency(m),
       (double)m->sigma, (double)(100 * ModeDampingRatio(m)), (double)(m->error / (2 * PETSC_PI)), (double)m->condition,
-      (double)m->backward_error, m->label, modes->parity ? ", " : "", modes->parity ? modes->parity[i] : "",
-      m->unstable ? "  UNSTABLE" : ""));
+      (double)m->backward_error, m->label, m->unstable ? "  UNSTABLE" : ""));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes", modes->n));
   if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
@@ -81,7 +79,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
 }
 
 /* Header of modes.csv; further columns only at its end, since others read it */
-static PetscErrorCode ModesOpenTable(const Mesh *mesh, PetscBool symmetry, Results results, ResultsTable *table)
+static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsTable *table)
 {
   char header[16384], column[256];
 
@@ -93,7 +91,6 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, PetscBool symmetry, Resul
     PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", mesh->part[part]));
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
-  if (symmetry) PetscCall(PetscStrlcat(header, ",symmetry", sizeof(header)));
   PetscCall(ResultsTableOpen(results, "modes", header, table));
   PetscFunctionReturn(0);
 }
@@ -104,7 +101,7 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
   ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesOpenTable(mesh, modes->parity ? PETSC_TRUE : PETSC_FALSE, results, &table));
+  PetscCall(ModesOpenTable(mesh, results, &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m             = &modes->mode[i];
     char        percent[2048] = "", number[32];
@@ -113,11 +110,10 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
       PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * mesh->n_parts + part]));
       PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
     }
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s%s%s", (int)i + 1,
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s", (int)i + 1,
                               (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),
                               (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
-                              (double)(m->error / (2 * PETSC_PI)), percent, modes->parity ? "," : "",
-                              modes->parity ? modes->parity[i] : ""));
+                              (double)(m->error / (2 * PETSC_PI)), percent));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

@@ -17,7 +17,8 @@ static PetscBool TakesPart(const OperatorsTerm *term, const PetscReal p[])
                                                                                                          : PETSC_FALSE;
 }
 
-PetscErrorCode RowCopy(PetscReal c, Mat A, PetscInt i, PetscInt row, Mat B)
+/* Row i of A times c as row `row` of B */
+static PetscErrorCode RowCopy(PetscReal c, Mat A, PetscInt i, PetscInt row, Mat B)
 {
   const PetscInt    *columns;
   const PetscScalar *values;
@@ -41,7 +42,8 @@ static PetscErrorCode RowsCopy(PetscReal c, Mat A, PetscInt first, Mat B)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
+/* The larger of *longest and the length of the longest local row */
+static PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
 {
   PetscInt begin, end;
 

@@ -69,7 +69,6 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscFunctionBeginUser;
   PetscCall(ChecksumSetPart(c, "matrices"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
-  PetscCall(MirrorsAddChecksum(o, c));
   if (o->model) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
   PetscCall(MatrixTermsAddChecksum(o, c));

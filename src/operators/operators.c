@@ -28,7 +28,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   static const char *const factors[] = {"auto", "lu", "symmetric"};
   static const char *const masses[]  = {"consistent", "lumped"};
   PetscInt                 mass      = 0;
-  PetscBool                have;
+  PetscBool                have, halves;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixTermsSetFromOptions(operators));
@@ -50,9 +50,10 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCall(OperatorsHaveMatrices(operators, &have));
   PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,
              "-operators_nodes %s is of matrices that are loaded; a mesh knows its nodes", operators->nodes);
-  PetscCall(MirrorsSetFromOptions(operators, PetscOptionsObject));
-  PetscCheck(!have || !operators->n_planes, operators->comm, PETSC_ERR_USER_INPUT,
-             "-symmetry needs a mesh, on which mirror images are found; loaded matrices have none");
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-symmetry", &halves));
+  PetscCheck(!halves, operators->comm, PETSC_ERR_USER_INPUT,
+             "-symmetry is no more: leave it out for all modes of the whole mesh, or mesh one half and hold its plane by "
+             "-supports");
   if (have)
     PetscCall(OptionsGetReal(PetscOptionsObject, "-contact_mu", "friction coefficient of K + mu H",
                              operators->loaded_mu, &operators->loaded_mu, NULL));
@@ -279,8 +280,6 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(MatDestroy(&o->Z));
   PetscCall(MatDestroy(&o->E));
   PetscCall(PetscFree(o->follows));
-  for (int i = 0; i < OPERATORS_MAX_PLANES; i++) PetscCall(MatDestroy(&o->mirror[i]));
-  PetscCall(MatDestroy(&o->even));
   PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(MatrixTermsDestroy(o));

@@ -32,9 +32,6 @@ typedef struct {
   PetscInt force, moment;
 } LoadParameters;
 
-#define OPERATORS_MAX_PLANES 3
-#define MIRROR_ROUNDING      1e-11 /* of a row: matrices that differ by no more from their images are their own */
-
 /* -operators_factors */
 enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN };
 
@@ -49,9 +46,6 @@ struct _p_Operators {
   PetscBool  lump, omit;
   PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
-  PetscInt   n_planes;  /* of symmetry */
-  PetscReal  mirror_rtol; /* of a row: by how much those of modes may differ from their mirror images */
-  ModelPlane plane[OPERATORS_MAX_PLANES];
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
   char                  nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
@@ -71,8 +65,6 @@ struct _p_Operators {
   Mat                  Z, E;             /* u = Z q, q = E'u where some displacements follow others; else NULL */
   PetscBool           *follows;          /* [unknowns of this rank] which ones do */
   char                 dependent[160];   /* the option that makes them follow */
-  Mat                  mirror[OPERATORS_MAX_PLANES]; /* R of each plane in all unknowns, made when asked for */
-  Mat                  even;                         /* S of the vectors that are even in all planes, likewise */
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
@@ -137,10 +129,6 @@ PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 
 /* friction.c - parameters of the contact */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
-
-/* planes.c - the planes of symmetry; adds them and what they leave out to a checksum, as a part of it where there are any */
-PETSC_INTERN PetscErrorCode MirrorsSetFromOptions(Operators operators, OptionsItems PetscOptionsObject);
-PETSC_INTERN PetscErrorCode MirrorsAddChecksum(Operators operators, Checksum c);
 
 /* file.c - matrices from files and options, and to files */
 PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);

@@ -217,15 +217,14 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil)
 
   PetscFunctionBeginUser;
   if (!o->model || pencil->released) PetscFunctionReturn(0);
-  if (!pencil->is_part) PetscCall(OperatorsReleaseBodies(o));
-  if (!pencil->is_part && o->n_planes) PetscFunctionReturn(0); /* of which its parities are made */
+  PetscCall(OperatorsReleaseBodies(o));
   PetscCall(PencilGetMatrices(pencil, &m));
   PetscCall(PencilGetFrictionless(pencil, &m));
-  if (!pencil->is_part) PetscCall(PencilGetParts(pencil, &parts));
+  PetscCall(PencilGetParts(pencil, &parts));
   PetscCall(TermsRelease(&pencil->base));
   PetscCall(TermsRelease(&pencil->projected));
-  if (!pencil->is_part) PetscCall(TermsRelease(&o->terms));
-  if (!pencil->is_part) PetscCall(TermsRelease(&o->spin));
+  PetscCall(TermsRelease(&o->terms));
+  PetscCall(TermsRelease(&o->spin));
   pencil->released = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -324,7 +323,6 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
   for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
   PetscCall(MatDestroy(&s->half));
-  PetscCall(PencilDestroyMirrors(s));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));
   PetscCall(ParametersDestroy(&s->parameters));

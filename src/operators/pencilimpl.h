@@ -44,23 +44,10 @@ struct _p_Pencil {
   Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
   Mat       half;       /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
   PetscReal half_shift; /* (rad/s)^2 */
-  /* symmetry */
-  PetscBool  is_part;                      /* it is one parity of another pencil */
-  Mat        mirror[OPERATORS_MAX_PLANES]; /* R of each plane, made when asked for */
-  PetscReal  asymmetry;                    /* largest entry by which a matrix differs from its image, of its row's */
-  PetscReal *proven; /* [parameters] the last point at which the scene was found to be its own image; NULL for none */
 };
 
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
-
-#define MIRROR_NO_DEPENDENTS "-points that are joined rigidly and -ties are not supported with it in statics"
-
-/* mirror.c - R of each plane in the unknowns of the pencil, once; raises an error where the scene is not its own image at
-   the present point */
-PETSC_INTERN PetscErrorCode PencilCreateMirrors(Pencil pencil);
-PETSC_INTERN PetscErrorCode PencilDestroyMirrors(Pencil pencil);
-PETSC_INTERN PetscErrorCode MirrorGetRow(Mat R, PetscInt row, PetscInt *column, PetscReal *sign);
 
 /* The sum that is K without friction in the unknowns of the pencil */
 static inline PencilSum PencilEven(Pencil pencil)

@@ -54,10 +54,6 @@ PETSC_INTERN PetscErrorCode TermsSumDestroy(TermsSum *sum);
    another; NULL where a term of it has no such factors */
 PETSC_INTERN PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *left, Mat *right);
 
-/* factors.c - row i of A times c as row `row` of B; the larger of *longest and the length of the longest local row */
-PETSC_INTERN PetscErrorCode RowCopy(PetscReal c, Mat A, PetscInt i, PetscInt row, Mat B);
-PETSC_INTERN PetscErrorCode RowsLongest(Mat A, PetscInt *longest);
-
 /* Parameters and a point of them */
 typedef struct {
   PetscInt            n;

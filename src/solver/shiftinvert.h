@@ -67,12 +67,6 @@ PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertStepped(const ShiftInvert *si, PetscInt n);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
 PETSC_INTERN PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec b, Vec x);
-/* How many times the entries are in factors of so many times the unknowns, of a body in three dimensions: they go as
-   n^(4/3) (A. George, SIAM J. Numer. Anal. 10, 1973, for nested dissection) */
-static inline double FactorEntriesTimes(double unknowns_times)
-{
-  return pow(unknowns_times, 4. / 3);
-}
 /* analysis.c - symbolic analysis of A, which the factorisation then finds done; with MUMPS only.
    PETSC_ERR_USER_INPUT where the machine has not the memory for the factors by MUMPS' estimate */
 PETSC_INTERN PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A, FactorCost *cost);

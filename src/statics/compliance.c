@@ -5,8 +5,7 @@
       K_a u = f - G'(l - kappa w) + S' D l,   K_a = K + kappa G'G + pins,
 
    where K_a can be factored although contact alone holds a body. Where displacements follow others, u = Z q, K_a^-1 stands
-   for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter; so it does with planes of symmetry, where
-   Z = S spans what is even and W has c O more (mirror.c). Multiplied by G, with forces l / kappa (m):
+   for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter. Multiplied by G, with forces l / kappa (m):
 
       w + (W - V D) l - W w = G K_a^-1 f,   W = kappa G K_a^-1 G',   V = kappa G K_a^-1 S'.
 
@@ -135,24 +134,6 @@ static PetscErrorCode ComplianceProject(Mat Z, Mat *A)
   PetscFunctionReturn(0);
 }
 
-/* Adds the rows of c O to local rows [rows][n_all] */
-static PetscErrorCode ComplianceAddOdd(const Compliance *c, PetscReal local[])
-{
-  const PairRows *rows = c->rows;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < rows->n && c->odd; i++) {
-    const PetscInt    *column;
-    const PetscScalar *value;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(c->odd, rows->begin + i, &n, &column, &value));
-    for (PetscInt k = 0; k < n; k++) local[i * rows->n_all + column[k]] += PetscRealPart(value[k]);
-    PetscCall(MatRestoreRow(c->odd, rows->begin + i, &n, &column, &value));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
 static PetscErrorCode ComplianceFormDense(Compliance *c)
 {
@@ -183,7 +164,6 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
     PetscCall(ProgressStep(&progress));
   }
   PetscCall(ProgressEnd(&progress));
-  PetscCall(ComplianceAddOdd(c, local[0]));
   PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[0], NULL, &c->W));
   if (rows->S) PetscCall(GatherRecords(rows->comm, rows->n, (size_t)n_all * sizeof(PetscReal), local[1], NULL, &c->V));
   PetscCall(PetscFree2(local[0], local[1]));
@@ -195,7 +175,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
                                 Progress *progress, Compliance *c)
 {
   PencilMatrices pencil = {.symmetric = PETSC_TRUE};
-  Mat            K, even;
+  Mat            K;
 
   PetscFunctionBeginUser;
   c->rows = rows;
@@ -204,9 +184,6 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscCall(ComplianceAugment(K, rows, c->kappa, PETSC_FALSE, NULL, &pencil.K));
   PetscCall(HoldCreate(operators, p, pencil.K, &c->hold));
   PetscCall(OperatorsGetDependents(operators, &c->Z, &c->E));
-  PetscCall(OperatorsGetEven(operators, &even));
-  if (even) c->Z = even;
-  PetscCall(PairRowsCreateOdd(operators, p, rows, &c->odd));
   PetscCall(PetscObjectReference((PetscObject)pencil.M));
   if (c->Z) {
     PetscCall(MatCreateVecs(c->Z, &c->reduced[0], NULL));
@@ -266,25 +243,6 @@ PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscReal w[])
   PetscFunctionReturn(0);
 }
 
-/* y += c O (l - w) */
-static PetscErrorCode ComplianceApplyOdd(const Compliance *c, const PetscReal l[], const PetscReal w[], PetscReal y[])
-{
-  PetscScalar *value;
-  Vec          odd;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(c->row, &odd));
-  PetscCall(VecGetArray(c->row, &value));
-  for (PetscInt i = 0; i < c->rows->n; i++) value[i] = l[i] - w[i];
-  PetscCall(VecRestoreArray(c->row, &value));
-  PetscCall(MatMult(c->odd, c->row, odd));
-  PetscCall(VecGetArray(odd, &value));
-  for (PetscInt i = 0; i < c->rows->n; i++) y[i] += PetscRealPart(value[i]);
-  PetscCall(VecRestoreArray(odd, &value));
-  PetscCall(VecDestroy(&odd));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[], const PetscReal w[],
                                PetscReal y[])
 {
@@ -292,7 +250,6 @@ PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const Pe
   PetscCall(ComplianceSolve(c, friction, NULL, l, w, c->u));
   PetscCall(ComplianceGetRows(c, c->u, y));
   for (PetscInt i = 0; i < c->rows->n; i++) y[i] = w[i] - y[i];
-  if (c->odd) PetscCall(ComplianceApplyOdd(c, l, w, y));
   PetscFunctionReturn(0);
 }
 
@@ -300,7 +257,6 @@ PetscErrorCode ComplianceDestroy(Compliance *c)
 {
   PetscFunctionBeginUser;
   PetscCall(ShiftInvertDestroy(&c->inverse));
-  PetscCall(MatDestroy(&c->odd));
   PetscCall(HoldDestroy(&c->hold));
   PetscCall(VecDestroy(&c->u));
   PetscCall(VecDestroy(&c->b));

@@ -5,8 +5,7 @@
       | -G                 Q             | | z |
 
    has the small system Q + (W - V D) P - W Q as its Schur complement, and K_a is positive: both determinants have one
-   sign. Where u = Z q stand Z'K_a Z, Z'G', Z'S' and G Z; with planes of symmetry Q has c O (P - Q) more
-   (mirror.c). MUMPS' LU of the whole tells it.
+   sign. Where u = Z q stand Z'K_a Z, Z'G', Z'S' and G Z. MUMPS' LU of the whole tells it.
 */
 #include "staticsimpl.h"
 #include "solver/shiftinvert.h"
@@ -74,22 +73,6 @@ static PetscErrorCode ProjectBlocks(Mat Z, Mat block[4])
   PetscFunctionReturn(0);
 }
 
-/* Q, and c O (P - Q) where there is O */
-static PetscErrorCode DisplacementMatrix(const SmallSystem *s, Mat *A)
-{
-  Mat law, more;
-
-  PetscFunctionBeginUser;
-  PetscCall(LawMatrix(s, LAW_DISPLACEMENT, A));
-  if (!s->compliance->odd) PetscFunctionReturn(0);
-  PetscCall(LawMatrix(s, LAW_DIFFERENCE, &law));
-  PetscCall(MatMatMult(s->compliance->odd, law, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &more));
-  PetscCall(MatAXPY(*A, 1 / s->compliance->kappa, more, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MatDestroy(&law));
-  PetscCall(MatDestroy(&more));
-  PetscFunctionReturn(0);
-}
-
 /* Factors A with a percentage of extra workspace and takes the sign of its determinant, which a singular
    matrix has not: pairs share a force. reason is MUMPS' INFOG(1); percent becomes that of another try, 0 for none. */
 static PetscErrorCode DeterminantTry(Mat A, PetscInt *percent, PetscInt *reason, PetscBool *negative)
@@ -145,7 +128,7 @@ PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
   PetscCall(MatDuplicate(s->compliance->rows->G, MAT_COPY_VALUES, &block[2]));
   PetscCall(MatScale(block[2], -1));
   if (s->compliance->Z) PetscCall(ProjectBlocks(s->compliance->Z, block));
-  PetscCall(DisplacementMatrix(s, &block[3]));
+  PetscCall(LawMatrix(s, LAW_DISPLACEMENT, &block[3]));
   PetscCall(MatCreateNest(s->compliance->rows->comm, 2, NULL, 2, NULL, block, &nest));
   PetscCall(MatConvert(nest, MATAIJ, MAT_INITIAL_MATRIX, &whole));
   PetscCall(DeterminantSign(whole, reversed));

@@ -102,30 +102,10 @@ static PetscErrorCode RigidOrthonormalise(Mat M, Vec weights, PetscInt n, const 
   PetscFunctionReturn(0);
 }
 
-/* S S'r in the place of r, the even part; false where nothing is left of it */
-static PetscErrorCode RigidTakeEven(Mat S, Vec r, PetscBool *good)
-{
-  PetscReal whole, even;
-  Vec       q;
-
-  PetscFunctionBeginUser;
-  *good = PETSC_TRUE;
-  if (!S) PetscFunctionReturn(0);
-  PetscCall(MatCreateVecs(S, &q, NULL));
-  PetscCall(VecNorm(r, NORM_2, &whole));
-  PetscCall(MatMultTranspose(S, r, q));
-  PetscCall(MatMult(S, q, r));
-  PetscCall(VecNorm(r, NORM_2, &even));
-  PetscCall(VecDestroy(&q));
-  *good = even > RIGID_DEPENDENT * whole ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-/* Rigid motions of all bodies, with planes of symmetry the even ones, orthonormal in diag(A); motion[6 n_bodies] */
+/* Rigid motions of all bodies, orthonormal in diag(A); motion[6 n_bodies] */
 static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, Vec **motion)
 {
   Model      model;
-  Mat        S;
   RigidBody *rigid;
   PetscInt   n_bodies, *body;
   PetscBool  good;
@@ -133,7 +113,6 @@ static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, V
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCall(OperatorsGetEven(operators, &S));
   PetscCall(ModelGetBodies(model, &n_bodies, &body));
   PetscCheck(n_bodies <= RIGID_MAX_BODIES, PetscObjectComm((PetscObject)A), PETSC_ERR_SUP,
              "the mesh falls into %" PetscInt_FMT " pieces, at most %d can be held in equilibrium", n_bodies,
@@ -146,8 +125,7 @@ static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, V
   *n = 0;
   for (PetscInt i = 0; i < 6 * n_bodies; i++) {
     PetscCall(RigidSetMotion(model, body, i / 6, &rigid[i / 6], (int)(i % 6), (*motion)[*n]));
-    PetscCall(RigidTakeEven(S, (*motion)[*n], &good));
-    if (good) PetscCall(RigidOrthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
+    PetscCall(RigidOrthonormalise(NULL, diagonal, *n, *motion, (*motion)[*n], &good));
     if (good) (*n)++;
   }
   for (PetscInt i = *n; i < 6 * n_bodies; i++) PetscCall(VecDestroy(&(*motion)[i]));

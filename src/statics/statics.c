@@ -176,7 +176,6 @@ PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
   PetscCall(StaticsSetUp(s, p));
   PetscCall(StaticsCreateLoad(s->operators, s->p, &f, &size));
   PetscCall(StaticsCheckLoad(s, f));
-  PetscCall(OperatorsProveEven(s->operators, s->p, f, STATICS_LOADS_DIFFER));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
@@ -188,12 +187,7 @@ PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
                                           .status     = s->status,
                                           .l          = l,
                                           .u          = s->u}));
-  s->n_free  = s->compliance.hold.n;
-  s->entries = s->compliance.inverse.cost.entries;
-  PetscCall(VecGetSize(f, &s->unknowns[1]));
-  s->unknowns[0] = s->unknowns[1];
-  s->even        = s->compliance.odd ? PETSC_TRUE : PETSC_FALSE;
-  if (s->compliance.Z) PetscCall(VecGetSize(s->compliance.reduced[0], &s->unknowns[0]));
+  s->n_free = s->compliance.hold.n;
   PetscCall(StaticsSetState(s, f, l));
   s->solved = PETSC_TRUE;
   PetscCall(PetscFree(l));

@@ -42,8 +42,7 @@ typedef struct {
   PetscReal       kappa; /* N/m */
   Hold            hold;
   ShiftInvert     inverse;          /* of K_a, or of Z'K_a Z where there is Z */
-  Mat             Z, E;             /* OperatorsGetDependents(); or OperatorsGetEven() and NULL */
-  Mat             odd;              /* c O of mirror.c, added to W; NULL without planes of symmetry */
+  Mat             Z, E;             /* OperatorsGetDependents() */
   Vec             reduced[2];       /* work where there is Z */
   PetscReal      *W, *V; /* [rows][rows] by columns, of all ranks */
   Vec             u, b;  /* work: all unknowns */
@@ -120,8 +119,6 @@ static inline PetscBool ActiveIsLinear(const Active *active)
   return !PairRowsCoulomb(active->rows) || active->friction == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-#define STATICS_LOADS_DIFFER "the -loads, the weight or -motions differ"
-
 #define REPEAT_LONGEST 64
 
 /* Numbers that tell iterates apart: of all statuses, and of forces and displacements, m */
@@ -153,9 +150,6 @@ struct _p_Statics {
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */
   StaticsResultant *resultant;   /* [interfaces] */
-  PetscInt          unknowns[2]; /* factored, and of the whole; equal without planes of symmetry */
-  double            entries;     /* of the factors */
-  PetscBool         even;        /* there are planes of symmetry */
 };
 
 /* quantities.c - what options set in struct _p_Statics */
@@ -168,8 +162,6 @@ PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t si
    interfaces at p */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
-/* mirror.c - c O of the rows, NULL without planes of symmetry; raises the error where pairs are not their own mirror image */
-PETSC_INTERN PetscErrorCode PairRowsCreateOdd(Operators operators, const PetscReal p[], const PairRows *rows, Mat *odd);
 /* moved.c - contact displacements by motions; gaps at a part of them, and slip that counts from w [rows] and the part
    before, NULL and 0 at the first load step */
 PETSC_INTERN PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows);

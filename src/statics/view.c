@@ -29,21 +29,6 @@ static PetscErrorCode InterfaceView(Model model, const ContactInterface *c, cons
   PetscFunctionReturn(0);
 }
 
-/* What planes of symmetry saved */
-static PetscErrorCode SymmetryView(Statics s, PetscViewer viewer)
-{
-  const double mb = 1e-6 * sizeof(PetscScalar) * s->entries;
-
-  PetscFunctionBeginUser;
-  if (!s->even || !ShiftInvertShows()) PetscFunctionReturn(0);
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "saved: symmetry: %" PetscInt_FMT " even unknowns instead of %" PetscInt_FMT
-                                   ", factors of %.3g MB instead of about %.3g MB (estimate)\n",
-                                   s->unknowns[0], s->unknowns[1], mb,
-                                   mb * FactorEntriesTimes((double)s->unknowns[1] / (double)s->unknowns[0])));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
@@ -55,7 +40,6 @@ PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
                                      s->n_free, s->n_free > 1 ? "s" : "", s->n_free > 1 ? "are" : "is"));
   PetscCall(PetscViewerASCIIPrintf(viewer, "equilibrium to %.2g of the load after %" PetscInt_FMT " iteration%s\n",
                                    (double)s->equilibrium, s->n_it, s->n_it == 1 ? "" : "s"));
-  PetscCall(SymmetryView(s, viewer));
   if (s->view_kkt) PetscCall(ContactViewKKT(&s->kkt, viewer));
   PetscFunctionReturn(0);
 }

@@ -9,14 +9,12 @@ static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
 {
   ReducedModes *found = &points->modes[i];
   const Mode   *mode;
-  const char   *parity;
   PetscInt      n;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGet(sweep->modes, &n, &mode));
   PetscCall(ReducedModesCreate(n, 0, found));
   PetscCall(PetscMalloc1(n, &points->branch[i]));
-  PetscCall(PetscCalloc1(n, &points->parity[i]));
   PetscCall(PetscCalloc1(n, &points->name[i]));
   for (PetscInt k = 0; k < n; k++) {
     found->lambda[k]     = CMPLX(mode[k].sigma, mode[k].omega);
@@ -24,8 +22,6 @@ static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
     found->error[k]      = mode[k].error;
     found->rigid[k]      = mode[k].rigid;
     points->branch[i][k] = -1;
-    PetscCall(ModesGetParity(sweep->modes, k, &parity));
-    if (parity) points->parity[i][k] = SweepFindParity(sweep, parity);
     PetscCall(PetscStrncpy(points->name[i][k].text, mode[k].label, sizeof(points->name[i][k].text)));
   }
   PetscFunctionReturn(0);
@@ -38,8 +34,7 @@ static PetscErrorCode PencilSolve(Sweep sweep, Pencil pencil, PetscInt i, LinePo
 
   PetscFunctionBeginUser;
   PetscCall(ModesSetPencil(sweep->modes, pencil));
-  PetscCall(SweepNameParities(sweep, pencil));
-  PetscCall(ModesSolveParities(sweep->modes));
+  PetscCall(ModesSolve(sweep->modes));
   PetscCall(PointTake(sweep, i, points));
   PetscCall(ModesWant(sweep->modes, &nearest, &left));
   if (left) PetscCall(FollowTake(sweep, pencil, i, points, follow));
@@ -82,7 +77,6 @@ PetscErrorCode SweepBrute(Sweep sweep)
 
     PetscCall(LineCreate(sweep, line, &points));
     PetscCall(PetscCalloc1(points.n, &points.name));
-    PetscCall(PetscCalloc1(points.n, &points.parity));
     for (PetscInt i = 0; i < points.n; i++) PetscCall(PointSolve(sweep, i, &points, &follow));
     PetscCall(LineFinish(sweep, n_before, first_event, &points));
     PetscCall(LineDestroy(&points));
@@ -154,10 +148,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
     PetscCall(PointsSolve(&sweep->groups, &sweep->basis.reduced, &wide, 1, p, &reduced));
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(PetscFree(p));
-  if (sweep->parity < 0)
-    PetscCall(ModesSolve(sweep->modes));
-  else
-    PetscCall(ModesSolveAny(sweep->modes, &n));
+  PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &n, &full));
   for (PetscInt i = 0; i < n; i++) {
     if (PetscAbsReal(full[i].sigma) > growth) continue;

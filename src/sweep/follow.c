@@ -7,54 +7,29 @@
    of the line before.
 
    All vectors are those of all unknowns, since which of them an exact constraint eliminates may change from point to
-   point. Modes of different parity are never compared.
+   point.
 */
 #include "follow.h"
 
-/* The modes of a parity with their branches, list [n] being their indices in the point */
-static PetscErrorCode ParitySelect(const FollowPoint *point, PetscInt parity, PetscInt list[], ReducedModes *modes,
-                                   PetscInt branch[])
+/* Branches of the modes of a point from those of another one, in the same basis */
+static PetscErrorCode PointStepFrom(Sweep sweep, StepKind kind, const Reduced *reduced, const FollowPoint *from,
+                                    FollowPoint *point)
 {
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < point->modes.n; i++) {
-    if (point->parity[i] != parity) continue;
-    branch[n] = point->branch[i];
-    list[n++] = i;
-  }
-  PetscCall(ReducedModesSelect(&point->modes, n, list, modes));
-  PetscFunctionReturn(0);
-}
-
-/* Branches of one parity */
-static PetscErrorCode ParityStep(Sweep sweep, PetscInt parity, StepKind kind, const Reduced *reduced,
-                                 const FollowPoint *from, FollowPoint *point)
-{
-  ReducedModes a, b;
-  PetscInt    *list, *branch[2];
-  PointStep    step = {
-       .kind       = kind,
-       .window     = &sweep->window,
-       .p          = {(PetscReal[]){0, 1}, (PetscReal[]){1, 0}},
-       .before     = &from->memory,
-       .after      = &point->memory,
-       .n_branches = sweep->n_branches
+  PointStep step = {
+    .kind       = kind,
+    .window     = &sweep->window,
+    .p          = {(PetscReal[]){0, 1}, (PetscReal[]){1, 0}},
+    .a          = {from->value, &from->modes, from->branch},
+    .b          = {point->value, &point->modes, point->branch},
+    .before     = &from->memory,
+    .after      = &point->memory,
+    .n_branches = sweep->n_branches
   };
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(from->modes.n + point->modes.n, &list, from->modes.n, &branch[0], point->modes.n, &branch[1]));
-  PetscCall(ParitySelect(from, parity, list, &a, branch[0]));
-  PetscCall(ParitySelect(point, parity, list, &b, branch[1]));
-  step.a = (BranchPoint){from->value, &a, branch[0]};
-  step.b = (BranchPoint){point->value, &b, branch[1]};
   PetscCall(TrackStep(reduced, &step, &sweep->events));
-  for (PetscInt i = 0; i < b.n; i++) point->branch[list[i]] = branch[1][i];
   sweep->n_branches = step.n_branches;
   sweep->n_broken += step.n_broken;
-  PetscCall(ReducedModesDestroy(&a));
-  PetscCall(ReducedModesDestroy(&b));
-  PetscCall(PetscFree3(list, branch[0], branch[1]));
   PetscFunctionReturn(0);
 }
 
@@ -84,7 +59,7 @@ static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, con
     before = *from;
     PetscCall(FollowMove(&from->modes, size, NULL, &before.modes));
     PetscCall(FollowMove(&from->memory.modes, size, NULL, &before.memory.modes));
-    for (PetscInt c = 0; c < sweep->n_parities; c++) PetscCall(ParityStep(sweep, c, kind, &reduced, &before, point));
+    PetscCall(PointStepFrom(sweep, kind, &reduced, &before, point));
     PetscCall(PointShare(sweep, first_event, point));
     for (PetscInt e = first_event; e < sweep->events.n; e++) sweep->events.event[e].place = point->place;
     PetscCall(ReducedModesDestroy(&before.modes));
@@ -105,7 +80,7 @@ static PetscErrorCode PointDestroy(FollowPoint **point)
   PetscCall(ReducedModesDestroy(&p->modes));
   PetscCall(ReducedModesDestroy(&p->memory.modes));
   PetscCall(PetscFree(p->memory.branch));
-  PetscCall(PetscFree2(p->branch, p->parity));
+  PetscCall(PetscFree(p->branch));
   PetscCall(PetscFree(*point));
   PetscFunctionReturn(0);
 }
@@ -120,8 +95,7 @@ static PetscErrorCode PointCreate(Sweep sweep, const FollowPoint *from, PetscInt
   PetscCall(PetscNew(point));
   (*point)->place = points->first + i;
   (*point)->value = points->value[i];
-  PetscCall(PetscMalloc2(found->n, &(*point)->branch, found->n, &(*point)->parity));
-  PetscCall(PetscArraycpy((*point)->parity, points->parity[i], found->n));
+  PetscCall(PetscMalloc1(found->n, &(*point)->branch));
   PetscCall(FollowRead(sweep, from, found, *point));
   PetscFunctionReturn(0);
 }

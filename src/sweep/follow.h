@@ -5,13 +5,13 @@
 
 /* A point whose modes are to be found again at the next one */
 typedef struct {
-  Mat          C;               /* damping of all unknowns there; NULL without */
-  BV           vectors;         /* [modes.size] orthonormal, of all unknowns */
-  ReducedModes modes;           /* in coordinates of these */
-  BranchMemory memory;          /* the same */
-  PetscInt    *branch, *parity; /* [modes.n] */
-  PetscInt     place;           /* of the grid */
-  PetscReal    value;           /* of the line's parameter */
+  Mat          C;       /* damping of all unknowns there; NULL without */
+  BV           vectors; /* [modes.size] orthonormal, of all unknowns */
+  ReducedModes modes;   /* in coordinates of these */
+  BranchMemory memory;  /* the same */
+  PetscInt    *branch;  /* [modes.n] */
+  PetscInt     place;   /* of the grid */
+  PetscReal    value;   /* of the line's parameter */
 } FollowPoint;
 
 /* The point before, and the first one of its line, which the first one of the next line begins at; as {0} */

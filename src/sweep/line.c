@@ -41,10 +41,8 @@ PetscErrorCode LineDestroy(LinePoints *points)
     PetscCall(ReducedModesDestroy(&points->modes[i]));
     PetscCall(PetscFree(points->branch[i]));
     if (points->name) PetscCall(PetscFree(points->name[i]));
-    if (points->parity) PetscCall(PetscFree(points->parity[i]));
   }
   PetscCall(PetscFree(points->name));
-  PetscCall(PetscFree(points->parity));
   PetscCall(PetscFree4(points->value, points->p, points->modes, points->branch));
   points->n = 0;
   PetscFunctionReturn(0);
@@ -117,7 +115,6 @@ static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
       point->mode[k].noise     = modes->noise[k];
       point->mode[k].condition = cabs(modes->product[k]) > 0 ? 1 / cabs(modes->product[k]) : INFINITY;
       point->mode[k].branch    = points->branch[i][k];
-      if (points->parity) point->mode[k].parity = points->parity[i][k];
       if (points->name) PetscCall(PetscStrncpy(point->mode[k].label, points->name[i][k].text, 32));
     }
   }
@@ -180,7 +177,6 @@ static PetscErrorCode PointTakeNames(Sweep sweep, const LinePoints *points, Pets
 
     if (b < 0 || at[b] != i) continue;
     PetscCall(PetscStrncpy(sweep->label[b].text, points->name[i][k].text, sizeof(sweep->label[b].text)));
-    sweep->label[b].parity = points->parity[i][k];
   }
   PetscFunctionReturn(0);
 }

@@ -11,8 +11,7 @@ typedef struct {
   ReducedModes *modes;    /* [n] */
   PetscInt    **branch;   /* [n][modes]; -1 where branches are not followed */
   /* of a sweep in full or on real modes, which has no vectors after its points; else NULL */
-  BranchName **name;   /* [n][modes] */
-  PetscInt   **parity; /* [n][modes] */
+  BranchName **name; /* [n][modes] */
 } LinePoints;
 
 /* line.c - a line without its modes; names of the branches and the records of the points, numbers from first_new on and

@@ -40,7 +40,6 @@ static PetscErrorCode PlaceSolve(Sweep sweep, PetscInt i, LinePoints *points)
   PetscFunctionBeginUser;
   PetscCall(SweepRealSolve(sweep, p, &sweep->window, modes));
   PetscCall(PetscMalloc1(modes->n, &points->branch[i]));
-  PetscCall(PetscCalloc1(modes->n, &points->parity[i]));
   PetscCall(PetscCalloc1(modes->n, &points->name[i]));
   PetscCall(PetscCalloc1(modes->n, &label));
   PetscCall(SweepLabelModes(sweep, p, modes, label));
@@ -61,7 +60,6 @@ PetscErrorCode SweepReal(Sweep sweep)
   for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
     PetscCall(LineCreate(sweep, line, &points));
     PetscCall(PetscCalloc1(points.n, &points.name));
-    PetscCall(PetscCalloc1(points.n, &points.parity));
     for (PetscInt i = 0; i < points.n; i++)
       if (sweep->grid.place[points.first + i].point >= 0) PetscCall(PlaceSolve(sweep, i, &points));
     PetscCall(LineFinish(sweep, 0, 0, &points));

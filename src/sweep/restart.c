@@ -64,7 +64,7 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
   PetscCall(ChecksumSetPart(c, "the sweep"));
-  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){size, sweep->parity}));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
     PetscCall(ChecksumAddInts(c, 1, &grid->n_moved[k]));
@@ -79,13 +79,11 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
 static PetscErrorCode FileName(Sweep sweep, PetscInt k, const char ending[], char name[PETSC_MAX_PATH_LEN])
 {
   PetscMPIInt rank;
-  char        parity[16] = "";
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(sweep->comm, &rank));
-  if (sweep->parity >= 0) PetscCall(PetscSNPrintf(parity, sizeof(parity), "parity%d_", (int)sweep->parity));
-  PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/sweep_restart_%s%03d_rank%d%s", sweep->folder, parity, (int)k,
-                          (int)rank, ending));
+  PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/sweep_restart_%03d_rank%d%s", sweep->folder, (int)k, (int)rank,
+                          ending));
   PetscFunctionReturn(0);
 }
 
@@ -333,9 +331,8 @@ PetscErrorCode SweepResume(Sweep sweep)
     if (good) sweep->n_files++;
   }
   if (sweep->n_files)
-    PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " full solutions%s%s kept in %s\n",
-                          sweep->greedy.n_samples, sweep->parity < 0 ? "" : ", ",
-                          sweep->parity < 0 ? "" : sweep->parity_name[sweep->parity], sweep->folder));
+    PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " full solutions kept in %s\n",
+                          sweep->greedy.n_samples, sweep->folder));
   PetscFunctionReturn(0);
 }
 

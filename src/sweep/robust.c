@@ -9,7 +9,6 @@
 
 #define MAX_CORNERS 64  /* of a box in many dimensions, only the first are looked at */
 #define N_INSIDE    200 /* points of the Halton sequence */
-#define N_PROVEN    8   /* of these, where the scene is proven to be its own mirror image */
 
 /* The box: parameters, and half widths relative to their values. What a link holds is moved together, each by the same
    part of its own value. */
@@ -109,14 +108,6 @@ static void BoxMove(const ParameterBox *box, PetscInt k, PetscReal side, PetscRe
   for (PetscInt m = 0; m < box->n_moved[k]; m++) p[box->moved[k][m]] *= 1 + side * box->half[k];
 }
 
-/* The corner where two parameters are on the high side, and all others on the low side */
-static void BoxCorner(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, const PetscInt high[2],
-                      PetscReal p[])
-{
-  for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
-  for (PetscInt k = 0; k < box->n; k++) BoxMove(box, k, k == high[0] || k == high[1] ? 1 : -1, p);
-}
-
 /* Point i: 0 the scene itself, then corners, then the inside */
 static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners,
                      PetscInt i, PetscReal p[])
@@ -126,44 +117,6 @@ static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n
   for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
   for (PetscInt k = 0; k < box->n && i > 0; k++)
     BoxMove(box, k, i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1, p);
-}
-
-/* Raises an error where the scene is not its own mirror image at p */
-static PetscErrorCode PointProve(Sweep sweep, const PetscReal p[])
-{
-  PetscInt n;
-
-  PetscFunctionBeginUser;
-  PetscCall(PencilSetParameters(sweep->pencil, p));
-  PetscCall(PencilGetParities(sweep->pencil, &n, NULL));
-  PetscFunctionReturn(0);
-}
-
-/* The corners where none, each one, and each two of the parameters are on the high side tell each coefficient that is
-   linear in them, and each product of two; the scene itself and points inside, where all differ, tell the others */
-PetscErrorCode SweepUncertainProve(Sweep sweep)
-{
-  const PetscInt n_parameters = sweep->grid.n_parameters;
-  PetscInt       n_corners;
-  PetscReal     *p;
-  ParameterBox   box;
-
-  PetscFunctionBeginUser;
-  PetscCall(BoxRead(sweep, &box));
-  n_corners = BoxCorners(&box);
-  PetscCall(PetscMalloc1(n_parameters, &p));
-  for (PetscInt j = 0; j <= box.n; j++)
-    for (PetscInt k = j; k <= box.n; k++) { /* box.n stands for none */
-      if (j == k && k < box.n) continue;
-      BoxCorner(&box, sweep->grid.base, n_parameters, (PetscInt[]){j, k}, p);
-      PetscCall(PointProve(sweep, p));
-    }
-  for (PetscInt i = 0; i < 1 + n_corners + N_INSIDE; i += i ? N_INSIDE / N_PROVEN : n_corners + 1) {
-    BoxPoint(&box, sweep->grid.base, n_parameters, n_corners, i, p);
-    PetscCall(PointProve(sweep, p));
-  }
-  PetscCall(PetscFree(p));
-  PetscFunctionReturn(0);
 }
 
 /* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the

@@ -19,8 +19,6 @@ PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
   (*sweep)->max_samples = 20;
   (*sweep)->n_real      = 80;
   (*sweep)->restart     = PETSC_TRUE;
-  (*sweep)->parity      = -1;
-  (*sweep)->n_parities  = 1;
   PetscFunctionReturn(0);
 }
 
@@ -258,7 +256,8 @@ static PetscErrorCode Clock(Sweep sweep, int phase, PetscLogDouble *since)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SweepReduced(Sweep sweep, PetscLogDouble *since)
+/* Basis, points and what is asked of them */
+static PetscErrorCode ReducedSweep(Sweep sweep, PetscLogDouble *since)
 {
   PetscFunctionBeginUser;
   if (sweep->method == SWEEP_REAL) {
@@ -301,15 +300,16 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
     PetscCall(Clock(sweep, 1, &since));
     PetscFunctionReturn(0);
   }
-  PetscCall(SweepNameParities(sweep, sweep->pencil)); /* each point has its own status among the parameters */
-  PetscCall(sweep->n_parities > 1 ? SweepParities(sweep) : SweepReduced(sweep, &since));
+  PetscCall(ReducedSweep(sweep, &since)); /* each point has its own status among the parameters */
   PetscFunctionReturn(0);
 }
 
-/* Frees results, but not what a part shares with the whole */
-static PetscErrorCode SweepDestroyResults(Sweep s)
+PetscErrorCode SweepDestroy(Sweep *sweep)
 {
+  Sweep s = *sweep;
+
   PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
   for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
   PetscCall(PetscFree(s->point));
   PetscCall(PetscFree(s->check));
@@ -323,20 +323,6 @@ static PetscErrorCode SweepDestroyResults(Sweep s)
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(PencilDestroy(&s->pencil));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SweepDestroy(Sweep *sweep)
-{
-  Sweep s = *sweep;
-
-  PetscFunctionBeginUser;
-  if (!s) PetscFunctionReturn(0);
-  for (PetscInt c = 0; c < SWEEP_PARITIES; c++) {
-    if (s->part[c]) PetscCall(SweepDestroyResults(s->part[c]));
-    PetscCall(PetscFree(s->part[c]));
-  }
-  PetscCall(SweepDestroyResults(s));
   PetscCall(PetscFree(s->percent));
   PetscCall(GridDestroy(&s->grid));
   PetscCall(StatusListDestroy(&s->statuses));

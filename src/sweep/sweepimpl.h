@@ -9,7 +9,6 @@
 
 #define SWEEP_MAX_TEXT      65536 /* length of a list of values */
 #define SWEEP_MAX_UNCERTAIN 16
-#define SWEEP_PARITIES      8
 
 typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
 
@@ -20,7 +19,6 @@ typedef struct {
   PetscReal noise;        /* the part of it that is rounding */
   PetscReal condition;
   PetscInt  branch; /* from 0 on; -1 where branches are not followed */
-  PetscInt  parity; /* as in pencil.h, 0 without planes of symmetry */
   PetscBool unstable, numerical;
   char      label[32];
 } SweepMode;
@@ -31,11 +29,10 @@ typedef struct {
   SweepMode *mode;
 } SweepPoint;
 
-/* Name of a branch, its growth or decay where it was looked at, 1/s, and its parity as in pencil.h */
+/* Name of a branch, and its growth or decay where it was looked at, 1/s */
 typedef struct {
   char      text[32];
   PetscReal growth;
-  PetscInt  parity;
 } BranchName;
 
 /* True errors at a point that the basis has never seen */
@@ -55,7 +52,6 @@ typedef struct {
   PetscReal nominal, largest; /* growth at the scene's own values, and the largest found, 1/s */
   PetscReal omega, error;     /* rad/s, where growth is largest */
   PetscInt  n_unstable;       /* of the combinations looked at */
-  PetscInt  parity;
   char      label[32];
 } SweepRisk;
 
@@ -99,24 +95,8 @@ struct _p_Sweep {
   Checksum       scene;      /* tells whether they belong to this sweep */
   PetscInt       n_files, n_kept;
   PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
-  /* symmetry */
-  PetscInt         parity;                          /* of a sweep of one parity; -1 for the whole */
-  PetscInt         n_parities;                      /* 1 without planes of symmetry */
-  PetscInt         unknowns, whole_unknowns;        /* of a parity, and of the whole */
-  char             parity_name[SWEEP_PARITIES][32]; /* [n_parities] */
-  struct _p_Sweep *part[SWEEP_PARITIES]; /* sweeps of the parities, made one after the other; NULL for none */
-  PetscInt         first_branch;         /* of a part, in the table of all */
 };
 
-/* sweep.c - basis, points and what is asked of them, of the pencil of the sweep */
-PETSC_INTERN PetscErrorCode SweepReduced(Sweep sweep, PetscLogDouble *since);
-/* parity.c - a sweep for each parity, and all of them in one; what the parities share is proven before */
-PETSC_INTERN PetscErrorCode SweepParities(Sweep sweep);
-/* The names of the parities, once the pencil of some point is there; the number of one */
-PETSC_INTERN PetscErrorCode SweepNameParities(Sweep sweep, Pencil pencil);
-PETSC_INTERN PetscInt       SweepFindParity(Sweep sweep, const char name[]);
-/* robust.c - proves that the scene is its own mirror image for all values of the uncertain parameters */
-PETSC_INTERN PetscErrorCode SweepUncertainProve(Sweep sweep);
 /* confirm.c - by line, then by critical value */
 PETSC_INTERN void SweepSortOnsets(Sweep sweep);
 
@@ -164,7 +144,7 @@ PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], con
 PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
 /* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that
-   is kept in the folder, also by other parities, by more ranks and by longer sweeps */
+   is kept in the folder, also by more ranks and by longer sweeps */
 PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
 PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

@@ -192,31 +192,6 @@ static PetscErrorCode BasisView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* The reduced model of each parity, and what they save; that of the whole without planes of symmetry */
-static PetscErrorCode ModelsView(Sweep sweep, const OperatorsParameter parameters[], PetscViewer viewer)
-{
-  PetscInt most = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < SWEEP_PARITIES; c++) {
-    if (!sweep->part[c]) continue;
-    most = PetscMax(most, sweep->part[c]->unknowns);
-    PetscCall(PetscViewerASCIIPrintf(viewer, "symmetry %s: %" PetscInt_FMT " unknowns, %" PetscInt_FMT " branches\n",
-                                     sweep->parity_name[c], sweep->part[c]->unknowns, sweep->part[c]->n_branches));
-    PetscCall(ModelsView(sweep->part[c], parameters, viewer));
-  }
-  if (most)
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "saved: by symmetry matrices of at most %" PetscInt_FMT
-                                     " unknowns instead of %" PetscInt_FMT ", with factors of about %.0f %% (estimate)\n",
-                                     most, sweep->whole_unknowns,
-                                     100 * FactorEntriesTimes((double)most / (double)sweep->whole_unknowns)));
-  if (most) PetscFunctionReturn(0);
-  PetscCall(SamplesView(sweep, parameters, viewer));
-  PetscCall(BasisView(sweep, viewer));
-  PetscFunctionReturn(0);
-}
-
 /* How far branches were followed from point to point */
 static PetscErrorCode FollowView(Sweep sweep, PetscViewer viewer)
 {
@@ -258,7 +233,8 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
                                    " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
   if (sweep->method == SWEEP_FULL) PetscCall(FollowView(sweep, viewer));
-  PetscCall(ModelsView(sweep, parameters, viewer));
+  PetscCall(SamplesView(sweep, parameters, viewer));
+  PetscCall(BasisView(sweep, viewer));
   if (sweep->is_confirmed && sweep->method != SWEEP_FULL) PetscCall(SweepViewOnsetCost(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, points %.2f s, onsets %.2f s, checks %.2f s",
                                    sweep->seconds[0], sweep->seconds[1], sweep->seconds[2], sweep->seconds[3]));

@@ -31,19 +31,6 @@ static Number SecondValue(Sweep sweep, PetscInt line)
   return NumberOrEmpty(sweep->grid.n_axes == 2 ? sweep->grid.value[1][line] : NAN);
 }
 
-/* The last column with planes of symmetry, else nothing */
-typedef struct {
-  char text[40];
-} SymmetryColumn;
-
-static SymmetryColumn ParityOf(Sweep sweep, PetscInt parity)
-{
-  SymmetryColumn column = {""};
-
-  if (sweep->n_parities > 1) (void)snprintf(column.text, sizeof(column.text), ",%s", sweep->parity_name[parity]);
-  return column;
-}
-
 /* Distance of a point to the nearest onset of a branch, relative, or NaN. Growth near a lock-in goes as the square root
    of the distance of the parameter from its critical value, and so does the error bar there: hence it is listed. */
 static PetscReal OnsetDistance(Sweep sweep, PetscInt point, PetscInt branch)
@@ -73,14 +60,14 @@ static PetscErrorCode PointRow(Sweep sweep, PetscInt i, const SweepMode *m, Resu
 
   PetscFunctionBeginUser;
   PetscCall(ResultsTableRow(
-    table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d%s", (int)i + 1, (double)sweep->grid.value[0][i % n],
+    table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d", (int)i + 1, (double)sweep->grid.value[0][i % n],
     NumberOrEmpty(m->branch < 0 ? NAN : m->branch + 1).text, (double)(m->omega / (2 * PETSC_PI)), (double)m->sigma,
     NumberOrEmpty(size > 0 ? m->error / size : NAN).text, (int)m->unstable, m->label, SecondValue(sweep, i / n).text,
     m->unstable    ? "unstable"
     : m->numerical ? "numerical"
                    : "stable",
     NumberOrEmpty(m->error / (2 * PETSC_PI)).text, NumberOrEmpty(m->condition).text, NumberOrEmpty(distance).text,
-    NumberOrEmpty(n_closed < 0 ? NAN : n_closed).text, (int)jump, ParityOf(sweep, m->parity).text));
+    NumberOrEmpty(n_closed < 0 ? NAN : n_closed).text, (int)jump));
   PetscFunctionReturn(0);
 }
 
@@ -103,13 +90,12 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
     const BranchEvent *event = &sweep->events.event[e];
 
     if (!event->found) continue;
-    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s%s",
+    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
                               parameters[sweep->grid.parameter[0][0]].name, (double)event->critical,
                               (double)(event->omega / (2 * PETSC_PI)), EventKind(event),
                               sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
                               NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
-                              (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text,
-                              ParityOf(sweep, sweep->label[event->branch[0]].parity).text));
+                              (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text));
   }
   PetscFunctionReturn(0);
 }
@@ -153,9 +139,9 @@ static PetscErrorCode RiskRows(Sweep sweep, ResultsTable table)
   for (PetscInt i = 0; i < sweep->n_risks; i++) {
     const SweepRisk *r = &sweep->risk[i];
 
-    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d%s", r->label, (double)(r->omega / (2 * PETSC_PI)),
+    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d", r->label, (double)(r->omega / (2 * PETSC_PI)),
                               NumberOrEmpty(r->nominal).text, (double)r->largest, (double)r->error, (int)r->n_unstable,
-                              (int)sweep->n_combinations, ParityOf(sweep, r->parity).text));
+                              (int)sweep->n_combinations));
   }
   PetscFunctionReturn(0);
 }
@@ -206,7 +192,7 @@ static PetscErrorCode ModeSensitivityRows(Sweep sweep, PetscInt point, const Pet
       near = k;
   }
   PetscCall(PetscSNPrintf(row, sizeof(row), "%d,%.15g,%d,%.15g", (int)point + 1, (double)p[grid->parameter[0][0]],
-                          (int)(sweep->first_branch + sweep->point[point].mode[near].branch) + 1,
+                          (int)sweep->point[point].mode[near].branch + 1,
                           (double)(cimag(modes->lambda[i]) / (2 * PETSC_PI))));
   for (PetscInt j = 0; j < n; j++)
     if (!parameters[j].internal && !parameters[j].state)
@@ -232,8 +218,6 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscReal *p;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < SWEEP_PARITIES; c++)
-    if (sweep->part[c]) PetscCall(SensitivityRows(sweep->part[c], table));
   if (!sweep->basis.reduced.n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++) {
@@ -249,22 +233,18 @@ static PetscErrorCode SensitivityRows(Sweep sweep, ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-/* A table; with planes of symmetry the parity of each row comes last, where rows have one */
+/* A table */
 typedef struct {
   const char *name, *columns;
   PetscErrorCode (*rows)(Sweep sweep, ResultsTable table);
-  PetscBool has_parity;
 } SweepTable;
 
 static PetscErrorCode TableWrite(Sweep sweep, Results results, const SweepTable *t)
 {
   ResultsTable table;
-  char         columns[512];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(columns, sizeof(columns), "%s%s", t->columns,
-                          t->has_parity && sweep->n_parities > 1 ? ",symmetry" : ""));
-  PetscCall(ResultsTableOpen(results, t->name, columns, &table));
+  PetscCall(ResultsTableOpen(results, t->name, t->columns, &table));
   PetscCall(t->rows(sweep, table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -273,24 +253,24 @@ static PetscErrorCode TableWrite(Sweep sweep, Results results, const SweepTable 
 static const SweepTable point_table = {"sweep",
                                        "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,"
                                        "class,error_hz,condition,onset_distance,n_closed,jump",
-                                       PointRows, PETSC_TRUE};
-static const SweepTable parameter_table = {"parameters", "parameter,value,unit,swept,link", ParameterRows, PETSC_FALSE};
+                                       PointRows};
+static const SweepTable parameter_table = {"parameters", "parameter,value,unit,swept,link", ParameterRows};
 static const SweepTable onset_table     = {"onsets",
                                            "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
                                            "confirmed,value_2",
-                                           OnsetRows, PETSC_TRUE};
+                                           OnsetRows};
 static const SweepTable check_table     = {"verify",
                                            "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,"
                                            "true_error,error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio",
-                                           CheckRows, PETSC_FALSE};
+                                           CheckRows};
 static const SweepTable risk_table      = {"robustness",
                                            "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,"
                                            "unstable_combinations,combinations",
-                                           RiskRows, PETSC_TRUE};
+                                           RiskRows};
 static const SweepTable sensitivity_table = {"sensitivities",
                                              "point,value,branch,freq_hz,parameter,freq_hz_per_unit,"
                                              "growth_rad_s_per_unit,freq_hz_per_percent,growth_rad_s_per_percent",
-                                             SensitivityRows, PETSC_FALSE};
+                                             SensitivityRows};
 
 PetscErrorCode SweepWrite(Sweep sweep, Results results)
 {
@@ -300,8 +280,7 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
   if (sweep->is_confirmed) PetscCall(TableWrite(sweep, results, &onset_table));
   if (sweep->n_checks) PetscCall(TableWrite(sweep, results, &check_table));
   if (sweep->n_risks) PetscCall(TableWrite(sweep, results, &risk_table));
-  if (sweep->sensitivities && (sweep->basis.reduced.n || sweep->n_parities > 1))
-    PetscCall(TableWrite(sweep, results, &sensitivity_table));
+  if (sweep->sensitivities && sweep->basis.reduced.n) PetscCall(TableWrite(sweep, results, &sensitivity_table));
   PetscCall(SweepForget(sweep));
   PetscFunctionReturn(0);
 }

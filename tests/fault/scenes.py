@@ -35,7 +35,6 @@ SCENES = (
     Scene("map", (*BRAKE, "-analysis", "map", "-impulses", "tap", "-tap_at", "0,0,0.1", "-tap_part", "block", "-tap_impulse",
                   "0,0,1e-4", "-map_parameter", "contact_mu", "-map_values", "0.2,0.4", "-map_window", "2e-3", "-ts_max_time",
                   "16e-3", "-dynamics_model", "reduced", "-dynamics_cutoff", "3000")),
-    Scene("symmetry", (*BRAKE, "-symmetry", "y", "-modes_contact", "static", "-block_alpha", "30", "-base_beta", "1e-6")),
 )
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Branches and onsets of a sweep beside those of a finer or another one: verify/branches.py SWEEP REFERENCE BROKEN ONSETS
 
-At values that both have, modes are the same by their eigenvalues (and their parity). Each branch of SWEEP must lie in one of
+At values that both have, modes are the same by their eigenvalues. Each branch of SWEEP must lie in one of
 REFERENCE, whatever their numbers; BROKEN more of them than there are modes mean that as many ended and began anew. Which of two
 branches takes the unstable member of a pair is a matter of names: there both must be in the same two. Each of the ONSETS of SWEEP
 must be an onset of REFERENCE, of the same kind and of the same branches, within its error."""
@@ -21,23 +21,23 @@ def table(folder, name):
 
 
 def points(folder):
-    """Modes of each point: eigenvalue over 2 pi, parity, branch."""
+    """Modes of each point: eigenvalue over 2 pi, branch."""
     modes = collections.defaultdict(list)
     for row in table(folder, "sweep.csv"):
         eigenvalue = complex(float(row["growth_rad_s"]) / 6.283185307179586, float(row["freq_hz"]))
-        modes[float(row["value"]), row["value_2"]].append((eigenvalue, row.get("symmetry", ""), row["branch"]))
+        modes[float(row["value"]), row["value_2"]].append((eigenvalue, row["branch"]))
     return modes
 
 
 def partners(ours, theirs):
     """Our modes of a point with those of the reference, one to one."""
     left = list(theirs)
-    for eigenvalue, parity, branch in ours:
-        other = min((mode for mode in left if mode[1] == parity), key=lambda mode: abs(mode[0] - eigenvalue))
+    for eigenvalue, branch in ours:
+        other = min(left, key=lambda mode: abs(mode[0] - eigenvalue))
         if abs(other[0] - eigenvalue) > SAME * abs(eigenvalue):
             raise SystemExit(f"{eigenvalue} has no partner, the nearest is {other[0]}")
         left.remove(other)
-        yield eigenvalue, branch, other[2]
+        yield eigenvalue, branch, other[1]
     if left:
         raise SystemExit(f"{len(left)} modes of the reference have no partner")
 

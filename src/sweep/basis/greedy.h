@@ -22,7 +22,6 @@ typedef struct {
   const PointGroups *groups;
   PetscReal          rtol;
   PetscInt           max_samples;
-  PetscBool          may_be_none; /* no mode may lie in the band at a point, as of one parity */
   PetscInt           n_samples;
   GreedySample      *sample;     /* [max_samples] */
   PetscReal          worst;      /* largest estimated relative error at all points when it ended */

@@ -8,7 +8,6 @@
 #define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
-#define SAMPLE_NEAREST 4 /* modes taken in where the band has none */
 
 PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov, PetscInt n_vectors, PetscReal estimate)
 {
@@ -25,23 +24,16 @@ PetscErrorCode SampleAdd(GreedyWork *run, const PetscReal p[], PetscBool krylov,
   PetscFunctionReturn(0);
 }
 
-/* The modes at the present point in a band, Hz, which is then again the one before; where it may hold none, those nearest
-   to its middle */
+/* The modes at the present point in a band, Hz, which is then again the one before */
 static PetscErrorCode SampleModes(GreedyWork *run, const PetscReal wide[2])
 {
   const Modes modes = run->greedy->modes;
   PetscReal   band[2], growth;
-  PetscInt    n = 1;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetBand(modes, band, &growth));
   PetscCall(ModesSetBand(modes, wide));
-  if (run->greedy->may_be_none)
-    PetscCall(ModesSolveAny(modes, &n));
-  else
-    PetscCall(ModesSolve(modes));
-  if (!n) PetscCall(ModesSetNearest(modes, 0.5 * (wide[0] + wide[1]), SAMPLE_NEAREST));
-  if (!n) PetscCall(ModesSolve(modes));
+  PetscCall(ModesSolve(modes));
   PetscCall(ModesSetBand(modes, band));
   PetscFunctionReturn(0);
 }
