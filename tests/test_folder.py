@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """What lies in the folder of results, who else writes there, and where nobody reads what is printed. Breaks when a run waits for a pipe,
 writes through a link, mixes its rows with another run's, is kept from a folder by one that was killed, follows options that lie beside
-a matrix, needs /dev/shm or locks of the file system, or leaves no files since `head` had enough.
+a matrix or in the environment without a word, needs /dev/shm or locks of the file system, or leaves no files since `head` had enough.
 
     test_folder.py SQUEAL MPIRUN LIBFAULT"""
 
+import fcntl
 import os
 import shutil
 import signal
@@ -111,8 +112,10 @@ def check_lock(r):
         first = subprocess.Popen(r.command(*LONG, "-output_dir", "out", ranks=ranks), cwd=r.folder, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.DEVNULL, start_new_session=True)
         wait_for(out / "transient.csv.part")
+        begun = time.monotonic()
         r.refused(r.run(*SMALL, "-output_dir", "out/", ranks=3 - ranks), ["-output_dir out/", "another run", "process"],
                   f"a second run in the folder of one on {ranks}")
+        r.check(time.monotonic() - begun < 3, "at once, not after the 3 s in which ranks end whose launcher was killed")
         r.check("modes.csv" not in r.files(), "it has written nothing")
         os.killpg(first.pid, signal.SIGKILL)
         first.wait()
@@ -135,6 +138,37 @@ def check_lock(r):
             "where only another machine knows, a warning", done)
     done = r.run(*SMALL, "-output_dir", "out", "-contact_surfaces", "none,none")
     r.check(done.returncode == 1 and ".squeal.lock" not in r.files(), "a run that fails leaves no lock", done)
+
+
+def check_saved(r):
+    """Matrices of two runs in one folder would be a system of neither."""
+    lock = os.open(r.fresh("saved"), os.O_RDONLY)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    for ranks in (1, 2):
+        r.refused(r.run(*SMALL, "-output_dir", "out", "-operators_save", "saved", ranks=ranks),
+                  ["another run", "-operators_save saved"], f"matrices where another run writes them, {ranks} ranks")
+    r.check(not r.files("saved"), "none are written")
+    os.close(lock)
+    done = r.run(*SMALL, "-output_dir", "out", "-operators_save", "saved", "-rig_save", "rig.msh")
+    r.check(done.returncode == 0 and r.files("saved") == ["F.bin", "H.bin", "K.bin", "M.bin"] and (r.folder / "rig.msh").exists()
+            and not list(r.folder.glob("*.part")), "when it has ended they are", done)
+
+
+def check_environment(r):
+    """Options that are not on the command line count, and are said."""
+    words = [*SMALL, "-output_dir", "out"]
+    for variable, text in (("PETSC_OPTIONS", "-pad_beta 1e-7"), ("PETSC_OPTIONS_YAML", "pad_beta: 1e-7")):
+        done = r.run(*words, more={variable: text})
+        r.check(done.returncode == 0 and done.stderr == f"squeal: warning: the environment's {variable} gives options to this run: {text}\n"
+                and 'pad_beta: "1e-7"' in (r.folder / "out/scene.yaml").read_text(), f"{variable} is said", done)
+    (r.folder / ".petscrc").write_text("-pad_beta 1e-7\n")
+    done = r.run(*words, ranks=2)
+    r.check(done.returncode == 0 and done.stderr.startswith("squeal: warning: .petscrc gives options to this run") and
+            done.stderr.count("\n") == 1 and 'pad_beta: "1e-7"' in (r.folder / "out/scene.yaml").read_text(), ".petscrc is said", done)
+    done = r.run(*words, "-skip_petscrc", "true")
+    r.check(done.returncode == 0 and not done.stderr and 'pad_beta: "1e-7"' not in (r.folder / "out/scene.yaml").read_text(),
+            ".petscrc is left out", done)
+    (r.folder / ".petscrc").unlink()
 
 
 def check_shared_memory(r):
@@ -171,7 +205,7 @@ def check_closed(r):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(*(Path(word).resolve() for word in sys.argv[1:4]), Path(folder))
-        for check in (check_names, check_info, check_lock, check_shared_memory, check_closed):
+        for check in (check_names, check_info, check_lock, check_saved, check_environment, check_shared_memory, check_closed):
             check(runner)
     return 1 if runner.faults else 0
 

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -63,6 +64,15 @@ int FileMake(const char path[])
   const int fd = FileCreate(path, O_WRONLY);
 
   return fd < 0 || close(fd) ? errno : 0;
+}
+
+int FolderLock(const char dir[])
+{
+  const int fd = open(dir, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+
+  errno = 0;
+  if (fd < 0 || !flock(fd, LOCK_EX | LOCK_NB)) return fd;
+  return FileGiveUp(fd, errno == EWOULDBLOCK ? errno : 0);
 }
 
 hid_t FileH5Access(void)

@@ -22,6 +22,10 @@ PETSC_INTERN FILE *FileCreateStream(const char path[], const char mode[]);
 /* Creates it as FileCreate() does, for libraries that open it by its name; returns errno, 0 when it is there */
 PETSC_INTERN int FileMake(const char path[]);
 
+/* A folder of this process alone, which the system takes back however it ends; the descriptor to close. Below 0 where there is none:
+   errno is EWOULDBLOCK where another process has it, and 0 where the file system has no locks */
+PETSC_INTERN int FolderLock(const char dir[]);
+
 /* How HDF5 opens a file: without a lock, which file systems of clusters may not have. The caller gives it to H5Pclose() */
 PETSC_INTERN hid_t FileH5Access(void);
 

@@ -125,6 +125,33 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscFunctionReturn(0);
 }
 
+/* Says what gives options to a run that is not on its command line; scene.yaml has them */
+static PetscErrorCode EnvironmentSay(MPI_Comm comm)
+{
+  static const char *const variables[]                 = {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"};
+  char                     file[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
+  PetscBool                skip, there;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(variables); i++) {
+    const char *const text = getenv(variables[i]);
+
+    if (text && text[0])
+      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: the environment's %s gives options to this run: %s\n",
+                             variables[i], text));
+  }
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-skip_petscrc", &skip));
+  PetscCall(PetscGetHomeDirectory(file[0], sizeof(file[0]) - 16));
+  PetscCall(PetscStrlcat(file[0], "/.petscrc", sizeof(file[0])));
+  for (int i = 0; i < 3 && !skip; i++) {
+    PetscCall(PetscTestFile(file[i], 'r', &there));
+    if (there)
+      PetscCall(PetscFPrintf(
+        comm, stderr, "squeal: warning: %s gives options to this run; -skip_petscrc true leaves it out\n", file[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
 {
   char      log[PETSC_MAX_PATH_LEN] = "";
@@ -132,6 +159,7 @@ PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
 
   PetscFunctionBeginUser;
   PetscCall(OptionsCheckNumbers());
+  PetscCall(EnvironmentSay(comm));
   PetscOptionsBegin(comm, NULL, "squeal", NULL);
   PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_traceback",
                            "show PETSc's traceback of an error, for developers", &traced));

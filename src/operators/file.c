@@ -241,6 +241,24 @@ static PetscErrorCode PencilRemoveObject(const Operators o, const char name[])
   PetscFunctionReturn(0);
 }
 
+/* The folder is this run's until it ends: matrices of two runs make no system */
+static PetscErrorCode PencilSaveBegin(Operators o)
+{
+  PetscMPIInt rank;
+  int         failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0 && o->save_lock <= 0) {
+    o->save_lock = FolderLock(o->save);
+    failed       = o->save_lock < 0 ? errno : 0;
+  }
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN,
+             "another run writes into the folder -operators_save %s; choose another, or wait for its end", o->save);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilSave(Pencil pencil)
 {
   Operators      o = pencil->operators;
@@ -255,6 +273,7 @@ PetscErrorCode PencilSave(Pencil pencil)
   PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
   PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
              strerror(failed));
+  PetscCall(PencilSaveBegin(o));
   PetscCall(PencilGetMatrices(pencil, &m));
   if (!pencil->Zr || !o->model)
     PetscCall(PencilGetParts(pencil, &parts));

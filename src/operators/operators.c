@@ -5,6 +5,7 @@
 #include "nodetable.h"
 #include "base/events.h"
 #include <math.h>
+#include <unistd.h>
 
 PetscErrorCode OperatorsCreate(MPI_Comm comm, Operators *operators)
 {
@@ -269,6 +270,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
 
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(0);
+  if (o->save_lock > 0) (void)close(o->save_lock);
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(PetscFree(o->dense[i]));
   PetscCall(OperatorsReleaseBodies(o));
   PetscCall(TermsDestroy(&o->terms));

@@ -41,6 +41,7 @@ struct _p_Operators {
   Contact  contact;
   /* set by options */
   char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
+  int        save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
   PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
   PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
   PetscBool  lump, omit;

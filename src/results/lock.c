@@ -19,27 +19,31 @@
 #define LOCK_TRIES 60   /* ranks whose launcher was killed take one to two seconds to end */
 #define LOCK_WAIT  0.05 /* s between them */
 
-/* Who writes: a process, when it began in ticks of the system, and its machine */
+/* Who writes: a process, its launcher or shell, when it began in ticks of the system, and its machine */
 typedef struct {
-  long               process;
+  long               process, parent;
   unsigned long long begun;
   char               machine[128];
 } LockOwner;
 
-/* When a process began, 0 where there is none: field 22 of proc_pid_stat(5), the 20th after the name in parentheses */
-static unsigned long long ProcessBegun(long process)
+/* When a process began, 0 where there is none: field 22 of proc_pid_stat(5), the 20th after the name in parentheses; and its parent,
+   the 2nd */
+static unsigned long long ProcessBegun(long process, long *parent)
 {
   char               path[64], text[1024] = "", *rest;
   unsigned long long begun = 0;
   FILE              *file;
 
   (void)snprintf(path, sizeof(path), "/proc/%ld/stat", process);
-  file = fopen(path, "r");
+  *parent = 0;
+  file    = fopen(path, "r");
   if (!file) return 0;
   if (!fgets(text, sizeof(text), file)) text[0] = '\0';
   (void)fclose(file);
   rest = strrchr(text, ')');
-  if (rest) (void)sscanf(rest + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d %*d %llu", &begun);
+  if (rest)
+    (void)sscanf(rest + 1, " %*c %ld %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d %*d %llu", parent,
+                 &begun);
   return begun;
 }
 
@@ -47,7 +51,7 @@ static LockOwner LockSelf(void)
 {
   LockOwner self = {.process = (long)getpid()};
 
-  self.begun = ProcessBegun(self.process);
+  self.begun = ProcessBegun(self.process, &self.parent);
   if (gethostname(self.machine, sizeof(self.machine) - 1)) self.machine[0] = '\0';
   return self;
 }
@@ -59,7 +63,8 @@ static LockOwner LockRead(int fd)
   char          text[256] = "";
   const ssize_t n         = pread(fd, text, sizeof(text) - 1, 0);
 
-  if (n <= 0 || sscanf(text, "%ld %llu %127s", &owner.process, &owner.begun, owner.machine) < 2) owner.process = 0;
+  if (n <= 0 || sscanf(text, "%ld %llu %127s %ld", &owner.process, &owner.begun, owner.machine, &owner.parent) < 2)
+    owner.process = 0;
   return owner;
 }
 
@@ -67,11 +72,13 @@ static LockOwner LockRead(int fd)
 static PetscBool LockOwnerLives(const LockOwner *owner, PetscBool *sure)
 {
   const LockOwner self = LockSelf();
+  long            parent;
 
   *sure = strcmp(owner->machine, self.machine) ? PETSC_FALSE : PETSC_TRUE;
   if (!owner->process || (*sure && owner->process == self.process)) return PETSC_FALSE;
   if (!*sure) return PETSC_TRUE;
-  return kill((pid_t)owner->process, 0) && errno == ESRCH ? PETSC_FALSE : ProcessBegun(owner->process) == owner->begun;
+  return kill((pid_t)owner->process, 0) && errno == ESRCH ? PETSC_FALSE
+                                                          : ProcessBegun(owner->process, &parent) == owner->begun;
 }
 
 /* Whether the file is still there under its name: whoever held it may have removed it in between */
@@ -96,7 +103,18 @@ static int LockTry(const char path[], int *fd)
   return error;
 }
 
-/* The same, again and again for three seconds; owner = who has it where another run does */
+/* Whether who has the lock may be about to end: it has not said yet who it is, or its launcher or shell is gone */
+static PetscBool LockOwnerEnds(const LockOwner *owner)
+{
+  const LockOwner self = LockSelf();
+  long            parent;
+
+  if (!owner->process) return PETSC_TRUE;
+  if (strcmp(owner->machine, self.machine)) return PETSC_FALSE;
+  return ProcessBegun(owner->process, &parent) != owner->begun || parent != owner->parent ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The same, for three seconds again and again where who has it may be about to end; owner = who that is where another run does */
 static int LockWait(const char path[], int *fd, LockOwner *owner)
 {
   int error = LockTry(path, fd);
@@ -105,7 +123,7 @@ static int LockWait(const char path[], int *fd, LockOwner *owner)
     *owner = LockRead(*fd);
     (void)close(*fd);
     *fd = -1;
-    if (i == LOCK_TRIES) break;
+    if (i == LOCK_TRIES || !LockOwnerEnds(owner)) break;
     (void)PetscSleep(LOCK_WAIT);
     error = LockTry(path, fd);
   }
@@ -138,7 +156,8 @@ static PetscErrorCode LockTake(Results results, const char path[], LockOwner *ow
   PetscFunctionBeginUser;
   *error = LockWait(path, &results->lock, owner);
   if (*error == ENOLCK) PetscCall(LockAsk(results, owner, error));
-  PetscCall(PetscSNPrintf(text, sizeof(text), "%ld %llu %s\n", self.process, self.begun, self.machine));
+  PetscCall(
+    PetscSNPrintf(text, sizeof(text), "%ld %llu %s %ld\n", self.process, self.begun, self.machine, self.parent));
   if (!*error && (ftruncate(results->lock, 0) || pwrite(results->lock, text, strlen(text), 0) < 0)) *error = errno;
   if (*error && results->lock >= 0) (void)close(results->lock);
   if (*error) results->lock = -1;
@@ -159,9 +178,10 @@ PetscErrorCode ResultsLock(Results results)
   if (rank == 0) PetscCall(LockTake(results, path, &owner, &error));
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCallMPI(MPI_Bcast(&owner, (PetscMPIInt)sizeof(owner), MPI_BYTE, 0, results->comm));
-  PetscCheck(error != EWOULDBLOCK, results->comm, PETSC_ERR_FILE_OPEN,
-             "another run writes into the folder -output_dir %s: process %ld on %s; choose another, or wait for its end",
-             results->dir, owner.process, owner.machine);
+  PetscCheck(
+    error != EWOULDBLOCK, results->comm, PETSC_ERR_FILE_OPEN,
+    "another run writes into the folder -output_dir %s: process %ld on %s; choose another, or wait for its end",
+    results->dir, owner.process, owner.machine);
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN, "cannot write %s: %s; choose another -output_dir", path,
              FileReason(error));
   PetscFunctionReturn(0);

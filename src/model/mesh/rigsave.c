@@ -72,11 +72,11 @@ static void RigFileWrite(RigFile *file, const Mesh *mesh, PetscInt n_surfaces, c
 static int RigFileMake(Model model, PetscInt n_surfaces, const ModelFaces faces[], PetscInt n_rows,
                        const PetscInt rows[])
 {
-  char    part[PETSC_MAX_PATH_LEN + 8];
+  char    part[PETSC_MAX_PATH_LEN + 32]; /* of this process: another run may write the same file */
   RigFile file = {NULL, 0};
   int     failed;
 
-  (void)snprintf(part, sizeof(part), "%s.part", model->rig.save);
+  (void)snprintf(part, sizeof(part), "%s.%ld.part", model->rig.save, (long)getpid());
   errno       = 0;
   file.stream = FileCreateStream(part, "w");
   if (!file.stream) return errno;
