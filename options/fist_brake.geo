@@ -13,6 +13,7 @@ DefineConstant[ size = {12, Name "size"}, vanes = {24, Name "vanes"}, order = {2
 ring = 11; groove = 4;              // outer faces of the two friction rings, and the inner ones, which the vanes join
 pad = 10; plate = 5.5; shim = 0.8;  // thicknesses of lining, back plate and shim
 back = ring + pad; outside = back + plate; rear = outside + shim;
+taper = 0.01;                       // by which a lining is thinner at its inner radius than at its outer one
 bolts = 5; pinx = 141; piny = 76;
 
 // A sector of a ring about z: inner and outer radius, half angle in degrees, from z = z1 to z2; makes `made`
@@ -60,6 +61,12 @@ For k In {0:1}
     f = newll; Curve Loop(f) = {d:d + 3}; g = news; Plane Surface(g) = {f};
     x[] = Extrude {60, 0, 0} { Surface{g}; }; tool[i + 1] = x[1];
   EndFor
+  c = newp; d = newl;
+  Point(c) = {80, -80, s*(ring - 1)}; Point(c + 1) = {140, -80, s*(ring - 1)}; Point(c + 2) = {140, -80, s*(ring - taper*3/39)};
+  Point(c + 3) = {80, -80, s*(ring + taper*57/39)};
+  Line(d) = {c, c + 1}; Line(d + 1) = {c + 1, c + 2}; Line(d + 2) = {c + 2, c + 3}; Line(d + 3) = {c + 3, c};
+  f = newll; Curve Loop(f) = {d:d + 3}; g = news; Plane Surface(g) = {f};
+  x[] = Extrude {0, 160, 0} { Surface{g}; }; tool[3] = x[1];
   cut[] = BooleanDifference{ Volume{made}; Delete; }{ Volume{tool[]}; Delete; }; lining[k] = cut[0];
   r1 = 91; r2 = 145; half = 25.8; z1 = k ? back : -outside; z2 = z1 + plate; Call Sector;
   a = newv; Box(a) = {104, -63.9, z1, 16, 127.9, plate};   // lugs: 0.1 mm of play at the leading end, none at the trailing one

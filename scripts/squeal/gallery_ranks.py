@@ -65,6 +65,8 @@ RUNS = {
     "brake_transient": Run("brake brake_transient", "brake", (24, 24), short="-ts_max_time 5e-4", why="6 ms are 52,000 steps; 24 mm for 14",
                            quick="-ts_max_time 1e-4", nudge=IRON),
     "fist_brake": Run("fist_brake", "fist_brake", (24, 30), why="24 mm for 12", nudge=IRON),
+    "fist_brake_transient": Run("fist_brake fist_brake_transient", "fist_brake", (24, 30), short="-ts_max_time 2e-3", why="24 mm for 12",
+                                nudge=IRON),
     "small_brake_cycle": Run("small_brake_cycle"),
     "small_brake_map": Run("small_brake_map", grows="impacts: transients with loss of contact are chaotic"),
 }

@@ -56,8 +56,10 @@ class Grid:
 
 
 def edges(values, logarithmic):
-    """Limits of the cells about the values, half a step beyond the first and the last."""
+    """Limits of the cells about the values, half a step beyond the first and the last; of one value a tenth of it to either side."""
     x = numpy.log(values) if logarithmic else numpy.asarray(values)
+    if len(x) == 1:
+        return values[0] + (abs(values[0]) or 1) * numpy.array([-0.1, 0.1])
     middle = (x[1:] + x[:-1]) / 2
     limits = numpy.concatenate([[2 * x[0] - middle[0]], middle, [2 * x[-1] - middle[-1]]])
     return numpy.exp(limits) if logarithmic else limits

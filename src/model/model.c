@@ -209,9 +209,9 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(GroundedView(&model->scene.springs[i], "spring", viewer));
   for (PetscInt i = 0; i < model->scene.n_dashpots; i++)
     PetscCall(GroundedView(&model->scene.dashpots[i], "dashpot", viewer));
-  for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointView(&model->scene.joints[i], viewer));
-  for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointView(&model->scene.points[i], viewer));
-  for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(&model->scene.loads[i], viewer));
+  for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointView(model, &model->scene.joints[i], viewer));
+  for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointView(model, &model->scene.points[i], viewer));
+  for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(model, &model->scene.loads[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_motions; i++) {
     PetscCall(ModelDescribeMotion(&model->scene.motions[i], sizeof(words), words));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", words));

@@ -104,13 +104,13 @@ PETSC_INTERN PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscRe
 PETSC_INTERN PetscErrorCode JointsSetUp(Model model);
 PETSC_INTERN PetscErrorCode JointsDestroy(PetscInt n, Joint joint[]);
 PETSC_INTERN PetscErrorCode JointFindPoint(Model model, const char load[], const char name[], PetscInt *index);
-PETSC_INTERN PetscErrorCode JointView(const Joint *joint, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode JointView(Model model, const Joint *joint, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode JointAddChecksum(Model model, const Joint *joint, Checksum checksum);
 
 /* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
    not belong together, for axes that are none, and for a stiffness that is not positive definite */
 PETSC_INTERN PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part);
-PETSC_INTERN PetscErrorCode AnisotropyView(const Anisotropy *a, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode AnisotropyView(Model model, const Anisotropy *a, PetscViewer viewer);
 
 /* spin.c - steady spin of a part; errors for one without axis, for a part that is no body of revolution, for a material
    that does not turn into itself, and for parts that share nodes but do not spin alike. SpinsCheck() tells which parts
@@ -135,7 +135,7 @@ PETSC_INTERN PetscErrorCode MeshLayOut(Model model);
 /* load.c - resultants of the loads; raises an error for a set that the mesh does not have, that has no node of an
    element, or that is no surface where a pressure needs one */
 PETSC_INTERN PetscErrorCode LoadsSetUp(Model model);
-PETSC_INTERN PetscErrorCode LoadView(const Load *load, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer);
 
 /* spread.c - as ModelCreateShares(); consistent: int N_v dA, as loads are spread */
 PETSC_INTERN PetscErrorCode SharesCreate(Model model, const char owner[], const char set[], Spread spread,

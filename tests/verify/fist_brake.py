@@ -2,10 +2,12 @@
 """The sliding state of options/fist_brake.yaml beside what its mesh of first order and the contact laws demand.
 
     verify/fist_brake.py FOLDER MESH PRESSURE FRICTION
+    verify/fist_brake.py FOLDER TRANSIENT
 
 laws       of each pair: sign, k_n area max(0, -gap), Coulomb's cone, its direction along the slip (random_brakes.py)
 bodies     the forces on each body sum to nothing: of its pairs from static.csv, of bolts, clips, pins and seal from reactions.csv,
-           and the pressure (MPa) times the area of the piston's base, or of the bore's, as the triangles of the mesh have it"""
+           and the pressure (MPa) times the area of the piston's base, or of the bore's, as the triangles of the mesh have it
+start      normal force of each contact in the first row of a transient that begins there, beside its pairs"""
 
 import sys
 from collections import defaultdict
@@ -27,6 +29,7 @@ BODIES = {"inner": ("inner pad", "disc"), "outer": ("outer pad", "disc"), "pisto
 JOINED = {"trail_pin": ("caliper", "bracket"), "lead_pin": ("caliper", "bracket"), "seal": ("piston", "caliper")}
 HELD = {"inner_clip": "inner pad", "outer_clip": "outer pad", "trail_bolt": "bracket", "lead_bolt": "bracket",
         **{f"bolt{i}": "disc" for i in range(5)}}
+START = 1e-7  # of the largest normal force
 DEPTH = -70  # mm: the piston's base lies above, the bore's below
 
 
@@ -60,9 +63,21 @@ def forces(folder, pairs):
     return total
 
 
+def start(judge, pairs, transient):
+    first, total = read(transient / "transient.csv")[0], defaultdict(float)
+    for row in pairs:
+        total[row["interface"]] += float(row["lambda_n_n"])
+    off = max(abs(float(first[f"{name}_normal_force_n"]) - force) for name, force in total.items()) / max(total.values())
+    print(f"normal forces of {len(total)} contacts at the start: {off:.1e} of the largest{judge.within(off, 0, START)}")
+
+
 def main():
-    folder, (pressure, friction) = Path(sys.argv[1]), map(float, sys.argv[3:])
-    judge, pairs = Judge(), read(folder / "static.csv")
+    folder, judge = Path(sys.argv[1]), Judge()
+    pairs = read(folder / "static.csv")
+    if len(sys.argv) == 3:
+        start(judge, pairs, Path(sys.argv[2]))
+        return 1 if judge.failed else 0
+    pressure, friction = map(float, sys.argv[3:])
     most = max(float(row["lambda_n_n"]) for row in pairs)
     kinds = {name: Contact(friction if name in ("inner", "outer") else HOLDS, name in ("inner", "outer"), STIFF, *BODIES[name], "")
              for name in BODIES}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Eigenvalues of a sweep at one value beside those of a run of modes with that value: verify/sweep_point.py SWEEP VALUE
+"""Eigenvalues of a sweep at one value beside those of a run of modes with that value: verify/sweep_point.py SWEEP VALUE[,VALUE_2]
 MODES LOW HIGH RTOL, all those from LOW to HIGH Hz, in order."""
 
 import csv
@@ -19,7 +19,8 @@ def eigenvalues(table, keep):
 
 sweep, value, modes = sys.argv[1:4]
 low, high, tolerance = map(float, sys.argv[4:])
-one = eigenvalues(f"{sweep}/sweep.csv", lambda row: float(row["value"]) == float(value))
+asked = dict(zip(("value", "value_2"), map(float, value.split(","))))
+one = eigenvalues(f"{sweep}/sweep.csv", lambda row: all(float(row[name]) == number for name, number in asked.items()))
 other = eigenvalues(f"{modes}/modes.csv", lambda row: True)
 print(f"{len(one)} and {len(other)} eigenvalues from {low:g} to {high:g} Hz: {one}, {other}")
 if not len(one) or len(one) != len(other) or not (abs(one - other) <= tolerance * abs(other)).all():

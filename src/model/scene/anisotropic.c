@@ -212,22 +212,25 @@ PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AnisotropyView(const Anisotropy *a, PetscViewer viewer)
+PetscErrorCode AnisotropyView(Model model, const Anisotropy *a, PetscViewer viewer)
 {
   const EngineeringConstants *e = &a->constants;
+  const char                 *pascal, *metre;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "    %s: E %.6g, %.6g, %.6g Pa, nu_12 %.6g, nu_13 %.6g, nu_23 %.6g, ",
+  PetscCall(ModelGetUnit(model, "Pa", &pascal));
+  PetscCall(ModelGetUnit(model, "m", &metre));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "    %s: E %.6g, %.6g, %.6g %s, nu_12 %.6g, nu_13 %.6g, nu_23 %.6g, ",
                                    a->n == 2 ? "transversely isotropic" : "orthotropic", e->young[0], e->young[1],
-                                   e->young[2], e->poisson[0], e->poisson[1], e->poisson[2]));
+                                   e->young[2], pascal, e->poisson[0], e->poisson[1], e->poisson[2]));
   PetscCall(
-    PetscViewerASCIIPrintf(viewer, "G_12 %.6g, G_13 %.6g, G_23 %.6g Pa\n", e->shear[0], e->shear[1], e->shear[2]));
+    PetscViewerASCIIPrintf(viewer, "G_12 %.6g, G_13 %.6g, G_23 %.6g %s\n", e->shear[0], e->shear[1], e->shear[2], pascal));
   if (a->cylinder)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "    radial, circumferential, axial about %.6g, %.6g, %.6g through %.6g, %.6g, "
-                                     "%.6g m\n",
+                                     "%.6g %s\n",
                                      (double)a->axis[2][0], (double)a->axis[2][1], (double)a->axis[2][2],
-                                     (double)a->centre[0], (double)a->centre[1], (double)a->centre[2]));
+                                     (double)a->centre[0], (double)a->centre[1], (double)a->centre[2], metre));
   for (int k = a->n == 2 ? 2 : 0; k < 3 && !a->cylinder; k++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "    axis %d: %.6g, %.6g, %.6g\n", k + 1, (double)a->axis[k][0],
                                      (double)a->axis[k][1], (double)a->axis[k][2]));

@@ -122,6 +122,7 @@ PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit)
     {"s/m",       "s/mm"      },
     {"kg",        "t"         },
     {"kg/m^3",    "t/mm^3"    },
+    {"kg m^2",    "t mm^2"    },
     {"Pa",        "MPa"       },
     {"m/N",       "mm/N"      },
     {"N/m",       "N/mm"      },
@@ -205,7 +206,7 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  part %s: E %.6g %s, nu %.6g, rho %.6g %s, alpha %.6g 1/s, beta %.6g s\n",
                                    p->name, (double)p->young, pascal, (double)p->poisson, (double)p->density, dense,
                                    (double)p->alpha, (double)p->beta));
-  if (p->anisotropy.n) PetscCall(AnisotropyView(&p->anisotropy, viewer));
+  if (p->anisotropy.n) PetscCall(AnisotropyView(model, &p->anisotropy, viewer));
   if (p->spin.given) PetscCall(SpinView(&p->spin, viewer));
   if (p->loss > 0)
     PetscCall(PetscViewerASCIIPrintf(

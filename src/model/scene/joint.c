@@ -276,31 +276,36 @@ PetscErrorCode JointFindPoint(Model model, const char load[], const char name[],
 }
 
 /* A line of three values where one is not zero */
-static PetscErrorCode JointViewThree(const char what[], const PetscReal v[3], const char unit[], PetscViewer viewer)
+static PetscErrorCode JointViewThree(Model model, const char what[], const PetscReal v[3], const char unit[], PetscViewer viewer)
 {
   PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(model, unit, &unit));
   if (JointIsGiven(3, v))
     PetscCall(
       PetscViewerASCIIPrintf(viewer, ", %s %.6g, %.6g, %.6g %s", what, (double)v[0], (double)v[1], (double)v[2], unit));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode JointView(const Joint *j, PetscViewer viewer)
+PetscErrorCode JointView(Model model, const Joint *j, PetscViewer viewer)
 {
+  const char *metre, *kilogram;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s%s%s at %.6g, %.6g, %.6g m", j->is_point ? "point" : "bushing",
+  PetscCall(ModelGetUnit(model, "m", &metre));
+  PetscCall(ModelGetUnit(model, "kg", &kilogram));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s%s%s at %.6g, %.6g, %.6g %s", j->is_point ? "point" : "bushing",
                                    j->name, j->set[0], j->is_point ? "" : " and ",
                                    j->is_point    ? ""
                                    : j->set[1][0] ? j->set[1]
                                                   : "the ground",
-                                   (double)j->at[0], (double)j->at[1], (double)j->at[2]));
+                                   (double)j->at[0], (double)j->at[1], (double)j->at[2], metre));
   if (j->rigid) PetscCall(PetscViewerASCIIPrintf(viewer, ", joined rigidly"));
-  if (j->mass > 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", mass %.6g kg", (double)j->mass));
-  PetscCall(JointViewThree("inertia", j->inertia, "kg m^2", viewer));
-  PetscCall(JointViewThree("stiffness", j->stiffness, "N/m", viewer));
-  PetscCall(JointViewThree("turn stiffness", &j->stiffness[3], "N m/rad", viewer));
-  PetscCall(JointViewThree("viscosity", j->viscosity, "N s/m", viewer));
-  PetscCall(JointViewThree("turn viscosity", &j->viscosity[3], "N m s/rad", viewer));
+  if (j->mass > 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", mass %.6g %s", (double)j->mass, kilogram));
+  PetscCall(JointViewThree(model, "inertia", j->inertia, "kg m^2", viewer));
+  PetscCall(JointViewThree(model, "stiffness", j->stiffness, "N/m", viewer));
+  PetscCall(JointViewThree(model, "turn stiffness", &j->stiffness[3], "N m/rad", viewer));
+  PetscCall(JointViewThree(model, "viscosity", j->viscosity, "N s/m", viewer));
+  PetscCall(JointViewThree(model, "turn viscosity", &j->viscosity[3], "N m s/rad", viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(0);
 }

@@ -205,15 +205,18 @@ PetscErrorCode LoadsSetUp(Model model)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadView(const Load *load, PetscViewer viewer)
+PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer)
 {
-  char words[64] = "", moment[128] = "";
+  char        words[64] = "", moment[128] = "";
+  const char *pascal, *unit;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(model, "Pa", &pascal));
+  PetscCall(ModelGetUnit(model, "N m", &unit));
   if (load->on_point)
-    PetscCall(PetscSNPrintf(moment, sizeof(moment), ", and %.6g, %.6g, %.6g N m", (double)load->moment[0],
-                            (double)load->moment[1], (double)load->moment[2]));
-  if (load->is_pressure) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g Pa, ", (double)load->pressure));
+    PetscCall(PetscSNPrintf(moment, sizeof(moment), ", and %.6g, %.6g, %.6g %s", (double)load->moment[0],
+                            (double)load->moment[1], (double)load->moment[2], unit));
+  if (load->is_pressure) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g %s, ", (double)load->pressure, pascal));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all%s\n", load->name,
                                    load->on_point ? "a point" : load->set, words, (double)load->force[0],
                                    (double)load->force[1], (double)load->force[2], moment));
