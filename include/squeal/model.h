@@ -211,6 +211,10 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
+/*@ ModelMeasureBodies - boxes of n bodies of ModelGetBodies() from number `first` on, shape [n][6], m: upper ends, and lower ones
+    with the other sign; all -PETSC_MAX_REAL where a body has no node. Collective. @*/
+PetscErrorCode ModelMeasureBodies(Model model, const PetscInt body[], PetscInt first, PetscInt n, PetscReal box[]);
+
 /*@ ModelNameBody - "part pad", "parts pad, beam"; "a piece of part pad about 0.01, 0.02, 0 m" where other bodies have cells of that
     part too. Collective. @*/
 PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[]);

@@ -109,7 +109,8 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)
     PetscCall(PetscSNPrintf(text, size,
-                            "none was found missing: LAPACK finds the same from the matrices and from their transposes, to %.1e%s%s",
+                            "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
+                            "transposes, to %.1e%s%s",
                             (double)window->worst, region, frictionless));
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",

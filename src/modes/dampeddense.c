@@ -9,6 +9,7 @@
 #define DENSE_ALWAYS 200  /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
 #define DENSE_MOST   400 /* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */
 #define DENSE_SHARE  4    /* many: one of so many */
+#define DENSE_OTHER  1.7  /* times the shift: the one of the transposed problem, which symmetric matrices leave the same otherwise */
 
 /* PEP does where it is asked for, but for few unknowns of which a rank has none */
 PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense)
@@ -52,9 +53,9 @@ static PetscErrorCode DenseGather(Mat A, PetscBool transposed, PetscInt n, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues within the radius about the shift, and their vectors X [m][n]; on rank 0 */
-static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shift, PetscReal radius, PetscInt *m,
-                                       PetscComplex lambda[], PetscComplex X[])
+/* Eigenvalues within a circle, its middle and radius, found about a shift, and their vectors X [m][n]; on rank 0 */
+static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shift, const PetscReal circle[2],
+                                       PetscInt *m, PetscComplex lambda[], PetscComplex X[])
 {
   DenseShifted w;
 
@@ -62,7 +63,7 @@ static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shif
   *m = 0;
   PetscCall(DenseShiftedSolve(pencil, shift, &w));
   for (PetscInt i = 0; i < w.N; i++) {
-    if (!DenseShiftedLambda(&w, i, &lambda[*m]) || cabs(lambda[*m] - shift) > radius) continue;
+    if (!DenseShiftedLambda(&w, i, &lambda[*m]) || cabs(lambda[*m] - circle[0]) > circle[1]) continue;
     DenseShiftedRight(&w, i, &X[*m * pencil->n]);
     ++*m;
   }
@@ -100,7 +101,8 @@ static PetscErrorCode DenseSpread(Mat K, PetscInt m, const PetscComplex lambda[]
 PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *matrices, const Window *window, PetscReal shift,
                                 PetscBool transposed, Spectrum *spectrum)
 {
-  const PetscReal radius  = window->count ? INFINITY : DampedRadius(window, shift, NULL);
+  const PetscReal circle[2] = {shift, window->count ? INFINITY : DampedRadius(window, shift, NULL)};
+  const PetscReal at        = transposed ? DENSE_OTHER * shift : shift;
   const MPI_Comm comm     = PetscObjectComm((PetscObject)matrices->K);
   const Mat      of[3]    = {matrices->K, matrices->C, matrices->M};
   DensePencil    pencil   = {.damped = PETSC_TRUE};
@@ -119,7 +121,7 @@ PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *matrices, con
     PetscCall(DenseGather(of[i], transposed, n, *dense[i]));
   }
   PetscCall(PetscMalloc2(2 * n, &lambda, 2 * n * n, &X));
-  if (rank == 0) PetscCall(DenseSolveWithin(&pencil, shift, radius, &m, lambda, X));
+  if (rank == 0) PetscCall(DenseSolveWithin(&pencil, at, circle, &m, lambda, X));
   PetscCallMPI(MPI_Bcast(&m, 1, MPIU_INT, 0, comm));
   PetscCall(PetscMPIIntCast(2 * m * n, &count));
   PetscCallMPI(MPI_Bcast(lambda, (PetscMPIInt)(2 * m), MPIU_REAL, 0, comm));

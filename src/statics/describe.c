@@ -40,18 +40,12 @@ static PetscErrorCode BodyFarthest(const Mesh *mesh, MPI_Comm comm, const PetscI
 }
 
 /* Middle and half the size of a body, from its box */
-static PetscErrorCode BodyMeasure(const Mesh *mesh, MPI_Comm comm, const PetscInt body[], PetscInt b, BodyMotion *m)
+static PetscErrorCode BodyMeasure(Model model, const PetscInt body[], PetscInt b, BodyMotion *m)
 {
   PetscReal box[6];
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 6; d++) box[d] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
-    if (body[i / 3] != b) continue;
-    box[i % 3]     = PetscMax(box[i % 3], mesh->x[i]);
-    box[3 + i % 3] = PetscMax(box[3 + i % 3], -mesh->x[i]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPI_MAX, comm));
+  PetscCall(ModelMeasureBodies(model, body, b, 1, box));
   m->size = 0;
   for (int d = 0; d < 3; d++) {
     m->c[d] = (box[d] - box[3 + d]) / 2;
@@ -146,7 +140,7 @@ PetscErrorCode RigidDescribe(Operators operators, Vec r, size_t size, char text[
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(ModelGetBodies(model, &n_bodies, &body));
   PetscCall(BodyFarthest(mesh, comm, body, r, &b));
-  PetscCall(BodyMeasure(mesh, comm, body, b, &m));
+  PetscCall(BodyMeasure(model, body, b, &m));
   PetscCall(BodyFit(mesh, comm, body, b, r, &m));
   PetscCall(ModelNameBody(model, body, b, sizeof(name), name));
   PetscCall(BodyPrint(name, &m, size, text));

@@ -20,23 +20,13 @@ typedef struct {
   uint64_t  side[2][MASK_WORDS]; /* on which sides of which joints it is */
 } BodyNode;
 
-/* Ends of the boxes of all bodies, [n][6]: upper ones, and lower ones with the other sign; the size of all, m */
+/* Ends of the boxes of all bodies (ModelMeasureBodies()), and the size of all, m */
 static PetscErrorCode BoxesMeasure(const BodyGraph *b, PetscReal box[], PetscReal *size)
 {
-  PetscMPIInt count;
-  PetscReal   all[6];
+  PetscReal all[6];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMPIIntCast(6 * b->n, &count));
-  for (PetscInt i = 0; i < 6 * b->n; i++) box[i] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * b->mesh->n_nodes; i++) {
-    PetscReal *end = &box[6 * b->body[i / 3] + i % 3];
-
-    if (b->body[i / 3] < 0) continue;
-    end[0] = PetscMax(end[0], b->mesh->x[i]);
-    end[3] = PetscMax(end[3], -b->mesh->x[i]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, count, MPIU_REAL, MPI_MAX, b->contact->comm));
+  PetscCall(ModelMeasureBodies(b->contact->model, b->body, 0, b->n, box));
   for (int d = 0; d < 6; d++) all[d] = -PETSC_MAX_REAL;
   for (PetscInt i = 0; i < 6 * b->n; i++) all[i % 6] = PetscMax(all[i % 6], box[i]);
   for (int d = 0; d < 3; d++) *size = PetscMax(*size, all[d] + all[d + 3]);

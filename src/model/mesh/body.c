@@ -192,22 +192,34 @@ static PetscErrorCode BodyFindParts(Model model, const PetscInt body[], PetscInt
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelMeasureBodies(Model model, const PetscInt body[], PetscInt first, PetscInt n, PetscReal box[])
+{
+  const Mesh *mesh = &model->mesh;
+  PetscMPIInt count;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(6 * n, &count));
+  for (PetscInt i = 0; i < 6 * n; i++) box[i] = -PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
+    const PetscInt b = body[i / 3] - first;
+
+    if (body[i / 3] < 0 || b < 0 || b >= n) continue;
+    box[6 * b + i % 3]     = PetscMax(box[6 * b + i % 3], mesh->x[i]);
+    box[6 * b + 3 + i % 3] = PetscMax(box[6 * b + 3 + i % 3], -mesh->x[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, count, MPIU_REAL, MPI_MAX, model->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Appends " about x, y, z m": the middle of the body's box */
 static PetscErrorCode BodyAppendPlace(Model model, const PetscInt body[], PetscInt b, size_t size, char text[])
 {
-  const Mesh *mesh = &model->mesh;
   PetscReal   box[6], middle[3], size_of = 0;
   const char *unit;
   char        place[128];
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 6; d++) box[d] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
-    if (body[i / 3] != b) continue;
-    box[i % 3]     = PetscMax(box[i % 3], mesh->x[i]);
-    box[3 + i % 3] = PetscMax(box[3 + i % 3], -mesh->x[i]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPI_MAX, model->comm));
+  PetscCall(ModelMeasureBodies(model, body, b, 1, box));
   for (int d = 0; d < 3; d++) size_of = PetscMax(size_of, box[d] + box[3 + d]);
   for (int d = 0; d < 3; d++) {
     middle[d] = (box[d] - box[3 + d]) / 2;
