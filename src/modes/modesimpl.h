@@ -55,7 +55,6 @@ struct _p_Modes {
   PetscInt  count;
   PetscInt  damping;  /* route of a damped solution: DAMPING_AUTO ... */
   PetscInt  n_shifts; /* of a band; 0: chosen */
-  PetscInt  n_groups; /* of ranks that share them, 0 and 1: none */
   char      disc[64];
   Progress  progress;
   /* results */

@@ -7,7 +7,7 @@
    cut in the middle of the widest gap between the modes of the strip, so that what rounding makes different in two
    solutions of one mode, and the members of a pair with one frequency, cannot be parted by it.
 */
-#include "groups.h"
+#include "modesimpl.h"
 #include "base/memory.h"
 
 #define SHIFTS_STRIP 1e-3 /* relative half width of the strip about a seam */
@@ -17,48 +17,31 @@
 
 PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject)
 {
-  PetscMPIInt size;
-
   PetscFunctionBeginUser;
   PetscCall(OptionsGetInt(PetscOptionsObject, "-modes_shifts",
                           "shifts that share a band without damping (0: by the count of modes)", modes->n_shifts,
                           &modes->n_shifts, NULL));
   PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
-  modes->n_groups = PetscMax(1, modes->n_groups);
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-modes_groups",
-                          "groups of ranks that share the shifts, each with the whole matrices", modes->n_groups,
-                          &modes->n_groups, NULL));
-  PetscCallMPI(MPI_Comm_size(modes->comm, &size));
-  PetscCheck(modes->n_groups > 0 && size % modes->n_groups == 0, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_groups %" PetscInt_FMT " must be positive and divide the number of ranks, %d", modes->n_groups,
-             (int)size);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window)
 {
-  const PetscInt    given  = modes->n_shifts;
-  const char *const option = given > 1 ? "-modes_shifts" : "-modes_groups";
-  const PetscInt    n      = given > 1 ? given : modes->n_groups;
+  const PetscInt n = modes->n_shifts;
 
   PetscFunctionBeginUser;
   modes->shifts = PetscMax(1, n);
-  if (!given && !pencil->C && !window->count && !modes->keep)
+  if (!n && !pencil->C && !window->count && !modes->keep)
     modes->shifts = PetscMax(modes->shifts, (window->expected + SHIFTS_MODES - 1) / SHIFTS_MODES);
   if (n <= 1) PetscFunctionReturn(0);
   PetscCheck(!window->count, modes->comm, PETSC_ERR_USER_INPUT,
-             "%s %" PetscInt_FMT " needs a band: give -modes_band, or leave it out", option, n);
+             "-modes_shifts %" PetscInt_FMT " needs a band: give -modes_band, or leave it out", n);
   PetscCheck(!pencil->C, modes->comm, PETSC_ERR_USER_INPUT,
-             "%s %" PetscInt_FMT " is not offered with damping, whose modes one shift finds; leave it out", option, n);
+             "-modes_shifts %" PetscInt_FMT " is not offered with damping, whose modes one shift finds; leave it out", n);
   PetscCheck(window->expected < 0 || n <= PetscMax(1, window->expected), modes->comm, PETSC_ERR_USER_INPUT,
-             "%s %" PetscInt_FMT " must be at most %" PetscInt_FMT ", the modes in the band", option, n,
+             "-modes_shifts %" PetscInt_FMT " must be at most %" PetscInt_FMT ", the modes in the band", n,
              window->expected);
-  PetscCheck(pencil->symmetric || !pencil->prefers_even || modes->n_groups <= 1, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_groups %" PetscInt_FMT " is not offered with -operators_factors symmetric; leave one out",
-             modes->n_groups);
-  PetscCheck(!given || modes->n_groups <= given, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_groups %" PetscInt_FMT " must be at most -modes_shifts, %" PetscInt_FMT, modes->n_groups, given);
   PetscFunctionReturn(0);
 }
 
@@ -150,53 +133,6 @@ static PetscErrorCode ShiftsSolveParts(Modes modes, const PencilMatrices *pencil
   PetscFunctionReturn(0);
 }
 
-/* What the groups found of the parts from `first` on, on all ranks */
-static PetscErrorCode ShiftsGather(Modes modes, const Groups *groups, PetscInt first, const Window part[],
-                                   Window *window, Spectrum found[2])
-{
-  Spectrum own[2] = {modes->right, modes->left_spectrum};
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = first; k < PetscMin(first + groups->n, modes->shifts); k++) {
-    PetscReal worst = part[k].worst;
-
-    modes->right = modes->left_spectrum = (Spectrum){0};
-    PetscCall(GroupsGather(groups, k - first, &own[0], &modes->right));
-    if (modes->left) PetscCall(GroupsGather(groups, k - first, &own[1], &modes->left_spectrum));
-    PetscCall(GroupsAgree(groups, k - first, &worst));
-    PetscCall(ShiftsAppend(modes, k ? ShiftsSeam(window, modes->shifts, k) : 0, &found[0], &found[1]));
-    window->worst = PetscMax(window->worst, worst);
-  }
-  for (int i = 0; i < 2; i++) PetscCall(SpectrumDestroy(&own[i]));
-  modes->right = modes->left_spectrum = (Spectrum){0};
-  PetscFunctionReturn(0);
-}
-
-/* All parts, as many at a time as there are groups of ranks */
-static PetscErrorCode ShiftsShare(Modes modes, const PencilMatrices *pencil, Window *window, Spectrum found[2])
-{
-  const PetscInt n = modes->shifts;
-  Groups         groups;
-  Window        *part;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &part));
-  for (PetscInt k = 0; k < n; k++) PetscCall(ShiftsPart(modes, pencil, window, k, &part[k]));
-  PetscCall(ShiftInvertDestroy(&modes->counter));
-  modes->counter = (ShiftInvert){.progress = &modes->progress};
-  PetscCall(GroupsCreate(modes->comm, modes->n_groups, pencil, &groups));
-  for (PetscInt first = 0; first < n; first += groups.n) {
-    const PetscInt k = first + groups.mine;
-
-    PetscCall(GroupsSolve(modes, &groups, k < n ? &part[k] : NULL));
-    PetscCall(ShiftsGather(modes, &groups, first, part, window, found));
-  }
-  window->proven = pencil->symmetric;
-  PetscCall(GroupsDestroy(&groups));
-  PetscCall(PetscFree(part));
-  PetscFunctionReturn(0);
-}
-
 /* Right-hand sides that the modes of a window take about one shift; 0: not known */
 static double ShiftsSolves(Modes modes, const Window *window)
 {
@@ -234,13 +170,7 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
     PetscCall(ShiftsSolveOne(modes, pencil, shift, window, si));
     PetscFunctionReturn(0);
   }
-  if (modes->n_groups > 1) {
-    PetscCall(ShiftsShare(modes, pencil, window, found));
-    *si = (ShiftInvert){.progress = &modes->progress};
-    if (modes->keep) PetscCall(ShiftInvertMove(pencil, shift, si));
-  } else {
-    PetscCall(ShiftsSolveParts(modes, pencil, window, si, &found[0], &found[1]));
-  }
+  PetscCall(ShiftsSolveParts(modes, pencil, window, si, &found[0], &found[1]));
   modes->right         = found[0];
   modes->left_spectrum = found[1];
   PetscCheck(!window->proven || found[0].n == window->expected, modes->comm, PETSC_ERR_NOT_CONVERGED,
