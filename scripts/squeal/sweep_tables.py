@@ -7,6 +7,7 @@ SWEEP = {"value": float, "branch": optional, "freq_hz": float, "growth_rad_s": f
          "value_2": optional, "class": str, "error_hz": optional, "jump": flag}
 ONSETS = {"critical_value": float, "freq_hz": float, "kind": str, "label": str, "branch": int, "partner": optional,
           "confirmed": flag, "value_2": optional}
+LINE = 90  # characters of a title
 FONTS = {"font.size": 11, "axes.titlesize": 13, "axes.labelsize": 12, "legend.fontsize": 11, "figure.dpi": 150}
 PARAMETERS = {"parameter": str, "value": float, "unit": str, "swept": int, "link": str}
 
@@ -92,9 +93,12 @@ class Study:
         self.where, self.is_map = f"{axis.name} {value * axis.factor:.4g} {axis.unit}".rstrip(), False
 
     def title(self):
-        """Ranges, and the friction coefficients that do not vary."""
+        """Ranges, and of the friction coefficients that do not vary those that a line has room for, three at most."""
         fixed = [f"{row['parameter']} {row['value']:.4g}" for row in self.parameters
                  if row["swept"] == 0 and not row["link"] and row["parameter"].endswith("_mu")]
         linked = [[row["parameter"] for row in self.parameters if row["link"] == axis.name] for axis in self.axes]
         ranges = [" and ".join([axis.name, *names]) + axis.range().removeprefix(axis.name) for axis, names in zip(self.axes, linked)]
-        return ", ".join([*ranges, *filter(None, [self.where]), *fixed[:3]])
+        words = [*ranges, *filter(None, [self.where])]
+        for word in fixed[:3]:
+            words += [word] if len(", ".join([*words, word])) <= LINE else []
+        return ", ".join(words)
