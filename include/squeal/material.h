@@ -21,6 +21,7 @@ typedef struct {
   PetscBool given;
   PetscReal rate;               /* rad/s, positive by the right-hand rule about the axis */
   PetscReal axis[3], centre[3]; /* unit vector; a point of the axis, m */
+  PetscReal radius;             /* of gyration about the axis, m; set up with the mesh */
   PetscInt  body;               /* of those parts that share nodes, the first; set up with the mesh */
 } Spin;
 

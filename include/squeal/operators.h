@@ -24,6 +24,7 @@ typedef struct {
   PetscBool   body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool   stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
   PetscBool   state; /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
+  PetscReal   fastest;  /* of a spin: the largest size that it can have; 0: any */
   PetscBool   internal; /* no option of the scene: how far a group of pairs is closed, see SlidingState */
 } OperatorsParameter;
 

@@ -33,7 +33,11 @@ PetscErrorCode OperatorsAddSpinParameters(Operators o)
   PetscCall(PetscMalloc1(scene->n_parts, &o->spin_of_part));
   for (PetscInt part = 0; part < scene->n_parts; part++) {
     const Part              *p = &scene->parts[part];
-    const OperatorsParameter q = {.unit = "rad/s", .value = p->spin.rate, .lower = -INFINITY};
+    const PetscReal          wave = PetscSqrtReal(p->young / p->density); /* m/s, along a rod */
+    const OperatorsParameter q    = {.unit    = "rad/s",
+                                     .value   = p->spin.rate,
+                                     .lower   = -INFINITY,
+                                     .fastest = p->spin.radius > 0 ? wave / p->spin.radius : 0};
 
     o->spin_of_part[part] = -1;
     if (p->spin.given) PetscCall(ParametersAdd(&o->parameters, p->name, "spin", &q, &o->spin_of_part[part]));

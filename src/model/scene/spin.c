@@ -70,8 +70,8 @@ static PetscErrorCode SpinAddMoments(Model model, PetscInt c, const Spin *s, Pet
 /* Raises an error for a part that is no body of revolution */
 static PetscErrorCode SpinCheckShape(Model model, PetscInt part)
 {
-  const Part *p       = &model->scene.parts[part];
-  PetscReal   sum[13] = {0}, radius, off = 0;
+  Part     *p       = &model->scene.parts[part];
+  PetscReal sum[13] = {0}, radius, off = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < model->mesh.n_cells; c++)
@@ -89,6 +89,7 @@ static PetscErrorCode SpinCheckShape(Model model, PetscInt part)
     "-%s_spin needs a body of revolution: the moments of part %s about -%s_spin_axis through -%s_spin_centre are "
     "off by %.2g of its radius %.4g, more than %g",
     p->name, p->name, p->name, p->name, (double)off, (double)radius, ROUND);
+  p->spin.radius = radius;
   PetscFunctionReturn(0);
 }
 
