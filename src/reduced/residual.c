@@ -5,6 +5,7 @@
    u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
 */
 #include "reducedimpl.h"
+#include "base/memory.h"
 #include "solver/orthonormal.h"
 
 #define RESIDUAL_BLOCK 64  /* right-hand sides at once */
@@ -150,6 +151,29 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for dense matrices of the pairs, on each rank, that this machine does not hold, or PetscInt does not count */
+static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
+{
+  const double N = r->model.n_ports, n = 3 * (double)r->model.n_pairs,
+               copies = 2 + (damped ? 2 : 0) + (r->weighs ? 1 : 0);
+  const double gb =
+    8e-9 * (N * N + copies * n * n) * MemoryRanks(); /* W; of the stepper W, the laws', HW, and Cx, Mx */
+  PetscBool given;
+  double    fits[2];
+
+  PetscFunctionBeginUser;
+  fits[0] = 1e-3 * MemoryRoom(&given);
+  fits[1] = N * N < PETSC_MAX_INT ? 0 : -1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 2, MPI_DOUBLE, MPI_MIN, r->comm));
+  PetscCheck(gb <= fits[0] && fits[1] == 0, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_model reduced: the dense compliance of %" PetscInt_FMT
+             " pairs takes %.3g GB on a machine, more than %s (%.3g GB)%s; take a coarser contact, or "
+             "-dynamics_model full",
+             r->model.n_pairs, gb, given ? "-squeal_memory" : "is free", fits[0],
+             fits[1] < 0 ? ", and has more entries than can be counted" : "");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedSetResidual(ReducedRun r)
 {
   const PetscInt  N = r->model.n_ports, n_pairs = 3 * r->model.n_pairs;
@@ -161,6 +185,7 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
   form[0] = C;
+  PetscCall(ResidualCheckMemory(r, C ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
   PetscCall(PencilGetMass(r->bodies, &form[1]));
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
