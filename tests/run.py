@@ -76,19 +76,12 @@ from ranks import fault_of_ranks, ranks_of_runs
 from served import own_words, served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "scripts"))
+from squeal.launched import end
+
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
 SKIPPED = 77
 MOST_BEYOND, WORST_RATIO = 0.01, 3  # of the errors that a sweep states
-
-
-def end(process):
-    """Asks a launcher to end itself and its ranks, then insists."""
-    process.terminate()
-    try:
-        process.communicate(timeout=10)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
 
 
 class Runner:

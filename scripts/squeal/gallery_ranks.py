@@ -6,6 +6,7 @@ import time
 from typing import NamedTuple
 
 from .gmsh import make_mesh
+from .launched import end
 from .program import ROOT, scene
 from .table_difference import difference, of_map, of_table, read
 
@@ -70,16 +71,6 @@ RUNS = {
     "small_brake_cycle": Run("small_brake_cycle"),
     "small_brake_map": Run("small_brake_map", grows="impacts: transients with loss of contact are chaotic"),
 }
-
-
-def end(process):
-    """Asks a launcher to end itself and its ranks, then insists."""
-    process.terminate()
-    try:
-        process.communicate(timeout=10)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
 
 
 class Gallery:

@@ -128,6 +128,27 @@ static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const R
   }
 }
 
+/* How many modes each solution has of those that both must have, how many grow, and the largest error that the full one states */
+static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
+{
+  const PetscReal growth = sweep->window.growth;
+
+  for (PetscInt i = 0; i < n; i++) {
+    if (PetscAbsReal(full[i].sigma) > growth) continue;
+    check->n_full++;
+    check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);
+    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
+  }
+  for (PetscInt k = 0; k < reduced->n; k++) {
+    const PetscReal omega = cimag(reduced->lambda[k]);
+
+    if (omega < sweep->window.low || omega > sweep->window.high || PetscAbsReal(creal(reduced->lambda[k])) > growth)
+      continue;
+    check->n_reduced++;
+    check->n_unstable_reduced += ReducedIsUnstable(reduced->lambda[k], reduced->error[k]);
+  }
+}
+
 /* Compares the two at the point of the check, by what both must have: growth and decay as asked for, |sigma|; the reduced window is
    a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
@@ -150,20 +171,7 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscCall(PetscFree(p));
   PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &n, &full));
-  for (PetscInt i = 0; i < n; i++) {
-    if (PetscAbsReal(full[i].sigma) > growth) continue;
-    check->n_full++;
-    check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);
-    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
-  }
-  for (PetscInt k = 0; k < reduced.n; k++) {
-    const PetscReal omega = cimag(reduced.lambda[k]);
-
-    if (omega < sweep->window.low || omega > sweep->window.high || PetscAbsReal(creal(reduced.lambda[k])) > growth)
-      continue;
-    check->n_reduced++;
-    check->n_unstable_reduced += ReducedIsUnstable(reduced.lambda[k], reduced.error[k]);
-  }
+  CheckCountModes(sweep, n, full, &reduced, check);
   CheckRatios(n, full, growth, &reduced, check);
   check->error    = LargestDistance(n, full, growth, &reduced, &check->omega);
   check->estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
