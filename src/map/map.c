@@ -24,6 +24,19 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for values that cannot be */
+static PetscErrorCode MapCheckOptions(Map map)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(map->window > 0 && map->window < 1e6, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_window %.6g must be a positive time (s)", (double)map->window);
+  PetscCheck(map->rtol > 0 && map->rtol < 1, map->comm, PETSC_ERR_USER_INPUT, "-map_rtol %.6g must lie between 0 and 1",
+             (double)map->rtol);
+  PetscCheck(map->n_verify >= 0, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_verify %" PetscInt_FMT " must not be negative: a number of points", map->n_verify);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MapSetFromOptions(Map map)
 {
   static const char *const directions[] = {"both", "up", "down", "apart"};
@@ -58,12 +71,7 @@ PetscErrorCode MapSetFromOptions(Map map)
                            "stopped",
                            &map->restart));
   PetscOptionsEnd();
-  PetscCheck(map->window > 0 && map->window < 1e6, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_window %.6g must be a positive time (s)", (double)map->window);
-  PetscCheck(map->rtol > 0 && map->rtol < 1, map->comm, PETSC_ERR_USER_INPUT, "-map_rtol %.6g must lie between 0 and 1",
-             (double)map->rtol);
-  PetscCheck(map->n_verify >= 0, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_verify %" PetscInt_FMT " must not be negative: a number of points", map->n_verify);
+  PetscCall(MapCheckOptions(map));
   map->direction = (MapDirection)direction;
   PetscFunctionReturn(0);
 }
