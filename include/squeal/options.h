@@ -94,6 +94,11 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
     The caller frees them. @*/
 PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
 
+/*@ OptionsGetItems - reads at most n names between PetscOptionsBegin() and PetscOptionsEnd(), without the blanks around them; where the
+    option is not given nothing changes but n. Collective. The caller frees them. @*/
+PetscErrorCode OptionsGetItems(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt *n,
+                               char *items[], PetscBool *set);
+
 /*@ ValuesSplit - the items of a list such as "a,b" without the blanks around them. Not collective, same call on all
     ranks; comm is that of errors. The caller frees them with PetscStrToArrayDestroy(). Errors: as
     ValuesCheckItems(). @*/

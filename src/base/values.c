@@ -220,6 +220,16 @@ PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char he
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsGetItems(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt *n,
+                               char *items[], PetscBool *set)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsStringArray(option, help, "options.h", items, n, set));
+  for (PetscInt i = 0; i < *n; i++)
+    if (items[i]) PetscCall(ItemTrim(items[i]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer)
 {
   PetscViewerFormat format;

@@ -93,8 +93,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
   PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s", c->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(
-    PetscOptionsStringArray("-surfaces", "slave,master: named surfaces (required)", "contact.h", surfaces, &n, &set));
+  PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: named surfaces (required)", &n, surfaces, &set));
   PetscCall(
     PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-mu", "friction coefficient", c->mu, &c->mu, NULL));

@@ -36,8 +36,8 @@ static PetscErrorCode TieRead(OptionsItems PetscOptionsObject, void *owner, void
 
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(PetscOptionsStringArray("-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
-                                    "contact.h", surfaces, &n, NULL));
+  PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
+                            &n, surfaces, NULL));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-distance",
                            "largest distance of a node of the slave from its foot, m; default 5 % of the facet's size",
                            tie->distance, &tie->distance, &given));
