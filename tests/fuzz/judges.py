@@ -82,13 +82,15 @@ def near(value, others, floor):
 
 def affine(work, found, words):
     """The sum of terms; each eigenvalue found is one of it, and the nearest to the target is among them."""
-    said = wanted_keys(work / "affine.yaml")
+    said = {key: value.lower() if key == "terms" or key.endswith("_kind") else value
+            for key, value in wanted_keys(work / "affine.yaml").items()}
     K, C, M = (sum((term(work, said, name) for name in said["terms"].split(",") if said[f"{name}_kind"] == kind), np.zeros((1, 1)))
                for kind in ("stiffness", "damping", "mass"))
     expected = [value for value in quadratic(K, C, M) if value.imag >= -1e-9 * abs(value)]
     target = 2j * math.pi * number(said.get("modes_target", "0"))
     got, size = found_values(found), max(map(abs, expected))
-    strange = [value for value in got if not near(value, expected, 1e-9 * size)]
+    errors = [2 * 2 * math.pi * error for error in found["error_hz"]]  # twice what is stated: an estimate
+    strange = [value for value, error in zip(got, errors) if not near(value, expected, max(error, 1e-9 * size))]
     if strange:
         return f"{strange} are no eigenvalues of the terms: {expected}"
     first = min(expected, key=lambda value: abs(value - target))
@@ -106,7 +108,7 @@ def term(work, said, name):
     parameters = [word for word in said.get(f"{name}_parameter", "").split(",") if word.strip()]
     powers = said.get(f"{name}_power", ",".join("1" * len(parameters))).split(",")
     for parameter, power in zip(parameters, powers):
-        factor *= number(said[parameter.strip()]) ** int(power)
+        factor *= number(said[parameter.strip().lower()]) ** int(power)
     return factor * A
 
 
@@ -129,10 +131,10 @@ def words(work, found, words):
 
 
 def flat(node, prefix=""):
-    """Keys and scalars of a tree of PyYAML's, joined by underscores; lists by commas."""
+    """Keys and scalars of a tree of PyYAML's, joined by underscores, in small letters, as PETSc takes names; lists by commas."""
     if isinstance(node, dict):
         for key, value in node.items():
-            yield from flat(value, f"{prefix}_{key}" if prefix else str(key))
+            yield from flat(value, f"{prefix}_{key}".lower() if prefix else str(key).lower())
     else:
         yield prefix, ",".join(map(str, node)) if isinstance(node, list) else str(node)
 

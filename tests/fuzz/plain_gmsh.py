@@ -1,5 +1,6 @@
 """A plain reading of files of Gmsh, 2.2 and 4.1, text and binary, of damaged ones too, and the same mesh written anew: an undamaged
-file of format 2.2 in text, in which each element stands once for each of its physical names. Little is checked: what is read has been
+file of format 2.2 in text, in which each element stands once for each of its physical names; a minus of a name's number, by which Gmsh
+says that an element stands reversed, does not count. Little is checked: what is read has been
 accepted."""
 
 import re
@@ -7,7 +8,7 @@ import struct
 
 NODES = {15: 1, 1: 2, 8: 3, 2: 3, 9: 6, 3: 4, 16: 8, 10: 9, 4: 4, 11: 10, 6: 6, 18: 15, 5: 8, 17: 20, 12: 27}  # of each type
 DIMENSION = {15: 0} | dict.fromkeys((1, 8), 1) | dict.fromkeys((2, 9, 3, 16, 10), 2)  # of others 3
-SECTION = re.compile(rb"^\$(\w+)[ \t]*\r?\n", re.MULTILINE)
+SECTION = re.compile(rb"^[ \t]*\$(\w+)[ \t]*\r?\n", re.MULTILINE)
 
 
 class Words:
@@ -64,11 +65,11 @@ def read_22(part, binary):
         for _ in range(count):
             if binary:
                 row = words.take(f"{1 + n_tags + NODES[kind]}i")
-                elements.append((kind, row[1] if n_tags else 0, row[1 + n_tags:]))
+                elements.append((kind, abs(row[1]) if n_tags else 0, row[1 + n_tags:]))
             else:
                 _, kind, n_tags = words.take("3i")
                 tags = words.take(f"{n_tags}i")
-                elements.append((kind, tags[0] if tags else 0, words.take(f"{NODES[kind]}i")))
+                elements.append((kind, abs(tags[0]) if tags else 0, words.take(f"{NODES[kind]}i")))
     return nodes, elements
 
 
