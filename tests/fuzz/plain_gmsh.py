@@ -8,7 +8,7 @@ import struct
 
 NODES = {15: 1, 1: 2, 8: 3, 2: 3, 9: 6, 3: 4, 16: 8, 10: 9, 4: 4, 11: 10, 6: 6, 18: 15, 5: 8, 17: 20, 12: 27}  # of each type
 DIMENSION = {15: 0} | dict.fromkeys((1, 8), 1) | dict.fromkeys((2, 9, 3, 16, 10), 2)  # of others 3
-SECTION = re.compile(rb"^[ \t]*\$(\w+)[ \t]*\r?\n", re.MULTILINE)
+SECTION = re.compile(rb"^[ \t]*\$(\w+)[ \t\r]*\n", re.MULTILINE)
 
 
 class Words:
