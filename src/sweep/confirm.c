@@ -31,6 +31,12 @@ typedef struct {
   PetscBool     pending, alone; /* to be corrected; with factors of its own */
 } OnsetWork;
 
+/* Whether there is a value to confirm: a place where modes change places is none */
+static PetscBool OnsetIsLocated(const BranchEvent *event)
+{
+  return event->found && !event->jumps ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Finds the value on the reduced model, and the modes there; alike on all ranks */
 static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event, ReducedModes *critical)
 {
@@ -87,10 +93,10 @@ static PetscErrorCode OnsetAgain(Sweep sweep, PetscReal spread, OnsetWork *w)
   PetscFunctionBeginUser;
   PetscCall(OnsetReduced(sweep, &w->line, w->event, &w->critical));
   w->change = PetscAbsReal(w->event->critical - before) * PetscMax(1, rest);
-  w->pending =
-    w->event->found && w->change > CONFIRMED * PetscAbsReal(w->event->critical) && w->event->n_corrected < ONSET_STEPS
-      ? PETSC_TRUE
-      : PETSC_FALSE;
+  w->pending = OnsetIsLocated(w->event) && w->change > CONFIRMED * PetscAbsReal(w->event->critical) &&
+                   w->event->n_corrected < ONSET_STEPS
+                 ? PETSC_TRUE
+                 : PETSC_FALSE;
   if (w->change > ONSET_FALLS * change) w->alone = PETSC_TRUE;
   BranchLineSet(&w->line, w->event->critical, w->p);
   PetscFunctionReturn(0);
@@ -171,7 +177,7 @@ static PetscErrorCode OnsetStart(Sweep sweep, PetscInt e, OnsetWork *w)
   w->line   = (BranchLine){grid->n_moved[0], grid->n[0], grid->parameter[0], grid->value[0], w->p, &sweep->window};
   w->change = PETSC_MAX_REAL;
   PetscCall(OnsetReduced(sweep, &w->line, w->event, &w->critical));
-  w->pending = w->event->found && sweep->method == SWEEP_REDUCED ? PETSC_TRUE : PETSC_FALSE;
+  w->pending = OnsetIsLocated(w->event) && sweep->method == SWEEP_REDUCED ? PETSC_TRUE : PETSC_FALSE;
   if (w->event->found) BranchLineSet(&w->line, w->event->critical, w->p);
   if (w->event->found) w->near = WindowNear(sweep, w->p, w->event);
   PetscFunctionReturn(0);
@@ -184,8 +190,9 @@ static PetscErrorCode OnsetEnd(Sweep sweep, OnsetWork *w)
   PetscBool   *confirmed = &sweep->is_confirmed[w->e];
 
   PetscFunctionBeginUser;
-  *confirmed = event->found && w->change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
-  if (w->change < PETSC_MAX_REAL) event->error = PetscMax(w->change, event->error);
+  *confirmed =
+    OnsetIsLocated(event) && w->change <= CONFIRMED * PetscAbsReal(event->critical) ? PETSC_TRUE : PETSC_FALSE;
+  if (w->change < PETSC_MAX_REAL && !event->jumps) event->error = PetscMax(w->change, event->error);
   if (*confirmed && sweep->statics) { /* the same pairs must be closed as where it was found */
     PetscInt status;
 

@@ -70,6 +70,7 @@ static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParamete
                                      (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
                                      sweep->label[event->branch[0]].text,
                                      sweep->is_confirmed[e]        ? ""
+                                     : event->jumps                ? " (modes change places there: give more values between)"
                                      : sweep->method == SWEEP_FULL ? " (between two points)"
                                                                    : " (not confirmed on the full problem)"));
   PetscFunctionReturn(0);

@@ -18,6 +18,10 @@
    Newton's method (dense/follow.c), the plane by inverse iteration; all modes are solved for only where what that finds
    is not the same one for certain.
 
+   Where two modes change places between neighbouring values, g jumps from one to the other, and the bracket shrinks to the jump: a
+   change of sign and no zero. Then the onset is only known to lie in the bracket that it began with, and its frequency is that
+   of the unstable end.
+
    Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue
    and what rounding does to it, kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable
    end, and d the square of 2 omega times the error, the splitting that the error makes of a double eigenvalue; and
@@ -25,7 +29,9 @@
 */
 #include "trial.h"
 
-#define FOLLOW_AT 1e-6 /* relative distance of the unstable mode from what it was in the sweep */
+#define FOLLOW_AT  1e-6  /* relative distance of the unstable mode from what it was in the sweep */
+#define JUMP_WIDTH 1e-12 /* relative width of a bracket that has shrunk to a place */
+#define JUMP_TIMES 100   /* g at both its ends, over the error of g */
 
 typedef struct {
   ModeSource source;
@@ -235,6 +241,18 @@ static PetscReal OnsetUncertainty(const Onset *onset, const Trial *trial, const 
   return delta + 10 * PETSC_MACHINE_EPSILON * onset->unit;
 }
 
+/* Whether g jumps at the critical value; delta = error of g */
+static PetscBool OnsetJumps(const Onset *onset, PetscReal delta)
+{
+  const Trial    *a = &onset->end[0], *b = &onset->end[1];
+  const PetscReal width = PetscAbsReal(a->frame->value - b->frame->value);
+
+  return width <= JUMP_WIDTH * PetscAbsReal(a->frame->value) &&
+             PetscMin(PetscAbsReal(a->g), PetscAbsReal(b->g)) > JUMP_TIMES * delta
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
 /* Frequency, error and modes at the critical value */
 static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes *modes)
 {
@@ -257,7 +275,13 @@ static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes
     delta        = OnsetUncertainty(onset, &trial, event);
     event->error = delta < slope * width ? delta / slope : width;
     event->error += 4 * PETSC_MACHINE_EPSILON * PetscAbsReal(event->critical);
+    event->jumps = OnsetJumps(onset, delta);
     if (modes) PetscCall(ReducedModesSelect(&trial.frame->modes, trial.k, trial.member, modes));
+  }
+  if (event->found && event->jumps) {
+    event->critical = 0.5 * (event->lower + event->upper);
+    event->error    = 0.5 * width;
+    event->omega    = cimag(event->lambda);
   }
   PetscCall(TrialDestroy(&trial));
   PetscFunctionReturn(0);

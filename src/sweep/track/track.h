@@ -21,6 +21,7 @@ typedef struct {
   PetscReal       omega;        /* rad/s at the critical value */
   PetscReal       error;        /* estimated error of the critical value, in its unit */
   PetscBool       found;
+  PetscBool       jumps;                /* modes change places in the bracket: critical is its middle, error half of it, omega of lambda */
   PetscBool       by_damping;           /* of a lock-in or lock-out: damping changes its sign, no two modes coalesce */
   PetscBool       above;                /* of a jump: unstable at upper */
   PetscInt        place;                /* of the grid, whose other parameters hold; set by the caller */
