@@ -12,7 +12,7 @@ ROWS = "0.02,0.08", "0.0235,0.086", "0.018,0.0792", "0.03,0.07", "0.025,0.075"  
 MODULI = 16e9, 20e9, 25.1e9, 31.6e9, 39.8e9, 50.1e9, 63e9  # Pa
 FRICTION = 0.4, 0.45, 0.5, 0.55, 0.6
 LEAST = 200.0  # 1/s, of the fastest mode: with e^8 in 40 ms, 30 ms are left
-TIME = "-dynamics_model reduced -dynamics_cutoff 25e3 -ts_max_time 70e-3 -map_window 5e-3 -map_rtol 1e-9 -map_direction apart"
+TIME = "-dynamics_model reduced -dynamics_cutoff 25e3 -ts_max_time 70e-3 -map_window 5e-3 -map_rtol 1e-9 -map_direction apart -map_twins 0"
 BLOW = "-impulses tap -tap_at -0.12,0,0 -tap_part disc -tap_impulse 0,0,-5e-5"
 POINT = {"point": int, "value": float, "value_2": float, "regime": str, "freq_hz": float, "freq_error_hz": optional,
          "growth_rad_s": optional, "force_rms_n": float, "status": str}

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 IGNORED = re.compile("error|residual|condition|confirmed|projector|sweeps|iterations|worst_ratio|beyond|check|steps_changed|"
-                     "pairs_changed|cost")
+                     "pairs_changed|cost|decided_by")
 EIGENVALUE = re.compile(r"growth(_freq)?_(rad_s|hz)$|freq_hz$")
 DAMPING = "damping_ratio"  # -growth / |eigenvalue|, hence in units of 1
 PART = re.compile(r"_[va]?(x|y|z|re|im|n|t|b|\d+)(?=_)")

@@ -22,7 +22,7 @@ ERRORS = {"value": float, "value_2": optional, "run": str, "regime": str, "freq_
           "force_rms_error": optional}
 UNITS = {"young": "Pa", "pressure": "Pa", "force": "N", "speed": "m/s", "density": "kg/m^3", "stiffness": "N/m",
          "mu": "-", "alpha": "1/s", "beta": "s", "mu_slope": "s/m"}
-VIBRATES = "cycle", "sticking", "growth"
+VIBRATES = "cycle", "sticking", "growth", "bistable"
 STABLE, UNKNOWN = "#F1F1F1", "white"
 FEW = 6  # values of a parameter that are ticks of their own
 TOLD = "\u00b1: what another step, laws, cut-off change"
@@ -69,11 +69,11 @@ class Table:
         return result
 
     def find_bistable(self):
-        """Values of the points that vibrate one way and are stable the other."""
+        """Values of the points that vibrate one way and are stable the other, or of which rounding decides it."""
         regimes = {}
         for row in self.rows:
             regimes.setdefault((row["value"], row["value_2"]), set()).add(row["regime"])
-        return [point for point, seen in regimes.items() if "stable" in seen and seen & set(VIBRATES)]
+        return [point for point, seen in regimes.items() if "bistable" in seen or ("stable" in seen and seen & set(VIBRATES))]
 
 
 class Grid:
@@ -143,7 +143,7 @@ def draw_grid(table):
     handles = [Patch(facecolor=STABLE, edgecolor="#BBBBBB", label="stable"),
                Line2D([], [], color=INK, lw=1.6, label="border of linear stability")]
     handles += [Line2D([], [], ls="", marker="o", ms=8, mfc="none", mec=GREEN, mew=2,
-                      label="vibrates one way, stable the other")] if table.bistable else []
+                      label="vibrates one way, stable the other; or by chance")] if table.bistable else []
     handles += [Line2D([], [], ls="", label=TOLD + (", ?: the regime" if None in table.errors.values() else ""))] if table.errors else []
     figure.legend(handles=handles, loc="lower center", ncol=len(handles), frameon=False)
     return figure

@@ -9,6 +9,7 @@
 
 #define WINDOW 5e-3 /* s */
 #define RTOL   0.01
+#define TWINS  3
 
 #define MAP_BATCH  8     /* times the lines that ranks need at once, of which bodies are reduced before any is run */
 #define MAP_MEMORY 2.5e8 /* bytes for their bodies on each rank */
@@ -20,6 +21,7 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
   (*map)->comm    = comm;
   (*map)->window  = WINDOW;
   (*map)->rtol    = RTOL;
+  (*map)->n_twins = TWINS;
   (*map)->restart = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -34,6 +36,8 @@ static PetscErrorCode MapCheckOptions(Map map)
              (double)map->rtol);
   PetscCheck(map->n_verify >= 0, map->comm, PETSC_ERR_USER_INPUT,
              "-map_verify %" PetscInt_FMT " must not be negative: a number of points", map->n_verify);
+  PetscCheck(map->n_twins >= 0 && map->n_twins <= MAP_MAX_TWINS, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_twins %" PetscInt_FMT " must lie between 0 and %d", map->n_twins, MAP_MAX_TWINS);
   PetscFunctionReturn(0);
 }
 
@@ -66,6 +70,10 @@ PetscErrorCode MapSetFromOptions(Map map)
                           "points, spread over the map, run again with half the step, with the contact laws "
                           "to 1e-12, and with 2.25 times the cut-off",
                           map->n_verify, &map->n_verify, NULL));
+  PetscCall(OptionsGetInt(PetscOptionsObject, "-map_twins",
+                          "transients beside that of a point whose amplitude or regime rounding could change: one, and "
+                          "all where it does; 0: rounding is not in error_estimate",
+                          map->n_twins, &map->n_twins, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
                            "go on where a map of the same scene in -output_dir was "
                            "stopped",

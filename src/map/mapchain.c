@@ -4,31 +4,6 @@
 */
 #include "mapimpl.h"
 
-#define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
-#define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
-#define MARCH_STICKING 0.01 /* share of the time */
-#define MARCH_TREND    1.5  /* of the rms, from a quarter of the windows to the next: growth */
-
-/* Bodies, and work */
-struct _p_MapMarch {
-  Map            map;
-  PetscReal      dt; /* s */
-  MapBodies     *bodies;
-  ReducedStepper stepper;
-  ReducedState   state, rest; /* the motion; the sliding state of the point */
-  ReducedReport  report;
-  PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
-  PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
-  PetscReal      contact, friction, given; /* works in the point; of impulses, with the energy that it began with, J */
-  PetscReal     *slip;                   /* [n_most n] mean slip speed along t, m/s */
-  PetscReal     *force;                  /* [n_most n] N */
-  ContactStatus *status;                 /* [n_pairs] at the beginning of the window */
-  PetscBool     *closed, *known;         /* [n_pairs]; those of which `growth` is */
-  PetscReal      growth;
-  PetscReal     *lambda_n, *sigma, *omega; /* [n_pairs] N, [2 m] */
-  MapSample     *sample;                   /* [n_most] */
-};
-
 PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march)
 {
   const ReducedModel *model = &bodies->model;
@@ -50,6 +25,7 @@ PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscRea
                          &w->slip, w->n_most * w->n, &w->force, w->n_most, &w->sample));
   PetscCall(PetscCalloc6(model->n_pairs, &w->status, model->n_pairs, &w->closed, model->n_pairs, &w->known,
                          model->n_pairs, &w->lambda_n, 2 * model->m, &w->sigma, 2 * model->m, &w->omega));
+  PetscCall(MapTwinsCreate(w));
   PetscFunctionReturn(0);
 }
 
@@ -59,6 +35,7 @@ PetscErrorCode MapMarchDestroy(MapMarch *march)
 
   PetscFunctionBeginUser;
   if (!w) PetscFunctionReturn(0);
+  PetscCall(MapTwinsDestroy(w));
   PetscCall(ReducedStepperDestroy(&w->stepper));
   PetscCall(ReducedStateDestroy(&w->state));
   PetscCall(ReducedStateDestroy(&w->rest));
@@ -69,24 +46,7 @@ PetscErrorCode MapMarchDestroy(MapMarch *march)
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues about sliding with the pairs of `status` closed */
-static PetscErrorCode MarchLinearise(MapMarch w, const ContactStatus status[], MapFastest *fastest)
-{
-  const ReducedModel *model = &w->bodies->model;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_pairs; i++) {
-    w->closed[i]   = status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
-    w->lambda_n[i] = w->rest.p[3 * i];
-  }
-  PetscCall(ReducedLineariseSliding(model, w->closed, w->lambda_n, w->sigma, w->omega));
-  MapModesJudge(2 * model->m, w->sigma, w->omega, fastest);
-  w->growth = fastest->growth;
-  PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));
-  PetscFunctionReturn(0);
-}
-
-/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after MarchLinearise() there */
+/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after MapMarchLinearise() there */
 static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
 {
   MapFastest fastest;
@@ -133,7 +93,7 @@ static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
   for (PetscInt k = 0; k < w->n; k++) {
     const PetscReal *kick = MapBodiesKick(w->bodies, w->state.time, w->dt, w->kick);
 
-    if (kick) now->changed = PETSC_TRUE;
+    if (kick) now->changed = now->hit = PETSC_TRUE;
     PetscCall(ReducedStep(w->stepper, &(ReducedDrive){w->loads, w->sliding, kick}, &w->state, &w->report));
     w->given += kick ? PetscAbsReal(w->report.external) : 0;
     ReducedGetContactWork(&w->bodies->model, &w->report, &w->contact, &w->friction);
@@ -151,95 +111,6 @@ static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
-/* Whether `growth` is that of the pairs that are closed now, all of which slip */
-static PetscBool MarchIsKnown(const MapMarch w)
-{
-  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
-    if (w->state.status[i] != (w->known[i] ? CONTACT_SLIP : CONTACT_OPEN)) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/* Whether the last motion dies out: no mode of the sliding state, or with the pairs that are closed now, grows, and the rms falls
-   from window to window: two of them in which no pair changed its status, or four of a small vibration */
-static PetscErrorCode MarchDiesOut(MapMarch w, PetscBool *dies)
-{
-  const MapSample *s    = &w->sample[w->n_windows - 1];
-  const PetscBool  tiny = s->rms <= MARCH_TINY * s->mean, small = s->rms <= MARCH_SMALL * s->mean;
-  const PetscInt   n = s->changed ? 4 : 2;
-  MapFastest       fastest;
-
-  PetscFunctionBeginUser;
-  *dies = PETSC_FALSE;
-  if (w->n_windows < n || (s->changed && !small)) PetscFunctionReturn(0);
-  for (PetscInt k = 1; k < n && !tiny; k++)
-    if (s[1 - k].rms >= s[-k].rms) PetscFunctionReturn(0);
-  if (!MarchIsKnown(w) && !s->changed) PetscCall(MarchLinearise(w, w->state.status, &fastest));
-  *dies = w->growth < 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-/* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much beyond the one
-   before, or, where a mode grows, where it rises in each window of the last half, or where no pair changed its status there, so
-   that the motion is linear */
-static MapRegime MarchTrend(const MapMarch w)
-{
-  const PetscInt   n      = w->n_windows;
-  const MapSample *s      = w->sample;
-  PetscBool        linear = MarchIsKnown(w), rises = PETSC_TRUE;
-  PetscReal        error;
-  const PetscReal  ratio =
-    MapForceLevel(n / 4, &s[n - n / 4], &error) / MapForceLevel(n / 4, &s[n - 2 * (n / 4)], &error);
-
-  for (PetscInt k = n - n / 2; k < n; k++) {
-    if (s[k].changed) linear = PETSC_FALSE;
-    if (s[k].rms <= (1 + w->map->rtol) * s[k - 1].rms) rises = PETSC_FALSE;
-  }
-  if (linear && w->growth < 0) return MAP_STABLE;
-  if (ratio >= MARCH_TREND || (w->growth > 0 && (linear || rises))) return MAP_GROWTH;
-  if (ratio <= 1 / MARCH_TREND && w->growth < 0) return MAP_STABLE;
-  return MAP_CYCLE;
-}
-
-/* Means over windows first .. */
-static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
-{
-  const PetscReal n = (PetscReal)(w->n_windows - first);
-
-  for (PetscInt k = first; k < w->n_windows; k++) {
-    const MapSample *s = &w->sample[k];
-
-    row->mean += s->mean / n;
-    row->open += s->open / n;
-    row->stick += s->stick / n;
-    row->peak = k == first ? s->peak : PetscMax(row->peak, s->peak);
-  }
-}
-
-/* The regime of a transient that has ended, and its numbers: of the windows that agree, or the last half of all */
-static void MarchJudge(MapMarch w, MapPoint *row)
-{
-  const PetscInt  n = w->n, last = w->n_windows;
-  const PetscInt  first = row->end == MAP_DECAYS    ? last - 1
-                          : row->end == MAP_SETTLED ? last - MAP_SETTLED_WINDOWS
-                                                    : last / 2;
-  const PetscInt  half  = (last - first) / 2;
-  const PetscReal dt = w->dt, change = row->error;
-
-  MarchAverage(w, first, row);
-  row->rms    = MapForceLevel(last - first, &w->sample[first], &row->error);
-  row->time   = w->state.time;
-  row->regime = row->end == MAP_DECAYS ? MAP_STABLE : row->end == MAP_TIME ? MarchTrend(w) : MAP_CYCLE;
-  if (row->end == MAP_DECAYS) row->error = NAN;
-  if (row->end == MAP_SETTLED) row->error = change;
-  if (row->regime == MAP_CYCLE && row->stick > MARCH_STICKING) row->regime = MAP_STICKING;
-  row->freq = row->freq_error = NAN;
-  if (row->regime == MAP_STABLE) return;
-  row->freq = MapForceLine(last - first, n, &w->slip[n * first], dt);
-  if (half)
-    row->freq_error = PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
-                                   MapForceLine(half, n, &w->slip[n * (last - half)], dt));
-}
-
 /* Windows until the regime is known, after the last impulse, or the time is over */
 static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
 {
@@ -248,7 +119,7 @@ static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
   PetscFunctionBeginUser;
   for (w->n_windows = 0; w->n_windows < w->n_most;) {
     PetscCall(MarchWindow(w, row));
-    PetscCall(MarchDiesOut(w, &dies));
+    PetscCall(MapMarchDiesOut(w, &dies));
     row->end = !MapBodiesAreHit(w->bodies, w->state.time - w->dt)                 ? MAP_TIME
                : dies                                                             ? MAP_DECAYS
                : MapIsSettled(w->n_windows, w->sample, w->map->rtol, &row->error) ? MAP_SETTLED
@@ -256,7 +127,7 @@ static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
                                                                                   : MAP_TIME;
     if (row->end != MAP_TIME) break;
   }
-  MarchJudge(w, row);
+  MapMarchJudge(w, row);
   PetscFunctionReturn(0);
 }
 
@@ -266,7 +137,6 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   const ReducedModel *model   = &w->bodies->model;
   MapFastest          fastest = {NAN, NAN, NAN};
   PetscBool           found;
-  PetscReal           kinetic;
 
   PetscFunctionBeginUser;
   PetscCall(MapBodiesMove(w->map, row, w->bodies, w->sliding, w->loads));
@@ -274,7 +144,8 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   PetscCall(ReducedStepperTakeFriction(w->stepper));
   PetscCall(ReducedEquilibrium(model, w->loads, &w->rest, &found));
   w->growth = NAN;
-  if (found) PetscCall(MarchLinearise(w, w->rest.status, &fastest));
+  PetscCall(PetscArrayzero(w->known, model->n_pairs));
+  if (found) PetscCall(MapMarchLinearise(w, w->rest.status, &fastest));
   if (found) MapModesTake(2 * model->m, w->sigma, w->omega, row);
   if (found && model->Mx) PetscCall(MarchWeigh(w, row));
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
@@ -282,34 +153,43 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   row->mode_freq = fastest.freq;
   row->index     = fastest.index;
   w->state.time  = 0;
-  w->contact = w->friction = 0;
-  ReducedEnergy(model, &w->state, &kinetic, &w->given);
-  w->given += kinetic;
   *begun         = found || go_on ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapMarchTry(MapMarch w, MapPoint *row)
+{
+  PetscErrorCode error;
+  PetscReal      kinetic;
+
+  PetscFunctionBeginUser;
+  w->contact = w->friction = 0;
+  ReducedEnergy(&w->bodies->model, &w->state, &kinetic, &w->given);
+  w->given += kinetic;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = MarchRun(w, row);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP, PETSC_COMM_SELF, error,
+             "a transient of the map ended by PETSc's error %d", (int)error);
+  if (error) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
+  row->fault = MarchIsMade(w) ? MAP_MADE : error == PETSC_ERR_FP ? MAP_NO_NUMBER : MAP_NO_FORCES;
   PetscFunctionReturn(0);
 }
 
 /* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond numbers */
 static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *good)
 {
-  PetscErrorCode error = 0;
-  PetscBool      begun;
+  MapPoint begin;
 
   PetscFunctionBeginUser;
-  PetscCall(MarchBegin(w, go_on, row, &begun));
-  if (begun) {
-    PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-    error = MarchRun(w, row);
-    PetscCall(PetscPopErrorHandler());
-  }
-  PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP, PETSC_COMM_SELF, error,
-             "a transient of the map ended by PETSc's error %d", (int)error);
-  *good = begun && !error ? PETSC_TRUE : PETSC_FALSE;
-  if (!*good) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
-  row->fault = !begun                ? MAP_NO_STATE
-               : MarchIsMade(w)        ? MAP_MADE
-               : error == PETSC_ERR_FP ? MAP_NO_NUMBER
-                                       : MAP_NO_FORCES;
+  PetscCall(MarchBegin(w, go_on, row, good));
+  begin = *row;
+  if (*good) {
+    PetscCall(MapTwinsBegin(w));
+    PetscCall(MapMarchTry(w, row));
+  } else row->regime = MAP_UNKNOWN, row->end = MAP_FAILED, row->fault = MAP_NO_STATE;
+  if (row->end == MAP_FAILED) *good = PETSC_FALSE;
+  PetscCall(MapTwinsRun(w, &begin, row));
   PetscFunctionReturn(0);
 }
 
@@ -326,9 +206,10 @@ PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
   Map       map  = w->map;
   PetscBool good = PETSC_FALSE;
   PetscInt  first;
-  MapKept   kept = {&w->bodies->model, &w->state, 0};
+  MapKept   kept = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive, 0};
 
   PetscFunctionBeginUser;
+  w->n_alive = 0;
   PetscCall(MapResumeChain(map, chain, &first, row, &kept));
   if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = first; k < map->n_linked; k++) {
@@ -345,6 +226,7 @@ PetscErrorCode MapMarchAlone(MapMarch w, MapPoint *row)
   PetscBool good;
 
   PetscFunctionBeginUser;
+  w->n_twins = 0;
   PetscCall(MarchPoint(w, PETSC_FALSE, row, &good));
   PetscFunctionReturn(0);
 }

@@ -11,10 +11,13 @@
 #define MAP_MAX_TEXT        65536 /* length of a list of values */
 #define MAP_MAX_MODES       24    /* that grow at a point and are listed */
 #define MAP_SETTLED_WINDOWS 3     /* that agree */
+#define MAP_MAX_TWINS       8
+#define MAP_STICKING_SHARE  0.01 /* of the time */
+#define MAP_N_QUANTILES     3
 #define MAP_MAX_POINTS      100000
 #define MAP_MAX_STEPS       1e8 /* of a transient, whose record is kept until its regime is known */
 
-typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
+typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_BISTABLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
 typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_MADE, MAP_N_FAULTS } MapFault; /* why a transient failed */
 typedef enum { MAP_HALF_STEP, MAP_TIGHT_LAWS, MAP_HIGHER_CUTOFF, MAP_N_CHECKS } MapCheckRun; /* of -map_verify */
@@ -42,6 +45,9 @@ typedef struct {
   PetscReal error; /* of the rms, relative */
   PetscReal time;  /* s */
   PetscInt  steps;
+  PetscInt  n_runs, n_loud, all_steps; /* transients of the point, its own and its twins; of these vibrate; steps of all */
+  PetscInt  regimes;                   /* of these: sum of 1 << MapRegime */
+  PetscReal quantile[MAP_N_QUANTILES]; /* N, 5, 50, 95 % of the rms of their windows */
   PetscInt  n_growing;                                  /* modes of the sliding state that grow */
   PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* of the fastest of these, rad/s */
 } MapPoint;
@@ -54,7 +60,7 @@ typedef struct {
 /* What forces in a window are like */
 typedef struct {
   PetscReal mean, rms, peak, open, stick;
-  PetscBool changed; /* some pair changed its status */
+  PetscBool changed, hit; /* some pair changed its status, or impulses acted; these */
 } MapSample;
 
 /* Reduced bodies and what acts on them, dense, alike on all ranks */
@@ -89,6 +95,7 @@ struct _p_Map {
   MapDirection direction;
   PetscReal    window, rtol;
   PetscInt     n_verify; /* points of which errors are told */
+  PetscInt     n_twins;  /* of a point, at most */
   /* the grid */
   PetscInt   n_axes;
   MapAxis    axis[MAP_MAX_AXES];
@@ -111,6 +118,40 @@ struct _p_Map {
   const char *folder;
   uint64_t    scene;     /* checksum */
   PetscInt    n_resumed; /* rows of this rank */
+};
+
+/* A chain that is run (mapchain.c): bodies, and work */
+typedef struct _p_MapMarch *MapMarch;
+struct _p_MapMarch {
+  Map            map;
+  PetscReal      dt; /* s */
+  MapBodies     *bodies;
+  ReducedStepper stepper;
+  ReducedState   state, rest; /* the motion; the sliding state of the point */
+  ReducedReport  report;
+  PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
+  PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
+  PetscInt       first;                  /* window from which the numbers of a transient are */
+  PetscReal      contact, friction, given; /* works in a transient; of impulses, with the energy that it began with, J */
+  PetscReal     *slip;                   /* [n_most n] mean slip speed along t, m/s */
+  PetscReal     *force;                  /* [n_most n] N */
+  ContactStatus *status;                 /* [n_pairs] at the beginning of the window */
+  PetscBool     *closed, *known;         /* [n_pairs]; those of which `growth` is */
+  PetscReal      growth;
+  PetscReal     *lambda_n, *sigma, *omega; /* [n_pairs] N, [2 m] */
+  MapSample     *sample;                   /* [n_most] */
+  /* twins (maptwins.c) */
+  PetscInt      n_twins;     /* of a point, at most */
+  PetscInt      n_alive;     /* of these, that go on from ends of their own */
+  ReducedState  start, next; /* where the point begins, and its first twin */
+  ReducedState *twin;        /* [n_twins] */
+  PetscReal     rest_growth; /* `growth` there, `known` and friction [n_pairs] */
+  PetscBool    *rest_known;
+  PetscReal    *rest_mu;
+  PetscInt      n_runs; /* the point's own transient and its twins, but for those that have failed */
+  MapPoint     *run;
+  PetscInt     *n_levels; /* [n_runs], and N [n_runs][n_most], rms of the windows that their numbers are of */
+  PetscReal    *level, *sorted;
 };
 
 /* mapparameter.c - names, links and values of the axes */
@@ -158,17 +199,37 @@ PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_b
 
 /* mapchain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all points of a
    chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
-typedef struct _p_MapMarch *MapMarch;
 PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march);
 PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint row[]);
 PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
+/* mapchain.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
+PETSC_INTERN PetscErrorCode MapMarchTry(MapMarch march, MapPoint *row);
+
+/* mapjudge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no mode of the
+   sliding state, or with the pairs that are closed now, grows, and the rms falls from window to window: two of them in which no
+   pair changed its status, or four of a small vibration; the regime of a transient that has ended, and its numbers: of the
+   windows that agree, or the last half of all. Not collective */
+PETSC_INTERN PetscErrorCode MapMarchLinearise(MapMarch march, const ContactStatus status[], MapFastest *fastest);
+PETSC_INTERN PetscErrorCode MapMarchDiesOut(MapMarch march, PetscBool *dies);
+PETSC_INTERN void           MapMarchJudge(MapMarch march, MapPoint *row);
+
+/* maptwins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state; after its
+   transient the twins of it, from `begin`, its row before, and what they say, into the row. Not collective */
+PETSC_INTERN PetscErrorCode MapTwinsCreate(MapMarch march);
+PETSC_INTERN PetscErrorCode MapTwinsBegin(MapMarch march);
+PETSC_INTERN PetscErrorCode MapTwinsRun(MapMarch march, const MapPoint *begin, MapPoint *row);
+PETSC_INTERN PetscErrorCode MapTwinsDestroy(MapMarch march);
+
 /* The end of a chain, to be kept or taken up */
 typedef struct {
   const ReducedModel *model;
   ReducedState       *state;
+  PetscInt            n_twins;
+  ReducedState       *twin; /* [n_twins] and how many are alive */
+  PetscInt           *n_alive;
   uint64_t            sum; /* of its rows */
 } MapKept;
 
@@ -190,6 +251,14 @@ PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscR
 /* whether n windows end in a vibration that is settled, or steady in the mean (map.h), and its error then */
 PETSC_INTERN PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 PETSC_INTERN PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
+
+/* mapspread.c - pure: quantiles 5, 50 and 95 % of n numbers, which are sorted; what in 5 of 100 the mean of n numbers is off from
+   that of as many others; the same, relative, of the root of the mean square over n_runs transients of n[] windows, of rms
+   [n_runs][stride] */
+PETSC_INTERN PetscErrorCode MapSpreadQuantiles(PetscInt n, PetscReal x[], PetscReal quantile[MAP_N_QUANTILES]);
+PETSC_INTERN PetscReal      MapSpreadOfMean(PetscInt n, const PetscReal x[]);
+PETSC_INTERN PetscReal      MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride,
+                                             const PetscReal rms[]);
 
 /* mapverify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
 PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);

@@ -12,8 +12,10 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define KEEP_VERSION  4
+#define KEEP_VERSION  5
 #define KEEP_MAX_ROWS 1000000
+#define N_CHAIN       3 /* pieces of a chain besides states */
+#define N_STATE       7
 #define N_DIMS        8
 #define N_BODIES      15
 #define N_FRICTION    4 /* of these, made at once: the model frees them so */
@@ -36,7 +38,7 @@ PetscErrorCode MapSumScene(Map map)
   PetscCall(ReducedAddChecksum(map->reduced, c));
   PetscCall(OperatorsAddChecksum(map->operators, c));
   PetscCall(ChecksumSetPart(c, "the map"));
-  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){KEEP_VERSION, map->direction, map->n_axes}));
+  PetscCall(ChecksumAddInts(c, 4, (const PetscInt[]){KEEP_VERSION, map->direction, map->n_axes, map->n_twins}));
   PetscCall(ChecksumAddReals(c, 4, (const PetscReal[]){map->dt, map->end, map->window, map->rtol}));
   for (PetscInt k = 0; k < map->n_axes; k++) {
     PetscCall(ChecksumAddReals(c, map->axis[k].n, map->axis[k].value));
@@ -134,6 +136,19 @@ static PetscInt KeptState(const ReducedModel *model, ReducedState *s, KeptPiece 
   return k;
 }
 
+/* What is kept of a chain besides its rows; the number of pieces */
+static PetscInt KeptChain(PetscInt *n_rows, MapKept *kept, KeptPiece piece[N_CHAIN + N_STATE * (1 + MAP_MAX_TWINS)])
+{
+  PetscInt k = 0;
+
+  piece[k++] = (KeptPiece){n_rows, sizeof(*n_rows)};
+  piece[k++] = (KeptPiece){&kept->sum, sizeof(kept->sum)};
+  piece[k++] = (KeptPiece){kept->n_alive, sizeof(*kept->n_alive)};
+  k += KeptState(kept->model, kept->state, &piece[k]);
+  for (PetscInt i = 0; i < kept->n_twins; i++) k += KeptState(kept->model, &kept->twin[i], &piece[k]);
+  return k;
+}
+
 /* Puts row k of a chain where it belongs, after those before it */
 static PetscErrorCode KeptAddRow(Map map, PetscInt chain, PetscInt k, const MapPoint *row)
 {
@@ -170,31 +185,26 @@ static PetscBool KeptReadRows(Map map, PetscInt chain, PetscInt n, MapPoint row[
 
 PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept)
 {
-  KeptPiece piece[9] = {
-    {&n_rows,    sizeof(n_rows)   },
-    {&kept->sum, sizeof(kept->sum)}
-  };
+  KeptPiece piece[N_CHAIN + N_STATE * (1 + MAP_MAX_TWINS)];
 
   PetscFunctionBeginUser;
   PetscCall(KeptAddRow(map, chain, n_rows - 1, &row[n_rows - 1]));
   kept->sum = ChecksumBytes(n_rows > 1 ? kept->sum : CHECKSUM_BEGIN, &row[n_rows - 1], sizeof(*row));
-  PetscCall(KeptWrite(map, "chain", chain, 2 + KeptState(kept->model, kept->state, &piece[2]), piece));
+  PetscCall(KeptWrite(map, "chain", chain, KeptChain(&n_rows, kept, piece), piece));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept)
 {
-  KeptPiece piece[9] = {
-    {n_rows,     sizeof(*n_rows)  },
-    {&kept->sum, sizeof(kept->sum)}
-  };
+  KeptPiece piece[N_CHAIN + N_STATE * (1 + MAP_MAX_TWINS)];
   PetscBool good;
 
   PetscFunctionBeginUser;
-  good = KeptRead(map, "chain", chain, 2 + KeptState(kept->model, kept->state, &piece[2]), piece, PETSC_TRUE);
-  if (good && (*n_rows < 1 || *n_rows > map->n_linked)) good = PETSC_FALSE;
+  good = KeptRead(map, "chain", chain, KeptChain(n_rows, kept, piece), piece, PETSC_TRUE);
+  if (good && (*n_rows < 1 || *n_rows > map->n_linked || *kept->n_alive < 0 || *kept->n_alive > kept->n_twins))
+    good = PETSC_FALSE;
   if (good) good = KeptReadRows(map, chain, *n_rows, row, kept->sum);
-  if (!good) *n_rows = 0;
+  if (!good) *n_rows = 0, *kept->n_alive = 0;
   map->n_resumed += *n_rows;
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,7 @@ static const char *const regimes[MAP_N_REGIMES] = {[MAP_STABLE]   = "stable",
                                                    [MAP_GROWTH]   = "growth",
                                                    [MAP_STICKING] = "sticking",
                                                    [MAP_CYCLE]    = "cycle",
+                                                   [MAP_BISTABLE] = "bistable",
                                                    [MAP_UNKNOWN]  = "unknown"};
 static const char *const ends[MAP_N_ENDS]       = {[MAP_DECAYS]  = "decays",
                                                    [MAP_SETTLED] = "settled",
@@ -21,8 +22,37 @@ PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
     results, "map",
     "point,parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_peak_n,"
     "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status,n_"
-    "growing",
+    "growing,runs,runs_vibrating,regimes,decided_by,force_rms_p05_n,force_rms_p50_n,force_rms_p95_n",
     table));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool MapVibrates(const MapPoint *row)
+{
+  return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether a point vibrates one way and is stable the other; its row of the other way follows those of this one, or the reverse */
+static PetscBool MapHangsOnWay(Map map, const MapPoint *row)
+{
+  const MapPoint *other = row + (row->down ? -map->axis[0].n : map->axis[0].n);
+
+  if (map->direction != MAP_BOTH) return PETSC_FALSE;
+  return (MapVibrates(row) && other->regime == MAP_STABLE) || (MapVibrates(other) && row->regime == MAP_STABLE)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* The regimes of the transients of a point, "cycle+stable" */
+static PetscErrorCode MapListRegimes(const MapPoint *row, size_t length, char list[])
+{
+  PetscFunctionBeginUser;
+  list[0] = '\0';
+  for (int k = 0; k < MAP_N_REGIMES; k++) {
+    if (!(row->regimes >> k & 1)) continue;
+    if (list[0]) PetscCall(PetscStrlcat(list, "+", length));
+    PetscCall(PetscStrlcat(list, regimes[k], length));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -31,22 +61,29 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   const MapAxis  *x = &map->axis[0], *y = &map->axis[1];
   MapPoint        known       = *point;
   const MapPoint *r           = &known;
-  char            second[192] = ",";
+  char            second[192] = ",", list[64];
 
   PetscFunctionBeginUser;
+  PetscCall(MapListRegimes(point, sizeof(list), list));
   if (r->end == MAP_FAILED)
     known.freq = known.freq_error = known.rms = known.peak = known.mean = known.open = known.stick = known.error = NAN;
   if (map->n_axes > 1)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(
-    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d",
+    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d,%d,%d,%s,%s,"
+    "%.15g,%.15g,%.15g",
     (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
     map->direction == MAP_APART ? "apart"
     : r->down                   ? "down"
                                 : "up",
     regimes[r->regime], (double)r->freq, (double)r->freq_error, (double)r->rms, (double)r->peak, (double)r->mean,
     (double)r->open, (double)r->stick, (double)r->growth, (double)r->mode_freq, (double)r->index, (double)r->error,
-    (int)r->steps, (double)r->time, ends[r->end], (int)r->n_growing));
+    (int)r->steps, (double)r->time, ends[r->end], (int)r->n_growing, (int)r->n_runs,
+    (int)r->n_loud, list,
+    r->regime == MAP_BISTABLE    ? "rounding"
+    : MapHangsOnWay(map, point) ? "direction"
+                                : "",
+    (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2]));
   PetscFunctionReturn(0);
 }
 
@@ -107,23 +144,22 @@ static PetscInt MapCount(Map map, MapRegime regime)
   return n;
 }
 
-static PetscBool MapVibrates(const MapPoint *row)
-{
-  return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* Points that vibrate in one direction and are stable in the other */
 static PetscInt MapCountBistable(Map map)
 {
-  const PetscInt n     = map->axis[0].n;
-  PetscInt       count = 0;
+  PetscInt count = 0;
 
-  for (PetscInt i = 0; i < map->n_rows; i++) {
-    const MapPoint *a = &map->row[i], *b = &map->row[i + (i % (2 * n) < n ? n : -n)];
-
-    count += MapVibrates(a) && b->regime == MAP_STABLE;
-  }
+  for (PetscInt i = 0; i < map->n_rows; i++) count += MapVibrates(&map->row[i]) && MapHangsOnWay(map, &map->row[i]);
   return count;
+}
+
+/* Twins that were run */
+static PetscInt MapCountTwins(Map map)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < map->n_rows; i++) n += map->row[i].n_runs - 1;
+  return n;
 }
 
 /* Points of which map_modes.csv lists some of the growing modes alone */
@@ -176,7 +212,7 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < map->n_rows; i++) {
-    steps += (PetscReal)map->row[i].steps;
+    steps += (PetscReal)map->row[i].all_steps;
     early += map->row[i].end < MAP_TIME;
   }
   PetscCall(PetscViewerASCIIPrintf(
@@ -191,6 +227,11 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
   for (int k = 0; k < MAP_N_REGIMES; k++)
     PetscCall(PetscViewerASCIIPrintf(viewer, " %s %" PetscInt_FMT "%s", regimes[k], MapCount(map, (MapRegime)k),
                                      k + 1 < MAP_N_REGIMES ? "," : "\n"));
+  if (map->n_twins)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "  %" PetscInt_FMT " twins, which begin 1e-9 apart; rounding decides whether %" PetscInt_FMT " rows vibrate\n",
+      MapCountTwins(map), MapCount(map, MAP_BISTABLE)));
   if (map->direction == MAP_BOTH)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " points vibrate one way and are stable the other\n",
                                      MapCountBistable(map)));

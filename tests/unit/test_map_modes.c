@@ -1,10 +1,11 @@
 /*
    Unit test of map/mapmodes: what eigenvalues about sliding say of a point of a map, and of map/mapforce: its main line, and
-   when a vibration has settled.
+   when a vibration has settled; of map/mapspread: what several transients say together.
 
    References: two modes of 1 and 2 rad/s and one pair that slides, of which the forces act on the first mode alone, opening and
    slipping by 1 per unit of it, compliance 1: K = diag(1 + 1 - mu, 4), so that with mu = 5 lambda = +- sqrt 3 and +- 2 i, by hand;
-   lists of eigenvalues made up; a cosine of known frequency.
+   lists of eigenvalues made up; a cosine of known frequency;
+   random levels of a known distribution, of which two are compared.
 */
 #include "check.h"
 #include "map/mapimpl.h"
@@ -106,12 +107,75 @@ static int TestEnds(void)
   return failed + CheckTrue("nor is what was linear for a while", !MapIsSteady(16, scatter, 0.05, &error), error);
 }
 
+/* Numbers between 0 and 1 that are alike in each run (linear congruence), and with a standard normal distribution */
+static PetscReal Uniform(uint32_t *bits)
+{
+  *bits = 1664525 * *bits + 1013904223;
+  return ((PetscReal)(*bits >> 8) + 0.5) / 16777216;
+}
+
+static PetscReal Normal(uint32_t *bits)
+{
+  const PetscReal radius = PetscSqrtReal(-2 * PetscLogReal(Uniform(bits)));
+
+  return radius * PetscCosReal(2 * PETSC_PI * Uniform(bits));
+}
+
+/* Four transients of seven windows, whose squared rms is 1 and scatters by `between` from transient to transient and by 0.1 from
+   window to window, each window being r times the one before and a new number: root of the mean square and what it may be off */
+static PetscReal Level(uint32_t *bits, PetscReal between, PetscReal r, PetscReal *off)
+{
+  const PetscInt n[4] = {7, 7, 7, 7};
+  PetscReal      rms[4][7], square = 0;
+
+  for (int k = 0; k < 4; k++) {
+    const PetscReal mean = 1 + between * Normal(bits);
+    PetscReal       x    = Normal(bits);
+
+    for (int i = 0; i < 7; i++) {
+      rms[k][i] = PetscSqrtReal(mean + 0.1 * x);
+      square += PetscSqr(rms[k][i]) / 28;
+      x = r * x + PetscSqrtReal(1 - r * r) * Normal(bits);
+    }
+  }
+  *off = MapSpreadOfLevel(4, n, 7, rms[0]) * PetscSqrtReal(square);
+  return PetscSqrtReal(square);
+}
+
+/* Breaks when: another level of the same distribution is off by more than what is told in more than 5 of 100, or that is much too
+   large: independent windows, windows that resemble each other, transients that differ among themselves */
+static int TestSpread(void)
+{
+  static const PetscReal between[3] = {0, 0, 0.1}, r[3] = {0, 0.7, 0.3};
+  const PetscReal        two[2] = {1, 3};
+  PetscReal              x[21], quantile[MAP_N_QUANTILES];
+  uint32_t               bits = 1;
+  int                    failed;
+
+  for (int i = 0; i < 21; i++) x[i] = (PetscReal)((8 * i) % 21);
+  failed = MapSpreadQuantiles(21, x, quantile) != 0;
+  failed += CheckClose("5 % of 0 .. 20", quantile[0], 1, 1e-12) + CheckClose("half", quantile[1], 10, 1e-12);
+  failed += CheckClose("95 %", quantile[2], 19, 1e-12);
+  failed += CheckClose("of two numbers: t sqrt(2 var / n)", MapSpreadOfMean(2, two), 12.706 * sqrt(2), 1e-12);
+  for (int k = 0; k < 3; k++) {
+    PetscReal off[2], inside = 0;
+
+    for (int i = 0; i < 4000; i++) {
+      const PetscReal one = Level(&bits, between[k], r[k], &off[0]), other = Level(&bits, between[k], r[k], &off[1]);
+
+      inside += (fabs(one - other) <= off[0]) / 4000.0;
+    }
+    failed += CheckTrue("another level is as near as is told in 95 of 100", inside > 0.945 && inside < 0.998, inside);
+  }
+  return failed;
+}
+
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscFunctionBeginUser;
   (void)size;
   PetscCall(TestDivergence(failed));
-  *failed += TestLists() + TestLine() + TestEnds();
+  *failed += TestLists() + TestLine() + TestEnds() + TestSpread();
   PetscFunctionReturn(0);
 }
 

@@ -8,6 +8,9 @@
                                                           100 1/s; downwards a vibration at some point without growing
                                                           mode; a frequency where there is one
     verify/map.py regime MAP REGIME                       all rows are of it
+    verify/map.py twins MAP ALONE                         beside the map without twins: one that agrees changes nothing, and one
+                                                          that differs is said
+    verify/map.py chance MAP                              some row is bistable, with eight twins
     verify/map.py errors STEP HALF MAP MU WINDOW          map_errors.csv: rms of the normal force over the last half of the windows
                                                           by two transients, to 1e-6; its main line to 20 Hz; no error
                                                           of a stable run, and of growth for other bodies alone
@@ -72,6 +75,36 @@ def regime(folder, name):
     return not found or any(each != name for each in found)
 
 
+def twins(folder, alone):
+    table, single = rows(folder, "map.csv"), rows(alone, "map.csv")
+    new = {"runs", "runs_vibrating", "regimes", "decided_by", "error_estimate", "freq_error_hz"}
+    new |= {f"force_rms_p{share}_n" for share in ("05", "50", "95")}
+    calm = [(row, own) for row, own in zip(table, single) if int(row["runs"]) < 4]
+    changed = [row for row, own in calm for name in row if name not in new and row[name] != own[name]]
+    loose = [row for row, own in calm if float(row["error_estimate"]) < float(own["error_estimate"])]
+    chance = [row for row in table if row["regime"] == "bistable"]
+    wrong = [row for row in table if (row["regime"] == "bistable") != (0 < int(row["runs_vibrating"]) < int(row["runs"]))
+             or (row["decided_by"] == "rounding") != (row["regime"] == "bistable") or "+stable" in row["regimes"]]
+    wrong += [row for row in chance if not row["regimes"].startswith("stable+")
+              or not float(row["force_rms_p05_n"]) < float(row["force_rms_p95_n"])]
+    chaotic = [(row, own) for row, own in zip(table, single) if row["runs"] == row["runs_vibrating"] == "4"]
+    wrong += [row for row, own in chaotic if not float(row["error_estimate"]) > float(own["error_estimate"])
+              or not float(row["force_rms_p05_n"]) <= float(row["force_rms_n"]) <= float(row["force_rms_p95_n"])]
+    kept = sum(row["runs"] == "2" and row["regime"] in ("cycle", "sticking") for row, _ in calm)
+    print(f"{len(calm)} rows without twins or with one that agrees, {kept} of these vibrate, {len(changed)} numbers changed, {len(loose)} "
+          f"errors smaller; {len(chaotic)} chaotic, {len(chance)} bistable, {len(wrong)} wrong")
+    return bool(changed or loose or wrong) or not (kept and chaotic) or len(table) != len(single)
+
+
+def chance(folder):
+    found = [row for row in rows(folder, "map.csv") if row["regime"] == "bistable"]
+    for row in found:
+        print(f"at {row['value']} {row['runs_vibrating']} of {row['runs']} transients vibrate, {row['force_rms_p05_n']} to "
+              f"{row['force_rms_p95_n']} N, decided by {row['decided_by']}")
+    return not any(row["decided_by"] == "rounding" and row["runs"] == "9" and row["freq_hz"] != "nan"
+                   and 0 < int(row["runs_vibrating"]) < 9 for row in found)
+
+
 def measured(transient, steps, window):
     """rms about the mean of each window, and the main line (Hz), of the normal force in the last half of the windows."""
     table = rows(transient, "transient.csv")[:steps + 1]
@@ -127,5 +160,5 @@ def failed(folder):
 
 
 if __name__ == "__main__":
-    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime,
+    sys.exit({"growth": growth, "level": level, "regimes": regimes, "regime": regime, "twins": twins, "chance": chance,
               "errors": errors, "told": told, "linked": linked, "failed": failed}[sys.argv[1]](*sys.argv[2:]))

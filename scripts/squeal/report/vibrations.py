@@ -46,6 +46,8 @@ def map_part(folder, _):
     rows = vibration.rows
     vibrates = sum(row["regime"] in VIBRATES for row in rows)
     verdict = f"{count(len(rows), 'transient')}: {vibrates} vibrate, {sum(row['regime'] == 'stable' for row in rows)} are stable"
+    chance = sum(row["regime"] == "bistable" for row in rows)
+    verdict += f", {chance} of those that vibrate by rounding alone (bistable)" if chance else ""
     n_both = len(vibration.bistable)
     verdict += f"; {count(n_both, 'point')} vibrate{'s' * (n_both == 1)} one way and {'is' if n_both == 1 else 'are'} stable the other."
     drawn = figure(f"{folder.key}-vibration", "Where it vibrates, and how much",
