@@ -96,7 +96,8 @@ def study(args):
         found, n, n_chance, stated, seconds = judge_map(args, name)
         total, rows, chance, errors = total + found, rows + n, chance + n_chance, errors + stated
         print(f"map {name}: {n} rows, {n_chance} bistable; {found.pairs} pairs: {found.loud} both vibrate, "
-              f"{found.moved} moved, rms beyond its error in {found.beyond}, frequency in {found.line}; another regime {found.regime}; bistable in one of two {found.chance} "
+              f"{found.moved} moved, rms beyond its error in {found.beyond}, frequency in {found.line}; another regime {found.regime}; "
+              f"bistable in one of two {found.chance} "
               f"({seconds:.0f} s)", flush=True)
     missed = total.beyond + total.regime
     errors.sort()
