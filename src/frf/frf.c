@@ -12,9 +12,8 @@ PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, frf));
-  (*frf)->comm      = comm;
-  (*frf)->rtol      = 1e-8;
-  (*frf)->max_steps = 30;
+  (*frf)->comm = comm;
+  PetscCall(QuantitiesInit(&frf_quantities, *frf));
   PetscCall(PetscStrncpy((*frf)->directions, "xyz", sizeof((*frf)->directions)));
   PetscFunctionReturn(0);
 }
@@ -84,42 +83,16 @@ static PetscErrorCode DirectionsCheck(Frf frf)
 
 PetscErrorCode FrfSetFromOptions(Frf frf)
 {
-  static const char *const methods[] = {"modal", "direct"};
-  PetscInt                 method    = FRF_MODAL;
-  PetscBool                given, has_times;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(frf->comm, NULL, "Frequency response", NULL);
-  PetscCall(PetscOptionsString("-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", "frf.h",
-                               frf->force, frf->force, sizeof(frf->force), NULL));
-  PetscCall(PetscOptionsString("-frf_directions", "in which the response is recorded: some of x, y, z", "frf.h",
-                               frf->directions, frf->directions, sizeof(frf->directions), &frf->has_directions));
-  PetscCall(PetscOptionsString("-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,..., Hz", "frf.h",
-                               frf->frequencies, frf->frequencies, sizeof(frf->frequencies), &given));
-  PetscCall(PetscOptionsString("-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,..., s",
-                               "frf.h", frf->times, frf->times, sizeof(frf->times), &has_times));
-  PetscCall(PetscOptionsEList("-frf_method", "superposition of modes, or the whole system at each frequency", "frf.h",
-                              methods, N_FRF_METHODS, methods[0], &method, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-frf_rtol",
-                           "largest estimated relative error of superposition (an estimate, no bound)", frf->rtol,
-                           &frf->rtol, NULL));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-frf_max_steps", "most steps of the residual term", frf->max_steps,
-                          &frf->max_steps, NULL));
-  PetscOptionsEnd();
-  if (method == FRF_DIRECT)
-    PetscCall(OptionsRefuse(frf->comm, "-frf_rtol -frf_max_steps", "not used by -frf_method direct"));
-  frf->method   = (FrfMethod)method;
+  PetscCall(QuantitiesRead(frf->comm, &frf_quantities, frf));
   frf->n_places = MAX_PLACES;
   PetscCall(PetscCalloc1(MAX_PLACES, &frf->place));
   PetscCall(OptionsGetWords(frf->comm, "-frf_probes",
                             "where the response is recorded: probes, circles; default all probes", &frf->n_places,
                             frf->place));
-  PetscCheck(frf->rtol > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_rtol %.6g must be positive", (double)frf->rtol);
-  PetscCheck(frf->max_steps > 0, frf->comm, PETSC_ERR_USER_INPUT, "-frf_max_steps %" PetscInt_FMT " must be positive",
-             frf->max_steps);
   PetscCall(DirectionsCheck(frf));
-  if (given) PetscCall(FrequenciesParse(frf));
-  if (has_times) PetscCall(TimesParse(frf));
+  if (frf->frequencies[0]) PetscCall(FrequenciesParse(frf));
+  if (frf->times[0]) PetscCall(TimesParse(frf));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/shiftinvert.h"
+#include <squeal/quantity.h>
 #include <squeal/frf.h>
 #include <complex.h>
 
@@ -39,6 +40,9 @@ struct _p_Frf {
   PetscInt   n_steps, n_vectors, n_solves; /* of the residual term */
   Progress   progress;
 };
+
+/* quantities.c - what options set in it */
+extern const QuantityTable frf_quantities;
 
 /* places.c - the force, and the unknowns that are recorded */
 PETSC_INTERN PetscErrorCode FrfFindForce(Frf frf);

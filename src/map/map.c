@@ -7,10 +7,6 @@
 #include <squeal/options.h>
 #include <petsctime.h>
 
-#define WINDOW 5e-3 /* s */
-#define RTOL   0.01
-#define TWINS  3
-
 #define MAP_BATCH  8     /* times the lines that ranks need at once, of which bodies are reduced before any is run */
 #define MAP_MEMORY 2.5e8 /* bytes for their bodies on each rank */
 
@@ -18,69 +14,15 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, map));
-  (*map)->comm    = comm;
-  (*map)->window  = WINDOW;
-  (*map)->rtol    = RTOL;
-  (*map)->n_twins = TWINS;
-  (*map)->restart = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* Raises an error for values that cannot be */
-static PetscErrorCode MapCheckOptions(Map map)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(map->window > 0 && map->window < 1e6, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_window %.6g must be a positive time (s)", (double)map->window);
-  PetscCheck(map->rtol > 0 && map->rtol < 1, map->comm, PETSC_ERR_USER_INPUT, "-map_rtol %.6g must lie between 0 and 1",
-             (double)map->rtol);
-  PetscCheck(map->n_verify >= 0, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_verify %" PetscInt_FMT " must not be negative: a number of points", map->n_verify);
-  PetscCheck(map->n_twins >= 0 && map->n_twins <= MAP_MAX_TWINS, map->comm, PETSC_ERR_USER_INPUT,
-             "-map_twins %" PetscInt_FMT " must lie between 0 and %d", map->n_twins, MAP_MAX_TWINS);
+  (*map)->comm = comm;
+  PetscCall(QuantitiesInit(&map_quantities, *map));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MapSetFromOptions(Map map)
 {
-  static const char *const directions[] = {"both", "up", "down", "apart"};
-  PetscInt                 direction    = 0;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(map->comm, NULL, "Map", NULL);
-  PetscCall(PetscOptionsString("-map_parameter", "one or two options of the scene to vary, e.g. contact_mu,press_force",
-                               "map.h", map->parameter, map->parameter, sizeof(map->parameter), NULL));
-  PetscCall(PetscOptionsString("-map_values", "first:last:n, first:last:n:log, or v1,v2,... in the parameter's unit",
-                               "map.h", map->values[0], map->values[0], sizeof(map->values[0]), NULL));
-  PetscCall(PetscOptionsString("-map_values_2", "those of the second parameter", "map.h", map->values[1],
-                               map->values[1], sizeof(map->values[1]), NULL));
-  PetscCall(PetscOptionsString("-map_link", "parameters that take the same value, e.g. inner_mu,outer_mu; ':' between",
-                               "map.h", map->link, map->link, sizeof(map->link), &map->linked));
-  PetscCall(PetscOptionsEList("-map_direction",
-                              "ways through the values of the first parameter, each from the end of "
-                              "its neighbour, or every point from its own sliding state",
-                              "map.h", directions, 4, directions[0], &direction, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-map_window", "of which amplitude and frequency are taken, s",
-                           map->window, &map->window, NULL));
-  PetscCall(OptionsGetReal(
-    PetscOptionsObject, "-map_rtol",
-    "change of the rms between windows, or standard error of its mean, below which an amplitude is settled",
-    map->rtol, &map->rtol, NULL));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-map_verify",
-                          "points, spread over the map, run again with half the step, with the contact laws "
-                          "to 1e-12, and with 2.25 times the cut-off",
-                          map->n_verify, &map->n_verify, NULL));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-map_twins",
-                          "transients beside that of a point whose amplitude or regime rounding could change: one, and "
-                          "all where it does; 0: rounding is not in error_estimate",
-                          map->n_twins, &map->n_twins, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-map_restart",
-                           "go on where a map of the same scene in -output_dir was "
-                           "stopped",
-                           &map->restart));
-  PetscOptionsEnd();
-  PetscCall(MapCheckOptions(map));
-  map->direction = (MapDirection)direction;
+  PetscCall(QuantitiesRead(map->comm, &map_quantities, map));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 /* Private to map/: the record of a map, and the files that fill it */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/map.h>
 #include <squeal/results.h>
 #include "base/progress.h"
@@ -119,6 +120,9 @@ struct _p_Map {
   uint64_t    scene;     /* checksum */
   PetscInt    n_resumed; /* rows of this rank */
 };
+
+/* quantities.c - what options set in it */
+extern const QuantityTable map_quantities;
 
 /* A chain that is run (mapchain.c): bodies, and work */
 typedef struct _p_MapMarch *MapMarch;
