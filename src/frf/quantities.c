@@ -1,27 +1,27 @@
 /* Options of frequency responses; -frf_probes, a list of names, is read beside them */
 #include "frfimpl.h"
 
-#define ROW(member) QUANTITY_AT(struct _p_Frf, member)
+#define FRF_AT(member) QUANTITY_AT(struct _p_Frf, member)
 
 static const char *const methods[] = {[FRF_MODAL] = "modal", [FRF_DIRECT] = "direct", NULL};
 
-static const char *Direct(const void *frf)
+static const char *FrfIdleDirect(const void *frf)
 {
   return ((const struct _p_Frf *)frf)->method == FRF_DIRECT ? "not used by -frf_method direct" : NULL;
 }
 
 static const Quantity rows[] = {
-  {"-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", NULL, QUANTITY_TEXT, ROW(force)},
-  {"-frf_directions", "in which the response is recorded: some of x, y, z", NULL, QUANTITY_TEXT, ROW(directions),
+  {"-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", NULL, QUANTITY_TEXT, FRF_AT(force)},
+  {"-frf_directions", "in which the response is recorded: some of x, y, z", NULL, QUANTITY_TEXT, FRF_AT(directions),
    .given = offsetof(struct _p_Frf, has_directions)},
-  {"-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,...", "Hz", QUANTITY_TEXT, ROW(frequencies)},
-  {"-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,...", "s", QUANTITY_TEXT, ROW(times)},
-  {"-frf_method", "superposition of modes, or the whole system at each frequency", NULL, QUANTITY_WORD, ROW(method),
+  {"-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,...", "Hz", QUANTITY_TEXT, FRF_AT(frequencies)},
+  {"-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,...", "s", QUANTITY_TEXT, FRF_AT(times)},
+  {"-frf_method", "superposition of modes, or the whole system at each frequency", NULL, QUANTITY_WORD, FRF_AT(method),
    .initial = FRF_MODAL, .words = methods},
-  {"-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)", NULL, QUANTITY_REAL, ROW(rtol),
-   .initial = 1e-8, QUANTITY_POSITIVE, .idle = Direct},
-  {"-frf_max_steps", "most steps of the residual term", NULL, QUANTITY_INT, ROW(max_steps), .initial = 30, QUANTITY_POSITIVE,
-   .idle = Direct},
+  {"-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)", NULL, QUANTITY_REAL, FRF_AT(rtol),
+   .initial = 1e-8, QUANTITY_POSITIVE, .idle = FrfIdleDirect},
+  {"-frf_max_steps", "most steps of the residual term", NULL, QUANTITY_INT, FRF_AT(max_steps), .initial = 30, QUANTITY_POSITIVE,
+   .idle = FrfIdleDirect},
 };
 
 const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
