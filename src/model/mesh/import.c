@@ -257,7 +257,7 @@ PetscErrorCode ImportGmsh(MPI_Comm comm, const char file[], DM *dm)
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(PetscMalloc2(mesh.n_nodes, &volumes.vertex, mesh.n_nodes, &volumes.point));
   if (rank == 0) volumes.n_vertices = NumberVertices(&mesh, volumes.vertex);
-  PetscCall(VolumesCreateMesh(comm, &volumes, &error, dm));
+  PetscCall(VolumesCreateMesh(comm, file, &volumes, &error, dm));
   PetscCall(CheckOverlap(*dm, &error));
   PetscCall(RaiseError(comm, file, &error));
   PetscCall(CreateLabels(*dm, file, &mesh));

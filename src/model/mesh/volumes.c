@@ -219,14 +219,32 @@ static PetscErrorCode PlacesSet(DM dm, const GmshMesh *mesh, const PetscInt node
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const GmshVolumes *volumes, ReaderError *error, DM *dm)
+/* Raises the error of a rank, rank 0, whose cells do not fit to each other */
+static PetscErrorCode VolumesExplain(const GmshMesh *mesh, const char file[])
 {
-  PetscInt pEnd, *node;
-  DM       corners;
+  PetscInt element[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(VolumesFindTwisted(mesh, element));
+  PetscCheck(element[0] < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "Option -model_mesh %s: elements %" PetscInt_FMT " and %" PetscInt_FMT
+             " have the corners of their common face in different orders around it; write those of a hexahedron or wedge in Gmsh's order",
+             file, element[0], element[1]);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Option -model_mesh %s: its volume elements do not fit to each other at their faces", file);
+}
+
+PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes, ReaderError *error, DM *dm)
+{
+  PetscErrorCode code;
+  PetscInt       pEnd, *node;
+  DM             corners;
 
   PetscFunctionBeginUser;
   PetscCall(CornersCreate(comm, volumes, &corners));
-  PetscCall(DMPlexInterpolate(corners, dm));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  code = DMPlexInterpolate(corners, dm);
+  PetscCall(PetscPopErrorHandler());
+  if (code) PetscCall(VolumesExplain(volumes->mesh, file));
   PetscCall(DMDestroy(&corners));
   PetscCall(DMPlexGetChart(*dm, NULL, &pEnd));
   PetscCall(PetscMalloc1(pEnd, &node));
