@@ -230,7 +230,7 @@ static PetscErrorCode VolumesExplain(const GmshMesh *mesh, const char file[])
              "Option -model_mesh %s: elements %" PetscInt_FMT " and %" PetscInt_FMT
              " have the corners of their common face in different orders around it; write those of a hexahedron or wedge in Gmsh's order",
              file, element[0], element[1]);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Option -model_mesh %s: its volume elements do not fit to each other at their faces", file);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Option -model_mesh %s: its volume elements do not fit at their faces", file);
 }
 
 PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes, ReaderError *error, DM *dm)
