@@ -68,12 +68,20 @@ class Table:
                 result[point] = tuple(max(abs(row[name]) for row in others) for name in ("force_rms_error", "freq_error_hz"))
         return result
 
+    def find_both_ways(self):
+        """Values of the points that vibrate one way and are stable the other."""
+        return [point for point, seen in self.regimes().items() if "stable" in seen and seen & set(VIBRATES)]
+
+    def regimes(self):
+        """Those of each point, of all its rows."""
+        found = {}
+        for row in self.rows:
+            found.setdefault((row["value"], row["value_2"]), set()).add(row["regime"])
+        return found
+
     def find_bistable(self):
         """Values of the points that vibrate one way and are stable the other, or of which rounding decides it."""
-        regimes = {}
-        for row in self.rows:
-            regimes.setdefault((row["value"], row["value_2"]), set()).add(row["regime"])
-        return [point for point, seen in regimes.items() if "bistable" in seen or ("stable" in seen and seen & set(VIBRATES))]
+        return [point for point, seen in self.regimes().items() if "bistable" in seen or ("stable" in seen and seen & set(VIBRATES))]
 
 
 class Grid:

@@ -130,7 +130,7 @@ static PetscErrorCode EnvironmentSay(MPI_Comm comm)
 {
   static const char *const variables[]                 = {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"};
   char                     file[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
-  PetscBool                skip, there;
+  PetscBool                skip = PETSC_FALSE, there;
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(variables); i++) {
@@ -140,7 +140,7 @@ static PetscErrorCode EnvironmentSay(MPI_Comm comm)
       PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: the environment's %s gives options to this run: %s\n",
                              variables[i], text));
   }
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-skip_petscrc", &skip));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-skip_petscrc", &skip, NULL));
   PetscCall(PetscGetHomeDirectory(file[0], sizeof(file[0]) - 16));
   PetscCall(PetscStrlcat(file[0], "/.petscrc", sizeof(file[0])));
   for (int i = 0; i < 3 && !skip; i++) {

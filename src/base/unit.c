@@ -1,5 +1,6 @@
 /*
-   Numbers with a unit, as "210 GPa", which no option takes: what to write instead, in m, kg, s, N, Pa and in mm, t, s, N, MPa.
+   Numbers with a unit, as "210 GPa", which no option takes: what to write instead, in m, kg, s, N, Pa and in mm, t, s, N, MPa. Units that
+   may be others are left out: m (minutes), g (giga), t, and %, in which some options are.
 */
 #include <squeal/options.h>
 #include <stdlib.h>
@@ -23,13 +24,10 @@ static const Unit units[] = {
   {"N/mm2",  1e6,  1,     "Pa",     "MPa"   },
   {"GPa",    1e9,  1e3,   "Pa",     "MPa"   },
   {"bar",    1e5,  0.1,   "Pa",     "MPa"   },
-  {"m",      1,    1e3,   "m",      "mm"    },
   {"cm",     1e-2, 10,    "m",      "mm"    },
   {"mm",     1e-3, 1,     "m",      "mm"    },
   {"um",     1e-6, 1e-3,  "m",      "mm"    },
   {"kg",     1,    1e-3,  "kg",     "t"     },
-  {"g",      1e-3, 1e-6,  "kg",     "t"     },
-  {"t",      1e3,  1,     "kg",     "t"     },
   {"kg/m^3", 1,    1e-12, "kg/m^3", "t/mm^3"},
   {"kg/m3",  1,    1e-12, "kg/m^3", "t/mm^3"},
   {"g/cm^3", 1e3,  1e-9,  "kg/m^3", "t/mm^3"},
@@ -52,7 +50,6 @@ static const Unit units[] = {
   {"s",      1,    1,     "s",      ""      },
   {"ms",     1e-3, 1e-3,  "s",      ""      },
   {"us",     1e-6, 1e-6,  "s",      ""      },
-  {"%",      1e-2, 1e-2,  "-",      ""      },
   {"rad/s",  1,    1,     "rad/s",  ""      },
   {"rpm",    RPM,  RPM,   "rad/s",  ""      },
   {"1/min",  RPM,  RPM,   "rad/s",  ""      },

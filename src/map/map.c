@@ -208,7 +208,8 @@ PetscErrorCode MapJudge(Map map)
                                                 [MAP_NO_FORCES] = "the contact forces do not converge",
                                                 [MAP_NO_NUMBER] = "the motion grows beyond all numbers",
                                                 [MAP_MADE]      = "normal contact, which does no work, feeds the "
-                                                                  "motion: take a smaller -ts_dt"};
+                                                                  "motion: take a lower -dynamics_cutoff, or look "
+                                                                  "at the point by -dynamics_model full"};
   const MapPoint *first = NULL;
   PetscInt        n     = 0;
   char            text[512], other[320] = "";

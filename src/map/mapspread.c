@@ -26,9 +26,9 @@ PetscErrorCode MapSpreadQuantiles(PetscInt n, PetscReal x[], PetscReal quantile[
 /* Student's t of n degrees of freedom, two-sided 95 % */
 static PetscReal StudentT(PetscInt n)
 {
-  static const PetscReal t[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306};
+  static const PetscReal t[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179};
 
-  return n < 1 ? NAN : n <= (PetscInt)PETSC_STATIC_ARRAY_LENGTH(t) ? t[n - 1] : 2.1;
+  return n < 1 ? NAN : n <= (PetscInt)PETSC_STATIC_ARRAY_LENGTH(t) ? t[n - 1] : 2.16; /* that of 13 */
 }
 
 PetscReal MapSpreadOfMean(PetscInt n, const PetscReal x[])
@@ -63,13 +63,15 @@ static PetscReal SpreadWithin(PetscInt n_runs, const PetscInt n[], PetscInt stri
 PetscReal MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride, const PetscReal rms[])
 {
   PetscReal mean[1 + MAP_MAX_TWINS] = {0}, all = 0, between, within;
+  PetscInt  freedom                 = 0;
 
   for (PetscInt k = 0; k < n_runs; k++) {
+    freedom += n[k] - 1;
     for (PetscInt i = 0; i < n[k]; i++) mean[k] += PetscSqr(rms[stride * k + i]) / (PetscReal)n[k];
     all += mean[k] / (PetscReal)n_runs;
   }
   between = MapSpreadOfMean(n_runs, mean);
-  within  = StudentT(MAP_MAX_TWINS + 1) *
+  within  = StudentT(PetscMax(1, freedom)) *
            PetscSqrtReal(2 * SpreadWithin(n_runs, n, stride, rms, mean) / (PetscReal)n_runs);
   return 0.5 * PetscMax(between, within) / all;
 }

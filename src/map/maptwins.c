@@ -146,15 +146,20 @@ static PetscErrorCode TwinRun(MapMarch w, PetscInt k, const MapPoint *begin, Map
   PetscFunctionReturn(0);
 }
 
+static PetscBool TwinVibrates(const MapPoint *run)
+{
+  return run->regime == MAP_CYCLE || run->regime == MAP_STICKING || run->regime == MAP_GROWTH ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Whether run k is another one than the point's own */
 static PetscBool TwinDiffers(const MapMarch w, PetscInt k)
 {
   const MapPoint *a = &w->run[0], *b = &w->run[k];
 
-  return a->regime != b->regime || a->end != b->end || a->steps != b->steps ||
-             PetscAbsReal(b->rms - a->rms) > TWIN_DIFFERS * a->rms
-           ? PETSC_TRUE
-           : PETSC_FALSE;
+  if (a->regime != b->regime) return PETSC_TRUE;
+  if (!TwinVibrates(a)) return PETSC_FALSE;
+  return a->end != b->end || a->steps != b->steps || PetscAbsReal(b->rms - a->rms) > TWIN_DIFFERS * a->rms ? PETSC_TRUE
+                                                                                                           : PETSC_FALSE;
 }
 
 /* Whether the point's own transient dies out, and is linear but for its impulses */
@@ -164,11 +169,6 @@ static PetscBool TwinIsNeedless(const MapMarch w)
   for (PetscInt k = 0; k < w->n_windows; k++)
     if (w->sample[k].changed && !w->sample[k].hit) return PETSC_FALSE;
   return PETSC_TRUE;
-}
-
-static PetscBool TwinVibrates(const MapPoint *run)
-{
-  return run->regime == MAP_CYCLE || run->regime == MAP_STICKING || run->regime == MAP_GROWTH ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* How many runs vibrate, and quantiles of the rms of the windows of all */
@@ -227,23 +227,32 @@ static void TwinsLookAtSticking(const MapMarch w, MapPoint *row)
     row->regimes |= 1 << MAP_CYCLE | 1 << MAP_STICKING;
 }
 
-/* The middle one of the main lines of the runs: a mean of different ones would be no line */
-static void TwinsTakeLine(const MapMarch w, MapPoint *row)
+/* The middle one of the main lines of those runs that have one: a mean of different ones would be no line */
+static PetscErrorCode TwinsTakeLine(const MapMarch w, MapPoint *row)
 {
-  PetscReal freq[1 + MAP_MAX_TWINS];
+  PetscReal freq[1 + MAP_MAX_TWINS], error = 0;
+  PetscInt  n = 0;
 
-  for (PetscInt k = 0; k < w->n_runs; k++) freq[k] = w->run[k].freq;
-  (void)PetscSortReal(w->n_runs, freq);
-  row->freq       = freq[(w->n_runs - 1) / 2];
-  row->freq_error = PetscMax(freq[w->n_runs - 1] - row->freq, row->freq - freq[0]);
-  for (PetscInt k = 0; k < w->n_runs; k++) row->freq_error = PetscMax(row->freq_error, w->run[k].freq_error);
+  PetscFunctionBeginUser;
+  row->freq = row->freq_error = NAN;
+  for (PetscInt k = 0; k < w->n_runs; k++) {
+    if (PetscIsNanReal(w->run[k].freq)) continue;
+    freq[n++] = w->run[k].freq;
+    if (w->run[k].freq_error > error) error = w->run[k].freq_error;
+  }
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscSortReal(n, freq));
+  row->freq       = freq[(n - 1) / 2];
+  row->freq_error = PetscMax(error, PetscMax(freq[n - 1] - row->freq, row->freq - freq[0]));
+  PetscFunctionReturn(0);
 }
 
 /* Numbers of a vibration that the runs have, each another one: means */
-static void TwinsAverage(MapMarch w, MapPoint *row)
+static PetscErrorCode TwinsAverage(MapMarch w, MapPoint *row)
 {
   const PetscReal n = (PetscReal)w->n_runs;
 
+  PetscFunctionBeginUser;
   row->mean = row->rms = row->peak = row->open = row->stick = 0;
   for (PetscInt k = 0; k < w->n_runs; k++) {
     const MapPoint *run = &w->run[k];
@@ -256,8 +265,9 @@ static void TwinsAverage(MapMarch w, MapPoint *row)
   }
   row->rms   = PetscSqrtReal(row->rms);
   row->error = MapSpreadOfLevel(w->n_runs, w->n_levels, w->n_most, w->level);
-  TwinsTakeLine(w, row);
+  PetscCall(TwinsTakeLine(w, row));
   TwinsLookAtSticking(w, row);
+  PetscFunctionReturn(0);
 }
 
 /* What all runs say of the point */
@@ -268,8 +278,8 @@ static PetscErrorCode TwinsJudge(MapMarch w, PetscBool differ, MapPoint *row)
   if (row->n_loud && row->n_loud < w->n_runs) {
     row->regime = MAP_BISTABLE;
     PetscCall(TwinsKeepLoud(w));
-    TwinsAverage(w, row);
-  } else if (differ && row->n_loud) TwinsAverage(w, row);
+    PetscCall(TwinsAverage(w, row));
+  } else if (differ && row->n_loud) PetscCall(TwinsAverage(w, row));
   else TwinsEnlarge(w, row);
   PetscFunctionReturn(0);
 }

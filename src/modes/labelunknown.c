@@ -46,13 +46,14 @@ static PetscBool SameEigenvalue(const Mode *i, const Mode *j)
 
 PetscErrorCode ModesLabelUnknowns(Modes modes)
 {
-  PetscInt at, end;
+  PetscInt at = 0, end, n_unknowns;
   Vec      size, work;
 
   PetscFunctionBeginUser;
   if (!modes->n) PetscFunctionReturn(0);
   PetscCall(VecDuplicate(modes->right.xr[0], &size));
   PetscCall(VecDuplicate(size, &work));
+  PetscCall(VecGetSize(size, &n_unknowns));
   for (PetscInt i = 0; i < modes->n; i = end) {
     PetscCall(VecSet(size, 0));
     for (end = i; end == i || (end < modes->n && SameEigenvalue(&modes->mode[i], &modes->mode[end])); end++) {
@@ -60,7 +61,7 @@ PetscErrorCode ModesLabelUnknowns(Modes modes)
       PetscCall(AddSquares(modes->right.xi[end], work, size));
     }
     for (PetscInt j = i; j < end; j++) {
-      PetscCall(FirstOfLargest(size, &at));
+      if (j - i < n_unknowns) PetscCall(FirstOfLargest(size, &at)); /* a defective eigenvalue has more modes than unknowns */
       PetscCall(PetscSNPrintf(modes->mode[j].label, sizeof(modes->mode[j].label), "u%" PetscInt_FMT, at + 1));
       PetscCall(VecSetValue(size, at, -1, INSERT_VALUES));
       PetscCall(VecAssemblyBegin(size));

@@ -15,6 +15,7 @@
 #define ROUNDINGS        3
 #define QUALITY_NULL     1e-10 /* |K x| / (|K| |x|) of a rigid motion */
 #define QUALITY_ENERGY   0.1   /* x'K x / (lambda^2 x'M x) of one, at most; of an elastic one that does not oscillate 1 at least */
+#define QUALITY_DOUBLE 6.7e7 /* 1 / sqrt(machine epsilon) */
 #define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
@@ -253,7 +254,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square;
+  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square, amplified = 1;
   QualityProducts  p = {.y_Dx = 1};
 
   PetscFunctionBeginUser;
@@ -269,8 +270,11 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   mode->product[0]     = creal(p.product) / (norm_x * norm_y);
   mode->product[1]     = cimag(p.product) / (norm_x * norm_y);
   mode->condition      = !has_left ? NAN : p.y_Dx > 0 ? norm_x * norm_y / p.y_Dx : INFINITY;
-  noise *= (has_left && isfinite(mode->condition) ? PetscMax(1, mode->condition) : 1) / (norm_x * norm_x);
-  square      = PetscMax(noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0); /* error of lambda^2 */
+  noise /= norm_x * norm_x;
+  /* error of lambda^2: of a double eigenvalue, whose condition has no limit, the root of rounding */
+  if (has_left && isfinite(mode->condition)) amplified = PetscMax(1, mode->condition);
+  square = PetscMax(PetscMin(amplified, QUALITY_DOUBLE) * noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
+  noise *= amplified;
   mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
   mode->error = mode->rigid ? PetscSqrtReal(size * size + square) : square / (2 * size);

@@ -159,17 +159,18 @@ static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
   const double gb =
     8e-9 * (N * N + copies * n * n) * MemoryRanks(); /* W; of the stepper W, the laws', HW, and Cx, Mx */
   PetscBool given;
-  double    fits[2];
+  double    fits[3];
 
   PetscFunctionBeginUser;
   fits[0] = 1e-3 * MemoryRoom(&given);
   fits[1] = N * N < PETSC_MAX_INT ? 0 : -1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 2, MPI_DOUBLE, MPI_MIN, r->comm));
-  PetscCheck(gb <= fits[0] && fits[1] == 0, r->comm, PETSC_ERR_USER_INPUT,
+  fits[2] = -gb; /* machines may have other numbers of ranks */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 3, MPI_DOUBLE, MPI_MIN, r->comm));
+  PetscCheck(-fits[2] <= fits[0] && fits[1] == 0, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_model reduced: the dense compliance of %" PetscInt_FMT
              " pairs takes %.3g GB on a machine, more than %s (%.3g GB)%s; take a coarser contact, or "
              "-dynamics_model full",
-             r->model.n_pairs, gb, given ? "-squeal_memory" : "is free", fits[0],
+             r->model.n_pairs, -fits[2], given ? "-squeal_memory" : "is free", fits[0],
              fits[1] < 0 ? ", and has more entries than can be counted" : "");
   PetscFunctionReturn(0);
 }

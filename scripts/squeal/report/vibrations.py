@@ -45,10 +45,10 @@ def map_part(folder, _):
                 number("growth, 1/s", "growth_rad_s", 4), Column("ended", lambda row: row["status"], left=True)]
     rows = vibration.rows
     vibrates = sum(row["regime"] in VIBRATES for row in rows)
-    verdict = f"{count(len(rows), 'transient')}: {vibrates} vibrate, {sum(row['regime'] == 'stable' for row in rows)} are stable"
+    verdict = f"{count(len(rows), 'row')}: {vibrates} vibrate, {sum(row['regime'] == 'stable' for row in rows)} are stable"
     chance = sum(row["regime"] == "bistable" for row in rows)
     verdict += f", {chance} of those that vibrate by rounding alone (bistable)" if chance else ""
-    n_both = len(vibration.bistable)
+    n_both = len(vibration.find_both_ways())
     verdict += f"; {count(n_both, 'point')} vibrate{'s' * (n_both == 1)} one way and {'is' if n_both == 1 else 'are'} stable the other."
     drawn = figure(f"{folder.key}-vibration", "Where it vibrates, and how much",
                    picture(draw_table, vibration, about="regime, amplitude and frequency over the parameters"), "",
