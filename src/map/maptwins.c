@@ -4,7 +4,8 @@
    then a sample of many, and which regime it ends in may be chance. A twin begins where the point does but for that, and its
    friction is as much another; along a chain it goes on from its own ends. Where the first one ends as the point's own
    transient did, rounding decides nothing. Where not, all twins are run, the others from x + c (x1 - x), with x where the point
-   begins, x1 its first twin, and small integers c, since small differences obey linear laws; then
+   begins, x1 its first twin, and small integers c: small differences obey linear laws. Where x1 has come far along a chain they do
+   not, and these are only other states about the point's; then
 
      bistable   some are stable and some vibrate; the numbers are of those that vibrate
      otherwise  where they vibrate, the numbers are of all
