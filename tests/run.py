@@ -266,7 +266,8 @@ def command_line():
     parser.add_argument("--squeal", type=Path, required=True, help="the program")
     parser.add_argument("--launcher", type=Path, default=SOURCE / "scripts/mpirun", help="mpirun")
     parser.add_argument("--ranks", type=int, action="append", help="instead of the ranks of the case")
-    parser.add_argument("--timeout", type=float, default=240, help="seconds allowed to each run")
+    parser.add_argument("--timeout", type=float, default=os.environ.get("SQUEAL_TEST_SECONDS", "240"),
+                        help="seconds allowed to each run")
     parser.add_argument("--core", choices=(*CORES, MIXED), help="processor whose kernels OpenBLAS takes; mixed: another one on each rank")
     parser.add_argument("--night", action="store_true", help="runs on the ranks of the night as well")
     parser.add_argument("--margins", type=Path, help="only checks of hard cases, about each of which a line is added here")

@@ -13,6 +13,8 @@ typedef enum {
   QUANTITY_INT,   /* PetscInt */
   QUANTITY_REAL,  /* PetscReal */
   QUANTITY_REALS, /* PetscReal [n], all of them */
+  QUANTITY_LIST,  /* PetscReal [n], one at least and n at most */
+  QUANTITY_INTS,  /* PetscInt [n], likewise */
   QUANTITY_BOOL,  /* PetscBool */
   QUANTITY_WORD,  /* one of .words, as int: an enumeration or PetscBool */
   QUANTITY_TEXT,  /* char [n] */
@@ -24,10 +26,12 @@ typedef struct {
   const char        *help; /* one sentence, without the unit */
   const char        *unit; /* e.g. "Hz"; NULL for what has none */
   QuantityKind       kind;
-  PetscReal          initial; /* default of a number, a logical or a word; texts are empty, arrays zero */
+  PetscReal          initial; /* default of a number, a logical or a word; arrays are zero */
+  const char        *text;    /* default of a text; NULL: empty */
   size_t             at;      /* offset in the owner's struct */
   size_t             size;  /* in bytes */
   size_t             given; /* offset of a PetscBool: whether it is given; 0 for none */
+  size_t             count; /* offset of a PetscInt: how many values are given; of a list */
   const char *const *words; /* of QUANTITY_WORD, NULL at the end */
   PetscReal          least, most;  /* of a number; most 0 where there is no upper limit */
   PetscBool          bounded;      /* least and most are limits */

@@ -9,11 +9,8 @@ PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
   PetscFunctionBeginUser;
   PetscCall(TSCentralRegister());
   PetscCall(PetscCalloc1(1, dynamics));
-  (*dynamics)->comm            = comm;
-  (*dynamics)->fraction        = 0.9;
-  (*dynamics)->shape_mode      = 1;
-  (*dynamics)->laws.interval   = 100000;
-  (*dynamics)->shape_amplitude = 1e-9;
+  (*dynamics)->comm = comm;
+  PetscCall(QuantitiesInit(&dynamics_quantities, *dynamics));
   PetscCall(TSCreate(comm, &(*dynamics)->ts));
   PetscCall(TSSetType((*dynamics)->ts, TSCENTRAL));
   PetscCall(TSSetExactFinalTime((*dynamics)->ts, TS_EXACTFINALTIME_STEPOVER));

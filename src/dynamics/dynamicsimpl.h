@@ -2,13 +2,17 @@
 #pragma once
 
 #include <squeal/dynamics.h>
+#include <squeal/options.h>
 #include <squeal/projector.h>
+#include <squeal/quantity.h>
 #include "checkpoint.h"
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "dynamics/central/tscentral.h"
 #include "laws.h"
 #include "run.h"
+
+#define FILTERS_MOST 256 /* modes of -dynamics_filters_modes */
 
 typedef enum { START_REST, START_STATIC, N_STARTS } DynamicsStart;
 
@@ -42,6 +46,7 @@ struct _p_Dynamics {
   PetscInt      shape_mode, checkpoint_interval;
   PetscReal     shape_amplitude, b;
   char          filters_dir[PETSC_MAX_PATH_LEN]; /* folder of a run of modes; empty for none */
+  PetscInt      asked[FILTERS_MOST], n_asked;    /* its modes that are named */
   /* children */
   Operators        operators;
   Statics          statics;
@@ -70,6 +75,9 @@ struct _p_Dynamics {
   PetscBool      endless; /* no end is asked for: nothing is integrated up to one */
   PetscBool      ended;   /* all steps are done: the last balance is due */
 };
+
+/* quantities.c - rows of the options */
+extern const QuantityTable dynamics_quantities;
 
 /* dynamics.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there. Errors:
    PETSC_ERR_USER_INPUT for an end that is none, and for a -ts_dt beyond it. Collective. */

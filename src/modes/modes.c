@@ -15,13 +15,8 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, modes));
-  (*modes)->comm     = comm;
-  (*modes)->left     = PETSC_TRUE;
-  (*modes)->count    = 20;
-  (*modes)->max_time = 3600;
-  (*modes)->most     = 3000;
-  (*modes)->damping  = DAMPING_AUTO;
-  PetscCall(PetscStrncpy((*modes)->disc, "disc", sizeof((*modes)->disc)));
+  (*modes)->comm = comm;
+  PetscCall(QuantitiesInit(&modes_quantities, *modes));
   PetscCall(OrderingRegister());
   PetscCall(BlockKrylovRegister());
   PetscFunctionReturn(0);
@@ -38,9 +33,7 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum c)
 {
   PetscFunctionBeginUser;
   PetscCall(ChecksumSetPart(c, "options of modes"));
-  PetscCall(ChecksumAddReals(c, 2, modes->band));
-  PetscCall(ChecksumAddReals(c, 1, &modes->growth));
-  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){modes->is_static}));
+  PetscCall(QuantitiesAddChecksum(&modes_quantities, modes, c));
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
 #include "solver/shiftinvert.h"
 #include <squeal/modes.h>
 #include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <slepceps.h>
 #include <slepcpep.h>
 
@@ -51,7 +52,7 @@ struct _p_Modes {
   PetscInt  most;            /* modes that a band may hold; 0: any number */
   PetscBool has_most;        /* given */
   PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, has_nearest, has_route, has_disc, left, is_static, keep, filters;
+  PetscBool has_band, has_target, has_count, has_nearest, has_route, has_disc, left, is_static, keep, filters;
   PetscInt  count;
   PetscInt  damping;  /* route of a damped solution: DAMPING_AUTO ... */
   PetscInt  n_shifts; /* of a band; 0: chosen */
@@ -105,6 +106,9 @@ typedef struct {
   PetscReal beyond;  /* measure of damping there, or negative */
   char      why[64]; /* why not by projection; empty where it was not tried */
 } Window;
+
+/* quantities.c - rows of the options */
+extern const QuantityTable modes_quantities;
 
 /* modes.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
    their analysis serves */
@@ -185,7 +189,6 @@ PETSC_INTERN void      CopiesMakeRoom(Modes modes, const Window *window, const S
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
                                              ShiftInvert *si);
 /* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last one */
-PETSC_INTERN PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject);
 PETSC_INTERN PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si);
 

@@ -15,17 +15,6 @@
 #define SHIFTS_EACH  2.2  /* right-hand sides for each mode of a band, as right or as left vector, */
 #define SHIFTS_FIRST 45   /* and for all of them, as counted with 10 and with 51 modes */
 
-PetscErrorCode ShiftsSetFromOptions(Modes modes, OptionsItems PetscOptionsObject)
-{
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-modes_shifts",
-                          "shifts that share a band without damping (0: by the count of modes)", modes->n_shifts,
-                          &modes->n_shifts, NULL));
-  PetscCheck(modes->n_shifts >= 0, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_shifts %" PetscInt_FMT " must not be negative", modes->n_shifts);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window)
 {
   const PetscInt n = modes->n_shifts;

@@ -1,6 +1,9 @@
 /* Rows of options: read, checked, refused, summed. A value is read where it lies */
 #include <squeal/quantity.h>
 
+/* An upper limit of rounding alone: nobody comes near it */
+#define QUANTITY_FAR 1e20
+
 /* Help as -help shows it: "largest growth, 1/s" */
 #define QUANTITY_HELP 512
 
@@ -27,6 +30,31 @@ static PetscErrorCode QuantityReadText(OptionsItems PetscOptionsObject, const ch
 {
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsString(row->name, help, header, text, text, row->size, given));
+  PetscFunctionReturn(0);
+}
+
+/* At most as many values as its place holds; how many, stands at .count */
+static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
+                                       const char help[], void *owner, PetscBool *given)
+{
+  const PetscBool integers = row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscInt  most     = (PetscInt)(row->size / (integers ? sizeof(PetscInt) : sizeof(PetscReal)));
+  PetscInt       *count = (PetscInt *)((char *)owner + row->count), *ints, n = most + 1;
+  PetscReal      *reals;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n, &ints, n, &reals));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, row->name, integers));
+  if (integers)
+    PetscCall(PetscOptionsIntArray(row->name, help, header, ints, &n, given));
+  else
+    PetscCall(PetscOptionsRealArray(row->name, help, header, reals, &n, given));
+  PetscCheck(!*given || n <= most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "%s has more than %" PetscInt_FMT " values", row->name, most);
+  if (*given) *count = n;
+  if (*given) PetscCall(PetscMemcpy(QuantityValue(row, owner), integers ? (void *)ints : (void *)reals,
+                                    (size_t)n * (row->size / (size_t)most)));
+  PetscCall(PetscFree2(ints, reals));
   PetscFunctionReturn(0);
 }
 
@@ -68,6 +96,10 @@ static PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char h
   case QUANTITY_PATH:
     PetscCall(OptionsGetPath(PetscOptionsObject, row->name, help, value, &given));
     break;
+  case QUANTITY_LIST:
+  case QUANTITY_INTS:
+    PetscCall(QuantityReadList(PetscOptionsObject, header, row, help, owner, &given));
+    break;
   default:
     PetscCall(QuantityReadNumber(PetscOptionsObject, row, help, value, &given));
   }
@@ -76,13 +108,14 @@ static PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char h
 }
 
 /* What a row asks of its value, e.g. "must lie between 0 and 1" */
-static PetscErrorCode LimitsDescribe(const Quantity *row, size_t size, char text[])
+static PetscErrorCode LimitsDescribe(const Quantity *row, PetscReal x, size_t size, char text[])
 {
-  const double least = (double)row->least, most = (double)row->most;
+  const double    least = (double)row->least, most = (double)row->most;
+  const PetscBool far = row->most >= QUANTITY_FAR && x < row->most ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (row->most != 0)
-    PetscCall(PetscSNPrintf(text, size, "must lie between %.6g and %.6g", least, most));
+  if (row->most != 0 && !far)
+    PetscCall(PetscSNPrintf(text, size, "must lie between %.10g and %.10g", least, most));
   else if (row->least != 0)
     PetscCall(PetscSNPrintf(text, size, "must be at least %.6g", least));
   else
@@ -95,20 +128,31 @@ static PetscErrorCode LimitsDescribe(const Quantity *row, size_t size, char text
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode QuantityCheck(MPI_Comm comm, const Quantity *row, const void *value)
+/* Whether a number is outside the limits of its row */
+static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
 {
-  const PetscReal x   = row->kind == QUANTITY_INT ? (PetscReal)*(const PetscInt *)value : *(const PetscReal *)value;
-  PetscBool       bad = PETSC_FALSE;
-  char            limits[QUANTITY_HELP];
+  if (x < row->least || (row->open && x == row->least)) return PETSC_TRUE;
+  return row->most != 0 && (x > row->most || (row->open && x == row->most)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* All numbers of a row */
+static PetscErrorCode QuantityCheck(MPI_Comm comm, const Quantity *row, void *owner)
+{
+  const void    *value   = QuantityValue(row, owner);
+  const PetscInt integer = row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS;
+  PetscInt       n       = (PetscInt)(row->size / (integer ? sizeof(PetscInt) : sizeof(PetscReal)));
+  char           limits[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
-  if (x < row->least || (row->open && x == row->least)) bad = PETSC_TRUE;
-  if (row->most != 0 && (x > row->most || (row->open && x == row->most))) bad = PETSC_TRUE;
-  if (!bad) PetscFunctionReturn(0);
-  PetscCall(LimitsDescribe(row, sizeof(limits), limits));
-  PetscCheck(row->kind != QUANTITY_INT, comm, PETSC_ERR_USER_INPUT, "%s %" PetscInt_FMT " %s", row->name,
-             *(const PetscInt *)value, limits);
-  SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s %.6g %s", row->name, (double)x, limits);
+  if (row->kind == QUANTITY_LIST || row->kind == QUANTITY_INTS) n = *(const PetscInt *)((const char *)owner + row->count);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal x = integer ? (PetscReal)((const PetscInt *)value)[i] : ((const PetscReal *)value)[i];
+
+    if (!QuantityIsOutside(row, x)) continue;
+    PetscCall(LimitsDescribe(row, x, sizeof(limits), limits));
+    SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s %.*g %s", row->name, integer ? 20 : 6, (double)x, limits);
+  }
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
@@ -121,6 +165,7 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
     if (row->kind == QUANTITY_INT) *(PetscInt *)value = (PetscInt)row->initial;
     if (row->kind == QUANTITY_REAL) *(PetscReal *)value = row->initial;
     if (row->kind == QUANTITY_BOOL || row->kind == QUANTITY_WORD) *(int *)value = (int)row->initial;
+    if (row->text) PetscCall(PetscStrncpy(value, row->text, row->size));
   }
   PetscFunctionReturn(0);
 }
@@ -133,7 +178,7 @@ PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *o
     PetscCall(QuantityRead(PetscOptionsObject, table->header, &table->row[i], owner));
   PetscOptionsEnd();
   for (PetscInt i = 0; i < table->n; i++)
-    if (table->row[i].bounded) PetscCall(QuantityCheck(comm, &table->row[i], QuantityValue(&table->row[i], owner)));
+    if (table->row[i].bounded) PetscCall(QuantityCheck(comm, &table->row[i], owner));
   for (PetscInt i = 0; i < table->n; i++) {
     const char *why = table->row[i].idle ? table->row[i].idle(owner) : NULL;
 
@@ -148,9 +193,11 @@ PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *own
   for (PetscInt i = 0; i < table->n; i++) {
     const Quantity *row   = &table->row[i];
     const void     *value = (const char *)owner + row->at;
+    const PetscInt  count = row->count ? *(const PetscInt *)((const char *)owner + row->count) : 1;
 
     if (!row->restart) continue;
-    if (row->kind == QUANTITY_INT) PetscCall(ChecksumAddInts(c, 1, value));
+    if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS) PetscCall(ChecksumAddInts(c, count, value));
+    else if (row->kind == QUANTITY_LIST) PetscCall(ChecksumAddReals(c, count, value));
     else if (row->kind == QUANTITY_REAL || row->kind == QUANTITY_REALS)
       PetscCall(ChecksumAddReals(c, (PetscInt)(row->size / sizeof(PetscReal)), value));
     else if (row->kind == QUANTITY_TEXT || row->kind == QUANTITY_PATH)

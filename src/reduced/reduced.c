@@ -7,53 +7,21 @@
 #include "dynamics/stop.h"
 #include <squeal/options.h>
 
-#define BY          "-dynamics_model reduced"
-#define GROWTH_RTOL 5e-3
+#define BY "-dynamics_model reduced"
 
 PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(reduced));
-  (*reduced)->comm        = comm;
-  (*reduced)->compare     = PETSC_TRUE;
-  (*reduced)->growth_rtol = GROWTH_RTOL;
+  (*reduced)->comm = comm;
+  PetscCall(QuantitiesInit(&reduced_quantities, *reduced));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedSetFromOptions(ReducedRun r)
 {
-  static const char *const models[] = {"full", "reduced"};
-  PetscInt                 model    = 0;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(r->comm, NULL, "Reduced model", "Dynamics");
-  PetscCall(PetscOptionsEList("-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance",
-                              "reduced.h", models, 2, models[0], &model, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_cutoff",
-                           "of the modes of a reduced model, Hz; 0: 4 times the end of -modes_band, or 20 kHz",
-                           r->cutoff, &r->cutoff, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_growth_rtol",
-                           "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step "
-                           "are chosen",
-                           r->growth_rtol, &r->growth_rtol, &r->has_rtol));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_compare",
-                           "eigenvalues of a reduced model beside those of the mesh in -modes_band", &r->compare));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-dynamics_verify",
-                           "after a reduced run once more with half the step, and with 2.25 times the cut-off; an "
-                           "error where the rms of the normal force in the last half of the time, or the share of "
-                           "the time without contact, differs by more than 10 % beyond twice its standard error",
-                           &r->verify));
-  PetscOptionsEnd();
-  PetscCheck(r->cutoff >= 0 && r->cutoff < 1e30, r->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_cutoff %.6g must be a positive frequency (Hz), or 0 to have it chosen", (double)r->cutoff);
-  PetscCheck(r->growth_rtol > 0 && r->growth_rtol < 1, r->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_growth_rtol %.6g must be between 0 and 1", (double)r->growth_rtol);
-  r->asked = model == 1 ? PETSC_TRUE : PETSC_FALSE;
-  if (r->cutoff > 0)
-    PetscCall(OptionsRefuse(r->comm, "-dynamics_growth_rtol", "not used where -dynamics_cutoff says the cut-off"));
-  if (!r->asked)
-    PetscCall(OptionsRefuse(r->comm, "-dynamics_cutoff -dynamics_growth_rtol -dynamics_compare -dynamics_verify",
-                            "not used without " BY));
+  PetscCall(QuantitiesRead(r->comm, &reduced_quantities, r));
   PetscFunctionReturn(0);
 }
 

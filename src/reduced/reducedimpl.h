@@ -1,6 +1,8 @@
 /* Private to reduced/: the stepper, the record of a run, and the files that fill it */
 #pragma once
 
+#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <squeal/reduced.h>
 #include "contact/compliance/contactcompliance.h"
 #include "dynamics/checkpoint.h"
@@ -10,6 +12,9 @@
 #include "solver/shiftinvert.h"
 
 #define REDUCED_RTOL 1e-12 /* of the contact laws */
+
+/* quantities.c - rows of the options */
+extern const QuantityTable reduced_quantities;
 
 struct _p_ReducedStepper {
   const ReducedModel *model;

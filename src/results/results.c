@@ -3,21 +3,28 @@
 */
 #include "resultsimpl.h"
 #include "base/path.h"
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <string.h>
 
 struct _p_ResultsTable {
   OutFile file;
 };
 
+static const Quantity rows[] = {
+  {"-output_dir", "folder of all files, made where it is missing", NULL, QUANTITY_TEXT, QUANTITY_AT(struct _p_Results, dir),
+   .text = "results"},
+  {"-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", NULL, QUANTITY_BOOL,
+   QUANTITY_AT(struct _p_Results, fields), .initial = PETSC_TRUE},
+};
+static const QuantityTable results_quantities = {"Results", "results.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+
 PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(results));
-  (*results)->comm   = comm;
-  (*results)->fields = PETSC_TRUE;
-  (*results)->lock   = -1;
-  PetscCall(PetscStrncpy((*results)->dir, "results", sizeof((*results)->dir)));
+  (*results)->comm = comm;
+  (*results)->lock = -1;
+  PetscCall(QuantitiesInit(&results_quantities, *results));
   PetscFunctionReturn(0);
 }
 
@@ -26,12 +33,7 @@ PetscErrorCode ResultsSetFromOptions(Results results)
   const size_t room = sizeof(results->dir) - 256; /* the rest is for the names of the files */
 
   PetscFunctionBeginUser;
-  PetscOptionsBegin(results->comm, NULL, "Results", NULL);
-  PetscCall(PetscOptionsString("-output_dir", "folder of all files, made where it is missing", "results.h",
-                               results->dir, results->dir, sizeof(results->dir), NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-output_fields",
-                           "write shapes for ParaView (*.h5, *.xmf) beside the tables", &results->fields));
-  PetscOptionsEnd();
+  PetscCall(QuantitiesRead(results->comm, &results_quantities, results));
   PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
              "-output_dir must be the name of a folder, of at most %d characters", (int)room);
   PetscFunctionReturn(0);

@@ -10,13 +10,14 @@
 /* The basis at a point, which is all that the sweep then knows of */
 static PetscErrorCode RealBasisMake(Sweep sweep, const PetscReal p[])
 {
-  const PetscReal omega = PetscMax(SHIFT_LOW * sweep->window.low, SHIFT_HIGH * sweep->window.high);
+  const PetscReal omega    = PetscMax(SHIFT_LOW * sweep->window.low, SHIFT_HIGH * sweep->window.high);
+  const PetscBool friction = sweep->real_stiffness == SWEEP_SYMMETRISED ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(BasisDestroy(&sweep->basis));
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
-  PetscCall(BasisFillReal(&sweep->basis, sweep->real_friction, sweep->n_real, -PetscSqr(omega), &sweep->progress));
+  PetscCall(BasisFillReal(&sweep->basis, friction, sweep->n_real, -PetscSqr(omega), &sweep->progress));
   PetscFunctionReturn(0);
 }
 

@@ -3,7 +3,6 @@
    classes -> robustness.
 */
 #include "sweepimpl.h"
-#include <squeal/options.h>
 #include <petsctime.h>
 #include <string.h>
 
@@ -14,11 +13,8 @@ PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, sweep));
-  (*sweep)->comm        = comm;
-  (*sweep)->rtol        = 1e-6;
-  (*sweep)->max_samples = 20;
-  (*sweep)->n_real      = 80;
-  (*sweep)->restart     = PETSC_TRUE;
+  (*sweep)->comm = comm;
+  PetscCall(QuantitiesInit(&sweep_quantities, *sweep));
   PetscFunctionReturn(0);
 }
 
@@ -49,99 +45,14 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics)
   PetscFunctionReturn(0);
 }
 
-/* What to vary, how, and how accurately */
-static PetscErrorCode ReadMethod(Sweep sweep, OptionsItems PetscOptionsObject)
+/* What does not go together */
+static PetscErrorCode SweepCheckMethod(Sweep sweep)
 {
-  static const char *const methods[] = {"reduced", "full", "real"};
-  static const char *const stiffnesses[] = {"symmetrised", "frictionless"};
-  PetscInt                 method = SWEEP_REDUCED, stiffness = 0;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-sweep_parameter", "one or two options of the scene to vary, e.g. pad_young,contact_mu",
-                               "sweep.h", sweep->parameter, sweep->parameter, sizeof(sweep->parameter), NULL));
-  PetscCall(PetscOptionsString("-sweep_values", "first:last:n, first:last:n:log, or v1,v2,... in the parameter's unit",
-                               "sweep.h", sweep->values[0], sweep->values[0], sizeof(sweep->values[0]), NULL));
-  PetscCall(PetscOptionsString("-sweep_values_2", "those of the second parameter", "sweep.h", sweep->values[1],
-                               sweep->values[1], sizeof(sweep->values[1]), NULL));
-  PetscCall(PetscOptionsString(
-    "-sweep_link", "parameters that take the swept one's value, e.g. inner_mu,outer_mu; several links with ':' between",
-    "sweep.h", sweep->link, sweep->link, sizeof(sweep->link), &sweep->linked));
-  PetscCall(PetscOptionsEList("-sweep_method",
-                              "reduced basis with error estimate, every point in full, or each on real modes of its own",
-                              "sweep.h", methods, 3, methods[0], &method, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-sweep_rtol",
-                           "largest estimated relative error of an eigenvalue (an estimate, no bound)", sweep->rtol,
-                           &sweep->rtol, NULL));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_max_samples",
-                          "most full solutions; by itself more where contact status changes often", sweep->max_samples,
-                          &sweep->max_samples, &sweep->max_given));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_real_modes", "real modes of each point, with -sweep_method real",
-                          sweep->n_real, &sweep->n_real, NULL));
-  PetscCall(PetscOptionsEList("-sweep_real_stiffness", "of these modes: K + mu H made symmetric, or K alone", "sweep.h",
-                              stiffnesses, 2, stiffnesses[0], &stiffness, NULL));
-  sweep->real_friction = stiffness ? PETSC_FALSE : PETSC_TRUE;
-  sweep->method = (SweepMethod)method;
-  sweep->onsets = method != SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
-  if (method != SWEEP_REAL)
-    PetscCall(OptionsRefuse(sweep->comm, "-sweep_real_modes -sweep_real_stiffness", "not used without -sweep_method real"));
-  if (method == SWEEP_FULL)
-    PetscCall(OptionsRefuse(sweep->comm, "-sweep_rtol -sweep_max_samples", "not used by -sweep_method full"));
-  PetscFunctionReturn(0);
-}
-
-/* What else to compute */
-static PetscErrorCode ReadExtras(Sweep sweep, OptionsItems PetscOptionsObject)
-{
-  PetscBool set;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_verify",
-                          "compare with full solutions at this many points between those of the sweep", sweep->n_verify,
-                          &sweep->n_verify, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_onsets",
-                           "critical values of the first parameter, confirmed on the full problem", &sweep->onsets));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_sensitivities",
-                           "derivatives of every eigenvalue by every parameter", &sweep->sensitivities));
-  PetscCall(PetscOptionsString("-sweep_uncertain", "parameters known to -sweep_percent only: what can become unstable",
-                               "sweep.h", sweep->uncertain, sweep->uncertain, sizeof(sweep->uncertain), NULL));
-  PetscCall(PetscCalloc1(SWEEP_MAX_UNCERTAIN + 1, &sweep->percent));
-  sweep->n_percent = SWEEP_MAX_UNCERTAIN + 1;
-  PetscCall(OptionsCheckWords(PetscOptionsObject, "-sweep_percent", PETSC_FALSE));
-  PetscCall(PetscOptionsRealArray("-sweep_percent", "their uncertainty, percent; one value or one for each", "sweep.h",
-                                  sweep->percent, &sweep->n_percent, &set));
-  PetscCheck(!set || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!sweep->n_percent || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent does nothing without -sweep_uncertain");
-  PetscCheck(set || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each",
-             sweep->uncertain);
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-sweep_groups",
-                          "ranks that share the points (0: all; the full solutions use all ranks)", sweep->n_groups,
-                          &sweep->n_groups, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-sweep_restart",
-                           "go on where a sweep of the same scene in -output_dir was stopped", &sweep->restart));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SweepSetFromOptions(Sweep sweep)
-{
-  PetscMPIInt size;
-
-  PetscFunctionBeginUser;
-  PetscOptionsBegin(sweep->comm, NULL, "Sweep", NULL);
-  PetscCall(ReadMethod(sweep, PetscOptionsObject));
-  PetscCall(ReadExtras(sweep, PetscOptionsObject));
-  PetscOptionsEnd();
-  PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
-  PetscCheck(sweep->rtol > 0 && sweep->rtol < 1, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_rtol %.6g must lie between 0 and 1", (double)sweep->rtol);
-  PetscCheck(sweep->max_samples > 0, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_max_samples %" PetscInt_FMT " must be positive", sweep->max_samples);
-  PetscCheck(sweep->n_real > 0, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_real_modes %" PetscInt_FMT " must be positive", sweep->n_real);
-  PetscCheck(sweep->n_verify >= 0, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_verify %" PetscInt_FMT " must not be negative", sweep->n_verify);
-  PetscCheck(sweep->n_percent <= SWEEP_MAX_UNCERTAIN, sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_percent has more than %d values", SWEEP_MAX_UNCERTAIN);
+  PetscCheck(sweep->n_percent || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each", sweep->uncertain);
   PetscCheck(sweep->method != SWEEP_REAL || !sweep->onsets, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_onsets true: -sweep_method real follows no branches, and finds no onsets");
   if (sweep->method == SWEEP_REAL && !sweep->n_verify)
@@ -150,7 +61,19 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
              PETSC_ERR_USER_INPUT, "-sweep_uncertain and -sweep_sensitivities need -sweep_method reduced");
   PetscCheck(sweep->method != SWEEP_FULL || !sweep->n_verify, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_verify compares with full solutions; -sweep_method full has nothing else");
-  PetscCheck(sweep->n_groups >= 0 && sweep->n_groups <= size, sweep->comm, PETSC_ERR_USER_INPUT,
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepSetFromOptions(Sweep sweep)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesRead(sweep->comm, &sweep_quantities, sweep));
+  if (!sweep->onsets_given) sweep->onsets = sweep->method != SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(SweepCheckMethod(sweep));
+  PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
+  PetscCheck(sweep->n_groups <= size, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_groups %" PetscInt_FMT " must lie between 0 and the number of ranks, %d", sweep->n_groups,
              (int)size);
   sweep->groups.comm     = sweep->comm;
@@ -323,7 +246,6 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(GreedyDestroy(&s->greedy));
   PetscCall(BasisDestroy(&s->basis));
   PetscCall(PencilDestroy(&s->pencil));
-  PetscCall(PetscFree(s->percent));
   PetscCall(GridDestroy(&s->grid));
   PetscCall(StatusListDestroy(&s->statuses));
   PetscCall(PetscFree(*sweep));

@@ -1,6 +1,7 @@
 /* Private to sweep/: the record of a sweep */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/sweep.h>
 #include "sweep/basis/greedy.h"
 #include "status.h"
@@ -11,6 +12,7 @@
 #define SWEEP_MAX_UNCERTAIN 16
 
 typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
+typedef enum { SWEEP_SYMMETRISED, SWEEP_FRICTIONLESS } SweepStiffness; /* of which real modes are taken */
 
 /* One eigenvalue at one point */
 typedef struct {
@@ -65,11 +67,11 @@ struct _p_Sweep {
   /* set by options */
   char        parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
   SweepMethod method;
-  PetscReal   rtol, *percent;
+  PetscReal   rtol, percent[SWEEP_MAX_UNCERTAIN];
   PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
-  PetscBool   real_friction;                          /* real modes of the symmetrised stiffness, else without friction */
+  SweepStiffness real_stiffness;
   PetscBool   linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
-  PetscBool   max_given;                              /* -sweep_max_samples is */
+  PetscBool   max_given, onsets_given;                /* -sweep_max_samples, -sweep_onsets are */
   /* results */
   SweepGrid      grid;
   PointGroups    groups;
@@ -96,6 +98,9 @@ struct _p_Sweep {
   PetscInt       n_files, n_kept;
   PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
 };
+
+/* quantities.c - rows of the options */
+extern const QuantityTable sweep_quantities;
 
 /* confirm.c - by line, then by critical value */
 PETSC_INTERN void SweepSortOnsets(Sweep sweep);

@@ -10,11 +10,11 @@
 enum { FAST, SLOW };
 
 typedef struct {
-  PetscInt  count;
-  PetscReal speed, box[3];
+  PetscInt  count, mode[4], n_modes, n_shares;
+  PetscReal speed, box[3], share[2], edge[2];
   PetscBool loud, has_box, has_count;
   int       way;
-  char      name[16], file[PETSC_MAX_PATH_LEN];
+  char      name[16], title[8], file[PETSC_MAX_PATH_LEN];
 } Owner;
 
 static const char *Idle(const void *owner)
@@ -34,6 +34,12 @@ static const Quantity    rows[]  = {
   {"-way", "which way", NULL, QUANTITY_WORD, ROW(way), .words = words, .initial = FAST, .restart = PETSC_TRUE},
   {"-name", "a name", NULL, QUANTITY_TEXT, ROW(name), .restart = PETSC_TRUE},
   {"-file", "a file", NULL, QUANTITY_PATH, ROW(file)},
+  {"-modes", "their numbers", NULL, QUANTITY_INTS, ROW(mode), .count = offsetof(Owner, n_modes), QUANTITY_NOT_NEGATIVE,
+   .restart = PETSC_TRUE},
+  {"-shares", "up to two", "%", QUANTITY_LIST, ROW(share), .count = offsetof(Owner, n_shares), QUANTITY_WITHIN(0, 100),
+   .restart = PETSC_TRUE},
+  {"-edges", "frequencies", "Hz", QUANTITY_REALS, ROW(edge), QUANTITY_WITHIN(0, 1e30)},
+  {"-title", "a word", NULL, QUANTITY_TEXT, ROW(title), .text = "disc"},
 };
 static const QuantityTable table = {"Test", "test.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
 
@@ -56,11 +62,16 @@ static PetscErrorCode TestRead(int *failed)
   PetscFunctionBeginUser;
   PetscCall(Read("", &o));
   *failed += CheckTrue("defaults", o.count == 3 && o.speed == 0.5 && o.loud && o.way == FAST && !o.name[0], o.speed);
+  *failed += CheckTrue("default of a text, empty lists", !strcmp(o.title, "disc") && !o.n_modes && !o.n_shares, o.n_modes);
   *failed += CheckTrue("nothing is given", !o.has_count && !o.has_box, 0);
   PetscCall(Read("-count 2 -speed 0.25 -box 1,2,-3 -loud 0 -way slow -name pad -file /dev/null", &o));
   *failed += CheckTrue("integer and word", o.count == 2 && o.way == SLOW, o.count);
   *failed += CheckTrue("numbers", o.speed == 0.25 && o.box[0] == 1 && o.box[1] == 2 && o.box[2] == -3, o.box[2]);
   *failed += CheckTrue("texts", !strcmp(o.name, "pad") && !strcmp(o.file, "/dev/null"), 0);
+  PetscCall(Read("-modes 3,0,7 -shares 5 -edges 1,2", &o));
+  *failed += CheckTrue("integers of a list", o.n_modes == 3 && o.mode[0] == 3 && o.mode[2] == 7 && !o.mode[3], o.n_modes);
+  *failed += CheckTrue("a list of one, an array", o.n_shares == 1 && o.share[0] == 5 && o.edge[1] == 2, o.share[0]);
+  PetscCall(Read("-loud 0 -count 2 -box 1,2,3", &o));
   *failed += CheckTrue("logical, and what is given", !o.loud && o.has_count && o.has_box, 0);
   PetscFunctionReturn(0);
 }
@@ -83,6 +94,11 @@ static PetscErrorCode TestLimits(int *failed)
     {"-speed 1", "-speed 1 must lie between 0 and 1 (m/s): a share"},
     {"-speed -2", "-speed -2 must lie between 0 and 1 (m/s): a share"},
     {"-box 1,2", "-box has 2 values; give 3"},
+    {"-shares 1,2,3", "-shares has more than 2 values"},
+    {"-shares 1,101", "-shares 101 must lie between 0 and 100 (%)"},
+    {"-modes 1,-2", "-modes -2 must not be negative"},
+    {"-edges 1,-2", "-edges -2 must not be negative (Hz)"},
+    {"-edges 1,2e30", "-edges 2e+30 must lie between 0 and 1e+30 (Hz)"},
   };
   Owner o;
 
@@ -121,7 +137,7 @@ static PetscErrorCode Sum(const char options[], uint64_t *sum)
 /* Breaks when: a row that decides a restart is left out of the sum, or one that does not is in it */
 static PetscErrorCode TestChecksum(int *failed)
 {
-  static const char *const decides[] = {"-count 4", "-speed 0.6", "-box 0,0,1", "-way slow", "-name pad"};
+  static const char *const decides[] = {"-count 4", "-speed 0.6", "-box 0,0,1", "-way slow", "-name pad", "-modes 0", "-shares 0"};
   static const char *const free[]    = {"-loud 0", "-file /dev/null", "-count 3"};
   uint64_t                 none, other;
 

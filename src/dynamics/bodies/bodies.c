@@ -4,6 +4,7 @@
 */
 #include "bodiesimpl.h"
 #include "base/events.h"
+#include <squeal/quantity.h>
 
 /* Masses of this rank's cells, then complete ones; held directions have no inverse */
 static PetscErrorCode BodiesSetMasses(Bodies b)
@@ -65,17 +66,15 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies)
   PetscFunctionReturn(0);
 }
 
+static const char *const kernels[] = {[PETSC_FALSE] = "auto", [PETSC_TRUE] = "general", NULL};
+static const Quantity    kernel[]  = {{"-dynamics_kernel", "internal forces; general: one matrix of blocks for every body", NULL,
+                                       QUANTITY_WORD, QUANTITY_AT(struct _p_Bodies, no_sweep), .words = kernels}};
+static const QuantityTable bodies_quantities = {"Bodies in time", "dynamics.h", 1, kernel};
+
 PetscErrorCode BodiesSetFromOptions(Bodies b)
 {
-  static const char *const kernels[] = {"auto", "general"};
-  PetscInt                 kernel    = 0;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(b->comm, NULL, "Bodies in time", NULL);
-  PetscCall(PetscOptionsEList("-dynamics_kernel", "internal forces; general: one matrix of blocks for every body",
-                              "dynamics.h", kernels, 2, kernels[0], &kernel, NULL));
-  PetscOptionsEnd();
-  b->no_sweep = kernel == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(QuantitiesRead(b->comm, &bodies_quantities, b));
   PetscFunctionReturn(0);
 }
 

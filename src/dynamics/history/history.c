@@ -51,39 +51,15 @@ PetscErrorCode HistoryCreate(MPI_Comm comm, History *history)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(history));
-  (*history)->comm          = comm;
-  (*history)->rows.interval = 5e-6;
-  (*history)->live.interval = 1;
-  PetscFunctionReturn(0);
-}
-
-/* Checks an interval; 0 only where it means none */
-static PetscErrorCode HistoryCheckInterval(MPI_Comm comm, const char option[], PetscReal interval, PetscBool none)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(interval > 0 || (none && interval == 0), comm, PETSC_ERR_USER_INPUT, "%s %.6g s must be positive%s",
-             option, (double)interval, none ? ", or 0 for none" : "");
+  (*history)->comm = comm;
+  PetscCall(QuantitiesInit(&history_quantities, *history));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistorySetFromOptions(History h)
 {
   PetscFunctionBeginUser;
-  PetscOptionsBegin(h->comm, NULL, "History", "Dynamics");
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_history_interval", "s between rows of transient.csv",
-                           h->rows.interval, &h->rows.interval, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_pairs_interval",
-                           "s between the states in contact_pairs.csv, 0 for none", h->pairs.interval,
-                           &h->pairs.interval, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_snapshot_interval", "s between fields, 0 for none",
-                           h->frames.interval, &h->frames.interval, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-dynamics_live", "s of the clock between live lines, 0 for none",
-                           h->live.interval, &h->live.interval, NULL));
-  PetscOptionsEnd();
-  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_history_interval", h->rows.interval, PETSC_FALSE));
-  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_pairs_interval", h->pairs.interval, PETSC_TRUE));
-  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_snapshot_interval", h->frames.interval, PETSC_TRUE));
-  PetscCall(HistoryCheckInterval(h->comm, "-dynamics_live", h->live.interval, PETSC_TRUE));
+  PetscCall(QuantitiesRead(h->comm, &history_quantities, h));
   PetscFunctionReturn(0);
 }
 

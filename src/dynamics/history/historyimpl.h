@@ -3,6 +3,8 @@
 #pragma once
 
 #include "history.h"
+#include <squeal/options.h>
+#include <squeal/quantity.h>
 
 #define PAIRS_HEADER "time_s,pair,interface,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status"
 
@@ -48,6 +50,9 @@ struct _p_History {
   ResultsTable table, pair_table, amplitude_table, circle_table;
   ResultsFilm  film; /* NULL for none */
 };
+
+/* quantities.c - rows of the options */
+extern const QuantityTable history_quantities;
 
 /* history.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local node i at t_n; zero for
    a node without cells */

@@ -1,93 +1,38 @@
 /* Cycle: options, the flow of a run */
 #include "cycleimpl.h"
 #include "reduced/idle.h"
-#include <squeal/options.h>
-
-#define CYCLE_AMPLITUDE  0.3
-#define CYCLE_MOST_STEPS 1000001 /* in a period: more than any needs, and still counted twice over */
 
 PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(cycle));
-  (*cycle)->comm       = comm;
-  (*cycle)->rtol       = 1e-9;
-  (*cycle)->max_it     = 30;
-  (*cycle)->verify     = PETSC_TRUE;
-  (*cycle)->max_points = 60;
-  (*cycle)->amplitude  = CYCLE_AMPLITUDE;
+  (*cycle)->comm = comm;
+  PetscCall(QuantitiesInit(&cycle_quantities, *cycle));
   PetscFunctionReturn(0);
 }
 
 /* A branch has a parameter and a range, and begins somewhere */
-static PetscErrorCode CycleCheckBranch(LimitCycle c, PetscBool has_range)
+static PetscErrorCode CycleCheckBranch(LimitCycle c)
 {
   PetscFunctionBeginUser;
   PetscCheck(c->parameter[0] || !c->from_mode, c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_start mode needs -cycle_parameter: cycles begin where a mode becomes unstable over it");
-  PetscCheck(c->amplitude > 0 && c->amplitude <= 10, c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_amplitude %.6g must be positive and 10 at most", (double)c->amplitude);
   if (!c->parameter[0]) PetscFunctionReturn(0);
-  PetscCheck(has_range, c->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(c->has_range, c->comm, PETSC_ERR_USER_INPUT,
              "-cycle_parameter %s needs -cycle_range: its least and largest value, e.g. 0.1,0.6", c->parameter);
   PetscCheck(c->range[1] > c->range[0] && PetscAbsReal(c->range[0]) < 1e30 && PetscAbsReal(c->range[1]) < 1e30, c->comm,
              PETSC_ERR_USER_INPUT, "-cycle_range %.6g,%.6g must be two values of %s, the smaller one first",
              (double)c->range[0], (double)c->range[1], c->parameter);
-  PetscCheck(c->max_points >= 2, c->comm, PETSC_ERR_USER_INPUT, "-cycle_points %" PetscInt_FMT " must be 2 at least",
-             c->max_points);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleSetFromOptions(LimitCycle c)
 {
-  static const char *const starts[] = {"transient", "mode"};
-  PetscInt                 start    = 0;
-  PetscBool                has_range;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(c->comm, NULL, "Limit cycles", "Cycle");
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-cycle_steps",
-                          "steps in a period, odd; 0: as long as those of the transient", c->steps, &c->steps, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-cycle_rtol",
-                           "how far a period may end from where it began, over the vibration's size", c->rtol, &c->rtol,
-                           NULL));
-  PetscCall(
-    OptionsGetInt(PetscOptionsObject, "-cycle_max_it", "iterations of Newton's method", c->max_it, &c->max_it, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify",
-                           "errors, by the cycles of twice the steps and of steps that begin elsewhere", &c->verify));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-cycle_verify_cutoff",
-                           "errors of the reduction too, by cycles with 2.25 times -dynamics_cutoff",
-                           &c->verify_cutoff));
-  PetscCall(PetscOptionsString("-cycle_parameter",
-                               "option of the scene over which cycles are followed, e.g. contact_mu, pad_young",
-                               "cycle.h", c->parameter, c->parameter, sizeof(c->parameter), NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-cycle_range", "where it ends, least and largest value", 2, c->range,
-                            &has_range));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-cycle_points",
-                          "cycles on the branch, at most; half of them the first way", c->max_points, &c->max_points,
-                          NULL));
-  PetscCall(PetscOptionsEList("-cycle_start",
-                              "the first cycle: at the end of a transient, or near the value at which "
-                              "a mode of the sliding state becomes unstable",
-                              "cycle.h", starts, 2, starts[0], &start, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-cycle_amplitude",
-                           "change of the pairs' normal forces in the first cycle of -cycle_start mode, of those at "
-                           "rest",
-                           c->amplitude, &c->amplitude, NULL));
-  PetscOptionsEnd();
-  c->from_mode = start == 1 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps <= CYCLE_MOST_STEPS && c->steps % 2), c->comm,
-             PETSC_ERR_USER_INPUT,
-             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 to %d, or 0 for those of the transient", c->steps,
-             CYCLE_MOST_STEPS);
-  PetscCheck(c->rtol >= 1e-13 && c->rtol <= 1e-3, c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_rtol %.6g must lie between 1e-13, which rounding allows, and 1e-3", (double)c->rtol);
-  PetscCheck(c->max_it > 0, c->comm, PETSC_ERR_USER_INPUT, "-cycle_max_it %" PetscInt_FMT " must be positive",
-             c->max_it);
-  if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_range", "not used without -cycle_parameter"));
-  if (!c->parameter[0]) PetscCall(OptionsRefuse(c->comm, "-cycle_points", "not used without -cycle_parameter"));
-  if (!c->from_mode) PetscCall(OptionsRefuse(c->comm, "-cycle_amplitude", "not used without -cycle_start mode"));
-  PetscCall(CycleCheckBranch(c, has_range));
+  PetscCall(QuantitiesRead(c->comm, &cycle_quantities, c));
+  PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 or more, or 0 for those of the transient", c->steps);
+  PetscCall(CycleCheckBranch(c));
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <squeal/cycle.h>
+#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include "reduced/parameter.h"
 #include "reduced/reducedimpl.h"
 #include "solver/shooting.h"
@@ -85,7 +87,7 @@ struct _p_LimitCycle {
   PetscInt           steps, max_it, max_points; /* options */
   PetscReal          rtol, range[2], amplitude;
   char               parameter[256];
-  PetscBool          verify, verify_cutoff, from_mode;
+  PetscBool          verify, verify_cutoff, from_mode, has_range;
   ReducedRun         reduced;
   Operators          operators;
   Results            results;
@@ -104,6 +106,9 @@ struct _p_LimitCycle {
   PetscReal          rms;      /* of the vibration that distances are over, N */
   const char        *end[2];   /* why the branch ends, both ways; NULL for no branch */
 };
+
+/* quantities.c - rows of the options */
+extern const QuantityTable cycle_quantities;
 
 /* family.c - the models, p [parameters] and others `beside` them, or NULL, borrowed; whether there is one at a value; that at it; eta
    of columns `stride` apart from the scene's coordinates to those of the model, or back */
