@@ -74,6 +74,22 @@ static const char *const read_first[] = {"bv_type",           "rg_type",
                                          "options_monitor",   "start_in_debugger",
                                          "stop_for_debugger", "version"};
 
+/* Options that were, and what to do without them */
+static const struct {
+  const char *name, *instead;
+} former[] = {
+  {"symmetry", "leave it out for all modes of the whole mesh, or mesh one half and hold its plane by -supports"},
+  {"modes_groups", "leave it out: all ranks share each shift of -modes_shifts"},
+};
+
+/* What to do without an option that was; NULL for others */
+static const char *FormerInstead(const char name[])
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(former); i++)
+    if (!strcasecmp(name, former[i].name)) return former[i].instead;
+  return NULL;
+}
+
 /* Number of edits (insert, delete, replace, swap neighbours) from a to b; both at most HELP_MAX_NAME - 1 long */
 static int EditDistance(const char a[], const char b[])
 {
@@ -222,6 +238,7 @@ static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
   const int length = (int)strlen(u->name), near = ONE_EDIT * (u->is_librarys ? 1 + length / 6 : 2 + length / 3);
 
   PetscFunctionBeginUser;
+  PetscCheck(!FormerInstead(u->name), comm, PETSC_ERR_USER_INPUT, "-%s is no more: %s", u->name, FormerInstead(u->name));
   PetscCall(UnknownFindList(u, sizeof(missing), missing));
   PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s%s", u->name, u->nearest,
              missing);
@@ -240,6 +257,7 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
   PetscCall(UnknownTake(unknown, MAX_UNKNOWN, &n));
   if (n) PetscCall(HelpCollect(comm, read_again, ctx, &valid));
   for (PetscInt k = 0; k < n; k++) {
+    if (FormerInstead(unknown[k].name)) unknown[k].distance = -1;
     for (int i = 0; i < valid.n; i++) PetscCall(UnknownCompare(&unknown[k], valid.option[i].name));
     for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++) PetscCall(UnknownCompare(&unknown[k], read_later[i]));
     for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++) PetscCall(UnknownCompare(&unknown[k], read_first[i]));

@@ -26,41 +26,19 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 
 PetscErrorCode OperatorsSetFromOptions(Operators operators)
 {
-  static const char *const factors[] = {"auto", "lu", "symmetric"};
-  static const char *const masses[]  = {"consistent", "lumped"};
-  PetscInt                 mass      = 0;
-  PetscBool                have, halves;
+  PetscBool have;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixTermsSetFromOptions(operators));
-  PetscOptionsBegin(operators->comm, NULL, "Operators", NULL);
+  PetscOptionsBegin(operators->comm, NULL, "Matrices", NULL);
   PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscCall(PetscOptionsEList(
-    "-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
-    "operators.h", masses, 2, masses[0], &mass, NULL));
-  PetscCall(PetscOptionsEList("-operators_factors",
-                              "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or "
-                              "what memory and flops speak for",
-                              "operators.h", factors, 3, factors[0], &operators->factors, NULL));
-  PetscCall(PetscOptionsString("-operators_save",
-                               "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)",
-                               "operators.h", operators->save, operators->save, sizeof(operators->save), NULL));
-  PetscCall(OptionsGetPath(PetscOptionsObject, "-operators_nodes",
-                           "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes",
-                           operators->nodes, NULL));
+  PetscOptionsEnd();
+  PetscCall(QuantitiesRead(operators->comm, &operators_quantities, operators));
   PetscCall(OperatorsHaveMatrices(operators, &have));
   PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,
              "-operators_nodes %s is of matrices that are loaded; a mesh knows its nodes", operators->nodes);
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-symmetry", &halves));
-  PetscCheck(!halves, operators->comm, PETSC_ERR_USER_INPUT,
-             "-symmetry is no more: leave it out for all modes of the whole mesh, or mesh one half and hold its plane by "
-             "-supports");
-  if (have)
-    PetscCall(OptionsGetReal(PetscOptionsObject, "-contact_mu", "friction coefficient of K + mu H",
-                             operators->loaded_mu, &operators->loaded_mu, NULL));
-  PetscOptionsEnd();
+  if (have) PetscCall(QuantitiesRead(operators->comm, &operators_loaded, operators));
   PetscCall(MatrixTermsAddParameters(operators));
-  operators->lump = mass == 1 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 
 #include "terms.h"
 #include <squeal/options.h>
+#include <squeal/quantity.h>
 
 #define MATRIX_LARGEST 1e60 /* of entries and parameters, so that products of several stay finite */
 
@@ -33,7 +34,7 @@ typedef struct {
 } LoadParameters;
 
 /* -operators_factors */
-enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN };
+typedef enum { OPERATORS_AUTO, OPERATORS_LU, OPERATORS_EVEN } OperatorsFactors;
 
 struct _p_Operators {
   MPI_Comm comm;
@@ -45,7 +46,7 @@ struct _p_Operators {
   PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
   PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
   PetscBool  lump, omit;
-  PetscInt   factors;   /* OPERATORS_AUTO, OPERATORS_LU or OPERATORS_EVEN */
+  OperatorsFactors factors;
   PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt   n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
@@ -69,6 +70,9 @@ struct _p_Operators {
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
+
+/* quantities.c - rows of the options; of loaded matrices alone */
+extern const QuantityTable operators_quantities, operators_loaded;
 
 /* The point that NULL stands for */
 static inline const PetscReal *OperatorsPoint(Operators operators, const PetscReal p[])
