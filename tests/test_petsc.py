@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """What one expects of a program on PETSc: -X_view shows an object in a file (VIEWS) as on stdout, -log_view knows the
-hot functions (EVENTS), -squeal_traceback shows where an error arose. Breaks when an object is shown elsewhere, not at
-all or twice, an event is not begun or not ended, or an error with its traceback no longer fails on all ranks.
+hot functions (EVENTS), -squeal_traceback shows where an error arose, and how many options and names a scene may have.
+Breaks when an object is shown elsewhere, not at all or twice, an event is not begun or not ended, an error with its
+traceback no longer fails on all ranks, or names of a long list are dropped.
 
     test_petsc.py SQUEAL MPIRUN"""
 
+import csv
 import re
 import subprocess
 import sys
@@ -105,11 +107,33 @@ def check_traceback(r):
         r.check(done.returncode == 1 and said in done.stderr, f"{ranks} ranks: line and status stay", done)
 
 
+def check_many(r):
+    """So many springs that are one together have its frequencies; PETSc 3.18 takes 512 options, which is said."""
+    stiffness, found = 8.422e6, {}
+    for count in (1, 150, 300):
+        names = [f"rows{i}" for i in range(count)]
+        rows = [f"{name}: {{set: beam_rows, stiffness: \"0,{stiffness / count!r},0\"}}" for name in names]
+        scene = r.folder / f"springs{count}.yaml"
+        scene.write_text("\n".join([f"springs: {','.join(names)}", "modes_band: 500,3000", *rows]) + "\n")
+        before = (OPTIONS / "massi2005.yaml").read_text()
+        scene.write_text(re.sub(r"^(springs|rows|modes):.*\n", "", before, flags=re.MULTILINE) + scene.read_text())
+        out = r.folder / f"springs{count}"
+        done = subprocess.run([r.squeal, "-options_file", scene, *COARSE.split(), "-output_dir", out], capture_output=True, text=True,
+                              cwd=r.folder, check=False)
+        if done.returncode == 0:
+            found[count] = [float(row["freq_hz"]) for row in csv.DictReader((out / "modes.csv").open())]
+            worst = max(abs(a / b - 1) for a, b in zip(found[count], found[1]))
+            r.check(len(found[count]) == len(found[1]) > 3 and worst < 1e-9, f"{count} springs as one: {worst:.1e}", done)
+        else:
+            said = rf"squeal: error: {re.escape(str(scene))} gives \d+ options; PETSc 3\.\d+ takes 512 options of all files and .*\n"
+            r.check(count == 300 and re.fullmatch(said, done.stderr), f"{count} springs are refused with file, count and limit", done)
+
+
 def main():
     squeal, mpirun = (Path(name).resolve() for name in sys.argv[1:])
     with tempfile.TemporaryDirectory() as folder:
         r = Runner(squeal, mpirun, Path(folder))
-        for check in (check_views, check_where, check_events, check_traceback):
+        for check in (check_views, check_where, check_events, check_traceback, check_many):
             check(r)
     return 1 if r.faults else 0
 

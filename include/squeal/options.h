@@ -20,17 +20,15 @@ typedef PetscOptionItems OptionsItems;
 
    Input Parameters:
 +  option - e.g. "-parts"
-.  help   - one line
--  max    - most names
+-  help   - one line
    Output Parameters:
 +  n      - number of names
--  names  - array [max] to fill; free each with PetscFree()
+-  names  - array [n]; free it and each of them with PetscFree()
 
    Errors: PETSC_ERR_USER_INPUT for a name that is no identifier, stands twice, also in two lists, or is the prefix of
    other options.
 @*/
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
-                               char *names[]);
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***names);
 
 /*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of its
     own: it is no identifier, or other options begin with it or with what stands before its first underscore. Collective. @*/
@@ -90,9 +88,9 @@ PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char o
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                               PetscInt values[]);
 
-/*@ OptionsGetWords - reads a list of at most n words; on return n of them, 0 where the option is not given. Collective.
-    The caller frees them. @*/
-PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[]);
+/*@ OptionsGetWords - reads a list of words, 0 where the option is not given. Collective. The caller frees the array [n] and
+    each of them. @*/
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***words);
 
 /*@ OptionsGetItems - reads at most n names between PetscOptionsBegin() and PetscOptionsEnd(), without the blanks around them; where the
     option is not given nothing changes but n. Collective. The caller frees them. @*/
@@ -164,16 +162,24 @@ PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char o
 @*/
 PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size);
 
-/*@ OptionsFindList - the list of the scene that holds a name, with its value, "-parts disc,pad"; empty for none. Not collective. @*/
+/*@ OptionsFindGiven - the value of an option, NULL where it has none, without making it one that has been read. Not collective. @*/
+PetscErrorCode OptionsFindGiven(const char option[], const char **value, PetscBool *given);
+
+/*@ OptionsFindList - the list of the scene that holds a name, with its value, "-parts disc,pad", of a long one its number of
+    names; empty for none. Not collective. @*/
 PetscErrorCode OptionsFindList(const char name[], size_t size, char text[]);
 
 /*@ ValueExplainUnit - what to write in place of a number with a unit, such as "210 GPa"; text is empty where it is no such
     number. Not collective. @*/
 PetscErrorCode ValueExplainUnit(const char value[], char text[], size_t size);
 
-/*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. The file has been
-    checked by OptionsCheckFile(). Not collective. @*/
-PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line);
+/*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. n is the number
+    of options that the file gives. It has been checked by OptionsCheckFile(). Not collective. @*/
+PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line, PetscInt *n);
+
+/*@ OptionsFindLargest - the options file of the command line that gives the most options, "brake.yaml gives 600 options"; empty
+    for none. Not collective. @*/
+PetscErrorCode OptionsFindLargest(char text[], size_t size);
 
 /*@ OptionsFindPlace - for a message "FILE:LINE: " of the last options file of the command line that gives an option, named without
     its dash; empty where none does, or the command line itself. Not collective. @*/

@@ -59,11 +59,33 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsFindLargest(char text[], size_t size)
+{
+  char    **word;
+  int       n;
+  size_t    line;
+  PetscInt  count, most = 0;
+  PetscBool file, is_yaml;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = 1; i + 1 < n; i++) {
+    PetscCall(OptionsNamesFile(word[i], &file, &is_yaml));
+    if (!file) continue;
+    PetscCall(OptionsFindLine(word[i + 1], is_yaml, NULL, &line, &count));
+    if (count > most) PetscCall(PetscSNPrintf(text, size, "%s gives %" PetscInt_FMT " options", word[i + 1], count));
+    most = PetscMax(most, count);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size)
 {
   char    **word;
   int       n;
   size_t    line = 0;
+  PetscInt  count;
   PetscBool file, is_yaml, given;
 
   PetscFunctionBeginUser;
@@ -72,7 +94,7 @@ PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size)
   PetscCall(PetscGetArgs(&n, &word));
   for (int i = n - 2; i > 0 && !line && !given; i--) {
     PetscCall(OptionsNamesFile(word[i], &file, &is_yaml));
-    if (file) PetscCall(OptionsFindLine(word[i + 1], is_yaml, name, &line));
+    if (file) PetscCall(OptionsFindLine(word[i + 1], is_yaml, name, &line, &count));
     if (line) PetscCall(PetscSNPrintf(text, size, "%s:%zu: ", word[i + 1], line));
   }
   PetscFunctionReturn(0);

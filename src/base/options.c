@@ -8,8 +8,8 @@
 #include <strings.h>
 
 #define MAX_NAME    HELP_MAX_NAME
-#define MAX_RECORDS 64   /* names in one list of the scene */
-#define MAX_LIST    4096 /* characters of a list of names */
+#define MAX_LIST    4096 /* characters of a message */
+#define MAX_SHOWN   160  /* characters of a list that are shown */
 
 /* All lists of a scene */
 static const char *const lists[] = {"-parts",   "-supports", "-springs", "-dashpots", "-loads",  "-contacts", "-probes",
@@ -34,35 +34,38 @@ static PetscBool ListHolds(const char list[], const char value[])
   return PETSC_FALSE;
 }
 
-/* The value of an option, without making it one that has been read; text empty where it is not given */
-static PetscErrorCode GivenText(const char option[], size_t size, char text[])
+/* The names of a list of the scene; NULL for none */
+static PetscErrorCode ListGiven(const char list[], const char **names)
 {
-  char       *all, *rest, name[MAX_NAME];
-  const char *value;
-  PetscBool   more;
+  PetscBool given;
 
   PetscFunctionBeginUser;
-  text[0] = '\0';
-  PetscCall(PetscOptionsGetAll(NULL, &all));
-  rest = all;
-  PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
-  while (more) {
-    if (!strcasecmp(name, option + 1)) PetscCall(PetscStrncpy(text, value, size));
-    PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
-  }
-  PetscCall(PetscFree(all));
+  PetscCall(OptionsFindGiven(list, names, &given));
+  if (!given || !*names || !(*names)[0]) *names = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* The list in words, of a long one how many names it has */
+static PetscErrorCode ListShow(const char list[], const char names[], size_t size, char text[])
+{
+  PetscInt n = 1;
+
+  PetscFunctionBeginUser;
+  for (const char *c = names; *c; c++) n += *c == ',';
+  PetscCall(strlen(names) < MAX_SHOWN ? PetscSNPrintf(text, size, "%s %s", list, names)
+                                      : PetscSNPrintf(text, size, "the %" PetscInt_FMT " names of %s", n, list));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OptionsFindList(const char name[], size_t size, char text[])
 {
-  char list[MAX_LIST];
+  const char *names;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists) && !text[0]; i++) {
-    PetscCall(GivenText(lists[i], sizeof(list), list));
-    if (list[0] && ListHolds(list, name)) PetscCall(PetscSNPrintf(text, size, "%s %s", lists[i], list));
+    PetscCall(ListGiven(lists[i], &names));
+    if (names && ListHolds(names, name)) PetscCall(ListShow(lists[i], names, size, text));
   }
   PetscFunctionReturn(0);
 }
@@ -72,7 +75,7 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
 {
   static const char *const own[] = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
                                     "projector", "rig", "squeal", "static", "statics",   "sweep"};
-  char                     list[MAX_LIST];
+  const char              *names;
   PetscBool                taken = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -82,33 +85,32 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no name: other options begin with -%s_; choose another",
              option, name, name);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
-    PetscCall(GivenText(lists[i], sizeof(list), list));
-    PetscCheck(!list[0] || !strcmp(lists[i], option) || !ListHolds(list, name), comm, PETSC_ERR_USER_INPUT,
+    PetscCall(ListGiven(lists[i], &names));
+    PetscCheck(!names || !strcmp(lists[i], option) || !ListHolds(names, name), comm, PETSC_ERR_USER_INPUT,
                "%s and %s both name '%s', whose options begin with -%s_: choose another name in one of them", lists[i],
                option, name, name);
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt max, PetscInt *n,
-                               char *names[])
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***names)
 {
   PetscBool same;
-  PetscInt  count = max;
+  char    **name;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetWords(comm, option, help, &count, names));
-  for (PetscInt i = 0; i < count; i++) {
-    PetscCheck(NameIsIdentifier(names[i]), comm, PETSC_ERR_USER_INPUT,
-               "%s '%s' is no name: use letters, digits and underscores, a letter first%s", option, names[i],
+  PetscCall(OptionsGetWords(comm, option, help, n, &name));
+  for (PetscInt i = 0; i < *n; i++) {
+    PetscCheck(NameIsIdentifier(name[i]), comm, PETSC_ERR_USER_INPUT,
+               "%s '%s' is no name: use letters, digits and underscores, a letter first%s", option, name[i],
                strcmp(option, "-parts") ? "" : " (-NAME_volume gives the volume of the mesh)");
     for (PetscInt j = 0; j < i; j++) {
-      PetscCall(PetscStrcasecmp(names[i], names[j], &same));
-      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, names[i]);
+      PetscCall(PetscStrcasecmp(name[i], name[j], &same));
+      PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option, name[i]);
     }
-    PetscCall(NameCheckFree(comm, option, names[i]));
+    PetscCall(NameCheckFree(comm, option, name[i]));
   }
-  *n = count;
+  *names = name;
   PetscFunctionReturn(0);
 }
 
@@ -127,10 +129,10 @@ PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char n
 
 PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records)
 {
-  char *names[MAX_RECORDS], *record, prefix[MAX_NAME], title[MAX_NAME];
+  char **names, *record, prefix[MAX_NAME], title[MAX_NAME];
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(comm, list->option, list->help, MAX_RECORDS, n, names));
+  PetscCall(OptionsGetNames(comm, list->option, list->help, n, &names));
   PetscCall(PetscCalloc((size_t)*n * list->size, &record));
   *(void **)records = record;
   for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
@@ -141,50 +143,24 @@ PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *own
     PetscCall(list->read(PetscOptionsObject, owner, record));
     PetscOptionsEnd();
   }
-  PetscFunctionReturn(0);
-}
-
-/* The names that options files give to each list, one after another */
-static PetscErrorCode FilesGetLists(MPI_Comm comm, char listed[][MAX_LIST])
-{
-  char **word, names[MAX_LIST];
-  int    n;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscGetArgs(&n, &word));
-  for (int i = 1; i + 1 < n; i++) {
-    PetscOptions file;
-    PetscBool    given, is_file, is_yaml;
-
-    PetscCall(OptionsNamesFile(word[i], &is_file, &is_yaml));
-    if (!is_file) continue;
-    PetscCall(PetscOptionsCreate(&file));
-    PetscCall(is_yaml ? PetscOptionsInsertFileYAML(comm, file, word[i + 1], PETSC_TRUE)
-                      : PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
-      PetscCall(PetscOptionsGetString(file, NULL, lists[k], names, sizeof(names), &given));
-      if (given && listed[k][0]) PetscCall(PetscStrlcat(listed[k], ",", MAX_LIST));
-      if (given) PetscCall(PetscStrlcat(listed[k], names, MAX_LIST));
-    }
-    PetscCall(PetscOptionsDestroy(&file));
-  }
+  PetscCall(PetscFree(names));
   PetscFunctionReturn(0);
 }
 
 /* Whether an option without its dash, which begins with a name and _, is of another name of a list, which is longer */
 static PetscErrorCode OptionIsOfLonger(const char option[], size_t length, PetscBool *longer)
 {
-  char list[MAX_LIST];
+  const char *name;
 
   PetscFunctionBeginUser;
   *longer = PETSC_FALSE;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
-    char *name, *rest;
+    PetscCall(ListGiven(lists[k], &name));
+    for (name = name ? name : ""; *(name += strspn(name, ", ")); name += strcspn(name, ", ")) {
+      const size_t of_name = strcspn(name, ", ");
 
-    PetscCall(GivenText(lists[k], sizeof(list), list));
-    for (name = strtok_r(list, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
-      if (strlen(name) > length && !strncasecmp(option, name, strlen(name)) && option[strlen(name)] == '_')
-        *longer = PETSC_TRUE;
+      if (of_name > length && !strncasecmp(option, name, of_name) && option[of_name] == '_') *longer = PETSC_TRUE;
+    }
   }
   PetscFunctionReturn(0);
 }
@@ -242,29 +218,52 @@ PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]
   PetscFunctionReturn(0);
 }
 
+/* What a file says of names of a list that are in its place now no more */
+static PetscErrorCode FileDropUnlisted(MPI_Comm comm, PetscOptions file, const char list[])
+{
+  const char *given, *now;
+  char        name[MAX_NAME], shown[MAX_LIST], why[MAX_LIST];
+  PetscBool   set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsFindPair(file, NULL, list, &given, &set));
+  if (!set || !given) PetscFunctionReturn(0);
+  PetscCall(ListGiven(list, &now));
+  PetscCall(ListShow(list, now ? now : "", sizeof(shown), shown));
+  for (; *(given += strspn(given, ", ")); given += strcspn(given, ", ")) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s", (int)strcspn(given, ", "), given));
+    PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s, which stands in place of an options file's list", name, shown));
+    if (!now || !ListHolds(now, name)) PetscCall(OptionsDropOf(comm, name, why));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
 {
-  char(*listed)[MAX_LIST], now[MAX_LIST], why[MAX_LIST], *name, *rest;
+  char   **word;
+  int      n;
   PetscInt n_unread;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsAllUsed(NULL, &n_unread));
-  if (!n_unread) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(PETSC_STATIC_ARRAY_LENGTH(lists), &listed));
-  PetscCall(FilesGetLists(comm, listed));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
-    PetscCall(GivenText(lists[k], sizeof(now), now));
-    for (name = strtok_r(listed[k], ", ", &rest); name; name = strtok_r(NULL, ", ", &rest)) {
-      PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s %s, which stands in place of an options file's list",
-                              name, lists[k], now));
-      if (!ListHolds(now, name)) PetscCall(OptionsDropOf(comm, name, why));
-    }
+  PetscCall(PetscGetArgs(&n, &word));
+  for (int i = 1; i + 1 < n && n_unread; i++) {
+    PetscOptions file;
+    PetscBool    is_file, is_yaml;
+
+    PetscCall(OptionsNamesFile(word[i], &is_file, &is_yaml));
+    if (!is_file) continue;
+    PetscCall(PetscOptionsCreate(&file));
+    PetscCall(is_yaml ? PetscOptionsInsertFileYAML(comm, file, word[i + 1], PETSC_TRUE)
+                      : PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) PetscCall(FileDropUnlisted(comm, file, lists[k]));
+    PetscCall(PetscOptionsDestroy(&file));
   }
-  PetscCall(PetscFree(listed));
   PetscFunctionReturn(0);
 }
 
-#define NUMBER " has no numeric value: write it as 0.3 or 16e9, without a unit, several with commas"
+#define NUMBER       " has no numeric value: write it as 0.3 or 16e9, without a unit, several with commas"
+#define INTEGER_ONLY " has no integer value: write it as 4 or 1000, without a point, an exponent or a unit"
 
 /* Splits a message such as "Input string abc has no numeric value" into the value and what is wrong with it. PETSc 3.22
    refuses what is not finite as "Newly set value nan less than allowed bound ..." */
@@ -274,6 +273,7 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
     const char *start, *end, *wrong; /* wrong NULL: the end says it */
   } forms[] = {
     {"Input string ",           " has no numeric", NUMBER                              },
+    {"Input string ",           " has no integer", INTEGER_ONLY                        },
     {"Input string ",           " has no ",        NULL                                },
     {"String of length zero ",  "has no ",         "a number is missing beside a comma"},
     {"Newly set value ",        " less ",          " must be a finite number"          },
@@ -333,14 +333,18 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  if (sscanf(message, "Number of options %*d < max number of options %d", &most) == 1)
-    PetscCall(PetscSNPrintf(text, size, "more than %d options, all that PETSc %d.%d takes: leave some out of the files", most,
-                            PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR));
+  if (sscanf(message, "Number of options %*d < max number of options %d", &most) == 1) {
+    PetscCall(OptionsFindLargest(place, sizeof(place)));
+    PetscCall(PetscSNPrintf(text, size,
+                            "%s; PETSc %d.%d takes %d options of all files and the command line: unite supports, loads or probes of "
+                            "one kind in one set of the mesh, leave defaults out, or compile with PETSc 3.22, which takes any number",
+                            place[0] ? place : "too many options", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, most));
+  }
   if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
   PetscCall(OptionsWithValue(value + strspn(value, " "), NULL, names, sizeof(names)));
   if (!names[0]) PetscFunctionReturn(0);
   PetscCall(OptionsFindPlace(names + 1, place, sizeof(place)));
-  PetscCall(ValueExplainUnit(value, unit, sizeof(unit)));
+  PetscCall(ValueExplainUnit(strstr(wrong, "integer") ? "" : value, unit, sizeof(unit)));
   PetscCall(PetscSNPrintf(text, size, "%s%s: %s%s%s", place, names, value, unit[0] ? " has a unit: " : wrong, unit));
   PetscFunctionReturn(0);
 }

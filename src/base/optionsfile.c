@@ -233,8 +233,8 @@ static PetscErrorCode YamlReadEvents(YamlFile *f, yaml_parser_t *parser)
   PetscFunctionReturn(0);
 }
 
-/* The line of an option; the file is then no longer needed */
-static PetscErrorCode YamlFinish(YamlFile *f, const char name[], size_t *line)
+/* The line of an option, and how many there are; the file is then no longer needed */
+static PetscErrorCode YamlFinish(YamlFile *f, const char name[], size_t *line, PetscInt *n)
 {
   PetscBool same;
 
@@ -243,6 +243,7 @@ static PetscErrorCode YamlFinish(YamlFile *f, const char name[], size_t *line)
     PetscCall(PetscStrcasecmp(f->keys[i], name, &same));
     if (same) *line = f->lines[i];
   }
+  *n = f->n_keys;
   for (PetscInt i = 0; i < f->n_keys; i++) PetscCall(PetscFree(f->keys[i]));
   PetscCall(PetscFree(f->keys));
   PetscCall(YamlAnchorsDestroy(&f->anchors));
@@ -251,7 +252,7 @@ static PetscErrorCode YamlFinish(YamlFile *f, const char name[], size_t *line)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode YamlCheck(const char file[], FILE *stream, const char name[], size_t *found)
+static PetscErrorCode YamlCheck(const char file[], FILE *stream, const char name[], size_t *found, PetscInt *n)
 {
   YamlFile     *f;
   yaml_parser_t parser;
@@ -263,12 +264,12 @@ static PetscErrorCode YamlCheck(const char file[], FILE *stream, const char name
   yaml_parser_set_input_file(&parser, stream);
   PetscCall(YamlReadEvents(f, &parser));
   yaml_parser_delete(&parser);
-  PetscCall(YamlFinish(f, name, found));
+  PetscCall(YamlFinish(f, name, found, n));
   PetscFunctionReturn(0);
 }
 
 /* Of PETSc's own form, -NAME VALUE line by line: raises an error for an option that stands in it twice */
-static PetscErrorCode TextCheck(const char file[], FILE *stream, const char name[], size_t *found)
+static PetscErrorCode TextCheck(const char file[], FILE *stream, const char name[], size_t *found, PetscInt *n)
 {
   YamlFile *f;
   char     *line = NULL;
@@ -286,7 +287,7 @@ static PetscErrorCode TextCheck(const char file[], FILE *stream, const char name
     PetscCall(YamlAddKey(f));
   }
   free(line);
-  PetscCall(YamlFinish(f, name, found));
+  PetscCall(YamlFinish(f, name, found, n));
   PetscFunctionReturn(0);
 }
 
@@ -314,14 +315,15 @@ static PetscErrorCode FileIsYaml(const char file[], FILE *stream, PetscBool *is_
 
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml)
 {
-  size_t line;
+  size_t   line;
+  PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsFindLine(file, is_yaml, NULL, &line));
+  PetscCall(OptionsFindLine(file, is_yaml, NULL, &line, &n));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line)
+PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line, PetscInt *n)
 {
   struct stat what;
   FILE       *stream;
@@ -337,7 +339,7 @@ PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char 
   stream = fopen(file, "rb");
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
   PetscCall(FileIsYaml(file, stream, &is_yaml));
-  PetscCall(is_yaml ? YamlCheck(file, stream, name, line) : TextCheck(file, stream, name, line));
+  PetscCall(is_yaml ? YamlCheck(file, stream, name, line, n) : TextCheck(file, stream, name, line, n));
   (void)fclose(stream);
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 */
 #include <squeal/options.h>
 #include <string.h>
+#include <strings.h>
 
 #define MAX_REALS 16
 #define MAX_TEXT  (32 * MAX_REALS)
@@ -53,7 +54,7 @@ static PetscErrorCode ArrayPrint(PetscInt n, const PetscReal *reals, const Petsc
 }
 
 /* Value of an option that is given, NULL for none, and whether it is given; leaves it unused where nobody used it */
-static PetscErrorCode GivenFind(const char name[], const char **value, PetscBool *given)
+PetscErrorCode OptionsFindGiven(const char name[], const char **value, PetscBool *given)
 {
   PetscInt n;
   char   **names, **values;
@@ -62,7 +63,7 @@ static PetscErrorCode GivenFind(const char name[], const char **value, PetscBool
   *given = PETSC_FALSE;
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n && !*given; i++) {
-    *given = strcmp(names[i], name + 1) ? PETSC_FALSE : PETSC_TRUE;
+    *given = strcasecmp(names[i], name + 1) ? PETSC_FALSE : PETSC_TRUE;
     *value = values[i];
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
@@ -79,7 +80,7 @@ PetscErrorCode OptionsNextGiven(char **text, size_t size, char name[], const cha
   *more = **text == '-' ? PETSC_TRUE : PETSC_FALSE;
   if (!*more) PetscFunctionReturn(0);
   PetscCall(PetscStrncpy(dashed, *text, PetscMin(length + 1, sizeof(dashed))));
-  PetscCall(GivenFind(dashed, value, more));
+  PetscCall(OptionsFindGiven(dashed, value, more));
   PetscCheck(*more, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s is given and cannot be found", dashed);
   PetscCall(PetscStrncpy(name, dashed + 1, size));
   *text += length;
@@ -203,20 +204,23 @@ PetscErrorCode ValuesSplit(MPI_Comm comm, const char option[], const char text[]
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char *words[])
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***words)
 {
-  const char *text;
+  const char *text  = NULL;
+  char      **split = NULL;
+  int         count = 0;
   PetscBool   set;
 
   PetscFunctionBeginUser;
-  PetscCall(GivenFind(option, &text, &set));
-  if (set && text && text[0]) PetscCall(ValuesCheckItems(comm, option, text, ','));
   PetscOptionsBegin(comm, NULL, "Names in the scene", NULL);
-  PetscCall(PetscOptionsGetStringArray(NULL, NULL, option, words, n, &set));
+  PetscCall(PetscOptionsFindPair(NULL, NULL, option, &text, &set));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, "", ""));
   PetscOptionsEnd();
-  if (!set) *n = 0;
-  for (PetscInt i = 0; i < *n; i++) PetscCall(ItemTrim(words[i]));
+  if (set && text && text[0]) PetscCall(ValuesSplit(comm, option, text, ',', &count, &split));
+  PetscCall(PetscMalloc1(count, words));
+  for (int i = 0; i < count; i++) PetscCall(PetscStrallocpy(split[i], &(*words)[i]));
+  PetscCall(PetscStrToArrayDestroy(count, split));
+  *n = count;
   PetscFunctionReturn(0);
 }
 

@@ -94,8 +94,7 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s", c->name));
   PetscOptionsBegin(comm, prefix, title, NULL);
   PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: named surfaces (required)", &n, surfaces, &set));
-  PetscCall(
-    PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
+  PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-mu", "friction coefficient", c->mu, &c->mu, NULL));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-mu_slope", "its slope with the slip speed about the stated one, s/m",
                            c->mu_slope, &c->mu_slope, NULL));
@@ -175,12 +174,14 @@ PetscErrorCode ContactDampFriction(Contact contact)
 
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
-  char *names[CONTACT_MAX];
+  char   **names;
+  PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options",
-                            CONTACT_MAX, &contact->n_interfaces, names));
-  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", &n, &names));
+  PetscCheck(n <= CONTACT_MAX, contact->comm, PETSC_ERR_USER_INPUT,
+             "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh", n, CONTACT_MAX);
+  for (PetscInt i = 0; i < n; i++) {
     ContactInterface *c = &contact->interfaces[i];
 
     c->name      = names[i];
@@ -189,6 +190,8 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
     if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
     if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
   }
+  contact->n_interfaces = n;
+  PetscCall(PetscFree(names));
   PetscCall(OptionsReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
   PetscFunctionReturn(0);
 }

@@ -5,7 +5,6 @@
 #include <squeal/options.h>
 #include <string.h>
 
-#define MAX_PLACES     512
 #define BEYOND_HIGHEST 1.5 /* end of the band of modes where none is asked for, beside the highest frequency */
 
 PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf)
@@ -85,11 +84,9 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(frf->comm, &frf_quantities, frf));
-  frf->n_places = MAX_PLACES;
-  PetscCall(PetscCalloc1(MAX_PLACES, &frf->place));
   PetscCall(OptionsGetWords(frf->comm, "-frf_probes",
                             "where the response is recorded: probes, circles; default all probes", &frf->n_places,
-                            frf->place));
+                            &frf->place));
   PetscCall(DirectionsCheck(frf));
   if (frf->frequencies[0]) PetscCall(FrequenciesParse(frf));
   if (frf->times[0]) PetscCall(TimesParse(frf));

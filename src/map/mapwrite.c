@@ -35,9 +35,10 @@ static PetscBool MapVibrates(const MapPoint *row)
 /* Whether a point vibrates one way and is stable the other; its row of the other way follows those of this one, or the reverse */
 static PetscBool MapHangsOnWay(Map map, const MapPoint *row)
 {
-  const MapPoint *other = row + (row->down ? -map->axis[0].n : map->axis[0].n);
+  const MapPoint *other;
 
   if (map->direction != MAP_BOTH) return PETSC_FALSE;
+  other = row + (row->down ? -map->axis[0].n : map->axis[0].n);
   return (MapVibrates(row) && other->regime == MAP_STABLE) || (MapVibrates(other) && row->regime == MAP_STABLE)
            ? PETSC_TRUE
            : PETSC_FALSE;

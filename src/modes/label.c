@@ -22,7 +22,6 @@
 #include <ctype.h>
 #include <string.h>
 
-#define MAX_PARTS  64
 #define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
@@ -73,10 +72,10 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
 /* Writes the name of mode i, and its participation in per cent */
 static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
 {
-  double *const percent          = &modes->part_percent[i * l->n_parts];
-  PetscReal     share[MAX_PARTS] = {0}, total = 0;
-  PetscInt      most = 0;
-  Mode         *mode = &modes->mode[i];
+  double *const share = &modes->part_percent[i * l->n_parts];
+  PetscReal     total = 0;
+  PetscInt      most  = 0;
+  Mode         *mode  = &modes->mode[i];
   PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -87,13 +86,12 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
     total += share[part];
     if (share[part] > (1 + LABEL_TIE) * share[most]) most = part;
   }
-  for (PetscInt part = 0; part < l->n_parts; part++)
-    percent[part] = total > 0 ? 100 * (double)(share[part] / total) : 0;
   if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total &&
       l->energy[2 * i + 1] > (1 + LABEL_TIE) * 0.5 * l->energy[2 * i] && !rigid)
     PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
   else if (!l->by_unknown || rigid)
     PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
+  for (PetscInt part = 0; part < l->n_parts; part++) share[part] = total > 0 ? 100 * (share[part] / total) : 0;
   PetscFunctionReturn(0);
 }
 

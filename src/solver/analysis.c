@@ -56,7 +56,7 @@ static PetscErrorCode AnalysisRun(PC pc, Mat A, PetscBool symmetric)
 static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
 {
   PetscInt    entries, low_rank, on_disk, core, disk;
-  PetscMPIInt rank, ranks;
+  PetscMPIInt rank;
   PetscBool   given;
   MPI_Comm    machine;
   struct {
@@ -64,7 +64,7 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
     int    rank;
   } worst;
   PetscReal flops;
-  double    mb[3], share;
+  double    mb[3];
 
   PetscFunctionBeginUser;
   PetscCall(MatMumpsGetInfog(F, 3, &entries));
@@ -78,12 +78,10 @@ static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
   PetscCallMPI(MPI_Allreduce(mb, &cost->all, 1, MPI_DOUBLE, MPI_SUM, comm));
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mb, 2, MPI_DOUBLE, MPI_SUM, machine));
-  PetscCallMPI(MPI_Comm_size(machine, &ranks));
-  share = (double)ranks / MemoryRanks(); /* the other groups of ranks make factors at the same time */
   PetscCallMPI(MPI_Comm_free(&machine));
   if (cost->all >= RETURN_FROM) MemoryReturn();
   PetscCallMPI(MPI_Barrier(comm)); /* all ranks have, before any looks what is free */
-  mb[2] = MemoryRoom(&given) * share;
+  mb[2] = MemoryRoom(&given);
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   worst.lack = mb[0] - mb[2];
   worst.rank = rank;
