@@ -22,6 +22,9 @@
    for soft = 0, a function of s alone for soft >= 1. Stick is s = soft p, and slip has rho E and E - alpha (1 - rho
    soft) E in the place of E and (1 - alpha) E. An open pair may pull: l_n = pull (w_n - g0) < 0.
 
+   With a drag d < 1, a device of iterations, friction grows along the slip from q0 on, at which the law is linearised:
+   p has d (e'q - |q0|) e more.
+
    Where mu falls with the length of slip, fall = d mu / d|s| (1/m), p has fall l_n e (e's - |s|) more, of which |s| is
    that at the present l, w: |q| - mu l_n.
 */
@@ -39,6 +42,7 @@ typedef struct {
   double fall;     /* d mu / d|s| at the present slip, 1/m */
   double soft;     /* slip over friction before it gives way, 0 for Coulomb's law itself; none with a fall */
   double pull;     /* force over gap of an open pair, 0 for the laws themselves */
+  double drag;     /* slope of friction along the slip from the present slip on, below 1: 0 for the laws themselves */
 } CoulombPair;
 
 /* Linear law of one status; only the leading d rows and columns are used */
@@ -79,17 +83,18 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
   const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
   const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1;
   const double fall = pair->fall * fmax(0, l[0]), rho = CoulombShare(pair), keep = 1 - rho * pair->soft;
+  const double along = 1 / (1 - pair->drag * keep);
 
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
-    law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0];
-    law->p0[1 + i]   = -pair->mu * e[i] * law->p0[0] + fall * fmax(0, length - cone) * e[i];
+    law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0] * along;
+    law->p0[1 + i] = -(pair->mu * law->p0[0] - pair->drag * length) * along * e[i] + fall * fmax(0, length - cone) * e[i];
     law->q0[1 + i]   = pair->slip0[i];
     for (int j = 0; j < 2; j++) {
-      const double E = (i == j) - e[i] * e[j];
+      const double ee = e[i] * e[j], turn = alpha * ((i == j) - ee) + pair->drag * ee;
 
-      law->P[1 + i][1 + j] = alpha * rho * E + fall * e[i] * e[j];
-      law->Q[1 + i][1 + j] = (i == j) - alpha * keep * E;
+      law->P[1 + i][1 + j] = rho * turn + fall * ee;
+      law->Q[1 + i][1 + j] = (i == j) - keep * turn;
     }
   }
 }

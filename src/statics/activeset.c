@@ -74,7 +74,29 @@ static void LawsSet(const Active *a, LawRow law[])
   }
 }
 
-PetscErrorCode ActiveLinear(Active *a, PetscBool homogeneous, const PetscReal rhs[], PetscReal l[], PetscReal w[],
+/* Makes the laws those of what is added to the present l and w, which need not obey them exactly: p0 + P z - l in the
+   place of p0, with the z of l and w where they do (tangential blocks of P and Q have the sum I) */
+static void LawsShift(const Active *a, LawRow law[])
+{
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
+    const PetscInt   first = a->rows->first[p], d = a->rows->law[p].d;
+    const PetscReal *l = &a->l[first], *w = &a->w[first];
+    LawRow          *row  = &law[first];
+    PetscReal        z[3] = {row->P[0] >= row->Q[0] ? l[0] : w[0]};
+
+    for (PetscInt i = 1; i < d; i++) z[i] = l[i] - row[i].p0 - row[i].P[0] * z[0] + w[i] - row[i].q0;
+    for (PetscInt i = 0; i < d; i++) {
+      row[i].p0 -= l[i];
+      row[i].q0 -= w[i];
+      for (PetscInt k = 0; k < d; k++) {
+        row[i].p0 += row[i].P[k] * z[k];
+        row[i].q0 += row[i].Q[k] * z[k];
+      }
+    }
+  }
+}
+
+PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], PetscReal l[], PetscReal w[],
                             SmallOutcome *outcome)
 {
   LawRow *law;
@@ -82,7 +104,7 @@ PetscErrorCode ActiveLinear(Active *a, PetscBool homogeneous, const PetscReal rh
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(a->rows->n, &law));
   LawsSet(a, law);
-  for (PetscInt i = 0; i < a->rows->n && homogeneous; i++) law[i].p0 = law[i].q0 = 0;
+  if (added) LawsShift(a, law);
   PetscCall(SmallSolve(&(SmallSystem){a->compliance, a->friction, law, rhs, a->rtol}, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
   PetscFunctionReturn(0);

@@ -10,7 +10,7 @@
 
    Cost: at most log(SOFTEST / HARDEST) / log(LAST_FACTOR) = 1246 softnesses are reached, 387 with LARGE_FACTOR in large
    problems; each with a step that failed before it and a try of the laws themselves, and each of these tries solves at most
-   max_it small systems.
+   max_it small systems, those with drag among them.
 */
 #include "staticsimpl.h"
 
@@ -24,12 +24,51 @@
 #define LARGE_FACTOR  1.1 /* at last in large problems */
 #define DESCENT       1e-4 /* of the residual along a step */
 #define SHORTEST_STEP (1.0 / 65536)
-#define ENOUGH        1e-10 /* residual of the laws, relative to the scale */
+#define ENOUGH        1e-10 /* residual of the laws, relative to the largest force */
+#define ENOUGH_PLACES 1e-14 /* or to the scale: rounding where forces are small beside gaps */
+#define MOST_GROWTH   4.0   /* growth of the scale in a step */
+#define LEAST_DRAG    1e-8  /* below 1, which is friction in proportion to slip */
+#define MOST_DRAG     0.5
+#define DRAG_FACTOR   30.0
 
-/* Where a softness begins from, and what is kept of it */
+/* Where a step or a softness begins */
 typedef struct {
   PetscReal *l, *w; /* [rows] */
+  PetscReal  residual, scale;
 } Kept;
+
+static PetscErrorCode KeptCreate(const Active *a, Kept *kept)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(a->rows->n, &kept->l, a->rows->n, &kept->w));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Keep(const Active *a, PetscReal residual, Kept *kept)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(kept->l, a->l, a->rows->n));
+  PetscCall(PetscArraycpy(kept->w, a->w, a->rows->n));
+  kept->residual = residual;
+  kept->scale    = a->scale;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GoBack(Active *a, const Kept *kept)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(a->l, kept->l, a->rows->n));
+  PetscCall(PetscArraycpy(a->w, kept->w, a->rows->n));
+  a->scale = kept->scale;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeptDestroy(Kept *kept)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(kept->l, kept->w));
+  PetscFunctionReturn(0);
+}
 
 static void SoftenSet(Active *a, PetscReal soft)
 {
@@ -37,6 +76,11 @@ static void SoftenSet(Active *a, PetscReal soft)
     a->rows->law[p].soft = soft;
     a->rows->law[p].pull = PULL * soft;
   }
+}
+
+static void DragSet(Active *a, PetscReal drag)
+{
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) a->rows->law[p].drag = drag;
 }
 
 /* Statuses that l and w ask for, and the 2-norm of the residuals of all laws, m */
@@ -68,13 +112,11 @@ static PetscErrorCode SoftenMeasure(Active *a, PetscReal *residual)
 /* Goes back from l, w towards where the step began until the residual falls; whether it does */
 static PetscErrorCode SoftenSearch(Active *a, const Kept *from, PetscReal *residual, PetscBool *falls)
 {
-  const PetscReal before = *residual;
-
   PetscFunctionBeginUser;
   *falls = PETSC_FALSE;
   for (PetscReal step = 1; step >= SHORTEST_STEP; step /= 2) {
     PetscCall(SoftenMeasure(a, residual));
-    *falls = *residual <= (1 - DESCENT * step) * before ? PETSC_TRUE : PETSC_FALSE;
+    *falls = *residual <= (1 - DESCENT * step) * from->residual ? PETSC_TRUE : PETSC_FALSE;
     if (*falls) break;
     for (PetscInt i = 0; i < a->rows->n; i++) {
       a->l[i] = (from->l[i] + a->l[i]) / 2;
@@ -84,34 +126,73 @@ static PetscErrorCode SoftenSearch(Active *a, const Kept *from, PetscReal *resid
   PetscFunctionReturn(0);
 }
 
+/* One step with a drag, taken back where the residual does not fall; small is SMALL_UNSOLVED where no step will help */
+static PetscErrorCode SoftenStep(Active *a, const Kept *from, PetscReal drag, PetscReal *residual, PetscBool *falls,
+                                 SmallOutcome *small)
+{
+  const PetscBool first = from->residual == PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *falls = PETSC_FALSE;
+  DragSet(a, drag);
+  PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, small));
+  DragSet(a, 0);
+  if (*small == SMALL_GOOD) {
+    PetscCall(ActiveFindScale(a));
+    if (first || a->scale <= MOST_GROWTH * from->scale) PetscCall(SoftenSearch(a, from, residual, falls));
+  }
+  if (*falls) PetscFunctionReturn(0);
+  PetscCall(GoBack(a, from));
+  if (first)
+    *residual = from->residual;
+  else
+    PetscCall(SoftenMeasure(a, residual));
+  PetscFunctionReturn(0);
+}
+
+/* Residual from which on the laws are obeyed, m */
+static PetscErrorCode SoftenEnough(const Active *a, PetscReal *enough)
+{
+  PetscReal force = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) force = PetscMax(force, PetscAbsReal(a->l[a->rows->first[p]]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &force, 1, MPIU_REAL, MPI_MAX, a->rows->comm));
+  *enough = PetscMax(ENOUGH * force, ENOUGH_PLACES * a->scale);
+  PetscFunctionReturn(0);
+}
+
 /* Newton's method at the present softness; l and w are in equilibrium (balanced), or the first step is a whole one from
    the statuses given */
 static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *converged)
 {
-  PetscReal    residual = PETSC_MAX_REAL;
-  PetscBool    falls    = PETSC_TRUE;
-  SmallOutcome small    = SMALL_GOOD;
+  PetscReal    residual = PETSC_MAX_REAL, drag = 0, enough;
+  PetscBool    falls;
+  SmallOutcome small = SMALL_GOOD;
   Kept         from;
 
   PetscFunctionBeginUser;
   *converged = PETSC_FALSE;
-  PetscCall(PetscMalloc2(a->rows->n, &from.l, a->rows->n, &from.w));
+  PetscCall(KeptCreate(a, &from));
   if (balanced) PetscCall(SoftenMeasure(a, &residual));
-  for (PetscInt it = 0; it < a->max_it && falls && !*converged; it++, a->n_it++) {
-    PetscCall(PetscArraycpy(from.l, a->l, a->rows->n));
-    PetscCall(PetscArraycpy(from.w, a->w, a->rows->n));
-    PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, &small));
-    if (small != SMALL_GOOD) break;
-    PetscCall(ActiveFindScale(a));
-    PetscCall(SoftenSearch(a, &from, &residual, &falls));
-    *converged = residual <= ENOUGH * a->scale ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt it = 0; it < a->max_it && drag <= MOST_DRAG && !*converged; it++, a->n_it++) {
+    PetscCall(Keep(a, residual, &from));
+    PetscCall(SoftenStep(a, &from, drag, &residual, &falls, &small));
+    if (small == SMALL_UNSOLVED) break;
+    if (!falls) {
+      drag = PetscMax(DRAG_FACTOR * drag, LEAST_DRAG);
+      continue;
+    }
+    drag = drag > LEAST_DRAG ? drag / DRAG_FACTOR : 0;
+    PetscCall(SoftenEnough(a, &enough));
+    *converged = residual <= enough ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(PetscFree2(from.l, from.w));
+  PetscCall(KeptDestroy(&from));
   PetscFunctionReturn(0);
 }
 
 /* Lowers the softness down to HARDEST, with a smaller step after a failure; converged at softness 0 */
-static PetscErrorCode SoftenLower(Active *a, const Kept *kept, PetscBool *converged)
+static PetscErrorCode SoftenLower(Active *a, Kept *kept, PetscBool *converged)
 {
   const PetscReal last = ActiveIsFew(a) ? LAST_FACTOR : LARGE_FACTOR;
   PetscReal       soft = SOFTEST, factor = FIRST_FACTOR;
@@ -120,16 +201,14 @@ static PetscErrorCode SoftenLower(Active *a, const Kept *kept, PetscBool *conver
   while (*converged && factor > last) {
     PetscReal next = soft <= HARD ? 0 : soft / factor;
 
-    PetscCall(PetscArraycpy(kept->l, a->l, a->rows->n));
-    PetscCall(PetscArraycpy(kept->w, a->w, a->rows->n));
+    PetscCall(Keep(a, 0, kept));
     do {
       SoftenSet(a, next);
       PetscCall(SoftenIterate(a, PETSC_TRUE, converged));
       if (*converged) break;
       if (next > 0) factor = PetscSqrtReal(factor);
       next = soft / factor;
-      PetscCall(PetscArraycpy(a->l, kept->l, a->rows->n));
-      PetscCall(PetscArraycpy(a->w, kept->w, a->rows->n));
+      PetscCall(GoBack(a, kept));
     } while (factor > last);
     if (next == 0) break;
     if (next < HARDEST) *converged = PETSC_FALSE;
@@ -145,12 +224,12 @@ PetscErrorCode ActiveSoften(Active *a, ActiveOutcome *outcome)
   Kept      kept;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(a->rows->n, &kept.l, a->rows->n, &kept.w));
+  PetscCall(KeptCreate(a, &kept));
   SoftenSet(a, SOFTEST);
   PetscCall(SoftenIterate(a, PETSC_FALSE, &converged));
   PetscCall(SoftenLower(a, &kept, &converged));
   SoftenSet(a, 0);
-  PetscCall(PetscFree2(kept.l, kept.w));
+  PetscCall(KeptDestroy(&kept));
   if (converged) PetscCall(ActiveIterate(a, PETSC_FALSE, outcome));
   PetscFunctionReturn(0);
 }

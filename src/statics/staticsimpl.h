@@ -217,9 +217,9 @@ PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, 
 /* repeat.c - whether the iterate was there before, among the last ones seen; remembers it */
 PETSC_INTERN PetscErrorCode RepeatFind(const Active *active, Repeat *seen, PetscBool *repeats);
 
-/* activeset.c - one small system at the present status, for l and w, or with homogeneous laws for what is added to them;
+/* activeset.c - one small system at the present status, for l and w, or of what is added to them;
    the largest contact displacement, force or gap, m */
-PETSC_INTERN PetscErrorCode ActiveLinear(Active *a, PetscBool homogeneous, const PetscReal rhs[], PetscReal l[],
+PETSC_INTERN PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], PetscReal l[],
                                          PetscReal w[], SmallOutcome *outcome);
 PETSC_INTERN PetscErrorCode ActiveFindScale(Active *active);
 /* Iterates from the present status at the present friction; sure changes fewer pairs at a time */
