@@ -85,6 +85,7 @@ PetscErrorCode ChainRun(Chain *chain)
   };
 
   PetscFunctionBeginUser;
+  if (!ChainIsInTime(chain)) PetscCall(ResultsBegin(chain->results, PETSC_FALSE)); /* those look for checkpoints before */
   PetscCall(ChainGivePencil(chain));
   PetscCall(SquealStageBegin(run[chain->analysis].stage));
   PetscCall(ChainSolve(chain));

@@ -149,11 +149,13 @@ typedef struct {
 } ResultsPiece;
 
 /*@
-   ResultsBinaryWrite - file `name` of the pieces of all ranks one after the other, those of rank 0 first. They are on
-   the disk, under the final name, when it returns; until then a file of that name stays as it is. Collective.
+   ResultsBinaryWrite - file `name` of the pieces of all ranks of a communicator one after the other, those of rank 0 first. They
+   are on the disk, under the final name, when it returns; until then a file of that name stays as it is. scene.yaml names the
+   file where it is `listed`. Collective on the communicator, which is that of the results, or of one rank and not listed.
    Errors: PETSC_ERR_FILE_WRITE with the file and the reason; the temporary file is removed.
 @*/
-PetscErrorCode ResultsBinaryWrite(Results results, const char name[], PetscInt n, const ResultsPiece pieces[]);
+PetscErrorCode ResultsBinaryWrite(Results results, MPI_Comm comm, const char name[], PetscBool listed, PetscInt n,
+                                  const ResultsPiece pieces[]);
 
 /*@ ResultsKeep - the file `name` in the folder belongs to this run; those that it writes do so anyway. Collective. @*/
 PetscErrorCode ResultsKeep(Results results, const char name[]);
@@ -171,6 +173,10 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
 -  ctx        - its context
 @*/
 PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
+
+/*@ ResultsBegin - writes scene.yaml, with `end: not yet`, where the folder has none, or in place of an earlier run's with
+    `replace`: for runs that keep something before they write a table. Once it is there, nothing is done. Collective. @*/
+PetscErrorCode ResultsBegin(Results results, PetscBool replace);
 
 /*@
    ResultsNote - a line "# key: text" of scene.yaml, what a run says of its errors. Collective; before ResultsFinish().

@@ -10,6 +10,8 @@
 #include "print.h"
 #include "interrupt.h"
 #include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -17,16 +19,30 @@ static const int             signals[]  = {SIGINT, SIGTERM};
 static volatile sig_atomic_t first_rank = 0;
 static pid_t                 launcher   = 0;
 static char                  removed[PETSC_MAX_PATH_LEN]; /* a file that goes then; empty for none */
+static char                  left[2][256] = {"nothing was finished"};
+static volatile sig_atomic_t said         = 0; /* which of them holds; the other one may be being written */
 
 static void InterruptEnd(int number, siginfo_t *info, void *ctx)
 {
+  char line[320] = "squeal: error: stopped by ";
+
   (void)ctx;
-  if (first_rank || info->si_pid != launcher)
-    PrintAtOnce(number == SIGINT
-                  ? "squeal: error: stopped by SIGINT; files that bear their final name are complete\n"
-                  : "squeal: error: stopped by SIGTERM; files that bear their final name are complete\n");
+  (void)strcat(line, number == SIGINT ? "SIGINT; " : "SIGTERM; ");
+  (void)strcat(line, left[said]);
+  (void)strcat(line, "\n");
+  if (first_rank || info->si_pid != launcher) PrintAtOnce(line);
   if (removed[0]) (void)unlink(removed);
   (void)raise(number); /* the action before is the default one again */
+}
+
+void InterruptSays(const char format[], ...)
+{
+  va_list values;
+
+  va_start(values, format);
+  (void)vsnprintf(left[!said], sizeof(left[0]), format, values);
+  va_end(values);
+  said = !said;
 }
 
 void InterruptRemoves(const char path[])

@@ -5,7 +5,6 @@
 #include <squeal/options.h>
 #include <squeal/projector.h>
 #include <squeal/quantity.h>
-#include "checkpoint.h"
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "dynamics/central/tscentral.h"

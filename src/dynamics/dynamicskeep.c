@@ -75,7 +75,7 @@ static PetscErrorCode DynamicsSumScene(Dynamics d)
 
 /* What is kept; contact and history are the caller's */
 static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscScalar *const a[],
-                                        CheckpointItem item[N_ITEMS])
+                                        JournalItem item[N_ITEMS])
 {
   const PetscInt n       = d->layout->n;
   PetscReal     *damping = d->layout->damping, *external;
@@ -83,16 +83,16 @@ static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscS
 
   PetscFunctionBeginUser;
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
-  item[SCALARS]   = (CheckpointItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
-  item[U]         = (CheckpointItem){"displacements", n, a[U]};
-  item[V]         = (CheckpointItem){"velocities", n, a[V]};
-  item[KU]        = (CheckpointItem){"stiffness forces", n, d->ku};
-  item[DAMPING]   = (CheckpointItem){"damping forces", damping ? n : 0, damping};
-  item[FORCE]     = (CheckpointItem){"forces", a[FORCE] ? n : 0, a[FORCE]};
-  item[FORCE_OLD] = (CheckpointItem){"forces before", a[FORCE_OLD] ? n : 0, a[FORCE_OLD]};
-  item[PROJECTOR] = (CheckpointItem){"contact", 0, NULL};
-  item[EXTERNAL]  = (CheckpointItem){"external", n_external, external};
-  item[HISTORY]   = (CheckpointItem){"history", 0, NULL};
+  item[SCALARS]   = (JournalItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
+  item[U]         = (JournalItem){"displacements", n, a[U]};
+  item[V]         = (JournalItem){"velocities", n, a[V]};
+  item[KU]        = (JournalItem){"stiffness forces", n, d->ku};
+  item[DAMPING]   = (JournalItem){"damping forces", damping ? n : 0, damping};
+  item[FORCE]     = (JournalItem){"forces", a[FORCE] ? n : 0, a[FORCE]};
+  item[FORCE_OLD] = (JournalItem){"forces before", a[FORCE_OLD] ? n : 0, a[FORCE_OLD]};
+  item[PROJECTOR] = (JournalItem){"contact", 0, NULL};
+  item[EXTERNAL]  = (JournalItem){"external", n_external, external};
+  item[HISTORY]   = (JournalItem){"history", 0, NULL};
   PetscFunctionReturn(0);
 }
 
@@ -187,7 +187,7 @@ static PetscErrorCode KeptArraysAccess(Dynamics d, PetscBool get, PetscScalar *a
 
 PetscErrorCode DynamicsKeep(Dynamics d)
 {
-  CheckpointItem item[N_ITEMS];
+  JournalItem item[N_ITEMS];
   PetscScalar   *arrays[N_VECTORS];
   KeptScalars    scalars;
 
@@ -200,7 +200,7 @@ PetscErrorCode DynamicsKeep(Dynamics d)
   PetscCall(DynamicsListItems(d, &scalars, arrays, item));
   if (d->projector) PetscCall(ContactProjectorGetMemory(d->projector, &item[PROJECTOR].n, &item[PROJECTOR].values));
   PetscCall(HistoryGetMemory(d->history, &item[HISTORY].n, &item[HISTORY].values));
-  PetscCall(CheckpointWrite(d->comm, d->results, d->scene, N_ITEMS, item));
+  PetscCall(JournalWrite(&CHECKPOINTS(d), CHECKPOINT_FILE, N_ITEMS, item));
   PetscCall(PetscFree(item[HISTORY].values));
   PetscCall(PetscFree(item[PROJECTOR].values));
   PetscCall(KeptArraysAccess(d, PETSC_FALSE, arrays));
@@ -210,16 +210,18 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
-  CheckpointItem item[N_ITEMS];
+  JournalItem item[N_ITEMS];
   PetscScalar   *arrays[N_VECTORS];
   KeptScalars    scalars;
+  Fault          fault;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsSumScene(d));
   PetscCall(KeptArraysAccess(d, PETSC_TRUE, arrays));
   PetscCall(DynamicsListItems(d, &scalars, arrays, item));
   item[PROJECTOR].n = item[HISTORY].n = -1;
-  PetscCall(CheckpointRead(d->comm, d->results, d->scene, N_ITEMS, item));
+  PetscCall(JournalRead(&CHECKPOINTS(d), CHECKPOINT_FILE, N_ITEMS, item, &fault));
+  PetscCall(FaultsRaise(d->comm, &fault));
   PetscCall(KeptScalarsSet(d, &scalars));
   if (d->projector) PetscCall(ContactProjectorSetMemory(d->projector, item[PROJECTOR].n, item[PROJECTOR].values));
   PetscCall(HistorySetMemory(d->history, item[HISTORY].n, item[HISTORY].values));
@@ -235,13 +237,13 @@ PetscErrorCode DynamicsCheckEarlier(Dynamics d)
   const char    *dir;
   PetscMPIInt    rank;
   PetscBool      unfinished = PETSC_FALSE;
-  CheckpointKind kind;
+  JournalKind kind;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
   PetscCall(ResultsGetDirectory(d->results, &dir));
-  PetscCall(CheckpointFind(d->comm, d->results, &kind));
-  PetscCheck(kind != CHECKPOINT_FOREIGN || !d->checkpoint_interval, d->comm, PETSC_ERR_FILE_UNEXPECTED,
+  PetscCall(JournalFind(d->comm, d->results, CHECKPOINT_FILE, &kind));
+  PetscCheck(kind != JOURNAL_FOREIGN || !d->checkpoint_interval, d->comm, PETSC_ERR_FILE_UNEXPECTED,
              "%s/%s is no checkpoint of squeal, and -dynamics_checkpoint_interval would replace it; choose another "
              "-output_dir",
              dir, CHECKPOINT_FILE);
@@ -249,10 +251,11 @@ PetscErrorCode DynamicsCheckEarlier(Dynamics d)
   if (rank == 0 && !access(part, F_OK)) unfinished = PETSC_TRUE;
   PetscCallMPI(MPI_Bcast(&unfinished, 1, MPIU_BOOL, 0, d->comm));
   PetscCheck(
-    kind != CHECKPOINT_OURS || !unfinished, d->comm, PETSC_ERR_USER_INPUT,
+    kind != JOURNAL_OURS || !unfinished, d->comm, PETSC_ERR_USER_INPUT,
     "%s/%s of an unfinished run would be lost: go on with it by -dynamics_restart, choose another -output_dir, "
     "or delete it",
     dir, CHECKPOINT_FILE);
+  PetscCall(ResultsBegin(d->results, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
@@ -261,11 +264,11 @@ PetscErrorCode DynamicsForget(Dynamics d)
   char           path[PETSC_MAX_PATH_LEN];
   const char    *dir;
   PetscMPIInt    rank, error = 0;
-  CheckpointKind kind;
+  JournalKind kind;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckpointFind(d->comm, d->results, &kind));
-  if (kind != CHECKPOINT_OURS) PetscFunctionReturn(0);
+  PetscCall(JournalFind(d->comm, d->results, CHECKPOINT_FILE, &kind));
+  if (kind != JOURNAL_OURS) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
   PetscCall(ResultsGetDirectory(d->results, &dir));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", dir, CHECKPOINT_FILE));

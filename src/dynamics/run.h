@@ -7,6 +7,11 @@
 #include <squeal/dynamics.h>
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
+#include "results/journal/journal.h"
+
+#define CHECKPOINT_FILE "checkpoint.bin"
+/* The checkpoints of a Dynamics or of a ReducedRun, once the checksum of their scene is made */
+#define CHECKPOINTS(r) ((Journal){(r)->comm, (r)->results, (r)->scene, "-dynamics_restart", NULL})
 
 /* All borrowed */
 typedef struct {

@@ -56,46 +56,46 @@ static PetscErrorCode ReducedSumScene(ReducedRun r)
 }
 
 /* The model; modes are the local part of Phi [m][own unknowns] */
-static void ReducedListModel(ReducedRun r, PetscInt n_own, PetscScalar modes[], CheckpointItem item[KEPT_N_ITEMS])
+static void ReducedListModel(ReducedRun r, PetscInt n_own, PetscScalar modes[], JournalItem item[KEPT_N_ITEMS])
 {
   ReducedModel  *model = &r->model;
   const PetscInt m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
 
-  item[KEPT_OMEGA2]     = (CheckpointItem){"frequencies", m, model->omega2};
-  item[KEPT_DAMPING]    = (CheckpointItem){"damping", model->C ? m * m : 0, model->C};
-  item[KEPT_SHAPES]     = (CheckpointItem){"shapes", m * N, model->P};
-  item[KEPT_COMPLIANCE] = (CheckpointItem){"compliance", N * N, model->W};
-  item[KEPT_COUPLING]   = (CheckpointItem){"coupling", model->Cm ? m * n : 0, model->Cm};
-  item[KEPT_VISCOUS]    = (CheckpointItem){"damping of the residual", model->Cx ? n * n : 0, model->Cx};
-  item[KEPT_KICKS]      = (CheckpointItem){"kicks", r->n_hits * m, r->hits};
-  item[KEPT_MODES]      = (CheckpointItem){"modes", m * n_own, modes};
+  item[KEPT_OMEGA2]     = (JournalItem){"frequencies", m, model->omega2};
+  item[KEPT_DAMPING]    = (JournalItem){"damping", model->C ? m * m : 0, model->C};
+  item[KEPT_SHAPES]     = (JournalItem){"shapes", m * N, model->P};
+  item[KEPT_COMPLIANCE] = (JournalItem){"compliance", N * N, model->W};
+  item[KEPT_COUPLING]   = (JournalItem){"coupling", model->Cm ? m * n : 0, model->Cm};
+  item[KEPT_VISCOUS]    = (JournalItem){"damping of the residual", model->Cx ? n * n : 0, model->Cx};
+  item[KEPT_KICKS]      = (JournalItem){"kicks", r->n_hits * m, r->hits};
+  item[KEPT_MODES]      = (JournalItem){"modes", m * n_own, modes};
 }
 
 /* The state */
 static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal status[],
-                             CheckpointItem item[KEPT_N_ITEMS])
+                             JournalItem item[KEPT_N_ITEMS])
 {
   const PetscInt m = r->model.m, n = r->model.n_pairs, N = r->model.n_ports;
 
-  item[KEPT_SCALARS]       = (CheckpointItem){"scalars", N_REALS(ReducedScalars), (PetscReal *)scalars};
-  item[KEPT_COORDINATES]   = (CheckpointItem){"coordinates", m, r->state.eta};
-  item[KEPT_RATES]         = (CheckpointItem){"rates", m, r->state.rate};
-  item[KEPT_FORCES]        = (CheckpointItem){"forces", N, r->state.p};
-  item[KEPT_LAST]          = (CheckpointItem){"forces before", N, r->state.last};
-  item[KEPT_RESIDUAL]      = (CheckpointItem){"residual", 3 * n, r->state.q};
-  item[KEPT_DISPLACEMENTS] = (CheckpointItem){"displacements", 3 * n, r->state.y};
-  item[KEPT_STATUS]        = (CheckpointItem){"status", n, status};
-  item[KEPT_SLIP]          = (CheckpointItem){"slip", 2 * n, r->report.slip};
-  item[KEPT_SHOWN]         = (CheckpointItem){"rates of forces", 2 * N, r->p_rate};
-  item[KEPT_SUMS]          = (CheckpointItem){"sums", r->run.n_interfaces * N_REALS(ContactSums), (PetscReal *)r->sums};
-  item[KEPT_LAWS]          = (CheckpointItem){"contact laws", 0, NULL};
-  item[KEPT_HISTORY]       = (CheckpointItem){"history", 0, NULL};
+  item[KEPT_SCALARS]       = (JournalItem){"scalars", N_REALS(ReducedScalars), (PetscReal *)scalars};
+  item[KEPT_COORDINATES]   = (JournalItem){"coordinates", m, r->state.eta};
+  item[KEPT_RATES]         = (JournalItem){"rates", m, r->state.rate};
+  item[KEPT_FORCES]        = (JournalItem){"forces", N, r->state.p};
+  item[KEPT_LAST]          = (JournalItem){"forces before", N, r->state.last};
+  item[KEPT_RESIDUAL]      = (JournalItem){"residual", 3 * n, r->state.q};
+  item[KEPT_DISPLACEMENTS] = (JournalItem){"displacements", 3 * n, r->state.y};
+  item[KEPT_STATUS]        = (JournalItem){"status", n, status};
+  item[KEPT_SLIP]          = (JournalItem){"slip", 2 * n, r->report.slip};
+  item[KEPT_SHOWN]         = (JournalItem){"rates of forces", 2 * N, r->p_rate};
+  item[KEPT_SUMS]          = (JournalItem){"sums", r->run.n_interfaces * N_REALS(ContactSums), (PetscReal *)r->sums};
+  item[KEPT_LAWS]          = (JournalItem){"contact laws", 0, NULL};
+  item[KEPT_HISTORY]       = (JournalItem){"history", 0, NULL};
 }
 
 PetscErrorCode ReducedKeep(ReducedRun r)
 {
   ReducedScalars scalars = {(PetscReal)r->step, r->dt, r->state.time, r->n_its, r->kkt, r->ledger};
-  CheckpointItem item[KEPT_N_ITEMS];
+  JournalItem item[KEPT_N_ITEMS];
   PetscReal     *status;
   PetscScalar   *modes;
   PetscInt       n_own;
@@ -111,7 +111,7 @@ PetscErrorCode ReducedKeep(ReducedRun r)
   ReducedListItems(r, &scalars, status, item);
   PetscCall(ContactComplianceGetMemory(r->stepper->laws, &item[KEPT_LAWS].n, &item[KEPT_LAWS].values));
   PetscCall(HistoryGetMemory(r->run.history, &item[KEPT_HISTORY].n, &item[KEPT_HISTORY].values));
-  PetscCall(CheckpointWrite(r->comm, r->results, r->scene, KEPT_N_ITEMS, item));
+  PetscCall(JournalWrite(&CHECKPOINTS(r), CHECKPOINT_FILE, KEPT_N_ITEMS, item));
   PetscCall(MatDenseRestoreArray(r->Phi, &modes));
   PetscCall(PetscFree(item[KEPT_HISTORY].values));
   PetscCall(PetscFree(item[KEPT_LAWS].values));
@@ -137,7 +137,8 @@ static PetscErrorCode ReducedCheckScalars(ReducedRun r, const ReducedScalars *s)
 PetscErrorCode ReducedGoOn(ReducedRun r)
 {
   ReducedScalars scalars;
-  CheckpointItem item[KEPT_N_ITEMS];
+  Fault          fault;
+  JournalItem item[KEPT_N_ITEMS];
   PetscReal     *status;
   PetscScalar   *modes;
   PetscInt       n_own;
@@ -150,7 +151,8 @@ PetscErrorCode ReducedGoOn(ReducedRun r)
   ReducedListModel(r, n_own, modes, item);
   ReducedListItems(r, &scalars, status, item);
   item[KEPT_LAWS].n = item[KEPT_HISTORY].n = -1;
-  PetscCall(CheckpointRead(r->comm, r->results, r->scene, KEPT_N_ITEMS, item));
+  PetscCall(JournalRead(&CHECKPOINTS(r), CHECKPOINT_FILE, KEPT_N_ITEMS, item, &fault));
+  PetscCall(FaultsRaise(r->comm, &fault));
   PetscCall(MatDenseRestoreArray(r->Phi, &modes));
   PetscCall(ReducedWeighModes(r));
   PetscCall(ReducedCheckScalars(r, &scalars));

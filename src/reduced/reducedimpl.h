@@ -5,7 +5,6 @@
 #include <squeal/quantity.h>
 #include <squeal/reduced.h>
 #include "contact/compliance/contactcompliance.h"
-#include "dynamics/checkpoint.h"
 #include "dynamics/history/history.h"
 #include "dynamics/run.h"
 #include "solver/dense.h"

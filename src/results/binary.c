@@ -1,5 +1,5 @@
 /*
-   Binary files: every rank writes its pieces in place and flushes them to the disk; then the first rank renames the
+   Binary files: every rank of a communicator writes its pieces in place and flushes them to the disk; then the first rank renames the
    file and flushes the folder, without which a crash of the machine may take the new name back.
 */
 #include "resultsimpl.h"
@@ -36,18 +36,20 @@ static PetscErrorCode OutFileFlushFolder(OutFile *file, const char dir[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResultsBinaryWrite(Results results, const char name[], PetscInt n, const ResultsPiece pieces[])
+PetscErrorCode ResultsBinaryWrite(Results results, MPI_Comm comm, const char name[], PetscBool listed, PetscInt n,
+                                  const ResultsPiece pieces[])
 {
   uint64_t    offset = 0, size = 0;
   PetscMPIInt rank;
   OutFile     opened, *file = &opened;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   for (PetscInt i = 0; i < n; i++) size += pieces[i].size;
-  PetscCallMPI(MPI_Exscan(&size, &offset, 1, MPI_UINT64_T, MPI_SUM, results->comm));
+  PetscCallMPI(MPI_Exscan(&size, &offset, 1, MPI_UINT64_T, MPI_SUM, comm));
   if (rank == 0) offset = 0; /* MPI leaves it undefined there */
-  PetscCall(OutFileSetName(results, name, "", file));
+  PetscCall(OutFileSetPath(results, comm, name, "", file));
+  if (listed) PetscCall(ResultsKeep(results, name));
   PetscCall(OutFileOpenBinary(file));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(OutFileWriteAt(file, pieces[i].bytes, pieces[i].size, (off_t)offset));

@@ -159,7 +159,9 @@ PetscErrorCode EarlierRead(Results results)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
+  if (rank == 0) results->has_earlier = access(path, F_OK) ? PETSC_FALSE : PETSC_TRUE;
   if (rank == 0) PetscCall(SceneRead(results, path, &error));
+  PetscCallMPI(MPI_Bcast(&results->has_earlier, 1, MPIU_BOOL, 0, results->comm));
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
              "cannot read %s, which names the files of earlier runs: %s; remove it, or choose another -output_dir", path,

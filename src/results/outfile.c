@@ -12,11 +12,11 @@
 
 #define TEXT_BLOCK 65536 /* bytes */
 
-/* Names the file `name``extension` in the folder of the results; nothing is opened */
-PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file)
+/* Names the file `name``extension` of some ranks in the folder of the results; nothing is opened */
+PetscErrorCode OutFileSetPath(Results results, MPI_Comm comm, const char name[], const char extension[], OutFile *file)
 {
   PetscFunctionBeginUser;
-  file->comm    = results->comm;
+  file->comm    = comm;
   file->results = results;
   file->keep    = PETSC_FALSE;
   file->error   = 0;
@@ -30,6 +30,14 @@ PetscErrorCode OutFileSetName(Results results, const char name[], const char ext
   file->summed  = 0;
   PetscCall(PetscSNPrintf(file->name, sizeof(file->name), "%s/%s%s", results->dir, name, extension));
   PetscCall(PetscSNPrintf(file->part, sizeof(file->part), "%s/%s%s.part", results->dir, name, extension));
+  PetscFunctionReturn(0);
+}
+
+/* The same of all ranks, which scene.yaml lists */
+PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OutFileSetPath(results, results->comm, name, extension, file));
   PetscCall(ResultsKeep(results, file->name + strlen(results->dir) + 1));
   PetscFunctionReturn(0);
 }
@@ -269,7 +277,7 @@ PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
     PetscCall(OutFileH5Close(files[i]));
   }
   PetscCall(OutFilesCheck(n, files));
-  failure = ResultsListFiles(files[0]->results);
+  failure = files[0]->comm == files[0]->results->comm ? ResultsListFiles(files[0]->results) : 0;
   for (PetscInt i = 0; i < n && failure; i++) PetscCall(OutFileDiscard(files[i]));
   PetscCall(failure);
   PetscCallMPI(MPI_Comm_rank(files[0]->comm, &rank));

@@ -4,6 +4,7 @@
 */
 #include "resultsimpl.h"
 #include "base/help.h"
+#include "base/interrupt.h"
 #include <squeal/options.h>
 #include <squeal/sys.h>
 #include <stdlib.h>
@@ -246,9 +247,19 @@ PetscErrorCode ResultsListFiles(Results results)
 {
   PetscFunctionBeginUser;
   if (!results->options.n) PetscFunctionReturn(0); /* no run without ResultsKeepScene() */
-  if (results->n_listed == results->n_kept)
+  if (results->n_listed && results->n_listed == results->n_kept)
     PetscFunctionReturn(0); /* also scene.yaml itself, published as others are */
   PetscCall(SceneWrite(results, PETSC_FALSE));
+  if (results->n_kept > 1) InterruptSays("files that bear their final name are complete");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsBegin(Results results, PetscBool replace)
+{
+  PetscFunctionBeginUser;
+  if (results->n_listed || (results->has_earlier && !replace)) PetscFunctionReturn(0);
+  PetscCall(ResultsListFiles(results));
+  if (results->n_listed) InterruptSays("nothing was finished; scene.yaml repeats the run");
   PetscFunctionReturn(0);
 }
 

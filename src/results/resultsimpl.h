@@ -31,6 +31,7 @@ struct _p_Results {
   char    **earlier;      /* those that earlier runs wrote and this one does not keep, on the first rank */
   char    **note;         /* lines of scene.yaml */
   PetscBool keep_all;     /* nothing of earlier runs goes */
+  PetscBool has_earlier;  /* the folder had a scene.yaml of an earlier run, alike on all ranks */
   PetscInt  n_listed;     /* files that scene.yaml of this run names, 0 before it is there */
   HelpList  options;      /* all, as the run found them */
   double    begun;        /* MPI_Wtime() */
@@ -80,6 +81,8 @@ struct _p_ResultsField {
 
 /* outfile.c */
 PETSC_INTERN PetscErrorCode OutFileSetName(Results results, const char name[], const char extension[], OutFile *file);
+PETSC_INTERN PetscErrorCode OutFileSetPath(Results results, MPI_Comm comm, const char name[], const char extension[],
+                                           OutFile *file);
 PETSC_INTERN PetscErrorCode OutFileNote(OutFile *file, PetscBool failed);
 PETSC_INTERN PetscErrorCode OutFileOpenText(OutFile *file);
 PETSC_INTERN PetscErrorCode OutFileReopenText(OutFile *file, const char head[], const ResultsMark *mark);

@@ -69,15 +69,22 @@ PetscErrorCode SweepBrute(Sweep sweep)
 {
   LinePoints points;
   Follow     follow = {0};
+  PetscBool  taken;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
+  PetscCall(SweepResumePlaces(sweep, &follow));
   for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
     const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 
     PetscCall(LineCreate(sweep, line, &points));
     PetscCall(PetscCalloc1(points.n, &points.name));
-    for (PetscInt i = 0; i < points.n; i++) PetscCall(PointSolve(sweep, i, &points, &follow));
+    for (PetscInt i = 0; i < points.n; i++) {
+      PetscCall(SweepTakePlace(sweep, i, &points, &taken));
+      if (taken) continue;
+      PetscCall(PointSolve(sweep, i, &points, &follow));
+      PetscCall(SweepKeepPlace(sweep, i, &points, &follow));
+    }
     PetscCall(LineFinish(sweep, n_before, first_event, &points));
     PetscCall(LineDestroy(&points));
   }

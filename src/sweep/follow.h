@@ -33,5 +33,14 @@ PETSC_INTERN PetscErrorCode FollowMove(const ReducedModes *modes, PetscInt size,
    parameter 1 is that of the point before; the point takes a copy of its damping */
 PETSC_INTERN PetscErrorCode FollowModel(Pencil pencil, const FollowPoint *from, FollowPoint *point, Reduced *reduced);
 PETSC_INTERN PetscErrorCode FollowModelDestroy(Reduced *reduced);
+/* followkeep.c - a point behind others in a pack, or out of it into a new one, with its vectors beside it */
+PETSC_INTERN PetscErrorCode FollowPointMove(MPI_Comm comm, JournalPack *pack, FollowPoint *point, JournalItem *vectors);
+
+/* keptpoints.c - goes on from what is kept of a sweep in full, or on real modes: all but the places; then place i of a line, as long as
+   it is one of these; keeps the sweep after place i. Collective. */
+PETSC_INTERN PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow);
+PETSC_INTERN PetscErrorCode SweepTakePlace(Sweep sweep, PetscInt i, LinePoints *points, PetscBool *taken);
+PETSC_INTERN PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follow *follow);
+
 /* Leaves of the basis what the vectors of the point and its memory span */
 PETSC_INTERN PetscErrorCode FollowShrink(FollowPoint *point);

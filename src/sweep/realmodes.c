@@ -2,7 +2,7 @@
    Projection on real modes, for comparison with other programs: at each point the pencil is projected on real modes of that
    point (basis/fill.c), as a deck for each value does it. Nothing joins two points: there are no branches and no onsets.
 */
-#include "line.h"
+#include "follow.h"
 
 #define SHIFT_LOW  0.1  /* of the lower end of the band, */
 #define SHIFT_HIGH 1e-3 /* or of the upper one: distance of the shift below zero, where zeros are regular */
@@ -55,14 +55,22 @@ static PetscErrorCode PlaceSolve(Sweep sweep, PetscInt i, LinePoints *points)
 PetscErrorCode SweepReal(Sweep sweep)
 {
   LinePoints points;
+  Follow     none = {NULL, NULL}; /* no branches are followed */
+  PetscBool  taken;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
+  PetscCall(SweepResumePlaces(sweep, &none));
   for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
     PetscCall(LineCreate(sweep, line, &points));
     PetscCall(PetscCalloc1(points.n, &points.name));
-    for (PetscInt i = 0; i < points.n; i++)
-      if (sweep->grid.place[points.first + i].point >= 0) PetscCall(PlaceSolve(sweep, i, &points));
+    for (PetscInt i = 0; i < points.n; i++) {
+      if (sweep->grid.place[points.first + i].point < 0) continue;
+      PetscCall(SweepTakePlace(sweep, i, &points, &taken));
+      if (taken) continue;
+      PetscCall(PlaceSolve(sweep, i, &points));
+      PetscCall(SweepKeepPlace(sweep, i, &points, &none));
+    }
     PetscCall(LineFinish(sweep, 0, 0, &points));
     PetscCall(LineDestroy(&points));
   }

@@ -1,30 +1,18 @@
 /*
-   Full solutions are kept in the output folder until the sweep is complete, so that a killed sweep goes on where it stopped. Each
-   rank writes its part of the new vectors after every full solution, sweep_restart_<k>_rank<r>, under a temporary name that becomes
-   final only when all have written. The dense model is made again from the same blocks of vectors: on one rank bit by bit the
-   same. The checksum of the scene tells whether the files belong to this sweep, and one of all that stands before it, at the end
-   of each file, whether it is whole. Files of another sweep and damaged ones are named, not read, and in the end replaced.
+   What a killed sweep goes on from, in files of the output folder until it is complete: the full solutions behind the basis of a
+   reduced sweep, after each of them a file sweep_restart_<k> with its new vectors. The dense model is made again from the same
+   blocks of vectors: on one rank bit by bit the same. Files of another sweep and damaged ones are named, not read, and in the end
+   replaced. Sweeps that have no basis keep their points (keptpoints.c).
 */
 #include "sweepimpl.h"
-#include "base/file.h"
+#include "base/interrupt.h"
 #include "base/path.h"
-#include <unistd.h>
 
-#define VERSION         6       /* of the format */
-#define SWEEP_MAX_PARTS 1000    /* of a scene; more are none */
-#define PIECE           1048576 /* bytes read at once */
-
-/* What stands before the parts of the scene and the vectors in each file */
+/* What stands before the ends of blocks and the samples in each file */
 typedef struct {
   PetscReal last, fall, reach;
-  PetscInt  version, n_parts, n_parameters, n_samples, n_passed, n_used, first, n, n_blocks, n_local;
-} Header;
-
-/* A file; good until something fails */
-typedef struct {
-  FILE     *file;
-  PetscBool write, good;
-} Stream;
+  PetscInt  n_samples, n_passed, n_used, first, n, n_blocks;
+} BasisHeader;
 
 /* The places, and the values of all parameters there: what was identified and which pairs are closed belong to them */
 static PetscErrorCode GridAddChecksum(const SweepGrid *grid, Checksum c)
@@ -65,6 +53,7 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
   PetscCall(ChecksumSetPart(c, "the sweep"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
+  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){(PetscInt)sweep->method, (PetscInt)sweep->real_stiffness, sweep->n_real}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
     PetscCall(ChecksumAddInts(c, 1, &grid->n_moved[k]));
@@ -75,206 +64,134 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscFunctionReturn(0);
 }
 
-/* Name of file k of this rank */
-static PetscErrorCode FileName(Sweep sweep, PetscInt k, const char ending[], char name[PETSC_MAX_PATH_LEN])
+PetscErrorCode SweepJournalOpen(Sweep sweep)
 {
-  PetscMPIInt rank;
-
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(sweep->comm, &rank));
-  PetscCall(PetscSNPrintf(name, PETSC_MAX_PATH_LEN, "%s/sweep_restart_%03d_rank%d%s", sweep->folder, (int)k, (int)rank,
-                          ending));
+  PetscCall(ChecksumCreate(sweep->comm, &sweep->journal.scene));
+  PetscCall(SweepAddChecksum(sweep, sweep->journal.scene));
+  sweep->journal = (Journal){sweep->comm, sweep->results, sweep->journal.scene, "a sweep", "sweep"};
   PetscFunctionReturn(0);
 }
 
-/* Reads or writes n items */
-static void Transfer(Stream *s, void *data, size_t size, PetscInt n)
-{
-  const size_t done = !s->good   ? 0
-                      : s->write ? fwrite(data, size, (size_t)n, s->file)
-                                 : fread(data, size, (size_t)n, s->file);
-
-  if (done != (size_t)n) s->good = PETSC_FALSE;
-}
-
-/* The vectors first .. n - 1 of this rank */
-static PetscErrorCode VectorsTransfer(Stream *s, BV vectors, const Header *h)
+PetscErrorCode SweepFileName(PetscInt k, char name[64])
 {
   PetscFunctionBeginUser;
-  for (PetscInt j = h->first; j < h->n; j++) {
-    PetscScalar *array;
+  PetscCall(PetscSNPrintf(name, 64, "sweep_restart_%03d", (int)k));
+  PetscFunctionReturn(0);
+}
+
+/* Ends of blocks and samples, all that there are by now */
+static PetscErrorCode BasisRecordsMove(Sweep sweep, const BasisHeader *h, JournalPack *pack)
+{
+  PetscFunctionBeginUser;
+  PetscCall(JournalPackMove(pack, sweep->basis.block_end, sizeof(PetscInt) * (size_t)h->n_blocks));
+  for (PetscInt i = 0; i < h->n_samples && (pack->write || pack->good); i++) {
+    GreedySample *sample = &sweep->greedy.sample[i];
+
+    if (!sample->p) PetscCall(PetscMalloc1(sweep->grid.n_parameters, &sample->p));
+    PetscCall(JournalPackMove(pack, sample->p, sizeof(PetscReal) * (size_t)sweep->grid.n_parameters));
+    PetscCall(JournalPackMove(pack, &sample->krylov, sizeof(sample->krylov)));
+    PetscCall(JournalPackMove(pack, &sample->factored, sizeof(sample->factored)));
+    PetscCall(JournalPackMove(pack, &sample->n_vectors, sizeof(sample->n_vectors)));
+    PetscCall(JournalPackMove(pack, &sample->estimate, sizeof(sample->estimate)));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepVectorsMove(BV vectors, PetscInt first, PetscInt n, PetscBool read, PetscReal values[])
+{
+  PetscInt n_local;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetSizes(vectors, &n_local, NULL, NULL));
+  for (PetscInt j = first; j < n; j++) {
+    PetscScalar *array, *kept = &values[(j - first) * n_local];
     Vec          v;
 
     PetscCall(BVGetColumn(vectors, j, &v));
     PetscCall(VecGetArray(v, &array));
-    Transfer(s, array, sizeof(PetscScalar), h->n_local);
+    PetscCall(PetscArraycpy(read ? array : kept, read ? kept : array, n_local));
     PetscCall(VecRestoreArray(v, &array));
     PetscCall(BVRestoreColumn(vectors, j, &v));
   }
   PetscFunctionReturn(0);
 }
 
-/* Samples and ends of blocks, all that there are by now */
-static PetscErrorCode RecordsTransfer(Sweep sweep, Stream *s, const Header *h)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < h->n_samples && s->good; i++) {
-    GreedySample *sample = &sweep->greedy.sample[i];
-
-    if (!sample->p) PetscCall(PetscMalloc1(sweep->grid.n_parameters, &sample->p));
-    Transfer(s, sample->p, sizeof(PetscReal), sweep->grid.n_parameters);
-    Transfer(s, &sample->krylov, sizeof(sample->krylov), 1);
-    Transfer(s, &sample->factored, sizeof(sample->factored), 1);
-    Transfer(s, &sample->n_vectors, sizeof(sample->n_vectors), 1);
-    Transfer(s, &sample->estimate, sizeof(sample->estimate), 1);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Whether all ranks agree that it is good */
-static PetscErrorCode AllGood(MPI_Comm comm, PetscBool *good)
-{
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, good, 1, MPIU_BOOL, MPI_LAND, comm));
-  PetscFunctionReturn(0);
-}
-
-/* The checksum of all that stands in a file: appended, or compared with the one at its end */
-static PetscErrorCode FileSeal(const char name[], PetscBool append, PetscBool *good)
-{
-  FILE    *file = *good ? FileStream(name, append ? "r+b" : "rb") : NULL;
-  char    *piece;
-  uint64_t sum = CHECKSUM_BEGIN, last = 0;
-  long     left = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(PIECE, &piece));
-  *good = file && !fseek(file, 0, SEEK_END) && (left = ftell(file)) >= 0 ? PETSC_TRUE : PETSC_FALSE;
-  left -= append ? 0 : (long)sizeof(last);
-  if (file) rewind(file);
-  for (*good = *good && left >= 0 ? PETSC_TRUE : PETSC_FALSE; *good && left > 0;) {
-    const size_t size = left < PIECE ? (size_t)left : PIECE;
-
-    if (fread(piece, 1, size, file) != size) *good = PETSC_FALSE;
-    sum = ChecksumBytes(sum, piece, size);
-    left -= (long)size;
-  }
-  if (*good && append && (fseek(file, 0, SEEK_END) || fwrite(&sum, sizeof(sum), 1, file) != 1)) *good = PETSC_FALSE;
-  if (*good && !append && (fread(&last, sizeof(last), 1, file) != 1 || last != sum)) *good = PETSC_FALSE;
-  if (file && fclose(file)) *good = PETSC_FALSE;
-  PetscCall(PetscFree(piece));
-  PetscFunctionReturn(0);
-}
-
 /* What the next file holds */
-static PetscErrorCode HeaderSet(Sweep sweep, PetscInt n_parts, Header *h)
+static BasisHeader HeaderOf(Sweep sweep)
 {
   const Basis  *basis  = &sweep->basis;
   const Greedy *greedy = &sweep->greedy;
 
-  PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(h, sizeof(*h))); /* what lies between the members is written too */
-  h->version      = VERSION;
-  h->n_parts      = n_parts;
-  h->n_parameters = sweep->grid.n_parameters;
-  h->last         = greedy->last;
-  h->n_passed     = greedy->n_passed;
-  h->fall         = greedy->fall;
-  h->reach        = greedy->reach;
-  h->n_samples    = greedy->n_samples;
-  h->n_used       = basis->reduced.n_used;
-  h->first        = sweep->n_kept;
-  h->n            = basis->reduced.n;
-  h->n_blocks     = basis->n_blocks;
-  PetscCall(BVGetSizes(basis->vectors, &h->n_local, NULL, NULL));
-  PetscFunctionReturn(0);
+  return (BasisHeader){.last      = greedy->last,
+                       .fall      = greedy->fall,
+                       .reach     = greedy->reach,
+                       .n_samples = greedy->n_samples,
+                       .n_passed  = greedy->n_passed,
+                       .n_used    = basis->reduced.n_used,
+                       .first     = sweep->n_kept,
+                       .n         = basis->reduced.n,
+                       .n_blocks  = basis->n_blocks};
 }
 
 PetscErrorCode SweepKeep(void *ctx)
 {
-  Sweep               sweep = (Sweep)ctx;
-  Basis              *basis = &sweep->basis;
-  const ChecksumPart *scene;
-  char                name[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
-  Stream              s    = {.write = PETSC_TRUE};
-  PetscBool           good = PETSC_TRUE;
-  PetscInt            n_parts;
-  Header              h;
+  Sweep       sweep = (Sweep)ctx;
+  Basis      *basis = &sweep->basis;
+  BasisHeader h     = HeaderOf(sweep);
+  JournalPack pack  = {.write = PETSC_TRUE};
+  JournalItem item[2];
+  PetscReal  *values;
+  char        name[64];
+  PetscInt    n_local;
+  PetscBool   kept;
 
   PetscFunctionBeginUser;
-  PetscCall(ChecksumGetParts(sweep->scene, &n_parts, &scene));
-  PetscCall(HeaderSet(sweep, n_parts, &h));
-  PetscCall(FileName(sweep, sweep->n_files, "", name));
-  PetscCall(FileName(sweep, sweep->n_files, ".part", part));
-  s.file = FileCreateStream(part, "wb");
-  s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
-  Transfer(&s, &h, sizeof(h), 1);
-  Transfer(&s, (void *)scene, sizeof(*scene), h.n_parts);
-  Transfer(&s, basis->block_end, sizeof(PetscInt), h.n_blocks);
-  PetscCall(RecordsTransfer(sweep, &s, &h));
-  PetscCall(VectorsTransfer(&s, basis->vectors, &h));
-  if (s.file && fclose(s.file)) s.good = PETSC_FALSE;
-  PetscCall(FileSeal(part, PETSC_TRUE, &s.good));
-  good = s.good;
-  PetscCall(AllGood(sweep->comm, &good));
-  if (good && rename(part, name)) good = PETSC_FALSE;
-  if (!good) (void)unlink(part);
-  PetscCall(AllGood(sweep->comm, &good));
-  if (!good) { /* the sweep itself needs no such file */
-    PetscCall(
-      PetscFPrintf(sweep->comm, stderr, "squeal: warning: cannot write '%s'; a killed sweep will begin anew\n", name));
-    sweep->greedy.keep = NULL;
-    PetscFunctionReturn(0);
-  }
-  sweep->n_kept = basis->reduced.n;
+  PetscCall(SweepFileName(sweep->n_files, name));
+  PetscCall(JournalPackMove(&pack, &h, sizeof(h)));
+  PetscCall(BasisRecordsMove(sweep, &h, &pack));
+  PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
+  PetscCall(PetscMalloc1((h.n - h.first) * n_local, &values));
+  PetscCall(SweepVectorsMove(basis->vectors, h.first, h.n, PETSC_FALSE, values));
+  item[0] = (JournalItem){"samples", pack.n, pack.word};
+  item[1] = (JournalItem){"vectors", (h.n - h.first) * n_local, values};
+  PetscCall(JournalKeep(&sweep->journal, name, 2, item, &kept));
+  PetscCall(PetscFree(values));
+  PetscCall(JournalPackDestroy(&pack));
+  if (!kept) sweep->greedy.keep = NULL; /* the sweep itself needs no such file */
+  if (!kept) PetscFunctionReturn(0);
+  sweep->n_kept = h.n;
   sweep->n_files++;
-  PetscFunctionReturn(0);
-}
-
-/* Reads the parts of the scene; s->good = whether they are those of this sweep, names = of those that differ */
-static PetscErrorCode SceneCheck(Sweep sweep, Stream *s, const Header *h, char names[256])
-{
-  ChecksumPart *kept;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrncpy(names, s->good && h->version != VERSION ? "the format of the files" : "", 256));
-  if (h->version != VERSION || h->n_parts < 0 || h->n_parts > SWEEP_MAX_PARTS) s->good = PETSC_FALSE;
-  if (!s->good) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(h->n_parts, &kept));
-  Transfer(s, kept, sizeof(*kept), h->n_parts);
-  if (s->good) PetscCall(ChecksumCompare(sweep->scene, h->n_parts, kept, 256, names));
-  if (names[0]) s->good = PETSC_FALSE;
-  PetscCall(PetscFree(kept));
+  InterruptSays("%d full solutions are kept, with which the same command goes on", (int)h.n_samples);
   PetscFunctionReturn(0);
 }
 
 /* Whether what a header says can be: its vectors follow those that there are, and the model has all but corrections */
-static PetscErrorCode HeaderCheck(Sweep sweep, const Header *h, PetscBool *good)
+static PetscErrorCode HeaderFits(Sweep sweep, const BasisHeader *h, PetscInt n_values, PetscBool *fits)
 {
   const Basis *basis = &sweep->basis;
   PetscInt     n_local;
 
   PetscFunctionBeginUser;
   PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
-  if (h->n_parameters != sweep->grid.n_parameters || h->n_local != n_local) *good = PETSC_FALSE;
-  if (h->first != basis->reduced.n || h->n < h->first || h->n_used < 1 || h->n_used > h->n) *good = PETSC_FALSE;
-  if (h->n_samples < 1 || h->n_samples > sweep->greedy.max_samples) *good = PETSC_FALSE;
-  if (h->n_blocks < basis->n_blocks || h->n_blocks > BASIS_MAX_BLOCKS) *good = PETSC_FALSE;
+  if (h->first != basis->reduced.n || h->n < h->first || h->n_used < 1 || h->n_used > h->n) *fits = PETSC_FALSE;
+  if (h->n_samples < 1 || h->n_samples > sweep->greedy.max_samples) *fits = PETSC_FALSE;
+  if (h->n_blocks < basis->n_blocks || h->n_blocks > BASIS_MAX_BLOCKS) *fits = PETSC_FALSE;
+  if (n_values != (h->n - h->first) * n_local) *fits = PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 1, MPIU_BOOL, MPI_LAND, sweep->comm));
   PetscFunctionReturn(0);
 }
 
 /* Blocks, records and vectors behind a good header */
-static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
+static PetscErrorCode BasisTakeUp(Sweep sweep, const BasisHeader *h, JournalPack *pack, PetscReal values[])
 {
   Basis *basis = &sweep->basis;
 
   PetscFunctionBeginUser;
-  Transfer(s, basis->block_end, sizeof(PetscInt), h->n_blocks);
-  PetscCall(RecordsTransfer(sweep, s, h));
+  PetscCall(BasisRecordsMove(sweep, h, pack));
+  PetscCheck(pack->good, sweep->comm, PETSC_ERR_PLIB, "a kept sample ends too early");
   PetscCall(BVResize(basis->vectors, h->n, PETSC_TRUE));
-  PetscCall(VectorsTransfer(s, basis->vectors, h));
-  PetscCall(AllGood(sweep->comm, &s->good));
-  if (!s->good) PetscFunctionReturn(0);
+  PetscCall(SweepVectorsMove(basis->vectors, h->first, h->n, PETSC_TRUE, values));
   PetscCall(BasisRebuild(basis, h->n_blocks));
   PetscCall(BasisUse(basis, h->n_used));
   sweep->greedy.n_samples = h->n_samples;
@@ -286,49 +203,45 @@ static PetscErrorCode FileTake(Sweep sweep, Stream *s, const Header *h)
   PetscFunctionReturn(0);
 }
 
-/* Reads file k into the basis; good = whether it exists, is whole and belongs to this sweep */
-static PetscErrorCode FileResume(Sweep sweep, PetscInt k, PetscBool *good)
+/* Reads the next file into the basis; taken = whether it is there, whole and of this sweep */
+static PetscErrorCode FileResume(Sweep sweep, PetscBool *taken)
 {
-  char      name[PETSC_MAX_PATH_LEN], names[256] = "";
-  PetscBool there, whole;
-  Header    h = {0};
-  Stream    s = {NULL};
+  JournalItem item[2] = {
+    {"samples", -1, NULL},
+    {"vectors", -1, NULL}
+  };
+  JournalPack pack = {.good = PETSC_TRUE};
+  BasisHeader h;
+  char        name[64];
 
   PetscFunctionBeginUser;
-  PetscCall(FileName(sweep, k, "", name));
-  there = whole = access(name, F_OK) == 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(FileSeal(name, PETSC_FALSE, &whole));
-  PetscCall(AllGood(sweep->comm, &whole));
-  s.file = whole ? FileStream(name, "rb") : NULL;
-  s.good = s.file ? PETSC_TRUE : PETSC_FALSE;
-  Transfer(&s, &h, sizeof(h), 1);
-  if (s.good) PetscCall(SceneCheck(sweep, &s, &h, names));
-  PetscCall(HeaderCheck(sweep, &h, &s.good));
-  PetscCall(AllGood(sweep->comm, &s.good));
-  if (!s.good && names[0] && !k)
+  PetscCall(SweepFileName(sweep->n_files, name));
+  PetscCall(JournalTake(&sweep->journal, name,
+                        sweep->n_files ? "the sweep goes on without it" : "the sweep begins anew", 2, item, taken));
+  if (!*taken) PetscFunctionReturn(0);
+  pack.word = item[0].values;
+  pack.n    = item[0].n;
+  PetscCall(JournalPackMove(&pack, &h, sizeof(h)));
+  PetscCall(HeaderFits(sweep, &h, item[1].n, taken));
+  if (*taken) PetscCall(BasisTakeUp(sweep, &h, &pack, item[1].values));
+  else
     PetscCall(PetscFPrintf(sweep->comm, stderr,
-                           "squeal: warning: '%s' is of another scene, which differs in: %s; the sweep begins anew\n",
-                           name, names));
-  else if (!s.good && there)
-    PetscCall(PetscFPrintf(sweep->comm, stderr,
-                           "squeal: warning: '%s' is damaged or of another version; the sweep goes on without it\n",
-                           name));
-  if (s.good) PetscCall(FileTake(sweep, &s, &h));
-  if (s.file) (void)fclose(s.file);
-  *good = s.good;
+                           "squeal: warning: '%s/%s' does not follow the file before it; the sweep goes on without it\n",
+                           sweep->folder, name));
+  PetscCall(JournalPackDestroy(&pack));
+  PetscCall(PetscFree(item[1].values));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SweepResume(Sweep sweep)
 {
-  PetscBool good = PETSC_TRUE;
+  PetscBool taken = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(ChecksumCreate(sweep->comm, &sweep->scene));
-  PetscCall(SweepAddChecksum(sweep, sweep->scene));
-  while (good) {
-    PetscCall(FileResume(sweep, sweep->n_files, &good));
-    if (good) sweep->n_files++;
+  PetscCall(SweepJournalOpen(sweep));
+  while (taken) {
+    PetscCall(FileResume(sweep, &taken));
+    if (taken) sweep->n_files++;
   }
   if (sweep->n_files)
     PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " full solutions kept in %s\n",

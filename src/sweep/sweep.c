@@ -206,6 +206,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscLogDouble since;
 
   PetscFunctionBeginUser;
+  sweep->results = results;
   PetscCall(ResultsGetDirectory(results, &sweep->folder));
   PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
   sweep->window.low  = 2 * PETSC_PI * band[0];
@@ -240,7 +241,8 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   PetscCall(PetscFree(s->label));
   PetscCall(PetscFree(s->worst));
   PetscCall(PetscFree(s->is_confirmed));
-  PetscCall(ChecksumDestroy(&s->scene));
+  PetscCall(ChecksumDestroy(&s->journal.scene));
+  PetscCall(JournalPackDestroy(&s->places));
   PetscCall(BranchEventsDestroy(&s->events));
   PetscCall(PointStoreDestroy(&s->store));
   PetscCall(GreedyDestroy(&s->greedy));

@@ -3,6 +3,7 @@
 
 #include <squeal/quantity.h>
 #include <squeal/sweep.h>
+#include "results/journal/journal.h"
 #include "sweep/basis/greedy.h"
 #include "status.h"
 #include "sweep/track/track.h"
@@ -93,9 +94,11 @@ struct _p_Sweep {
   SweepRisk     *risk;         /* [n_risks] */
   PetscInt       n_checks, n_risks, n_combinations;
   PetscReal      worst_risk; /* largest estimated relative error of all combinations */
-  const char    *folder;     /* of the restart files */
-  Checksum       scene;      /* tells whether they belong to this sweep */
-  PetscInt       n_files, n_kept;
+  const char    *folder;
+  Results        results;
+  Journal        journal; /* what a killed sweep goes on from */
+  JournalPack    places;          /* of a sweep without basis: those solved, being taken up while it is not to be written */
+  PetscInt       n_files, n_kept; /* files; vectors in them, or places */
   PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
 };
 
@@ -148,8 +151,11 @@ PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], con
 /* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
-/* restart.c - keeps the full solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that
-   is kept in the folder, also by more ranks and by longer sweeps */
+/* restart.c - the journal; name of file k; columns first .. n - 1 of vectors to or from values; keeps the full solutions so far (ctx is
+   the sweep), takes up what an earlier run kept, and deletes all that is kept in the folder, also by longer sweeps */
+PETSC_INTERN PetscErrorCode SweepJournalOpen(Sweep sweep);
+PETSC_INTERN PetscErrorCode SweepFileName(PetscInt k, char name[64]);
+PETSC_INTERN PetscErrorCode SweepVectorsMove(BV vectors, PetscInt first, PetscInt n, PetscBool read, PetscReal values[]);
 PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
 PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

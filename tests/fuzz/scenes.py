@@ -231,7 +231,7 @@ def bases(program, folder):
     found += [restart, history, shape]
     found.append(reduced(program, folder, first))
     words = sweep(program, folder)
-    files = tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*_rank0")))
+    files = tuple(f"out/{path.name}" for path in sorted((folder / "stopped").glob("sweep_restart_*")))
     kept = Base("sweep", damage.BYTES, files, words, "sweep.csv")
     kept.sealed, kept.folder = True, folder / "stopped"
     return [*found, kept]

@@ -1,9 +1,9 @@
 /*
-   Unit test of dynamics/checkpoint.c: what is read is what was written, bit by bit, or nothing at all and one line that
+   Unit test of results/journal/: what is read is what was written, bit by bit, or nothing at all and one line that
    says why. Bad files are made from a good one: cut at places all over the file, one bit turned in every 8 bytes, head
    changed by hand (with the checksum made anew). A full disk is played by the limit of the size of a file.
 */
-#include "dynamics/checkpoint.h"
+#include "results/journal/journal.h"
 #include "check.h"
 #include "scratch.h"
 #include <math.h>
@@ -15,6 +15,7 @@
 #define MAX_N     40
 #define MAX_BYTES 8192
 #define NAME      "checkpoint.bin"
+#define JOURNAL(t) ((Journal){PETSC_COMM_WORLD, (t)->results, (t)->scene, "-dynamics_restart", NULL})
 
 /* Words of the head: order of bytes, its own length, its checksum, version, size of a real, ranks */
 enum { ORDER = 1, SIZE, CHECKSUM, VERSION, REAL, RANKS, TOTAL = 9 };
@@ -25,7 +26,7 @@ typedef struct {
   Checksum       scene;
   PetscMPIInt    size;
   PetscReal      value[N_ITEMS][MAX_N];
-  CheckpointItem item[N_ITEMS];
+  JournalItem item[N_ITEMS];
   long           length; /* of the good file, bytes */
   unsigned char  good[MAX_BYTES];
 } Test;
@@ -37,7 +38,7 @@ static void ItemsMake(Test *t, PetscReal salt)
   const PetscInt    n[N_ITEMS]     = {30 + t->scratch.rank, 5 * t->scratch.rank, 7};
 
   for (int i = 0; i < N_ITEMS; i++) {
-    t->item[i] = (CheckpointItem){names[i], n[i], n[i] ? t->value[i] : NULL};
+    t->item[i] = (JournalItem){names[i], n[i], n[i] ? t->value[i] : NULL};
     for (int k = 0; k < n[i]; k++) t->value[i][k] = sin(1 + salt + 100 * t->scratch.rank + 10 * i + k);
   }
   t->value[0][0] = -0.0;
@@ -48,15 +49,17 @@ static void ItemsMake(Test *t, PetscReal salt)
 /* Reads into other arrays; `any` leaves the lengths open. Whether all are the values of the test */
 static PetscErrorCode ReadBack(Test *t, PetscBool any, PetscBool *same)
 {
-  CheckpointItem item[N_ITEMS];
+  JournalItem item[N_ITEMS];
   PetscReal      value[N_ITEMS][MAX_N];
   PetscErrorCode error;
+  Fault          fault;
 
   *same = PETSC_TRUE;
   memset(value, 1, sizeof(value));
   for (int i = 0; i < N_ITEMS; i++)
-    item[i] = (CheckpointItem){t->item[i].name, any ? -1 : t->item[i].n, any ? NULL : value[i]};
-  error = CheckpointRead(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, item);
+    item[i] = (JournalItem){t->item[i].name, any ? -1 : t->item[i].n, any ? NULL : value[i]};
+  error = JournalRead(&JOURNAL(t), NAME, N_ITEMS, item, &fault);
+  if (!error) error = FaultsRaise(PETSC_COMM_WORLD, &fault);
   for (int i = 0; i < N_ITEMS && !error; i++) {
     const size_t bytes = sizeof(PetscReal) * (size_t)t->item[i].n;
 
@@ -115,7 +118,7 @@ static int TestSame(Test *t)
 
   for (int salt = 0; salt < 2; salt++) { /* the second one replaces the first */
     ItemsMake(t, salt);
-    failed += CheckTrue("written", !CheckpointWrite(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, t->item), t->size);
+    failed += CheckTrue("written", !JournalWrite(&JOURNAL(t), NAME, N_ITEMS, t->item), t->size);
     failed += CheckTrue("read", !ReadBack(t, PETSC_FALSE, &same) && same, salt);
     failed += CheckTrue("read with open lengths", !ReadBack(t, PETSC_TRUE, &same) && same, salt);
   }
@@ -264,7 +267,7 @@ static int TestFull(Test *t)
 
     ItemsMake(t, 2);
     LimitFiles(limit);
-    error = CheckpointWrite(PETSC_COMM_WORLD, t->results, t->scene, N_ITEMS, t->item);
+    error = JournalWrite(&JOURNAL(t), NAME, N_ITEMS, t->item);
     LimitFiles(-1);
     ItemsMake(t, 1);
     good += error == PETSC_ERR_FILE_WRITE && strstr(t->scratch.message, NAME ": File too large; free some space") &&
