@@ -64,11 +64,13 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
   }
   if (constraint) PetscCall(OptionsRefuseOf(comm, c->name, c->identify ? "kn_per_area" : "kn kn_per_area", stiff));
   if (!s->modes) {
-    PetscCall(OptionsRefuseOf(comm, c->name, "friction_damping force speed mu_slope kt kt_per_area", steady));
+    PetscCall(OptionsRefuseOf(comm, c->name, "friction_damping force kt kt_per_area", steady));
+    if (!FrictionNeedsSpeed(&c->friction)) PetscCall(OptionsRefuseOf(comm, c->name, "speed", steady));
+    PetscCall(FrictionRefuseSlopes(comm, c->name, &c->friction, steady));
     PetscFunctionReturn(0);
   }
   if (constraint) PetscCall(OptionsRefuse(comm, "-operators_factors", lu));
-  if (!c->damping) PetscCall(OptionsRefuseOf(comm, c->name, c->mu_slope == 0 ? "force speed" : "force", linear));
+  if (!c->damping) PetscCall(OptionsRefuseOf(comm, c->name, FrictionVaries(&c->friction) ? "force" : "force speed", linear));
   PetscFunctionReturn(0);
 }
 

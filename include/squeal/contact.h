@@ -17,13 +17,13 @@
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    Constraint: N u = 0 with force directions N' - mu T'.
-   Friction, in every analysis: mu(s) = max(0, mu + mu_slope (|s| - speed)) at the slip velocity s; mu is the value at
-   the stated sliding speed of the pair, 0 m/s where nothing slides as told. A law that would fall below 0 stays at 0;
-   linearised about the stated speed it is mu + mu_slope (|s| - speed).
+   Friction, in every analysis: mu(s), s the length of the slip velocity (m/s), by the law of the interface (frictionlaw.h), with the
+   stated sliding speed of the pair, 0 m/s where nothing slides as told; linearised about that speed it is mu + mu' (s - speed).
 */
 #pragma once
 
 #include <squeal/contactstatus.h>
+#include <squeal/frictionlaw.h>
 #include <squeal/model.h>
 
 typedef struct _p_Contact *Contact;
@@ -72,10 +72,9 @@ typedef struct {
 
 /* Parameters of an interface; SI units */
 typedef struct {
-  char      *name, *slave, *master; /* surfaces */
-  ContactLaw law;
-  PetscReal  mu;          /* friction coefficient at the stated sliding speed */
-  PetscReal  mu_slope;    /* d mu / d slip speed, s/m */
+  char       *name, *slave, *master; /* surfaces */
+  ContactLaw  law;
+  FrictionLaw friction;   /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
   PetscReal  kn;          /* stiffness per pair, N/m, or per area, N/m^3 */
   PetscBool  per_area;    /* which of the two: that of a pair is then kn times the area of its slave */
   PetscReal  kt;          /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
@@ -86,7 +85,7 @@ typedef struct {
   PetscInt   n_slaves;    /* nodes of the slave, over all ranks */
   PetscInt   n_off;       /* those of them that have no pair, since no master lies under them */
   PetscReal  off;         /* the farthest of these from the border, m */
-  PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu_slope N0 along it */
+  PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu' N0 along it */
   PetscReal  force;       /* total normal force in the sliding state, N */
   PetscReal  speed;       /* sliding speed, m/s */
   PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
@@ -126,9 +125,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 `contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
-.  -contact_mu <0>                - friction coefficient at the stated sliding speed; a negative one drags the
+.  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time
-.  -contact_mu_slope <0>          - its slope with the slip speed, s/m
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
 .  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given): stiffness
                                    along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
@@ -137,7 +135,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_centre <0,0,0>        - a point of the axis of rotation, m
 .  -contact_speed <m/s>           - sliding speed where only the direction is given
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
-.  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu_slope N0 along it
+.  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu' N0 along it
 .  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
 .  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave node has a
                                    pair; default 1 % of the size of the facet
@@ -241,7 +239,7 @@ PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
     collective. @*/
 PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn);
 
-/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu and kn (infinite for the constraint) of each
+/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu of each and kn (infinite for the constraint) of each
     interface; displacement is the largest of the local pairs, m. Collective. @*/
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
                                  const PetscReal kn[], PetscReal displacement, ContactKKT *kkt);

@@ -89,7 +89,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
    spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by friction), and
-   with friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given; contact_mu
+   with friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu and mu_slope
+   standing for the parameters of its friction law (frictionlaw.h); contact_mu
    for loaded or dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
    a mu only where it holds by friction. Then of each load force (N, the length of the vector) or pressure (Pa), and moment (N m,
    likewise). Not collective.
@@ -117,10 +118,13 @@ PetscErrorCode OperatorsAddChecksum(Operators operators, Checksum checksum);
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material);
 
-/*@ OperatorsGetInterface - friction coefficient and stiffness per pair (N/m, infinite for the constraint) of an
-    interface at p. Not collective. @*/
+/*@ OperatorsGetInterface - friction coefficient at the stated speed and stiffness per pair (N/m, infinite for the constraint) of
+    an interface at p. Not collective. @*/
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
                                      PetscReal *kn);
+
+/*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed. Not collective. @*/
+PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu);
 
 /*@ OperatorsGetBodies - stiffness, mass and damping of parts, springs and dashpots alone, without contact, at p;
     symmetric (borrowed until the call for another p, which writes into the same matrices; C may be NULL without

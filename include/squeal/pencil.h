@@ -23,8 +23,16 @@ typedef struct _p_Pencil *Pencil;
 
 typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
 
+/* The friction coefficient of an interface at one sliding speed, as a factor of terms: a function of several parameters */
+typedef struct {
+  FrictionLaw law;                            /* of the scene */
+  PetscInt    parameter[FRICTION_PARAMETERS]; /* index of each of the law's, -1: it is that of the scene */
+  PetscInt    speed;                          /* index of the speed V of the interface, -1: it is that of the scene */
+  PetscReal   ratio;                          /* v / V */
+} OperatorsFriction;
+
 /* A part of the pencil whose coefficient is a monomial of parameters: c(p) A, c = scale * prod_i p_i^power_i, where
-   |p_i| stands for p_i if absolute. K, C and M of the pencil are the sums of the terms of their kind. */
+   |p_i| stands for p_i if absolute, mu or mu' where it is friction. K, C and M of the pencil are the sums of the terms of their kind. */
 typedef struct {
   OperatorsTermKind kind;
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
@@ -34,9 +42,11 @@ typedef struct {
   PetscReal scale;
   PetscInt  n; /* factors */
   struct {
-    PetscInt  parameter; /* index */
+    PetscInt  parameter; /* index; -1 of friction */
     PetscInt  power;     /* not 0; of terms of a model 1 or -1 */
     PetscBool absolute;
+    const OperatorsFriction *friction; /* borrowed from the operators, NULL for none */
+    PetscBool slope; /* mu' of it, else mu */
   } factor[OPERATORS_MAX_FACTORS];
 } OperatorsTerm;
 
@@ -108,6 +118,9 @@ PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **
 
 /*@ OperatorsTermCoefficient - c(p) for the values p of all parameters. Not collective. @*/
 PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[]);
+
+/*@ OperatorsTermDepends - whether c(p) contains a parameter. Not collective. @*/
+PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter);
 
 /*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);

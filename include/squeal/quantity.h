@@ -74,6 +74,10 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
 @*/
 PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
 
+/*@ QuantitiesReadOf - the same of a thing that has a name, which stands before that of each option: -pad_mu of `pad`. NULL for
+    none. Collective. @*/
+PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner);
+
 /*@ QuantitiesAddChecksum - adds the values of the rows that decide a restart, in their order, to the
     part of the checksum that is set. Not collective. @*/
 PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *owner, Checksum checksum);

@@ -68,7 +68,7 @@ typedef struct {
   PetscReal *Cx;     /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
   PetscReal *Mx;     /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
   PetscReal *gap;    /* [n_pairs] g0, m, positive open */
-  PetscReal *mu, *slope, *speed; /* [n_pairs] friction: at the stated speed (-), s/m, m/s */
+  FrictionLaw *friction; /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
 /* A state at t_n */
@@ -124,7 +124,7 @@ PetscErrorCode ReducedReportDestroy(ReducedReport *report);
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper);
 PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper);
 
-/*@ ReducedStepperTakeFriction - takes the friction of the model again, of which mu, slope or speed have changed, and forgets
+/*@ ReducedStepperTakeFriction - takes the friction of the model again, which has changed, and forgets
     factors of steps before. Not collective. @*/
 PetscErrorCode ReducedStepperTakeFriction(ReducedStepper stepper);
 
@@ -215,7 +215,7 @@ PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const Petsc
     block of solutions each. Not collective, alike on all ranks. @*/
 PetscErrorCode ReducedWeigh(ReducedRun reduced, PetscBool weighs);
 
-/*@ ReducedGetModel - the dense model (borrowed), alike on all ranks; mu, slope and speed may be changed. Not collective. @*/
+/*@ ReducedGetModel - the dense model (borrowed), alike on all ranks; friction may be changed. Not collective. @*/
 PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);
 
 /*@ ReducedGetRun - cut-off (Hz), step and end (s); NULL for what is not needed. Not collective. @*/

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST_MU 1.5 /* of rubber on dry concrete */
-
 const char *const ContactStatusNames[CONTACT_N_STATUS] = {"open", "stick", "slip"};
 
 PetscErrorCode ContactCreate(Model model, Contact *contact)
@@ -69,12 +67,12 @@ static PetscErrorCode HoldRead(OptionsItems PetscOptionsObject, ContactInterface
 /* Raises an error for what is no finite number */
 static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface *c)
 {
-  static const char *const option[]   = {"mu", "mu_slope", "speed", "force", "tolerance", "overhang"};
-  static const char *const unit[]     = {"without unit", "s/m", "m/s", "N", "m", "m"};
-  const PetscReal          value[][3] = {{c->mu}, {c->mu_slope}, {c->speed}, {c->force}, {c->tolerance}, {c->overhang}};
+  static const char *const option[]   = {"speed", "force", "tolerance", "overhang"};
+  static const char *const unit[]     = {"m/s", "N", "m", "m"};
+  const PetscReal          value[][3] = {{c->speed}, {c->force}, {c->tolerance}, {c->overhang}};
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < 6; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
+  for (int i = 0; i < 4; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
   PetscCall(OptionsCheckFinite(comm, c->name, "slip", "a direction", c->slip));
   PetscCall(OptionsCheckFinite(comm, c->name, "rotation", "rad/s", c->rotation));
   PetscCall(OptionsCheckFinite(comm, c->name, "centre", "m", c->centre));
@@ -95,9 +93,6 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscOptionsBegin(comm, prefix, title, NULL);
   PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: named surfaces (required)", &n, surfaces, &set));
   PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-mu", "friction coefficient", c->mu, &c->mu, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-mu_slope", "its slope with the slip speed about the stated one, s/m",
-                           c->mu_slope, &c->mu_slope, NULL));
   PetscCall(StiffnessRead(PetscOptionsObject, c));
   PetscCall(HoldRead(PetscOptionsObject, c));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-tolerance",
@@ -110,13 +105,15 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
                            &c->force, NULL));
   PetscCall(OptionsGetReal(PetscOptionsObject, "-speed", "sliding speed, m/s", c->speed, &c->speed, NULL));
   PetscCall(OptionsGetBool(PetscOptionsObject, "-friction_damping",
-                           "damping mu N/v across the slip, mu_slope N along it", &c->damping));
+                           "damping mu N/v across the slip, mu' N along it", &c->damping));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,
                             c->slip, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3,
                             c->rotation, NULL));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-centre", "a point of its axis, m", 3, c->centre, NULL));
   PetscOptionsEnd();
+  PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
+  c->friction.speed = c->speed;
   PetscCall(InterfaceCheckFinite(comm, c));
   PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
              "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
@@ -136,7 +133,7 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
-  PetscCheck(c->kt == 0 || c->mu != 0, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(c->kt == 0 || FrictionExists(&c->friction), comm, PETSC_ERR_USER_INPUT,
              "-%s_kt%s %.6g does nothing without friction; give -%s_mu or leave it out", c->name,
              c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
   PetscCheck(c->kt == 0 || !c->damping, comm, PETSC_ERR_USER_INPUT,
@@ -153,9 +150,7 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
              c->name, c->name);
   PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
              (double)c->speed);
-  if (PetscAbsReal(c->mu) > LARGEST_MU)
-    PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_mu %.6g is above %g; in per cent? %.6g %% are %.6g\n", c->name,
-                           (double)c->mu, LARGEST_MU, (double)c->mu, (double)(c->mu / 100)));
+  PetscCall(FrictionWarnLarge(comm, c->name, &c->friction));
   PetscFunctionReturn(0);
 }
 
@@ -167,7 +162,7 @@ PetscErrorCode ContactDampFriction(Contact contact)
     const PetscBool   turns = Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
     const PetscBool   moves = turns || (c->speed > 0 && Vec3Dot(c->slip, c->slip) > 0) ? PETSC_TRUE : PETSC_FALSE;
 
-    if (moves && c->mu != 0) c->damping = PETSC_TRUE;
+    if (moves && FrictionExists(&c->friction)) c->damping = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }
@@ -286,13 +281,14 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
     const PetscReal         kn        = f->identify ? 0 : f->per_area ? -f->kn : f->kn;
     const PetscReal         kt        = f->kt_per_area ? -f->kt : f->kt;
-    const PetscReal         numbers[] = {f->mu, f->mu_slope, f->tolerance, f->overhang, f->speed, kn, kt, f->force};
+    const PetscReal         numbers[] = {f->tolerance, f->overhang, f->speed, kn, kt, f->force};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
     PetscCall(ModelAddSetChecksum(contact->model, f->master, PETSC_TRUE, c));
     PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(flags), flags));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
+    PetscCall(FrictionAddChecksum(&f->friction, c));
     PetscCall(ChecksumAddReals(c, 3, f->slip));
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
     PetscCall(ChecksumAddReals(c, 3, f->centre));
@@ -308,8 +304,10 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     const ContactInterface *c = &contact->interfaces[i];
     const char             *unit;
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s %s on %s, mu %.6g, ", c->name, c->slave,
-                                     c->kt > 0 ? "holds" : "slides", c->master, (double)c->mu));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s %s on %s, ", c->name, c->slave,
+                                     c->kt > 0 ? "holds" : "slides", c->master));
+    PetscCall(FrictionView(&c->friction, viewer));
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", "));
     PetscCall(ModelGetUnit(contact->model, c->kt_per_area ? "N/m^3" : "N/m", &unit));
     if (c->kt > 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "pairs that stick %.6g %s%s along it, ", (double)c->kt, unit,

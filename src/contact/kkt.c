@@ -109,7 +109,7 @@ PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], co
     const PetscInt     i    = pair->interface;
 
     judged[p] = (ContactJudged){&state[p],
-                                mu[i],
+                                mu[p],
                                 ContactPairStiffness(&contact->interfaces[i], pair, kn[i]),
                                 pair->gap,
                                 PetscSqrtReal(pair->area),

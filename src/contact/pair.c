@@ -248,7 +248,7 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(
-    c->slides || !given || (c->mu == 0 && !c->damping), comm, PETSC_ERR_USER_INPUT,
+    c->slides || !given || (!FrictionExists(&c->friction) && !c->damping), comm, PETSC_ERR_USER_INPUT,
     "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the surface",
     c->name, c->name);
   PetscCheck(!c->slides || c->kt == 0, comm, PETSC_ERR_USER_INPUT,

@@ -1,20 +1,12 @@
 /*
-   Coulomb's law at a pair: the coefficient, the disc of admissible friction and the natural map. Pure functions.
+   Coulomb friction at a pair: the disc of admissible friction and the natural map. Pure functions.
 
-   mu(s) = max(0, mu + slope (|s| - speed)): mu belongs to the stated sliding speed, the slope (s/m) is taken about it.
-   A falling law ends at 0, since friction never drives.
    |z| <= mu p_n is the disc; the natural map p_T - Proj(z), z = p_T less a multiple of the slip, vanishes where friction
    obeys the law.
 */
 #pragma once
 
 #include <math.h>
-
-/* mu at the slip speed s >= 0, m/s */
-static inline double FrictionCoefficient(double mu, double slope, double speed, double s)
-{
-  return slope == 0 ? mu : fmax(0, mu + slope * (s - speed));
-}
 
 /* Factor that takes a vector of this squared length to the disc */
 static inline double FrictionShorten(double square, double radius)

@@ -4,15 +4,6 @@
 */
 #include "mapimpl.h"
 
-/* Copies n numbers */
-static PetscErrorCode RealsCopy(PetscInt n, const PetscReal from[], PetscReal **to)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, to));
-  PetscCall(PetscArraycpy(*to, from, n));
-  PetscFunctionReturn(0);
-}
-
 /* What is kept of a reduced run */
 static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
 {
@@ -22,9 +13,8 @@ static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
   PetscFunctionBeginUser;
   PetscCall(ReducedGetModel(run, &model));
   PetscCall(ReducedModelCopy(model, &b->model));
-  PetscCall(RealsCopy(model->n_pairs, model->mu, &b->mu));
-  PetscCall(RealsCopy(model->n_pairs, model->slope, &b->slope));
-  PetscCall(RealsCopy(model->n_pairs, model->speed, &b->speed));
+  PetscCall(PetscMalloc1(model->n_pairs, &b->friction));
+  PetscCall(PetscArraycpy(b->friction, model->friction, model->n_pairs));
   PetscCall(PetscMalloc1(model->n_pairs, &b->interface));
   for (PetscInt i = 0; i < model->n_pairs; i++) PetscCall(ReducedGetInterface(run, i, &b->interface[i]));
   PetscCall(ReducedGetHits(run, &b->n_hits, &hits, &due));
@@ -60,17 +50,15 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodi
 PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscReal speed[], PetscReal loads[])
 {
   const PetscInt     n = b->model.n_pairs, index[MAP_MAX_AXES] = {at->place, at->line};
-  const ReducedMoved moved = {&b->model, b->interface, b->speed, loads};
+  const ReducedMoved moved = {&b->model, b->interface, b->friction, loads};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(b->model.mu, b->mu, n));
-  PetscCall(PetscArraycpy(b->model.slope, b->slope, n));
-  PetscCall(PetscArraycpy(b->model.speed, b->speed, n));
+  PetscCall(PetscArraycpy(b->model.friction, b->friction, n));
   for (PetscInt i = 0; i < b->model.n_loads; i++) loads[i] = 1;
   for (PetscInt k = 0; k < map->n_axes; k++)
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
       ReducedParameterMove(&map->axis[k].moved[i], map->axis[k].value[index[k]], &moved);
-  PetscCall(PetscArraycpy(speed, b->model.speed, n));
+  for (PetscInt i = 0; i < n; i++) speed[i] = b->model.friction[i].speed;
   PetscFunctionReturn(0);
 }
 
@@ -102,9 +90,7 @@ PetscErrorCode MapBodiesDestroy(MapBodies *b)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedModelDestroy(&b->model));
-  PetscCall(PetscFree(b->mu));
-  PetscCall(PetscFree(b->slope));
-  PetscCall(PetscFree(b->speed));
+  PetscCall(PetscFree(b->friction));
   PetscCall(PetscFree(b->interface));
   PetscCall(PetscFree(b->hits));
   PetscFunctionReturn(0);

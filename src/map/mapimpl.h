@@ -68,7 +68,7 @@ typedef struct {
 typedef struct {
   ReducedModel model;
   PetscInt    *interface;          /* [n_pairs] */
-  PetscReal   *mu, *slope, *speed; /* [n_pairs] of the scene */
+  FrictionLaw *friction;           /* [n_pairs] of the scene */
   PetscInt     n_hits;
   PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
 } MapBodies;
@@ -151,7 +151,7 @@ struct _p_MapMarch {
   ReducedState *twin;        /* [n_twins] */
   PetscReal     rest_growth; /* `growth` there, `known` and friction [n_pairs] */
   PetscBool    *rest_known;
-  PetscReal    *rest_mu;
+  FrictionLaw  *rest_friction;
   PetscInt      n_runs; /* the point's own transient and its twins, but for those that have failed */
   MapPoint     *run;
   PetscInt     *n_levels; /* [n_runs], and N [n_runs][n_most], rms of the windows that their numbers are of */

@@ -12,13 +12,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define KEEP_VERSION  5
+#define KEEP_VERSION  6
 #define KEEP_MAX_ROWS 1000000
 #define N_CHAIN       3 /* pieces of a chain besides states */
 #define N_STATE       7
 #define N_DIMS        8
-#define N_BODIES      15
-#define N_FRICTION    4 /* of these, made at once: the model frees them so */
+#define N_BODIES      11
+#define N_NUMBERS     8 /* of these, the last ones but for the interfaces */
 
 /* A piece of a file */
 typedef struct {
@@ -215,16 +215,17 @@ static PetscErrorCode KeptBodies(MapBodies *b, const PetscInt dims[N_DIMS], Pets
 {
   ReducedModel  *a = &b->model;
   const PetscInt m = dims[0], n = dims[1], N = dims[4], c = dims[6];
-  PetscReal    **array[N_BODIES - 1] = {&a->gap,    &a->mu, &a->slope, &a->speed, &b->mu, &b->slope, &b->speed,
-                                        &a->omega2, &a->C,  &a->P,     &a->W,     &a->Cm, &a->Cx,    &b->hits};
-  const PetscInt size[N_BODIES - 1]  = {n, n,         n,     n,     n,             n,             n,
-                                        m, c * m * m, m * N, N * N, c * 3 * n * m, c * 9 * n * n, dims[5] * (m + 1)};
+  PetscReal    **array[N_NUMBERS] = {&a->gap, &a->omega2, &a->C, &a->P, &a->W, &a->Cm, &a->Cx, &b->hits};
+  const PetscInt size[N_NUMBERS]  = {n, m, c * m * m, m * N, N * N, c * 3 * n * m, c * 9 * n * n, dims[5] * (m + 1)};
 
   PetscFunctionBeginUser;
-  if (allocate) PetscCall(PetscMalloc4(n, &a->gap, n, &a->mu, n, &a->slope, n, &a->speed));
-  for (int i = 0; i < N_BODIES - 1; i++) {
-    if (allocate && i >= N_FRICTION && size[i]) PetscCall(PetscMalloc1(size[i], array[i]));
-    piece[i] = (KeptPiece){*array[i], (size_t)size[i] * sizeof(PetscReal)};
+  if (allocate) PetscCall(PetscMalloc2(n, &a->gap, n, &a->friction)); /* the model frees them so */
+  if (allocate) PetscCall(PetscMalloc1(n, &b->friction));
+  piece[0] = (KeptPiece){a->friction, (size_t)n * sizeof(*a->friction)};
+  piece[1] = (KeptPiece){b->friction, (size_t)n * sizeof(*b->friction)};
+  for (int i = 0; i < N_NUMBERS; i++) {
+    if (allocate && i > 0 && size[i]) PetscCall(PetscMalloc1(size[i], array[i]));
+    piece[2 + i] = (KeptPiece){*array[i], (size_t)size[i] * sizeof(PetscReal)};
   }
   if (allocate) PetscCall(PetscMalloc1(n, &b->interface));
   piece[N_BODIES - 1] = (KeptPiece){b->interface, (size_t)n * sizeof(PetscInt)};

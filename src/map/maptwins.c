@@ -28,7 +28,7 @@ PetscErrorCode MapTwinsCreate(MapMarch w)
   w->n_twins = n;
   PetscCall(ReducedStateCreate(model, &w->start));
   PetscCall(ReducedStateCreate(model, &w->next));
-  PetscCall(PetscCalloc7(n, &w->twin, model->n_pairs, &w->rest_known, model->n_pairs, &w->rest_mu, 1 + n, &w->run, 1 + n,
+  PetscCall(PetscCalloc7(n, &w->twin, model->n_pairs, &w->rest_known, model->n_pairs, &w->rest_friction, 1 + n, &w->run, 1 + n,
                          &w->n_levels, (1 + n) * w->n_most, &w->level, (1 + n) * w->n_most, &w->sorted));
   for (PetscInt k = 0; k < n; k++) PetscCall(ReducedStateCreate(model, &w->twin[k]));
   PetscFunctionReturn(0);
@@ -40,7 +40,7 @@ PetscErrorCode MapTwinsDestroy(MapMarch w)
   PetscCall(ReducedStateDestroy(&w->start));
   PetscCall(ReducedStateDestroy(&w->next));
   for (PetscInt k = 0; k < w->map->n_twins; k++) PetscCall(ReducedStateDestroy(&w->twin[k]));
-  PetscCall(PetscFree7(w->twin, w->rest_known, w->rest_mu, w->run, w->n_levels, w->level, w->sorted));
+  PetscCall(PetscFree7(w->twin, w->rest_known, w->rest_friction, w->run, w->n_levels, w->level, w->sorted));
   PetscFunctionReturn(0);
 }
 
@@ -49,7 +49,7 @@ PetscErrorCode MapTwinsBegin(MapMarch w)
   PetscFunctionBeginUser;
   PetscCall(ReducedStateCopy(&w->bodies->model, &w->state, &w->start));
   PetscCall(PetscArraycpy(w->rest_known, w->known, w->bodies->model.n_pairs));
-  PetscCall(PetscArraycpy(w->rest_mu, w->bodies->model.mu, w->bodies->model.n_pairs));
+  PetscCall(PetscArraycpy(w->rest_friction, w->bodies->model.friction, w->bodies->model.n_pairs));
   w->rest_growth = w->growth;
   PetscFunctionReturn(0);
 }
@@ -106,7 +106,7 @@ static PetscErrorCode TwinSetFriction(MapMarch w, PetscInt k)
   uint32_t      bits  = (uint32_t)(MAP_MAX_TWINS + k);
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->n_pairs; i++) model->mu[i] *= TwinFactor(&bits);
+  for (PetscInt i = 0; i < model->n_pairs; i++) FrictionScale(&model->friction[i], TwinFactor(&bits));
   PetscCall(ReducedStepperTakeFriction(w->stepper));
   PetscFunctionReturn(0);
 }
@@ -142,7 +142,7 @@ static PetscErrorCode TwinRun(MapMarch w, PetscInt k, const MapPoint *begin, Map
   TwinTake(w, &run, row);
   w->twin[k] = w->state;
   w->state   = own;
-  PetscCall(PetscArraycpy(w->bodies->model.mu, w->rest_mu, w->bodies->model.n_pairs));
+  PetscCall(PetscArraycpy(w->bodies->model.friction, w->rest_friction, w->bodies->model.n_pairs));
   if (run.end == MAP_FAILED) PetscCall(TwinBranch(w, &w->state, k));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,9 @@
       right, N u = 0:            alpha = n . u_m
       left, (N - mu T) y = 0:    alpha = (n - mu t) . y_m + mu q1
    so that Zr = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2; G = n n' takes the part of alpha
-   that comes from the master. The left null space is affine in the friction coefficients mu_i of the interfaces,
+   that comes from the master. The left null space is affine in the friction coefficients mu_i of the interfaces, each at one
+   sliding speed or at several, between which those of the pairs are interpolated (frictionfactor.c); F_i and G_i have the pairs'
+   parts then,
 
       Zl = Zr + sum_i mu_i Zl_i,   Zl_i = F_i + G_i E,   F_i: n q1 at a slave,   G_i = -n t' from its master,
 
@@ -131,9 +133,9 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscFunctionReturn(0);
 }
 
-/* E (interface < 0): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: n in the columns q1
-   of the interface */
-static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *E)
+/* E (part NULL): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: part [n] times n in the columns
+   q1 */
+static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *E)
 {
   const Operators o = pencil->operators;
   PetscInt        n_local, first, last, column, n_follow = 0;
@@ -152,15 +154,15 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
     const ContactPair *pair = list[p];
 
     for (int d = 0; d < 3; d++) {
-      const PetscScalar values[2]  = {interface < 0 ? pair->t[d] : pair->n[d], pair->b[d]};
-      const PetscInt    columns[2] = {column, column + 1}, n_columns = interface < 0 ? 2 : 1;
+      const PetscScalar values[2]  = {part ? part[p] * pair->n[d] : pair->t[d], pair->b[d]};
+      const PetscInt    columns[2] = {column, column + 1}, n_columns = part ? 1 : 2;
 
       is_slave[pair->slave[d] - first] = PETSC_TRUE;
-      if (interface >= 0 && pair->interface != interface) continue;
+      if (part && part[p] == 0) continue;
       PetscCall(MatSetValues(*E, 1, &pair->slave[d], n_columns, columns, values, INSERT_VALUES));
     }
   }
-  for (PetscInt i = 0; i < n_local && interface < 0; i++)
+  for (PetscInt i = 0; i < n_local && !part; i++)
     if (!is_slave[i]) PetscCall(MatSetValue(*E, first + i, column++, 1, INSERT_VALUES));
   PetscCall(PetscFree(is_slave));
   PetscCall(MatAssemblyBegin(*E, MAT_FINAL_ASSEMBLY));
@@ -168,8 +170,8 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
   PetscFunctionReturn(0);
 }
 
-/* From each master node to the slave: G = n n' w_i (interface < 0), or G_i = -n t' w_i of one interface */
-static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *G)
+/* From each master node to the slave: G = n n' w_i (part NULL), or G_i = -part n t' w_i */
+static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *G)
 {
   PetscInt n_local, n_entries = 0;
 
@@ -181,12 +183,12 @@ static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPai
   for (PetscInt p = 0; p < n; p++) {
     const ContactPair *pair = list[p];
 
-    if (interface >= 0 && pair->interface != interface) continue;
+    if (part && part[p] == 0) continue;
     for (PetscInt i = 0; i < pair->n_master; i++) {
       PetscScalar block[9];
 
       for (int k = 0; k < 9; k++)
-        block[k] = pair->weight[i] * pair->n[k / 3] * (interface < 0 ? pair->n[k % 3] : -pair->t[k % 3]);
+        block[k] = pair->weight[i] * pair->n[k / 3] * (part ? -part[p] * pair->t[k % 3] : pair->n[k % 3]);
       PetscCall(MatSetValues(*G, 3, pair->slave, 3, pair->master[i], block, INSERT_VALUES));
     }
   }
@@ -213,23 +215,41 @@ static PetscErrorCode NullSpaceFill(Operators o, Mat X, Mat *filled)
   PetscFunctionReturn(0);
 }
 
-/* Zr = P (E + G P E) (interface < 0), or Zl_i = P (F_i + G_i P E) */
-static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface, Mat *Z)
+/* Zr = P (E + G P E) (part NULL), or Zl_i = P (F_i + G_i P E) of the parts [n] that pairs have in it */
+static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *Z)
 {
   Mat F = pencil->E, G, PE, sum;
 
   PetscFunctionBeginUser;
-  if (interface >= 0) PetscCall(InjectionCreate(pencil, n, list, interface, &F));
-  PetscCall(CouplingCreate(pencil, n, list, interface, &G));
+  if (part) PetscCall(InjectionCreate(pencil, n, list, part, &F));
+  PetscCall(CouplingCreate(pencil, n, list, part, &G));
   PetscCall(NullSpaceFill(pencil->operators, pencil->E, &PE));
   PetscCall(MatMatMult(G, PE, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &sum));
   PetscCall(MatProductClear(sum));
   PetscCall(MatAXPY(sum, 1, F, DIFFERENT_NONZERO_PATTERN));
   PetscCall(NullSpaceFill(pencil->operators, sum, Z));
-  if (interface >= 0) PetscCall(MatDestroy(&F));
+  if (part) PetscCall(MatDestroy(&F));
   PetscCall(MatDestroy(&PE));
   PetscCall(MatDestroy(&sum));
   PetscCall(MatDestroy(&G));
+  PetscFunctionReturn(0);
+}
+
+/* Zl_i of each speed of one interface */
+static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface)
+{
+  const InterfaceParameters *q = &pencil->operators->interface[interface];
+  PetscReal                 *part;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n + 1, &part));
+  for (PetscInt k = 0; k < q->n_nodes; k++) {
+    for (PetscInt p = 0; p < n; p++)
+      part[p] = list[p]->interface == interface ? FrictionNodeShare(q, k, list[p]->speed) : 0;
+    PetscCall(NullSpaceCreate(pencil, n, list, part, &pencil->left[pencil->n_left]));
+    pencil->left_mu[pencil->n_left++] = &q->node[k];
+  }
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
 }
 
@@ -237,7 +257,7 @@ PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
 {
   const ContactPair     **list;
   const ContactInterface *interfaces;
-  PetscInt                n, n_all, n_interfaces;
+  PetscInt                n, n_all, n_interfaces, n_nodes = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ConstrainedPairs(pencil, &n, &list, &interfaces));
@@ -245,14 +265,12 @@ PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
   if (n_all) {
     PetscCall(ConstraintCheckChains(pencil, n, list));
     PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, &interfaces));
-    PetscCall(PetscCalloc2(n_interfaces, &pencil->left, n_interfaces, &pencil->left_mu));
-    PetscCall(InjectionCreate(pencil, n, list, -1, &pencil->E));
-    PetscCall(NullSpaceCreate(pencil, n, list, -1, &pencil->Zr));
-    for (PetscInt i = 0; i < n_interfaces; i++) {
-      if (interfaces[i].law != CONTACT_CONSTRAINT || pencil->operators->interface[i].mu < 0) continue;
-      PetscCall(NullSpaceCreate(pencil, n, list, i, &pencil->left[pencil->n_left]));
-      pencil->left_mu[pencil->n_left++] = pencil->operators->interface[i].mu;
-    }
+    for (PetscInt i = 0; i < n_interfaces; i++) n_nodes += pencil->operators->interface[i].n_nodes;
+    PetscCall(PetscCalloc2(n_nodes, &pencil->left, n_nodes, &pencil->left_mu));
+    PetscCall(InjectionCreate(pencil, n, list, NULL, &pencil->E));
+    PetscCall(NullSpaceCreate(pencil, n, list, NULL, &pencil->Zr));
+    for (PetscInt i = 0; i < n_interfaces; i++)
+      if (interfaces[i].law == CONTACT_CONSTRAINT) PetscCall(NullSpacesAdd(pencil, n, list, i));
   }
   PetscCall(PetscFree(list));
   PetscFunctionReturn(0);
@@ -266,78 +284,5 @@ PetscErrorCode PencilDestroyNullSpaces(Pencil pencil)
   PetscCall(MatDestroy(&pencil->Zr));
   PetscCall(MatDestroy(&pencil->E));
   PetscCall(TermsDestroy(&pencil->projected));
-  PetscFunctionReturn(0);
-}
-
-/* L' AZ; NULL where it is zero */
-static PetscErrorCode ProjectFromLeft(Mat L, Mat AZ, Mat *projected)
-{
-  PetscReal norm;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatTransposeMatMult(L, AZ, MAT_INITIAL_MATRIX, PETSC_DEFAULT, projected));
-  PetscCall(MatProductClear(*projected));
-  PetscCall(MatNorm(*projected, NORM_FROBENIUS, &norm));
-  if (norm == 0) PetscCall(MatDestroy(projected));
-  PetscFunctionReturn(0);
-}
-
-/* Zr' A Zr, Zl_1' A Zr, Zl_2' A Zr, ..., array [1 + n_left] */
-static PetscErrorCode TermProject(Pencil pencil, Mat A, Mat image[])
-{
-  Mat AZ;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatMatMult(A, pencil->Zr, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AZ));
-  PetscCall(MatProductClear(AZ));
-  PetscCall(ProjectFromLeft(pencil->Zr, AZ, &image[0]));
-  for (PetscInt i = 0; i < pencil->n_left; i++) PetscCall(ProjectFromLeft(pencil->left[i], AZ, &image[1 + i]));
-  PetscCall(MatDestroy(&AZ));
-  PetscFunctionReturn(0);
-}
-
-/* Adds the terms of the pencil that a base term with these images makes */
-static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const Mat image[])
-{
-  const PetscInt n = base->n;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i <= pencil->n_left; i++) {
-    OperatorsTerm *term;
-
-    if (!image[i]) continue;
-    PetscCall(TermsAdd(&pencil->projected, base->kind, image[i], i ? PETSC_FALSE : base->symmetric, 0, NULL));
-    term        = &pencil->projected.term[pencil->projected.n - 1];
-    term->scale = base->scale;
-    term->n     = n + (i ? 1 : 0);
-    PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
-               term->n);
-    PetscCall(PetscArraycpy(term->factor, base->factor, n));
-    if (!i) continue;
-    term->factor[n].parameter = pencil->left_mu[i - 1];
-    term->factor[n].power     = 1;
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode PencilProjectTerms(Pencil pencil)
-{
-  PetscInt n_images;
-  Mat     *image;
-
-  PetscFunctionBeginUser;
-  if (!pencil->Zr || pencil->projected.n) PetscFunctionReturn(0);
-  n_images = 1 + pencil->n_left;
-  PetscCall(PetscCalloc1(pencil->base.n * n_images, &image));
-  for (PetscInt t = 0; t < pencil->base.n; t++) {
-    const OperatorsTerm *term   = &pencil->base.term[t];
-    PetscInt             shared = 0;
-
-    while (pencil->base.term[shared].A != term->A) shared++;
-    if (shared == t) PetscCall(TermProject(pencil, term->A, &image[t * n_images]));
-    PetscCall(ImagesAdd(pencil, term, &image[shared * n_images]));
-  }
-  for (PetscInt i = 0; i < pencil->base.n * n_images; i++) PetscCall(MatDestroy(&image[i]));
-  PetscCall(PetscFree(image));
   PetscFunctionReturn(0);
 }

@@ -134,7 +134,11 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
     if (A[i]) PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
   if (!A[OPERATOR_H]) PetscFunctionReturn(0);
   mu = ParametersFind(&o->parameters, "contact_mu");
-  if (mu < 0) PetscCall(OperatorsAddMu(o, "contact", o->loaded_mu, &mu));
+  if (mu < 0) {
+    PetscCall(ParametersAdd(&o->parameters, "contact", "mu",
+                            &(OperatorsParameter){.unit = "", .value = o->loaded_mu, .lower = -INFINITY}, &mu));
+    o->mu = mu;
+  }
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
   PetscFunctionReturn(0);
 }

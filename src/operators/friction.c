@@ -5,7 +5,8 @@
       K += k_t (T'T + B'B)                     pairs that stick, of an interface that holds by friction; also per area
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
    of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
-   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Only
+   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Where mu differs
+   from pair to pair, terms with mu or mu' stand once for each of several speeds k, with the pairs' parts L_k (frictionfactor.c). Only
    closed pairs take part; those of a group g make terms of their own, with the parameter closed_g as one more factor.
    Signs: slip velocity of the slave relative to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master
    acts along it, and internal forces stand on the left.
@@ -73,10 +74,10 @@ static PetscErrorCode FrictionGroupDestroy(FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
-/* Weights of the pairs: along = N0 / N, across = N0 / N V / v */
-static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, Vec across, Vec along)
+/* Weights of the pairs at speed k: along = L_k N0 / N, across = L_k N0 / N V / v */
+static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec across, Vec along)
 {
-  const PetscReal    turning = Vec3Length(g->c->rotation), speed = turning > 0 ? turning : g->c->speed;
+  const PetscReal    speed = g->q.stated;
   const ContactPair *pairs;
   PetscInt           n, n_all, row;
 
@@ -84,9 +85,9 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, V
   PetscCall(VecGetOwnershipRange(across, &row, NULL));
   PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
   for (PetscInt i = 0; i < g->n; i++) {
-    const PetscReal share = pencil->force[g->pair[i]] / g->total;
+    const PetscReal own = pairs[g->pair[i]].speed, share = FrictionNodeShare(&g->q, k, own) * pencil->force[g->pair[i]] / g->total;
 
-    PetscCall(VecSetValue(across, row + i, share * speed / pairs[g->pair[i]].speed, INSERT_VALUES));
+    PetscCall(VecSetValue(across, row + i, share * speed / own, INSERT_VALUES));
     PetscCall(VecSetValue(along, row + i, share, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(across));
@@ -96,10 +97,10 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, V
   PetscFunctionReturn(0);
 }
 
-/* Terms of the friction damping */
-static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g)
+/* Terms of the friction damping at speed k */
+static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
 {
-  const PetscInt slope[] = {g->q.slope, g->q.force, g->closed}, mu[] = {g->q.mu, g->q.force, g->q.speed, g->closed};
+  const PetscInt slope[] = {-1, g->q.force, g->closed}, mu[] = {-1, g->q.force, g->q.speed, g->closed};
   OperatorsTerm *term;
   Vec            across, along;
   Mat            BB, TT;
@@ -107,11 +108,13 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(g->T, NULL, &across));
   PetscCall(VecDuplicate(across, &along));
-  PetscCall(DampingSetWeights(pencil, g, across, along));
+  PetscCall(DampingSetWeights(pencil, g, k, across, along));
   PetscCall(TermsProduct(1, g->B, across, g->B, &BB));
   PetscCall(TermsProduct(1, g->T, along, g->T, &TT));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
+  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_TRUE));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
+  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_FALSE));
   term                     = &pencil->base.term[pencil->base.n - 1];
   term->factor[0].absolute = PETSC_TRUE;
   term->factor[2].power    = -1;
@@ -141,11 +144,56 @@ static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g
   PetscFunctionReturn(0);
 }
 
+/* Areas of the pairs times their part at speed k of several; NULL where all are 1 */
+static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PenaltyCreateWeights(pencil, g, weights));
+  if (g->q.n_nodes == 1) PetscFunctionReturn(0);
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  if (!*weights) PetscCall(MatCreateVecs(g->N, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++) {
+    const ContactPair *pair = &pairs[g->pair[i]];
+
+    PetscCall(VecSetValue(*weights, row + i, FrictionNodeShare(&g->q, k, pair->speed) * ContactPairStiffness(g->c, pair, 1),
+                          INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
+/* The term of friction at speed k. Several have no factors of their own: there would be as many rows more */
+static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
+{
+  const PetscInt mu[] = {g->q.kn, -1, g->closed};
+  Mat            TN, WN;
+  Vec            weights;
+
+  PetscFunctionBeginUser;
+  PetscCall(SlideCreateWeights(pencil, g, k, &weights));
+  PetscCall(MatDuplicate(g->N, MAT_COPY_VALUES, &WN));
+  PetscCall(MatScale(WN, -1));
+  if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
+  PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
+  PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
+  if (g->q.n_nodes == 1) PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
+  PetscCall(MatDestroy(&WN));
+  PetscCall(MatDestroy(&TN));
+  PetscCall(VecDestroy(&weights));
+  PetscFunctionReturn(0);
+}
+
 /* Terms of the penalty law; without friction where nothing says along what the interface slides */
 static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 {
-  const PetscInt kn[] = {g->q.kn, g->closed}, mu[] = {g->q.kn, g->q.mu, g->closed};
-  Mat            NN, TN, WN;
+  const PetscInt kn[] = {g->q.kn, g->closed};
+  Mat            NN;
   Vec            weights;
 
   PetscFunctionBeginUser;
@@ -153,17 +201,8 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   PetscCall(TermsProduct(1, g->N, weights, g->N, &NN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
   PetscCall(MatDestroy(&NN));
-  if (g->q.mu >= 0) {
-    PetscCall(MatDuplicate(g->N, MAT_COPY_VALUES, &WN));
-    PetscCall(MatScale(WN, -1));
-    if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
-    PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
-    PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
-    PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
-    PetscCall(MatDestroy(&WN));
-    PetscCall(MatDestroy(&TN));
-  }
   PetscCall(VecDestroy(&weights));
+  for (PetscInt k = 0; k < g->q.n_nodes; k++) PetscCall(SlideAdd(pencil, g, k));
   PetscFunctionReturn(0);
 }
 
@@ -207,51 +246,6 @@ static PetscErrorCode HoldAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
-/* Parameters of one interface */
-static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
-{
-  const PetscReal turning = Vec3Length(c->rotation); /* rad/s */
-  const struct {
-    PetscBool          there;
-    const char        *name;
-    OperatorsParameter like;
-    PetscInt          *index;
-  } what[] = {
-    {c->law == CONTACT_PENALTY,
-     c->per_area ? "kn_per_area" : "kn",
-     {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
-     &q->kn                                                                                                                },
-    {c->kt > 0,
-     c->kt_per_area ? "kt_per_area" : "kt",
-     {.unit = c->kt_per_area ? "N/m^3" : "N/m", .value = c->kt},
-     &q->kt                                                                                                                },
-    {!c->slides && c->kt > 0 && c->mu > 0, "mu",       {.unit = "", .value = c->mu, .state = PETSC_TRUE},         &q->grip },
-    {c->damping,                           "mu_slope", {.unit = "s/m", .value = c->mu_slope, .lower = -INFINITY}, &q->slope},
-    {c->damping,                           "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE},    &q->force},
-    {c->damping && turning > 0,            "rotation", {.unit = "rad/s", .value = turning},                       &q->speed},
-    {c->damping && turning <= 0,           "speed",    {.unit = "m/s", .value = c->speed},                        &q->speed},
-  };
-
-  PetscFunctionBeginUser;
-  *q = (InterfaceParameters){-1, -1, -1, -1, -1, -1, -1};
-  if (c->slides) PetscCall(OperatorsAddMu(o, c->name, c->mu, &q->mu));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(what); i++)
-    if (what[i].there) PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsAddContactParameters(Operators o)
-{
-  const ContactInterface *c;
-  PetscInt                n;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetInterfaces(o->contact, &n, &c));
-  PetscCall(PetscMalloc1(n, &o->interface));
-  for (PetscInt i = 0; i < n; i++) PetscCall(InterfaceAddParameters(o, &c[i], &o->interface[i]));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode PencilAddContact(Pencil pencil)
 {
   const ContactInterface *c;
@@ -266,9 +260,26 @@ PetscErrorCode PencilAddContact(Pencil pencil)
       PetscCall(MatGetSize(g.N, &n_rows, NULL));
       if (n_rows && c[i].law == CONTACT_PENALTY) PetscCall(PenaltyAdd(pencil, &g));
       if (n_rows && c[i].kt > 0) PetscCall(HoldAdd(pencil, &g));
-      if (n_rows && c[i].damping && c[i].slides && g.total > 0) PetscCall(DampingAdd(pencil, &g));
+      for (PetscInt k = 0; k < g.q.n_nodes && n_rows && c[i].damping && g.total > 0; k++) PetscCall(DampingAdd(pencil, &g, k));
       PetscCall(FrictionGroupDestroy(&g));
     }
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for friction that changes with the slip speed, where modes are to know nothing of it */
+static PetscErrorCode FrictionCheckDamps(MPI_Comm comm, const ContactInterface *c)
+{
+  const FrictionParameter *parameter;
+  const PetscInt           n = FrictionGetParameters(&c->friction, &parameter);
+
+  PetscFunctionBeginUser;
+  if (c->damping) PetscFunctionReturn(0);
+  for (PetscInt j = 0; j < n; j++)
+    PetscCheck(parameter[j].steady || c->friction.parameter[j] == 0, comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s does nothing without -%s_friction_damping", c->name, parameter[j].row.name + 1, c->name);
+  PetscCheck(!c->slides || !FrictionVaries(&c->friction), comm, PETSC_ERR_USER_INPUT,
+             "friction of contact %s changes with the slip speed: give -%s_friction_damping, which damps with mu' N", c->name,
+             c->name);
   PetscFunctionReturn(0);
 }
 
@@ -284,14 +295,13 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
   if (pencil->from_state && !n_closed) PetscFunctionReturn(0); /* the bodies alone */
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCheck(c[i].slides || ((c[i].mu == 0 || c[i].kt > 0) && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(c[i].slides || ((!FrictionExists(&c[i].friction) || c[i].kt > 0) && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
                "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the "
                "surface, or -%s_kt (N/m per pair) where it holds by friction",
                c[i].name, c[i].name, c[i].name);
     PetscCheck(!c[i].damping || c[i].force > 0 || pencil->has_forces, pencil->comm, PETSC_ERR_USER_INPUT,
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
-    PetscCheck(c[i].damping || c[i].mu_slope == 0, pencil->comm, PETSC_ERR_USER_INPUT,
-               "-%s_mu_slope does nothing without -%s_friction_damping", c[i].name, c[i].name);
+    PetscCall(FrictionCheckDamps(pencil->comm, &c[i]));
   }
   PetscFunctionReturn(0);
 }

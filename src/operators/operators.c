@@ -11,6 +11,7 @@ PetscErrorCode OperatorsCreate(MPI_Comm comm, Operators *operators)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, operators));
+  (*operators)->mu   = -1;
   (*operators)->comm      = comm;
   (*operators)->symmetric = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -102,25 +103,6 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsAddMu(Operators o, const char owner[], PetscReal value, PetscInt *index)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ParametersAdd(&o->parameters, owner, "mu",
-                          &(OperatorsParameter){.unit = "", .value = value, .lower = -INFINITY}, index));
-  PetscCall(PetscRealloc((size_t)(o->n_mu + 1) * sizeof(*o->mu), &o->mu));
-  o->mu[o->n_mu++] = *index;
-  PetscFunctionReturn(0);
-}
-
-PetscReal OperatorsLargestMu(Operators o, const PetscReal p[])
-{
-  PetscReal mu = 0;
-
-  for (PetscInt i = 0; i < o->n_mu; i++)
-    if (PetscAbsReal(p[o->mu[i]]) > PetscAbsReal(mu)) mu = p[o->mu[i]];
-  return mu;
-}
-
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters)
 {
   PetscFunctionBeginUser;
@@ -167,21 +149,6 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
   material->density = value[PART_DENSITY];
   material->alpha   = value[PART_ALPHA];
   material->beta    = value[PART_BETA];
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
-                                     PetscReal *kn)
-{
-  const InterfaceParameters *q     = &operators->interface[interface];
-  const PetscReal           *value = OperatorsPoint(operators, p);
-  const ContactInterface    *c;
-  PetscInt                   n;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetInterfaces(operators->contact, &n, &c));
-  *mu = q->mu >= 0 ? value[q->mu] : q->grip >= 0 ? value[q->grip] : c[interface].mu;
-  *kn = q->kn < 0 ? INFINITY : value[q->kn];
   PetscFunctionReturn(0);
 }
 
@@ -254,13 +221,12 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(TermsDestroy(&o->terms));
   PetscCall(TermsDestroy(&o->spin));
   PetscCall(PetscFree(o->spin_of_part));
-  PetscCall(PetscFree(o->interface));
+  PetscCall(OperatorsDestroyContactParameters(o));
   PetscCall(PetscFree(o->load_size));
   PetscCall(PetscFree(o->joint));
   PetscCall(MatDestroy(&o->Z));
   PetscCall(MatDestroy(&o->E));
   PetscCall(PetscFree(o->follows));
-  PetscCall(PetscFree(o->mu));
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(MatrixTermsDestroy(o));
   PetscCall(CloudDestroy(o));

@@ -18,9 +18,11 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
-  PetscInt mu; /* none where nothing says along what it slides */
-  PetscInt grip; /* mu of one that holds by friction */
-  PetscInt kn, kt, slope, force, speed;
+  PetscInt           law[FRICTION_PARAMETERS];
+  PetscInt           kn, kt, force, speed;
+  PetscReal          stated;  /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
+  PetscInt           n_nodes; /* sliding speeds at which mu is a factor of terms, 0 where nothing says along what it slides */
+  OperatorsFriction *node;    /* [n_nodes] */
 } InterfaceParameters;
 
 /* Indices of the parameters of a bushing or point, -1 where there is none */
@@ -54,7 +56,7 @@ struct _p_Operators {
   struct _p_Cloud      *cloud;                     /* their points, NULL without */
   /* built by OperatorsSetUp() */
   Parameters           parameters;       /* at the values of the scene */
-  PetscInt             n_mu, *mu;        /* parameters that are friction coefficients */
+  PetscInt             mu;               /* parameter of loaded matrices that is a friction coefficient, -1 for none */
   InterfaceParameters *interface;        /* of each interface */
   LoadParameters      *load_size;        /* of each load */
   JointParameters     *joint;            /* of each bushing, then of each point */
@@ -80,9 +82,8 @@ static inline const PetscReal *OperatorsPoint(Operators operators, const PetscRe
   return p ? p : operators->parameters.p;
 }
 
-/* operators.c - a friction coefficient as parameter; the one of largest absolute value at p, 0 without any */
-PETSC_INTERN PetscErrorCode OperatorsAddMu(Operators operators, const char owner[], PetscReal value, PetscInt *index);
-PETSC_INTERN PetscReal      OperatorsLargestMu(Operators operators, const PetscReal p[]);
+/* frictionfactor.c - the friction coefficient of largest absolute value at p, 0 without any */
+PETSC_INTERN PetscReal OperatorsLargestMu(Operators operators, const PetscReal p[]);
 
 /* assemble.c - parameters and terms of the bodies, springs and dashpots */
 PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
@@ -132,8 +133,11 @@ PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool 
 /* load.c - sizes of the loads as parameters */
 PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 
-/* friction.c - parameters of the contact */
+/* frictionfactor.c - parameters of the contact, and the speeds at which mu is a factor of terms; part of pairs that slide at
+   `speed` (m/s) in the terms of node k; the end. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
+PETSC_INTERN PetscReal      FrictionNodeShare(const InterfaceParameters *interface, PetscInt k, PetscReal speed);
+PETSC_INTERN PetscErrorCode OperatorsDestroyContactParameters(Operators operators);
 
 /* file.c - matrices from files and options, and to files */
 PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);

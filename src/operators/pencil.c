@@ -243,7 +243,7 @@ PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
   PetscCall(VecDuplicate(u, &part));
   for (PetscInt i = 0; i < pencil->n_left; i++) {
     PetscCall(MatMult(pencil->left[i], q, part));
-    PetscCall(VecAXPY(u, pencil->parameters.p[pencil->left_mu[i]], part));
+    PetscCall(VecAXPY(u, FrictionFactorValue(pencil->left_mu[i], PETSC_FALSE, pencil->parameters.p), part));
   }
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
@@ -263,7 +263,7 @@ PetscErrorCode PencilProjectForce(Pencil pencil, PetscBool transposed, Vec f, Ve
   PetscCall(VecDuplicate(g, &part));
   for (PetscInt i = 0; i < pencil->n_left; i++) {
     PetscCall(MatMultTranspose(pencil->left[i], f, part));
-    PetscCall(VecAXPY(g, pencil->parameters.p[pencil->left_mu[i]], part));
+    PetscCall(VecAXPY(g, FrictionFactorValue(pencil->left_mu[i], PETSC_FALSE, pencil->parameters.p), part));
   }
   PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);

@@ -33,9 +33,9 @@ struct _p_Pencil {
   /* matrices */
   Terms     base;      /* in all unknowns: those of the bodies, of the contact, of the preload */
   Mat       Zr, E;     /* right null space of the constraints and its injection; NULL without constraints */
-  PetscInt  n_left;    /* Zl = Zr + sum_i p[left_mu[i]] left[i] */
+  PetscInt  n_left;    /* Zl = Zr + sum_i mu_i left[i] */
   Mat      *left;      /* [n_left] */
-  PetscInt *left_mu;   /* [n_left] parameters that are friction coefficients */
+  const OperatorsFriction **left_mu; /* [n_left] mu_i (borrowed) */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
   PetscBool mass_singular; /* loaded: there is no mass along some directions that are no unknowns */

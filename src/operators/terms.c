@@ -4,7 +4,8 @@
 
       dc/dp_j = sum over factors i of p_j:  scale power_i p_j^(power_i - 1) prod_{k != i} p_k^power_k
 
-   where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides.
+   where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides. A factor may also be
+   mu or mu' of an interface (frictionfactor.c), a function of several parameters.
 */
 #include "terms.h"
 
@@ -53,6 +54,17 @@ PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TermsSetFriction(Terms *terms, PetscInt i, const OperatorsFriction *friction, PetscBool slope)
+{
+  OperatorsTerm *term = &terms->term[terms->n - 1];
+
+  PetscFunctionBeginUser;
+  term->factor[i].parameter = -1;
+  term->factor[i].friction  = friction;
+  term->factor[i].slope     = slope;
+  PetscFunctionReturn(0);
+}
+
 /* x^n, without the rounding of pow() at n = 1, -1 and 2 */
 static PetscReal Power(PetscReal x, PetscInt n)
 {
@@ -62,23 +74,40 @@ static PetscReal Power(PetscReal x, PetscInt n)
   return n < 0 ? 1 / y : y;
 }
 
+/* What factor i is a power of, before its absolute value */
+static PetscReal FactorBase(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
+{
+  const OperatorsFriction *friction = term->factor[i].friction;
+
+  return friction ? FrictionFactorValue(friction, term->factor[i].slope, p) : p[term->factor[i].parameter];
+}
+
 /* Value of factor i */
 static PetscReal FactorValue(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
 {
-  const PetscReal value = p[term->factor[i].parameter], base = term->factor[i].absolute ? PetscAbsReal(value) : value;
+  const PetscReal value = FactorBase(term, p, i), base = term->factor[i].absolute ? PetscAbsReal(value) : value;
 
   return Power(base, term->factor[i].power);
 }
 
-/* Derivative of factor i by its parameter */
-static PetscReal FactorDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt i)
+static PetscBool FactorDepends(const OperatorsTerm *term, PetscInt i, PetscInt parameter)
 {
-  const PetscReal value = p[term->factor[i].parameter];
+  if (term->factor[i].friction) return FrictionFactorDepends(term->factor[i].friction, parameter);
+  return term->factor[i].parameter == parameter ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Derivative of factor i by a parameter that it depends on */
+static PetscReal FactorDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt i, PetscInt parameter)
+{
+  const OperatorsFriction *friction = term->factor[i].friction;
+
+  const PetscReal value = FactorBase(term, p, i);
   const PetscReal sign  = !term->factor[i].absolute ? 1 : (PetscReal)((value > 0) - (value < 0));
   const PetscReal base  = term->factor[i].absolute ? PetscAbsReal(value) : value;
+  const PetscReal inner = friction ? FrictionFactorDerivative(friction, term->factor[i].slope, p, parameter) : 1;
   const PetscInt  power = term->factor[i].power;
 
-  return sign * (PetscReal)power * Power(base, power - 1);
+  return inner * sign * (PetscReal)power * Power(base, power - 1);
 }
 
 PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[])
@@ -89,6 +118,13 @@ PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[
   return c;
 }
 
+PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter)
+{
+  for (PetscInt i = 0; i < term->n; i++)
+    if (FactorDepends(term, i, parameter)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter)
 {
   PetscReal sum = 0;
@@ -96,8 +132,9 @@ PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[]
   for (PetscInt i = 0; i < term->n; i++) {
     PetscReal c = term->scale;
 
-    if (term->factor[i].parameter != parameter) continue;
-    for (PetscInt k = 0; k < term->n; k++) c *= k == i ? FactorDerivative(term, p, k) : FactorValue(term, p, k);
+    if (!FactorDepends(term, i, parameter)) continue;
+    for (PetscInt k = 0; k < term->n; k++)
+      c *= k == i ? FactorDerivative(term, p, k, parameter) : FactorValue(term, p, k);
     sum += c;
   }
   return sum;

@@ -35,6 +35,8 @@ PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A
 PETSC_INTERN PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[]);
 /* Tells that the last term is left' right */
 PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
+/* Makes factor i of the last term the friction coefficient, or its slope */
+PETSC_INTERN PetscErrorCode TermsSetFriction(Terms *terms, PetscInt i, const OperatorsFriction *friction, PetscBool slope);
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
 PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
 PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
@@ -42,6 +44,12 @@ PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
 PETSC_INTERN PetscErrorCode TermsRelease(Terms *terms);
 /* friction.c - scale L' W R with W = diag(weights), or the identity where weights is NULL */
 PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A);
+
+/* frictionfactor.c - mu, or mu', at p; its derivative by a parameter, 0 where it does not depend on it; whether it does */
+PETSC_INTERN PetscReal FrictionFactorValue(const OperatorsFriction *friction, PetscBool slope, const PetscReal p[]);
+PETSC_INTERN PetscReal FrictionFactorDerivative(const OperatorsFriction *friction, PetscBool slope, const PetscReal p[],
+                                                PetscInt parameter);
+PETSC_INTERN PetscBool FrictionFactorDepends(const OperatorsFriction *friction, PetscInt parameter);
 
 /* sum.c - forms a sum at p: values in place where the pattern allows, nothing where the coefficients are the same */
 PETSC_INTERN PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const PetscReal p[],

@@ -128,6 +128,14 @@ static PetscErrorCode LimitsDescribe(const Quantity *row, PetscReal x, size_t si
   PetscFunctionReturn(0);
 }
 
+/* The option of a row, with the name of its owner: -pad_mu */
+static PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t size, char option[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, size, "-%s%s%s", name ? name : "", name ? "_" : "", row->name + 1));
+  PetscFunctionReturn(0);
+}
+
 /* Whether a number is outside the limits of its row */
 static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
 {
@@ -136,12 +144,12 @@ static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
 }
 
 /* All numbers of a row */
-static PetscErrorCode QuantityCheck(MPI_Comm comm, const Quantity *row, void *owner)
+static PetscErrorCode QuantityCheck(MPI_Comm comm, const char name[], const Quantity *row, void *owner)
 {
   const void    *value   = QuantityValue(row, owner);
   const PetscInt integer = row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS;
   PetscInt       n       = (PetscInt)(row->size / (integer ? sizeof(PetscInt) : sizeof(PetscReal)));
-  char           limits[QUANTITY_HELP];
+  char           limits[QUANTITY_HELP], option[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
   if (row->kind == QUANTITY_LIST || row->kind == QUANTITY_INTS) n = *(const PetscInt *)((const char *)owner + row->count);
@@ -150,7 +158,8 @@ static PetscErrorCode QuantityCheck(MPI_Comm comm, const Quantity *row, void *ow
 
     if (!QuantityIsOutside(row, x)) continue;
     PetscCall(LimitsDescribe(row, x, sizeof(limits), limits));
-    SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s %.*g %s", row->name, integer ? 20 : 6, (double)x, limits);
+    PetscCall(QuantityGetOption(name, row, sizeof(option), option));
+    SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s %.*g %s", option, integer ? 20 : 6, (double)x, limits);
   }
   PetscFunctionReturn(0);
 }
@@ -170,20 +179,32 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner)
+PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner)
 {
+  char prefix[QUANTITY_HELP] = "";
+
   PetscFunctionBeginUser;
-  PetscOptionsBegin(comm, NULL, table->title, NULL);
+  if (name) PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscOptionsBegin(comm, name ? prefix : NULL, table->title, NULL);
   for (PetscInt i = 0; i < table->n; i++)
     PetscCall(QuantityRead(PetscOptionsObject, table->header, &table->row[i], owner));
   PetscOptionsEnd();
   for (PetscInt i = 0; i < table->n; i++)
-    if (table->row[i].bounded) PetscCall(QuantityCheck(comm, &table->row[i], owner));
+    if (table->row[i].bounded) PetscCall(QuantityCheck(comm, name, &table->row[i], owner));
   for (PetscInt i = 0; i < table->n; i++) {
     const char *why = table->row[i].idle ? table->row[i].idle(owner) : NULL;
+    char        option[QUANTITY_HELP];
 
-    if (why) PetscCall(OptionsRefuse(comm, table->row[i].name, why));
+    PetscCall(QuantityGetOption(name, &table->row[i], sizeof(option), option));
+    if (why) PetscCall(OptionsRefuse(comm, option, why));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesReadOf(comm, NULL, table, owner));
   PetscFunctionReturn(0);
 }
 

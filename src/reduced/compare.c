@@ -21,8 +21,8 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
     const ContactInterface *c = &r->run.interfaces[i];
 
     if (c->law != CONTACT_CONSTRAINT) *why = "the penalty law of the modes is not exact contact";
-    if (!c->slides && c->mu > 0) *why = "nothing says along what the contact slides";
-    if (!c->damping && c->mu_slope != 0) *why = "friction that depends on a speed which is not given";
+    if (!c->slides && FrictionExists(&c->friction)) *why = "nothing says along what the contact slides";
+    if (!c->damping && FrictionVaries(&c->friction)) *why = "friction that depends on a speed which is not given";
   }
   PetscFunctionReturn(0);
 }

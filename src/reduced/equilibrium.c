@@ -33,7 +33,7 @@ static void SlidingSystemFill(SlidingSystem *s)
   }
   for (PetscInt j = 0; j < s->n; j++) {
     const PetscInt   port = 3 * s->pair[j];
-    const PetscReal *P = &model->P[m * port], mu = model->mu[s->pair[j]];
+    const PetscReal *P = &model->P[m * port], mu = FrictionSteady(&model->friction[s->pair[j]]);
 
     s->x[m + j] = -model->gap[s->pair[j]];
     for (PetscInt l = 0; l < model->n_loads; l++) s->x[m + j] -= model->W[port + N * (first + l)] * s->loads[l];
@@ -60,7 +60,7 @@ static void SlidingSystemTake(const SlidingSystem *s, ReducedState *state)
   for (PetscInt l = 0; l < model->n_loads; l++) state->p[first + l] = s->loads[l];
   for (PetscInt j = 0; j < s->n; j++) {
     state->p[3 * s->pair[j]]     = s->x[model->m + j];
-    state->p[3 * s->pair[j] + 1] = -model->mu[s->pair[j]] * s->x[model->m + j];
+    state->p[3 * s->pair[j] + 1] = -FrictionSteady(&model->friction[s->pair[j]]) * s->x[model->m + j];
   }
   for (PetscInt i = 0; i < first; i++) state->y[i] = ReducedPortDisplacement(model, state->eta, state->p, i);
 }

@@ -64,7 +64,7 @@ static const ReducedGrowing *InertiaWorst(ReducedRun r)
 static PetscBool InertiaSlides(ReducedRun r)
 {
   for (PetscInt i = 0; i < r->run.n_interfaces; i++)
-    if (!r->run.interfaces[i].slides && r->run.interfaces[i].mu > 0) return PETSC_FALSE;
+    if (!r->run.interfaces[i].slides && FrictionExists(&r->run.interfaces[i].friction)) return PETSC_FALSE;
   return r->model.n_pairs > 0 && r->model.Mx ? PETSC_TRUE : PETSC_FALSE;
 }
 

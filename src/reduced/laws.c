@@ -5,7 +5,6 @@
    of, |P| |eta| + |W| |q|, beside which rounding is small and the slip of a pair that sticks is nothing.
 */
 #include "reducedimpl.h"
-#include "kernels/friction.h"
 
 /* Displacements of the pairs [3 n_pairs], m */
 static void LookPlace(const ReducedRun r, PetscReal place[])
@@ -41,10 +40,10 @@ static PetscReal LookSize(const ReducedRun r, PetscInt port)
 /* One pair: what its friction did and what the law asks for, J */
 static void LookAdd(const ReducedRun r, PetscInt i, const PetscReal after[], PetscReal sum[3])
 {
-  const ContactInterface *c      = &r->run.interfaces[r->pair[i].interface];
-  const ContactState     *state  = &r->pairs[i];
-  const PetscReal        *before = &r->place[3 * i];
-  PetscReal               s[2], motion = 0, noise = 0, length, mu, done;
+  const FrictionLaw   law    = FrictionAt(&r->run.interfaces[r->pair[i].interface].friction, r->pair[i].speed);
+  const ContactState *state  = &r->pairs[i];
+  const PetscReal    *before = &r->place[3 * i];
+  PetscReal           s[2], motion = 0, noise = 0, length, mu, done;
 
   for (int d = 0; d < 3; d++) {
     motion = PetscMax(motion, PetscAbsReal(after[3 * i + d] - before[d]));
@@ -52,7 +51,7 @@ static void LookAdd(const ReducedRun r, PetscInt i, const PetscReal after[], Pet
   }
   for (int d = 0; d < 2; d++) s[d] = after[3 * i + 1 + d] - before[1 + d] + (d ? 0 : r->sliding[i]);
   length = hypot(s[0], s[1]);
-  mu     = FrictionCoefficient(c->mu, c->mu_slope, r->pair[i].speed, length / r->dt);
+  mu     = FrictionMu(&law, length / r->dt);
   done   = state->lambda_t[0] * s[0] + state->lambda_t[1] * s[1];
   sum[0] += PetscMax(0, PetscAbsReal(done - mu * state->lambda_n * length) - 2 * mu * state->lambda_n * noise);
   sum[1] += mu * state->lambda_n * PetscMax(PetscMax(length, motion), noise);

@@ -42,7 +42,7 @@ static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool cl
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal *w = &model->W[3 * c->pair[i] + N * (3 * c->pair[j])];
 
-      c->A[i + n * j] = w[0] - model->mu[c->pair[j]] * w[N];
+      c->A[i + n * j] = w[0] - FrictionSteady(&model->friction[c->pair[j]]) * w[N];
     }
   if (!n) PetscFunctionReturn(0);
   PetscCall(DenseFactor(n, c->A, c->pivot, &singular));
@@ -76,7 +76,7 @@ static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[]
   const PetscInt m = c->model->m;
 
   for (PetscInt i = 0; i < c->n; i++) {
-    const PetscReal *q = &Q[m * 3 * c->pair[i]], mu = c->model->mu[c->pair[i]];
+    const PetscReal *q = &Q[m * 3 * c->pair[i]], mu = FrictionSteady(&c->model->friction[c->pair[i]]);
 
     for (PetscInt k = 0; k < m; k++)
       for (PetscInt l = 0; l < m; l++) K[l + m * k] += scale * (q[l] - mu * q[m + l]) * S[i + c->n * k];
@@ -94,7 +94,7 @@ static PetscErrorCode ClosedSolveForm(ClosedPairs *c, const PetscReal X[], Petsc
       for (PetscInt j = 0; j < n; j++) {
         const PetscReal *x = &X[3 * c->pair[i] + N * 3 * c->pair[j]];
 
-        Y[i + n * k] -= (x[0] - c->model->mu[c->pair[j]] * x[N]) * c->S[j + n * k];
+        Y[i + n * k] -= (x[0] - FrictionSteady(&c->model->friction[c->pair[j]]) * x[N]) * c->S[j + n * k];
       }
     }
   }
@@ -169,7 +169,7 @@ static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d
   for (PetscInt k = 0; k < m; k++) L[k] = R[k] = model->P[k + m * port];
   for (PetscInt j = 0; j < n; j++) {
     const PetscInt   other = 3 * c->pair[j];
-    const PetscReal *P = &model->P[m * other], mu = model->mu[c->pair[j]];
+    const PetscReal *P = &model->P[m * other], mu = FrictionSteady(&model->friction[c->pair[j]]);
     const PetscReal  w = model->W[port + N * other] - mu * model->W[port + N * (other + 1)];
 
     for (PetscInt k = 0; k < m; k++) {
@@ -190,9 +190,10 @@ static PetscErrorCode ClosedAddFriction(ClosedPairs *c, const PetscReal lambda_n
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->n; i++) {
-    const PetscInt  p      = c->pair[i];
-    const PetscReal along  = model->slope[p] * lambda_n[p];
-    const PetscReal across = model->speed[p] > 0 ? model->mu[p] * lambda_n[p] / model->speed[p] : 0;
+    const PetscInt     p      = c->pair[i];
+    const FrictionLaw *law    = &model->friction[p];
+    const PetscReal    along  = FrictionSteadySlope(law) * lambda_n[p];
+    const PetscReal    across = law->speed > 0 ? FrictionSteady(law) * lambda_n[p] / law->speed : 0;
 
     if (along != 0) PetscCall(ClosedAddDamper(c, 3 * p + 1, along, C));
     if (across != 0) PetscCall(ClosedAddDamper(c, 3 * p + 2, across, C));
@@ -283,7 +284,7 @@ static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedStat
 
     for (PetscInt k = 0; k < m; k++) lambda += c->T[i + c->n * k] * z[m + k] - c->S[i + c->n * k] * z[k];
     mode->p[port]     = lambda;
-    mode->p[port + 1] = -c->model->mu[c->pair[i]] * lambda;
+    mode->p[port + 1] = -FrictionSteady(&c->model->friction[c->pair[i]]) * lambda;
     mode->q[port]     = mode->p[port];
     mode->q[port + 1] = mode->p[port + 1];
   }

@@ -6,7 +6,6 @@
 #include "base/gather.h"
 #include "base/vec3.h"
 #include "contact/judge.h"
-#include "kernels/friction.h"
 
 #define SLACK     1e-10 /* penetration that is rounding, of the model's size */
 #define PAIR_HELD 1e-10 /* part of a unit normal that is rounding */
@@ -64,22 +63,20 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n_all, &local));
   PetscCall(GatherRecords(r->comm, n_local, sizeof(*local), local, NULL, &r->pair));
   PetscCall(ReducedCheckHeld(r));
-  PetscCall(PetscCalloc4(n, &r->model.gap, n, &r->model.mu, n, &r->model.slope, n, &r->model.speed));
+  PetscCall(PetscCalloc2(n, &r->model.gap, n, &r->model.friction));
   PetscCall(PetscCalloc2(n, &r->pairs, r->run.n_interfaces, &r->sums));
   PetscCall(ReducedFindSize(r, &size));
   for (PetscInt i = 0; i < n; i++) {
     const ContactPair      *pair = &r->pair[i];
     const ContactInterface *c    = &r->run.interfaces[pair->interface];
 
-    PetscCheck(c->mu >= 0, r->comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must not be negative", c->name, (double)c->mu);
+    PetscCall(FrictionCheckNotNegative(r->comm, c->name, &c->friction));
     PetscCheck(pair->gap > -SLACK * size, r->comm, PETSC_ERR_USER_INPUT,
                "contact %s: bodies interpenetrate by %.6g m at %.6g, %.6g, %.6g m at the start", c->name,
                (double)-pair->gap, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2]);
-    r->model.gap[i]   = PetscMax(0, pair->gap);
-    r->model.mu[i]    = c->mu;
-    r->model.slope[i] = c->mu_slope;
-    r->model.speed[i] = pair->speed;
-    r->pairs[i].gap   = r->model.gap[i];
+    r->model.gap[i]      = PetscMax(0, pair->gap);
+    r->model.friction[i] = FrictionAt(&c->friction, pair->speed);
+    r->pairs[i].gap      = r->model.gap[i];
   }
   PetscFunctionReturn(0);
 }
@@ -140,8 +137,7 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
   PetscCall(PetscMalloc1(n, &judged));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal *slip = r->pairs[i].slip;
-    const PetscReal  mu =
-      FrictionCoefficient(r->model.mu[i], r->model.slope[i], r->model.speed[i], hypot(slip[0], slip[1]) / dt);
+    const PetscReal  mu   = FrictionMu(&r->model.friction[i], hypot(slip[0], slip[1]) / dt);
 
     judged[i] =
       (ContactJudged){&r->pairs[i], mu, PETSC_INFINITY, r->model.gap[i], PetscSqrtReal(r->pair[i].area), PETSC_FALSE};

@@ -31,13 +31,23 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
 /* Friction and speed of a contact */
 static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
 {
-  const ReducedParameter mu    = {.unit = "-", .kind = REDUCED_MU, .index = i, .value = c->mu};
-  const ReducedParameter slope = {.unit = "s/m", .kind = REDUCED_SLOPE, .index = i, .value = c->mu_slope};
-  const ReducedParameter speed = {.unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed};
+  const ReducedParameter   speed = {.unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
+  const FrictionParameter *law;
+  const PetscInt           n = FrictionGetParameters(&c->friction, &law);
 
   PetscFunctionBeginUser;
-  PetscCall(ParameterTry(c->name, "mu", &mu, search));
-  PetscCall(ParameterTry(c->name, "mu_slope", &slope, search));
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscBool        limited = law[j].coefficient || law[j].row.bounded ? PETSC_TRUE : PETSC_FALSE;
+    const ReducedParameter p       = {.unit  = law[j].row.unit ? law[j].row.unit : "-",
+                                      .kind  = REDUCED_FRICTION,
+                                      .index = i,
+                                      .value = c->friction.parameter[j],
+                                      .law   = j,
+                                      .least = limited ? 0 : PETSC_NINFINITY,
+                                      .open  = law[j].coefficient ? PETSC_FALSE : limited};
+
+    PetscCall(ParameterTry(c->name, law[j].row.name + 1, &p, search));
+  }
   if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", &speed, search));
   PetscFunctionReturn(0);
 }
@@ -47,9 +57,9 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
 {
   const PetscReal force = load->is_pressure ? 0 : Vec3Length(load->force), moment = Vec3Length(load->moment);
 
-  const ReducedParameter press = {.unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure};
-  const ReducedParameter push  = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force};
-  const ReducedParameter turn  = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment};
+  const ReducedParameter press = {.unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
+  const ReducedParameter push  = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
+  const ReducedParameter turn  = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   if (load->is_pressure) PetscCall(ParameterTry(load->name, "pressure", &press, search));
@@ -101,7 +111,7 @@ PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], co
 PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], const ReducedParameter *p,
                                      PetscReal value)
 {
-  PetscBool good = PETSC_TRUE;
+  const PetscBool good = p->kind == REDUCED_BODY || value > p->least || (!p->open && value == p->least) ? PETSC_TRUE : PETSC_FALSE;
   MPI_Comm  comm;
   Model     model;
 
@@ -109,10 +119,8 @@ PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], c
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetComm(model, &comm));
   if (p->kind == REDUCED_BODY) PetscCall(OperatorsCheckParameter(operators, p->index, value));
-  if (p->kind == REDUCED_MU) good = value >= 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (p->kind == REDUCED_SPEED || p->kind == REDUCED_LOAD) good = value > 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(good, comm, PETSC_ERR_USER_INPUT, "%s: %s %.6g must %s", option, p->name, (double)value,
-             p->kind == REDUCED_MU ? "not be negative" : "be positive");
+             p->open ? "be positive" : "not be negative");
   PetscFunctionReturn(0);
 }
 
@@ -124,9 +132,8 @@ void ReducedParameterMove(const ReducedParameter *p, PetscReal value, const Redu
   if (p->kind > REDUCED_SPEED) return;
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     if (moved->interface[i] != p->index) continue;
-    if (p->kind == REDUCED_MU) model->mu[i] = value;
-    if (p->kind == REDUCED_SLOPE) model->slope[i] = value;
-    if (p->kind == REDUCED_SPEED) model->speed[i] = moved->speed[i] * value / p->value;
+    if (p->kind == REDUCED_FRICTION) model->friction[i].parameter[p->law] = value;
+    if (p->kind == REDUCED_SPEED) model->friction[i].speed = moved->friction[i].speed * value / p->value;
   }
 }
 

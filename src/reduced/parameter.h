@@ -1,13 +1,13 @@
 /*
    Parameter - a number of the scene that rooms which run reduced models may vary. Private to them. It is named like the
-   option that sets it: friction, its slope and the speed of a contact, force or pressure of a load leave the reduced bodies
+   option that sets it: friction and the speed of a contact, force or pressure of a load leave the reduced bodies
    as they are; those of parts, springs and dashpots (operators.h) change them.
 */
 #pragma once
 
 #include <squeal/reduced.h>
 
-typedef enum { REDUCED_MU, REDUCED_SLOPE, REDUCED_SPEED, REDUCED_LOAD, REDUCED_BODY } ReducedParameterKind;
+typedef enum { REDUCED_FRICTION, REDUCED_SPEED, REDUCED_LOAD, REDUCED_BODY } ReducedParameterKind;
 
 typedef struct {
   char                 name[128];
@@ -15,13 +15,16 @@ typedef struct {
   ReducedParameterKind kind;
   PetscInt             index; /* of the interface, the load, or the parameter of the operators */
   PetscReal            value; /* of the scene */
+  PetscInt             law;   /* of friction: place in the law of the interface */
+  PetscReal            least; /* what values may not be below */
+  PetscBool            open;  /* nor equal */
 } ReducedParameter;
 
 /* What a parameter moves that leaves the bodies as they are */
 typedef struct {
-  ReducedModel    *model;     /* mu, slope, speed */
+  ReducedModel    *model;     /* friction */
   const PetscInt  *interface; /* [n_pairs] */
-  const PetscReal *speed;     /* [n_pairs] of the scene, m/s */
+  const FrictionLaw *friction; /* [n_pairs] of the scene */
   PetscReal       *loads;     /* [n_loads] factors, 1 in the scene */
 } ReducedMoved;
 

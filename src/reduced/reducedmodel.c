@@ -15,11 +15,9 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
     PetscCall(PetscMalloc1(size[i], copy[i]));
     PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
   }
-  PetscCall(PetscMalloc4(n, &to->gap, n, &to->mu, n, &to->slope, n, &to->speed));
+  PetscCall(PetscMalloc2(n, &to->gap, n, &to->friction));
   PetscCall(PetscArraycpy(to->gap, from->gap, n));
-  PetscCall(PetscArraycpy(to->mu, from->mu, n));
-  PetscCall(PetscArraycpy(to->slope, from->slope, n));
-  PetscCall(PetscArraycpy(to->speed, from->speed, n));
+  PetscCall(PetscArraycpy(to->friction, from->friction, n));
   PetscFunctionReturn(0);
 }
 
@@ -33,7 +31,7 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscCall(PetscFree(model->Cm));
   PetscCall(PetscFree(model->Cx));
   PetscCall(PetscFree(model->Mx));
-  PetscCall(PetscFree4(model->gap, model->mu, model->slope, model->speed));
+  PetscCall(PetscFree2(model->gap, model->friction));
   PetscFunctionReturn(0);
 }
 

@@ -187,7 +187,7 @@ static PetscErrorCode StartLaws(ReducedRun r)
     slip0[2 * i] -= way;
   }
   PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
-  PetscCall(ContactComplianceSetFriction(laws, &(ComplianceFriction){model->mu, model->slope, model->speed, r->dt}));
+  PetscCall(ContactComplianceSetFriction(laws, model->friction, r->dt));
   PetscCall(ContactComplianceSolve(laws, q, slip0, r->state.p, NULL, &solved));
   PetscCheck(solved.converged, r->comm, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at the start: residual %.2e of pair %" PetscInt_FMT,

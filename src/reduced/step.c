@@ -208,7 +208,7 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
              ", must be %.0e; friction of mu %.3g may have no solution on these bodies: take "
              "-dynamics_model full",
              (double)(state->time + s->dt), (double)solved.residual, solved.worst + 1, (double)s->rtol,
-             (double)s->model->mu[PetscMax(0, solved.worst)]);
+             (double)FrictionSteady(&s->model->friction[PetscMax(0, solved.worst)]));
   PetscCall(ContactComplianceGetStatus(s->laws, &status));
   PetscCall(PetscArraycpy(state->status, status, n));
   PetscCall(ContactComplianceGetSlip(s->laws, &slip));

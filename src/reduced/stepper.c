@@ -148,7 +148,7 @@ PetscErrorCode ReducedStepperTakeFriction(ReducedStepper s)
 
   PetscFunctionBeginUser;
   if (!model->n_pairs) PetscFunctionReturn(0);
-  PetscCall(ContactComplianceSetFriction(s->laws, &(ComplianceFriction){model->mu, model->slope, model->speed, s->dt}));
+  PetscCall(ContactComplianceSetFriction(s->laws, model->friction, s->dt));
   PetscCall(ContactComplianceSetMemory(s->laws, 0, NULL));
   PetscFunctionReturn(0);
 }
@@ -227,7 +227,7 @@ static PetscErrorCode StepperSetLaws(ReducedStepper s)
     definite, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
     "the compliance of the contact pairs is not positive semidefinite: rounding of a -dynamics_cutoff that leaves too "
     "little above it; take a lower one");
-  PetscCall(ContactComplianceSetFriction(s->laws, &(ComplianceFriction){model->mu, model->slope, model->speed, s->dt}));
+  PetscCall(ContactComplianceSetFriction(s->laws, model->friction, s->dt));
   PetscCall(ContactComplianceSetTolerance(s->laws, s->rtol));
   PetscFunctionReturn(0);
 }

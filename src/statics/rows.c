@@ -16,7 +16,7 @@ static PetscErrorCode PairRowsCount(PetscBool pressing, PairRows *rows)
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const ContactInterface *c = &rows->interface[rows->pair[p].interface];
 
-    rows->law[p].d     = pressing || c->slides || c->mu == 0 ? 1 : 3;
+    rows->law[p].d     = pressing || c->slides || !FrictionExists(&c->friction) ? 1 : 3;
     rows->law[p].g0    = rows->pair[p].gap;
     rows->first[p + 1] = rows->first[p] + rows->law[p].d;
   }
@@ -78,6 +78,7 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
     PetscReal      mu, kn;
 
     PetscCall(OperatorsGetInterface(operators, p, i, &mu, &kn));
+    PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k], &mu));
     rows->law[k].k  = ContactPairStiffness(&rows->interface[i], &rows->pair[k], kn) / kappa;
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
     rows->slide[k]  = rows->interface[i].slides ? mu : 0;

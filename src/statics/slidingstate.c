@@ -31,7 +31,7 @@ static PetscErrorCode StaticsCheckSliding(Statics s)
                c[i].name, (double)c[i].force);
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCheck(
-      c[i].slides || c[i].mu == 0 || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,
+      c[i].slides || !FrictionExists(&c[i].friction) || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,
       "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation, or "
       "-%s_kt (N/m per pair) where it holds by friction",
       c[i].name, c[i].name, c[i].name, c[i].name);

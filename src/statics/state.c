@@ -129,12 +129,14 @@ static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement
 /* Residuals of the contact laws */
 static PetscErrorCode StaticsMeasureKKT(Statics s)
 {
-  PetscReal *mu, *kn, displacement;
+  PetscReal *mu, *kn, steady, displacement;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->rows.n_interfaces, &mu, s->rows.n_interfaces, &kn));
+  PetscCall(PetscMalloc2(s->rows.n_pairs, &mu, s->rows.n_interfaces, &kn));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCall(OperatorsGetInterface(s->operators, s->p, i, &mu[i], &kn[i]));
+    PetscCall(OperatorsGetInterface(s->operators, s->p, i, &steady, &kn[i]));
+  for (PetscInt i = 0; i < s->rows.n_pairs; i++)
+    PetscCall(OperatorsGetPairMu(s->operators, s->p, &s->rows.pair[i], &mu[i]));
   PetscCall(StaticsFindDisplacement(s, &displacement));
   PetscCall(ContactComputeKKT(s->contact, s->state, mu, kn, displacement, &s->kkt));
   PetscCall(PetscFree2(mu, kn));

@@ -19,7 +19,7 @@ static PetscErrorCode InterfaceView(Model model, const ContactInterface *c, cons
   PetscCall(ModelGetUnit(model, "N m", &moment));
   PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed", c->name,
                                    stick + slip, open + stick + slip));
-  if (!c->slides && c->mu != 0)
+  if (!c->slides && FrictionExists(&c->friction))
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " stick and %" PetscInt_FMT " slip", stick, slip));
   PetscCall(
     PetscViewerASCIIPrintf(viewer, "; normal force %.9g N, friction %.6g N", (double)r->normal, (double)friction));

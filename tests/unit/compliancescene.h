@@ -4,8 +4,8 @@
 */
 #pragma once
 
+#include "contact/compliance/contactcompliance.h"
 #include <math.h>
-#include <petscsys.h>
 #include <stdint.h>
 
 #define SCENE_MOST 60 /* pairs */
@@ -29,6 +29,24 @@ static inline PetscErrorCode SceneCreate(PetscInt n, uint64_t seed, ComplianceSc
   *s = (ComplianceScene){.n = n, .seed = seed * 2654435761u + 12345};
   for (int k = 0; k < 8; k++) (void)SceneDraw(s);
   PetscCall(PetscCalloc4(9 * n * n, &s->W, 3 * n, &s->q, 2 * n, &s->slip0, n, &s->mu));
+  PetscFunctionReturn(0);
+}
+
+/* Coulomb's law of n pairs, with slopes (s/m) about speeds (m/s) or NULL without */
+static inline PetscErrorCode SceneSetFriction(ContactCompliance c, PetscInt n, const PetscReal mu[], const PetscReal slope[],
+                                              const PetscReal speed[], PetscReal dt)
+{
+  FrictionLaw *law;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &law));
+  for (PetscInt p = 0; p < n; p++) {
+    law[p].speed        = speed ? speed[p] : 0;
+    law[p].parameter[0] = mu[p];
+    law[p].parameter[1] = slope ? slope[p] : 0;
+  }
+  PetscCall(ContactComplianceSetFriction(c, law, dt));
+  PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
 

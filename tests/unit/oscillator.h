@@ -12,7 +12,8 @@
 typedef struct {
   ReducedModel     model;
   ReducedParameter friction;
-  PetscReal        omega2[2], C[4], P[2 * PORTS], W[PORTS * PORTS], gap, mu, slope, speed;
+  PetscReal        omega2[2], C[4], P[2 * PORTS], W[PORTS * PORTS], gap;
+  FrictionLaw      law;
   CycleFlow        flow;
   Shooting         shooting;
   ShootingCycle    cycle;
@@ -27,7 +28,7 @@ static inline PetscErrorCode OscillatorCreate(PetscReal mu, Oscillator *o)
   *o = (Oscillator){
     .omega2 = {1,  2.2 },
       .C = { 0.04, 0, 0, 0.04},
-      .mu = mu, .speed = 10
+      .law = {.speed = 10, .parameter = {mu}}
   };
   o->model = (ReducedModel){.m       = 2,
                             .n_pairs = 1,
@@ -38,9 +39,7 @@ static inline PetscErrorCode OscillatorCreate(PetscReal mu, Oscillator *o)
                             .P       = o->P,
                             .W       = o->W,
                             .gap     = &o->gap,
-                            .mu      = &o->mu,
-                            .slope   = &o->slope,
-                            .speed   = &o->speed};
+                            .friction = &o->law};
   for (int k = 0; k < 2; k++) {
     o->P[k]     = normal[k];
     o->P[2 + k] = tangent[k];
@@ -48,14 +47,14 @@ static inline PetscErrorCode OscillatorCreate(PetscReal mu, Oscillator *o)
   }
   for (int i = 0; i < 3; i++) o->W[i * (PORTS + 1)] = 1;
   o->flow = (CycleFlow){.model = &o->model, .n = ReducedTangentSize(&o->model), .varied = &o->friction, .value = mu};
-  o->friction = (ReducedParameter){.kind = REDUCED_MU, .value = mu};
+  o->friction = (ReducedParameter){.kind = REDUCED_FRICTION, .value = mu};
   PetscCall(
-    PetscCalloc5(1, &o->flow.loads, 1, &o->flow.share, 1, &o->flow.way, 1, &o->flow.speed, 1, &o->flow.interface));
+    PetscCalloc5(1, &o->flow.loads, 1, &o->flow.share, 1, &o->flow.way, 1, &o->flow.stated, 1, &o->flow.interface));
   PetscCall(ReducedStateCreate(&o->model, &o->flow.state));
   PetscCall(ReducedReportCreate(&o->model, &o->flow.report));
   o->flow.loads[0] = 1;
   o->flow.share[0] = 1;
-  o->flow.speed[0] = 10;
+  o->flow.stated[0] = o->law;
   for (PetscInt i = 0; i < o->flow.n; i++) {
     o->size[i]   = 1;
     o->weight[i] = i < 4;

@@ -55,7 +55,7 @@ static PetscErrorCode RunCreate(PetscReal mu, PetscReal dt, PetscReal sliding, P
   }
   for (int p = 0; p < STEP_PAIRS; p++) run->s.mu[p] = mu;
   PetscCall(ContactComplianceCreate(STEP_PAIRS, run->s.W, &run->c));
-  PetscCall(ContactComplianceSetFriction(run->c, &(ComplianceFriction){.mu = run->s.mu}));
+  PetscCall(SceneSetFriction(run->c, STEP_PAIRS, run->s.mu, NULL, NULL, 0));
   PetscFunctionReturn(0);
 }
 
@@ -176,7 +176,7 @@ static PetscErrorCode TestMemory(int *failed)
   for (int k = 0; k < 77; k++) PetscCall(RunStep(&run, &unsolved));
   PetscCall(ContactComplianceGetMemory(run.c, &n, &values));
   PetscCall(ContactComplianceCreate(STEP_PAIRS, run.s.W, &c));
-  PetscCall(ContactComplianceSetFriction(c, &(ComplianceFriction){.mu = run.s.mu}));
+  PetscCall(SceneSetFriction(c, run.s.n, run.s.mu, NULL, NULL, 0));
   PetscCall(ContactComplianceSetMemory(c, n, values));
   again   = run;
   again.c = c;

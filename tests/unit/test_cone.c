@@ -157,19 +157,9 @@ static int TestResidual(void)
   return failed;
 }
 
-/* Breaks when: the slope is not taken about the stated speed, or a falling law goes below 0. By hand */
-static int TestCoefficient(void)
-{
-  return CheckClose("mu at the stated speed", FrictionCoefficient(0.3, -0.01, 20, 20), 0.3, 0) +
-         CheckClose("faster", FrictionCoefficient(0.3, -0.01, 20, 30), 0.2, 1e-15) +
-         CheckClose("at rest", FrictionCoefficient(0.3, -0.01, 20, 0), 0.5, 1e-15) +
-         CheckClose("never below 0", FrictionCoefficient(0.3, -0.01, 20, 60), 0, 0) +
-         CheckClose("constant", FrictionCoefficient(0.3, 0, 20, 60), 0.3, 0);
-}
-
 int main(void)
 {
-  const int failed = TestRandom() + TestHeld() + TestScalar() + TestResidual() + TestCoefficient();
+  const int failed = TestRandom() + TestHeld() + TestScalar() + TestResidual();
 
   printf("%d failed\n", failed);
   return failed ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -25,7 +25,7 @@ static PetscErrorCode SolveScene(const ComplianceScene *s, PetscReal lambda[], T
 
   PetscFunctionBeginUser;
   PetscCall(ContactComplianceCreate(s->n, s->W, &c));
-  PetscCall(ContactComplianceSetFriction(c, &(ComplianceFriction){.mu = s->mu}));
+  PetscCall(SceneSetFriction(c, s->n, s->mu, NULL, NULL, 0));
   PetscCall(ContactComplianceSolve(c, s->q, s->slip0, lambda, NULL, &report));
   PetscCall(ContactComplianceGetStatus(c, &status));
   for (PetscInt p = 0; p < s->n; p++) tally->status[status[p]]++;
@@ -92,7 +92,7 @@ static PetscErrorCode TestFallingFriction(int *failed)
     ComplianceReport  report;
 
     PetscCall(ContactComplianceCreate(1, W, &c));
-    PetscCall(ContactComplianceSetFriction(c, &(ComplianceFriction){mu, slope, speed, dt}));
+    PetscCall(SceneSetFriction(c, 1, mu, slope, speed, dt));
     PetscCall(ContactComplianceSolve(c, q, none, lambda, NULL, &report));
     *failed += CheckTrue("falling friction: converged", report.converged, report.residual);
     *failed += CheckClose("falling friction: along the slip", lambda[1], -0.6 * own * force, 1e-11);
@@ -291,7 +291,7 @@ static PetscErrorCode TestDual(int *failed)
   for (int k = 0; k < 2; k++) {
     for (PetscInt p = 0; p < n; p++) slope[p] = k * 1e-30;
     PetscCall(ContactComplianceCreate(n, s.W, &c));
-    PetscCall(ContactComplianceSetFriction(c, &(ComplianceFriction){s.mu, slope, speed, 1}));
+    PetscCall(SceneSetFriction(c, n, s.mu, slope, speed, 1));
     PetscCall(ContactComplianceSolve(c, s.q, s.slip0, lambda[k], NULL, &report[k]));
     PetscCall(ContactComplianceDestroy(&c));
   }

@@ -67,14 +67,15 @@ static int CheckSame(const char name[], PetscReal value, PetscReal expected)
 
 static PetscErrorCode TestState(Contact contact, const StateCase *c, int *failed)
 {
-  const PetscReal    mu = MU;
   PetscInt           n, n_all, place[MAX_PAIRS][2];
   const ContactPair *pair;
   ContactState       state[MAX_PAIRS];
   ContactKKT         kkt;
+  PetscReal          mu[MAX_PAIRS];
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+  for (PetscInt p = 0; p < n; p++) mu[p] = MU;
   PetscCall(PlacesFind(contact, place));
   for (PetscInt p = 0; p < n; p++) {
     if (place[p][0] == 2 && place[p][1] == 2)
@@ -86,7 +87,7 @@ static PetscErrorCode TestState(Contact contact, const StateCase *c, int *failed
     if (PetscIsInfReal(c->kn) && place[p][0] == 1) state[p].gap = -2e-7;
     if (PetscIsInfReal(c->kn) && place[p][0] > 1 && place[p][1] != 2) state[p].gap = 0;
   }
-  PetscCall(ContactComputeKKT(contact, state, &mu, &c->kn, 0, &kkt));
+  PetscCall(ContactComputeKKT(contact, state, mu, &c->kn, 0, &kkt));
   printf("     %s\n", c->name);
   *failed += CheckSame("penetration", kkt.penetration, c->expected.penetration);
   *failed += CheckSame("sign", kkt.sign, c->expected.sign);

@@ -15,7 +15,8 @@
 static PetscErrorCode TestDivergence(int *failed)
 {
   PetscReal       omega2[2] = {1, 4}, P[6] = {1, 0, 1, 0, 0, 0}, W[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal       gap[1] = {0}, mu[1] = {5}, slope[1] = {0}, speed[1] = {1}, sigma[4], omega[4];
+  PetscReal       gap[1] = {0}, sigma[4], omega[4];
+  FrictionLaw     law       = {.speed = 1, .parameter = {5}};
   const PetscBool closed[1] = {PETSC_TRUE};
   ReducedModel    model     = {.m       = 2,
                                .n_pairs = 1,
@@ -24,9 +25,7 @@ static PetscErrorCode TestDivergence(int *failed)
                                .P       = P,
                                .W       = W,
                                .gap     = gap,
-                               .mu      = mu,
-                               .slope   = slope,
-                               .speed   = speed};
+                               .friction = &law};
   MapFastest      fastest;
   MapPoint        row = {0};
 
@@ -38,7 +37,7 @@ static PetscErrorCode TestDivergence(int *failed)
   *failed += CheckClose("its frequency", fastest.freq, 0, 0);
   *failed += CheckClose("index: growth over |lambda|", fastest.index, 1, 1e-15);
   *failed += CheckTrue("one mode grows", row.n_growing == 1 && row.omega[0] == 0, row.n_growing);
-  mu[0] = 1.5;
+  law.parameter[0] = 1.5;
   PetscCall(ReducedLinearise(&model, closed, sigma, omega));
   MapModesJudge(4, sigma, omega, &fastest);
   *failed += CheckClose("without it nothing grows", fastest.growth, 0, 1e-14);

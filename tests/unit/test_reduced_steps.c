@@ -17,7 +17,8 @@
 typedef struct {
   ReducedModel model;
   PetscReal    omega2[M_MODES], C[M_MODES * M_MODES], P[M_MODES * PORTS], W[PORTS * PORTS], Cm[M_MODES * 3 * PAIRS],
-    Cx[9 * PAIRS * PAIRS], gap[PAIRS], mu[PAIRS], slope[PAIRS], speed[PAIRS];
+    Cx[9 * PAIRS * PAIRS], gap[PAIRS];
+  FrictionLaw  law[PAIRS];
 } Small;
 
 /* Two pairs that a load presses; nothing moves along b, where friction alone would damp. damping 0: none */
@@ -26,7 +27,8 @@ static void SmallCreate(PetscReal damping, Small *s)
   const PetscReal frequency[M_MODES] = {0, 1, 1.3, 6};
   const PetscReal shape[4][M_MODES]  = {{0.6, 0.8, 0.3, 0.5}, {0.5, -0.4, 0.7, 0.2}, {0.7, -0.3, 0.6, -0.6}, {0.3, 0.6, 0.5, 0.1}};
 
-  *s       = (Small){.speed = {SPEED, SPEED}, .mu = {MU, MU}};
+  *s       = (Small){.gap = {0}};
+  for (int i = 0; i < PAIRS; i++) s->law[i] = (FrictionLaw){.speed = SPEED, .parameter = {MU}};
   s->model = (ReducedModel){.m       = M_MODES,
                             .n_pairs = PAIRS,
                             .n_loads = 1,
@@ -38,9 +40,7 @@ static void SmallCreate(PetscReal damping, Small *s)
                             .Cm      = damping > 0 ? s->Cm : NULL,
                             .Cx      = damping > 0 ? s->Cx : NULL,
                             .gap     = s->gap,
-                            .mu      = s->mu,
-                            .slope   = s->slope,
-                            .speed   = s->speed};
+                            .friction = s->law};
   for (int k = 0; k < M_MODES; k++) {
     s->omega2[k] = frequency[k] * frequency[k];
     for (int i = 0; i < PAIRS; i++)

@@ -49,9 +49,9 @@ static PetscErrorCode SliderLook(Slider *s, PetscReal seed, PetscBool back, Pets
   PetscCall(PetscMalloc1(3 * s->n, &after));
   for (PetscInt k = 0; k < 3 * s->n; k++)
     after[k] = s->u[k] + (back ? -1 : 1) * DT * (s->v[k] + step.kick * s->minv[k] * s->force[k]);
-  s->contact->interfaces[0].mu = factor * MU;
+  s->contact->interfaces[0].friction.parameter[0] = factor * MU;
   PetscCall(ContactProjectorGetSlipWork(s->projector, after, work));
-  s->contact->interfaces[0].mu = MU;
+  s->contact->interfaces[0].friction.parameter[0] = MU;
   PetscCall(PetscFree(after));
   PetscFunctionReturn(0);
 }

@@ -57,7 +57,9 @@ struct _p_ContactCompliance {
   PetscInt         n;
   const PetscReal *W;
   PetscReal       *kappa;              /* N/m, [n] */
-  PetscReal       *mu, *slope, *speed; /* [n] */
+  FrictionLaw     *friction;           /* [n] */
+  PetscReal       *mu;                 /* [n] at the stated speed */
+  PetscBool       *varies;             /* [n] with the slip speed */
   PetscReal        weight;             /* a: statuses are decided by l - a v */
   PetscReal        dt, rtol;
   PetscReal       *free;    /* v without forces, [n][3] */

@@ -77,7 +77,7 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
   c->W    = W;
   c->rtol = COMPLIANCE_RTOL;
   c->dt   = 1;
-  PetscCall(PetscCalloc4(n, &c->kappa, n, &c->mu, n, &c->slope, n, &c->speed));
+  PetscCall(PetscCalloc4(n, &c->kappa, n, &c->friction, n, &c->mu, n, &c->varies));
   PetscCall(PetscCalloc7(3 * n, &c->free, 3 * n, &c->l, 3 * n, &c->v, 3 * n, &c->l0, 3 * n, &c->v0, 3 * n, &c->best,
                          3 * n, &c->force));
   PetscCall(
@@ -115,21 +115,21 @@ PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance c, PetscBool *de
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactComplianceSetFriction(ContactCompliance c, const ComplianceFriction *friction)
+PetscErrorCode ContactComplianceSetFriction(ContactCompliance c, const FrictionLaw friction[], PetscReal dt)
 {
   PetscFunctionBeginUser;
-  PetscCheck(!friction->slope || (friction->dt > 0 && friction->speed), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "Step of friction that changes with the slip speed is %g s; must be positive", (double)friction->dt);
   for (PetscInt p = 0; p < c->n; p++) {
-    const PetscReal mu = friction->mu[p];
+    const PetscReal mu = FrictionSteady(&friction[p]);
 
-    PetscCheck(mu >= 0 && !PetscIsInfOrNanReal(mu), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+    PetscCheck(mu >= 0 && FrictionIsValid(&friction[p]), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "Friction coefficient of pair %" PetscInt_FMT " is %g; must be finite and not negative", p, (double)mu);
-    c->mu[p]    = mu;
-    c->slope[p] = friction->slope ? friction->slope[p] : 0;
-    c->speed[p] = friction->slope ? friction->speed[p] : 0;
+    c->friction[p] = friction[p];
+    c->mu[p]       = mu;
+    c->varies[p]   = FrictionVaries(&friction[p]);
+    PetscCheck(!c->varies[p] || dt > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "Step of friction that changes with the slip speed is %g s; must be positive", (double)dt);
   }
-  if (friction->slope) c->dt = friction->dt;
+  c->dt = dt;
   PetscFunctionReturn(0);
 }
 
@@ -244,7 +244,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
 
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(0);
-  PetscCall(PetscFree4(c->kappa, c->mu, c->slope, c->speed));
+  PetscCall(PetscFree4(c->kappa, c->friction, c->mu, c->varies));
   PetscCall(PetscFree7(c->free, c->l, c->v, c->l0, c->v0, c->best, c->force));
   PetscCall(PetscFree6(c->status, c->law, c->closed, c->row, c->slide, c->carries));
   PetscCall(PetscFree3(c->A, c->rhs, c->pivot));

@@ -8,7 +8,7 @@
       r = q + W lambda,     d = r_T - slip0       (slip of the step, sliding included)
       normal    0 <= lambda_n,  0 <= r_n,  lambda_n r_n = 0
       Coulomb   |lambda_T| <= mu lambda_n,  d = 0 (stick)  or  lambda_T = -mu lambda_n d / |d| (slip)
-      mu        max(0, mu + slope (|d| / dt - speed)) (kernels/friction.h), at the end of the step
+      mu        mu(|d| / dt) of the pair's law (frictionlaw.h), at the end of the step
 
    with W (m/N) symmetric and positive semidefinite. A pair of normal stiffness k_n has 1 / k_n on its diagonal of W. A
    solution exists for any mu where W is definite; it need not be the only one: the one near the guess is looked for
@@ -30,6 +30,7 @@
 
 #include <petscsys.h>
 #include <squeal/contactstatus.h>
+#include <squeal/frictionlaw.h>
 
 typedef struct _p_ContactCompliance *ContactCompliance;
 
@@ -41,12 +42,6 @@ typedef enum {
   COMPLIANCE_PATH,
   COMPLIANCE_N_ROUTES
 } ComplianceRoute;
-
-/* Friction of all pairs, each array [n]; slope and speed NULL for mu alone */
-typedef struct {
-  const PetscReal *mu, *slope /* s/m */, *speed /* m/s */;
-  PetscReal        dt; /* s, read where there is a slope */
-} ComplianceFriction;
 
 /* One step; or, by ContactComplianceGetTotals(), sums and the worst of all steps */
 typedef struct {
@@ -75,10 +70,9 @@ PETSC_INTERN PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal 
     a Cholesky factor. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance compliance, PetscBool *definite);
 
-/*@ ContactComplianceSetFriction - copied. Errors: PETSC_ERR_ARG_OUTOFRANGE where mu is negative or not finite, or dt
-    not positive beside a slope. Not collective. @*/
-PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance         compliance,
-                                                         const ComplianceFriction *friction);
+/*@ ContactComplianceSetFriction - laws [n], copied, and the length of a step, s, read where mu changes with the slip speed.
+    Errors: PETSC_ERR_ARG_OUTOFRANGE where mu is negative or not finite, or dt not positive beside such a law. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance compliance, const FrictionLaw friction[], PetscReal dt);
 
 /*@ ContactComplianceSetTolerance - relative residual, 1e-12 unless set. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSetTolerance(ContactCompliance compliance, PetscReal rtol);

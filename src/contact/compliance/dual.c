@@ -49,7 +49,7 @@ PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool *serves)
   PetscFunctionBeginUser;
   *serves = PETSC_FALSE;
   for (PetscInt p = 0; p < c->n; p++) {
-    if (c->slope[p] != 0) PetscFunctionReturn(0);
+    if (c->varies[p]) PetscFunctionReturn(0);
     rows += c->status[p] == CONTACT_OPEN ? 3 : c->status[p] == CONTACT_SLIP ? 2 : 0;
     n_forces += c->status[p] == CONTACT_OPEN ? 0 : c->status[p] == CONTACT_SLIP ? 2 : 3;
   }

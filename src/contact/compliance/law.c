@@ -8,15 +8,14 @@
 
 CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
-  const PetscReal slope = c->slope[p] / c->dt;
-  PetscReal       slip;
-  CoulombPair     pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
+  PetscReal   slip;
+  CoulombPair pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
 
   for (PetscInt i = 0; i < 3; i++) w[i] = -weight * c->v[3 * p + i];
-  if (slope == 0) return pair;
-  slip      = hypot(c->v[3 * p + 1], c->v[3 * p + 2]);
-  pair.mu   = FrictionCoefficient(c->mu[p], slope, c->speed[p] * c->dt, slip);
-  pair.fall = pair.mu > 0 ? slope / weight : 0;
+  if (!c->varies[p]) return pair;
+  slip      = hypot(c->v[3 * p + 1], c->v[3 * p + 2]) / c->dt;
+  pair.mu   = FrictionMu(&c->friction[p], slip);
+  pair.fall = pair.mu > 0 ? FrictionSlope(&c->friction[p], slip) / (c->dt * weight) : 0;
   return pair;
 }
 

@@ -86,16 +86,18 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
 static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
 {
   const ContactInterface *c = &p->contact->interfaces[pair->interface];
+  FrictionLaw             law;
   PetscReal               q[3], last;
 
-  pair->mu = c->mu;
-  if (c->mu_slope == 0) return;
+  pair->mu = FrictionSteady(&c->friction);
+  if (!FrictionVaries(&c->friction)) return;
   PairVelocity(pair, p->nodes.before, q);
   last       = pair->slip;
   pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
   if (last < 0) last = pair->slip;
   pair->slip_before = last;
-  pair->mu = FrictionCoefficient(c->mu, c->mu_slope, pair->speed, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
+  law      = FrictionAt(&c->friction, pair->speed);
+  pair->mu = FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
 /*
@@ -172,9 +174,9 @@ static void PairFind(ContactProjector p, PetscInt k, const PetscReal u[], const 
 /* Whether friction needs the direction of a sliding that is given */
 static PetscBool PairNeedsSlip(ContactProjector p, const ProjectorPair *pair)
 {
-  const ContactInterface *c = &p->contact->interfaces[pair->interface];
+  const FrictionLaw *law = &p->contact->interfaces[pair->interface].friction;
 
-  return p->sliding[pair->interface].slides && (c->mu != 0 || c->mu_slope != 0) ? PETSC_TRUE : PETSC_FALSE;
+  return p->sliding[pair->interface].slides && (FrictionExists(law) || FrictionVaries(law)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)

@@ -46,7 +46,7 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscCall(PetscStrcmp(c->slave, c->master, &same));
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);
-  PetscCheck(c->mu >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_mu %.6g must not be negative", c->name, (double)c->mu);
+  PetscCall(FrictionCheckNotNegative(comm, c->name, &c->friction));
   PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
              (double)c->speed);
   PetscFunctionReturn(0);
@@ -236,9 +236,10 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     const ContactInterface *c = &p->contact->interfaces[i];
 
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, mu %.6g, multipliers\n",
-      c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master, (double)c->mu));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, ",
+                                     c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master));
+    PetscCall(FrictionView(&c->friction, viewer));
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", multipliers\n"));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));

@@ -60,24 +60,22 @@ static void PairMotion(ContactProjector p, const ProjectorPair *pair, const Slip
 
 static void SlipWorkAdd(ContactProjector p, const ProjectorPair *pair, const SlipStep *step, ContactSlipWork *work)
 {
-  const ContactInterface *c      = &p->contact->interfaces[pair->interface];
   const PetscReal         normal = pair->p[0] / step->kick, T[2] = {-pair->p[1] / step->kick, -pair->p[2] / step->kick};
-  PetscReal               mu = c->mu, length, done, law, allowed;
+  const FrictionLaw       law = FrictionAt(&p->contact->interfaces[pair->interface].friction, pair->speed);
+  PetscReal               mu = FrictionSteady(&law), length, done, asked, allowed;
   PairSlipped             slip;
 
   PairMotion(p, pair, step, &slip);
   length = hypot(slip.s[0], slip.s[1]);
-  if (c->mu_slope != 0)
-    mu = FrictionCoefficient(
-      c->mu, c->mu_slope, pair->speed,
-      PetscMax(0, 1.5 * hypot(slip.before[0], slip.before[1]) / step->dt - 0.5 * pair->slip_before));
+  if (FrictionVaries(&law))
+    mu = FrictionMu(&law, PetscMax(0, 1.5 * hypot(slip.before[0], slip.before[1]) / step->dt - 0.5 * pair->slip_before));
   done    = T[0] * slip.s[0] + T[1] * slip.s[1];
-  law     = mu * normal * length;
+  asked   = mu * normal * length;
   allowed = 2 * mu * normal * slip.noise + p->noise * length;
   work->done += done;
-  work->law += law;
+  work->law += asked;
   work->heat += 0.5 * (done + T[0] * slip.before[0] + T[1] * slip.before[1]);
-  work->miss += PetscMax(0, PetscAbsReal(done - law) - allowed);
+  work->miss += PetscMax(0, PetscAbsReal(done - asked) - allowed);
   work->noise += allowed;
   work->size += mu * normal * PetscMax(PetscMax(length, slip.motion), slip.noise);
   work->over += PetscMax(0, hypot(T[0], T[1]) - mu * normal - p->noise);

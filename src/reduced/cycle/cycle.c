@@ -72,8 +72,8 @@ PetscErrorCode CycleSetParameter(LimitCycle c)
   c->shooting.span = 1;
   if (!c->parameter[0]) PetscFunctionReturn(0);
   c->shooting.span  = c->range[1] - c->range[0];
-  c->shooting.least = c->varied.kind == REDUCED_SLOPE ? -PETSC_MAX_REAL : PETSC_SMALL * c->range[1];
-  if (c->varied.kind == REDUCED_MU) c->shooting.least = 0;
+  c->shooting.least = PETSC_SMALL * c->range[1];
+  if (c->varied.kind == REDUCED_FRICTION && !c->varied.open) c->shooting.least = PetscMax(c->varied.least, -PETSC_MAX_REAL);
   c->flow.varied = &c->varied;
   c->flow.value  = c->varied.value;
   if (c->varied.kind != REDUCED_BODY) PetscFunctionReturn(0);

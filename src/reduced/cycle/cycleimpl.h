@@ -44,7 +44,7 @@ typedef struct {
   PetscReal               value;           /* of the parameter in the model */
   PetscInt               *interface;       /* [n_pairs] */
   PetscReal              *loads;           /* [n_loads] factors */
-  PetscReal              *speed;           /* [n_pairs] of the scene, m/s */
+  FrictionLaw            *stated;          /* [n_pairs] of the scene */
   PetscReal              *share;           /* [n_pairs] of the speed that is prescribed as sliding: 1 after ramps */
   PetscReal              *way;             /* [n_pairs] in a step, m */
   PetscInt                n_steps, n;      /* in a period; unknowns of the state */

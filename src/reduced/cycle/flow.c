@@ -30,7 +30,7 @@ static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
     r->state.time = now;
     PetscCheck(PetscAbsReal(way[1] - way[0]) <= 1e-6 * PetscAbsReal(way[1]), r->comm, PETSC_ERR_USER_INPUT,
                CYCLE_BY ": the sliding still changes %s %.6g s: %s", when, (double)now, what);
-    f->share[i] = f->speed[i] != 0 ? way[0] / (f->speed[i] * r->dt) : 0;
+    f->share[i] = f->stated[i].speed != 0 ? way[0] / (f->stated[i].speed * r->dt) : 0;
   }
   PetscFunctionReturn(0);
 }
@@ -43,8 +43,8 @@ PetscErrorCode CycleFlowCreate(ReducedRun r, CycleFlow *f)
   *f          = (CycleFlow){.model = &r->model, .n = ReducedTangentSize(&r->model)};
   f->first    = 3 * n + r->model.n_loads;
   f->n_looked = r->model.n_ports - f->first;
-  PetscCall(PetscCalloc5(r->model.n_loads, &f->loads, n, &f->share, n, &f->way, n, &f->speed, n, &f->interface));
-  PetscCall(PetscArraycpy(f->speed, r->model.speed, n));
+  PetscCall(PetscCalloc5(r->model.n_loads, &f->loads, n, &f->share, n, &f->way, n, &f->stated, n, &f->interface));
+  PetscCall(PetscArraycpy(f->stated, r->model.friction, n));
   for (PetscInt i = 0; i < n; i++) f->interface[i] = r->pair[i].interface;
   PetscCall(ReducedStateCreate(f->model, &f->state));
   PetscCall(ReducedReportCreate(f->model, &f->report));
@@ -105,7 +105,7 @@ static PetscErrorCode FlowForget(CycleFlow *f)
 
 PetscErrorCode CycleFlowSetValue(CycleFlow *f, PetscReal value)
 {
-  const ReducedMoved moved = {f->model, f->interface, f->speed, f->loads};
+  const ReducedMoved moved = {f->model, f->interface, f->stated, f->loads};
 
   PetscFunctionBeginUser;
   if (!f->varied || f->value == value) PetscFunctionReturn(0);
@@ -114,8 +114,7 @@ PetscErrorCode CycleFlowSetValue(CycleFlow *f, PetscReal value)
   if (f->family) PetscCall(CycleFamilySet(f->family, value));
   ReducedParameterMove(f->varied, value, &moved);
   if (f->stepper && f->stepper->laws)
-    PetscCall(ContactComplianceSetFriction(
-      f->stepper->laws, &(ComplianceFriction){f->model->mu, f->model->slope, f->model->speed, f->dt}));
+    PetscCall(ContactComplianceSetFriction(f->stepper->laws, f->model->friction, f->dt));
   PetscFunctionReturn(0);
 }
 
@@ -130,7 +129,7 @@ static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal valu
   if (!f->stepper) PetscCall(ReducedStepperCreate(f->model, dt, REDUCED_RTOL, &f->stepper));
   f->dt = dt;
   if (tangent && !f->tangent) PetscCall(ReducedTangentCreate(f->stepper, &f->tangent));
-  for (PetscInt i = 0; i < f->model->n_pairs; i++) f->way[i] = f->share[i] * f->model->speed[i] * dt;
+  for (PetscInt i = 0; i < f->model->n_pairs; i++) f->way[i] = f->share[i] * f->model->friction[i].speed * dt;
   PetscFunctionReturn(0);
 }
 
@@ -212,6 +211,6 @@ PetscErrorCode CycleFlowDestroy(CycleFlow *f)
   PetscCall(FlowForget(f));
   PetscCall(ReducedStateDestroy(&f->state));
   PetscCall(ReducedReportDestroy(&f->report));
-  PetscCall(PetscFree5(f->loads, f->share, f->way, f->speed, f->interface));
+  PetscCall(PetscFree5(f->loads, f->share, f->way, f->stated, f->interface));
   PetscFunctionReturn(0);
 }

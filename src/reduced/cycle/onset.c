@@ -217,7 +217,7 @@ static PetscErrorCode OnsetCheckSliding(LimitCycle c)
   for (PetscInt i = 0; i < c->flow.model->n_pairs; i++) {
     const char *name = list[c->flow.interface[i]].name;
 
-    PetscCheck(c->flow.speed[i] != 0, c->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(c->flow.stated[i].speed != 0, c->comm, PETSC_ERR_USER_INPUT,
                "contact %s: -cycle_start mode is about sliding, and its speed is 0; say it by -%s_slip and -%s_speed",
                name, name, name);
   }

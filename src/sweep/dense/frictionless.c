@@ -13,13 +13,25 @@ static PetscBool TermStays(const OperatorsTerm *term)
 /* Whether a term of the frictionless system contains the parameter */
 static PetscBool ParameterStays(const Reduced *reduced, PetscInt parameter)
 {
-  for (PetscInt t = 0; t < reduced->n_terms; t++) {
-    const OperatorsTerm *term = &reduced->term[t];
-
-    for (PetscInt k = 0; k < term->n && TermStays(term); k++)
-      if (term->factor[k].parameter == parameter) return PETSC_TRUE;
-  }
+  for (PetscInt t = 0; t < reduced->n_terms; t++)
+    if (TermStays(&reduced->term[t]) && OperatorsTermDepends(&reduced->term[t], parameter)) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+static void ParameterVanish(const Reduced *reduced, PetscInt parameter, PetscReal p[])
+{
+  if (!ParameterStays(reduced, parameter)) p[parameter] = 0;
+}
+
+/* The coefficients and slopes of a friction law, not what speeds are measured by */
+static void FrictionVanish(const Reduced *reduced, const OperatorsFriction *friction, PetscReal p[])
+{
+  const FrictionParameter *parameter;
+  const PetscInt           n = FrictionGetParameters(&friction->law, &parameter);
+
+  for (PetscInt j = 0; j < n; j++)
+    if (friction->parameter[j] >= 0 && (parameter[j].coefficient || !parameter[j].row.bounded))
+      ParameterVanish(reduced, friction->parameter[j], p);
 }
 
 PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[])
@@ -28,9 +40,12 @@ PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[])
     const OperatorsTerm *term = &reduced->term[t];
 
     if (TermStays(term)) continue;
-    for (PetscInt k = 0; k < term->n; k++)
-      if (term->factor[k].power > 0 && !ParameterStays(reduced, term->factor[k].parameter))
-        p[term->factor[k].parameter] = 0;
+    for (PetscInt k = 0; k < term->n; k++) {
+      if (term->factor[k].friction)
+        FrictionVanish(reduced, term->factor[k].friction, p);
+      else if (term->factor[k].power > 0)
+        ParameterVanish(reduced, term->factor[k].parameter, p);
+    }
     if (OperatorsTermCoefficient(term, p) != 0) return PETSC_FALSE;
   }
   return PETSC_TRUE;

@@ -12,8 +12,7 @@ static PetscBool MassDepends(const Reduced *reduced, PetscInt parameter)
   for (PetscInt t = 0; t < reduced->n_terms; t++) {
     const OperatorsTerm *term = &reduced->term[t];
 
-    for (PetscInt k = 0; k < term->n && term->kind == OPERATORS_MASS; k++)
-      if (parameter < 0 || term->factor[k].parameter == parameter) return PETSC_TRUE;
+    if (term->kind == OPERATORS_MASS && (parameter < 0 ? term->n > 0 : OperatorsTermDepends(term, parameter))) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }

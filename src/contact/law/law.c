@@ -1,0 +1,222 @@
+/*
+   Friction laws: the table of them, and what other rooms ask of one (include/squeal/frictionlaw.h). A new law is a file like
+   coulombs.h, included here, and its row in the table.
+*/
+#include "coulombs.h"
+
+static const FrictionKind *const kinds[] = {&coulombs_law};
+
+#define LARGEST_MU 1.5 /* of rubber on dry concrete */
+#define N_KINDS    ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(kinds))
+
+static const FrictionKind *KindOf(const FrictionLaw *law)
+{
+  return kinds[law->kind];
+}
+
+FrictionLaw FrictionAt(const FrictionLaw *law, PetscReal speed)
+{
+  FrictionLaw at = *law;
+
+  at.speed = speed;
+  return at;
+}
+
+PetscReal FrictionMu(const FrictionLaw *law, PetscReal s)
+{
+  return KindOf(law)->mu(law, s);
+}
+
+PetscReal FrictionSlope(const FrictionLaw *law, PetscReal s)
+{
+  return KindOf(law)->slope(law, s);
+}
+
+PetscReal FrictionSteady(const FrictionLaw *law)
+{
+  return FrictionMu(law, law->speed);
+}
+
+PetscReal FrictionSteadySlope(const FrictionLaw *law)
+{
+  return FrictionSlope(law, law->speed);
+}
+
+void FrictionDerive(const FrictionLaw *law, FrictionDerivative *derivative)
+{
+  *derivative = (FrictionDerivative){.stated = {0}};
+  KindOf(law)->derive(law, law->speed, derivative);
+}
+
+PetscBool FrictionExists(const FrictionLaw *law)
+{
+  for (PetscInt j = 0; j < KindOf(law)->n; j++)
+    if (KindOf(law)->parameter[j].coefficient && law->parameter[j] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscBool FrictionVaries(const FrictionLaw *law)
+{
+  return KindOf(law)->varies(law);
+}
+
+PetscBool FrictionNeedsSpeed(const FrictionLaw *law)
+{
+  return !KindOf(law)->about && FrictionVaries(law) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool FrictionIsValid(const FrictionLaw *law)
+{
+  for (PetscInt j = 0; j < KindOf(law)->n; j++) {
+    const FrictionParameter *q = &KindOf(law)->parameter[j];
+    const PetscReal          x = law->parameter[j];
+
+    if (PetscIsInfOrNanReal(x) || (q->coefficient && x < 0) || (!q->coefficient && q->row.bounded && x <= 0)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+void FrictionScale(FrictionLaw *law, PetscReal factor)
+{
+  for (PetscInt j = 0; j < KindOf(law)->n; j++)
+    if (KindOf(law)->parameter[j].coefficient) law->parameter[j] *= factor;
+}
+
+PetscInt FrictionGetParameters(const FrictionLaw *law, const FrictionParameter **parameters)
+{
+  *parameters = KindOf(law)->parameter;
+  return KindOf(law)->n;
+}
+
+/* Rows of one law into a law of that kind */
+static PetscErrorCode KindRead(MPI_Comm comm, const char name[], FrictionLaw *law)
+{
+  const FrictionKind *kind = KindOf(law);
+  Quantity            row[FRICTION_PARAMETERS];
+  char                title[160];
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < kind->n; j++) row[j] = kind->parameter[j].row;
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Friction of contact %s, law %s", name, kind->name));
+  PetscCall(QuantitiesReadOf(comm, name, &(QuantityTable){title, "frictionlaw.h", kind->n, row}, law));
+  for (PetscInt j = 0; j < kind->n; j++)
+    PetscCall(OptionsCheckFinite(comm, name, row[j].name + 1, row[j].unit ? row[j].unit : "without unit",
+                                 (const PetscReal[3]){law->parameter[j]}));
+  PetscFunctionReturn(0);
+}
+
+/* Refuses parameters of laws that were not chosen */
+static PetscErrorCode KindsRefuse(MPI_Comm comm, const char name[], const FrictionLaw *chosen)
+{
+  char why[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_friction_law %s", name, KindOf(chosen)->name));
+  for (PetscInt k = 0; k < N_KINDS; k++)
+    for (PetscInt j = 0; j < kinds[k]->n && k != chosen->kind; j++)
+      PetscCall(OptionsRefuseOf(comm, name, kinds[k]->parameter[j].row.name + 1, why));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for a parameter that must be positive; a warning for what is odd */
+static PetscErrorCode LawCheck(MPI_Comm comm, const char name[], const FrictionLaw *law)
+{
+  const FrictionKind *kind   = KindOf(law);
+  const char         *remark = kind->remark ? kind->remark(law) : NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < kind->n; j++) {
+    const FrictionParameter *q = &kind->parameter[j];
+
+    PetscCheck(q->coefficient || !q->row.bounded || law->parameter[j] > 0, comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s %.6g must be given and positive (%s) with -%s_friction_law %s", name, q->row.name + 1,
+               (double)law->parameter[j], q->row.unit, name, kind->name);
+  }
+  if (remark) PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: contact %s: %s\n", name, remark));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law)
+{
+  const char *word[N_KINDS + 1];
+  char        prefix[128], title[160];
+  PetscInt    chosen = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Friction of contact %s", name));
+  PetscOptionsBegin(comm, prefix, title, NULL);
+  PetscCall(PetscOptionsEList("-friction_law", "how friction depends on the slip speed", "frictionlaw.h", word, N_KINDS,
+                              word[0], &chosen, NULL));
+  PetscOptionsEnd();
+  for (PetscInt k = 0; k < N_KINDS; k++) {
+    FrictionLaw read = {.kind = k};
+
+    PetscCall(KindRead(comm, name, &read));
+    if (k == chosen) *law = read;
+  }
+  PetscCall(KindsRefuse(comm, name, law));
+  PetscCall(LawCheck(comm, name, law));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionCheckNotNegative(MPI_Comm comm, const char name[], const FrictionLaw *law)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < KindOf(law)->n; j++) {
+    const FrictionParameter *q = &KindOf(law)->parameter[j];
+
+    PetscCheck(!q->coefficient || law->parameter[j] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g must not be negative", name,
+               q->row.name + 1, (double)law->parameter[j]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const FrictionLaw *law)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < KindOf(law)->n; j++) {
+    const FrictionParameter *q  = &KindOf(law)->parameter[j];
+    const double             mu = (double)law->parameter[j];
+
+    if (q->coefficient && PetscAbsReal(mu) > LARGEST_MU)
+      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n", name,
+                             q->row.name + 1, mu, LARGEST_MU, mu, mu / 100));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionRefuseSlopes(MPI_Comm comm, const char name[], const FrictionLaw *law, const char why[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < KindOf(law)->n; j++)
+    if (!KindOf(law)->parameter[j].steady) PetscCall(OptionsRefuseOf(comm, name, KindOf(law)->parameter[j].row.name + 1, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionView(const FrictionLaw *law, PetscViewer viewer)
+{
+  const char *comma = "";
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < KindOf(law)->n; j++) {
+    const FrictionParameter *q = &KindOf(law)->parameter[j];
+
+    if (!q->coefficient && law->parameter[j] == 0) continue;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s%s %.6g%s%s", comma, q->row.name + 1, (double)law->parameter[j],
+                                     q->row.unit ? " " : "", q->row.unit ? q->row.unit : ""));
+    comma = ", ";
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionAddChecksum(const FrictionLaw *law, Checksum checksum)
+{
+  const PetscInt kind = (PetscInt)law->kind;
+
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddInts(checksum, 1, &kind));
+  PetscCall(ChecksumAddReals(checksum, KindOf(law)->n, law->parameter));
+  PetscFunctionReturn(0);
+}
