@@ -194,14 +194,16 @@ def launch(program, library, work, words, environment, ranks, limit):
 
 
 def session_of(leader):
-    """Processes of the session that one leads."""
-    return [number for number, stat in processes("stat") if int(stat.rpartition(b")")[2].split()[3]) == leader]
+    """Processes of the session that one leads, and the parent of each."""
+    fields = {number: stat.rpartition(b")")[2].split() for number, stat in processes("stat")}
+    return {number: int(field[1]) for number, field in fields.items() if int(field[3]) == leader}
 
 
 def kill_ranks(leader):
-    """Kills all ranks of a launcher at once; it sees to what they leave, since it is killed only where it is the one rank itself. How
-    many that were."""
-    ranks = [number for number in session_of(leader) if number != leader] or [leader]
+    """Kills all ranks of a launcher at once, of which each has a parent that watches it; the launcher sees to what they leave, since it
+    is killed only where it is the one rank itself. How many that were."""
+    parents = session_of(leader)
+    ranks = [number for number in parents if number not in parents.values()] or [leader]
     for number in ranks:
         os.kill(number, signal.SIGKILL)
     return len(ranks)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a run prints: all of it in the log file too, the stage and the time left on stderr where asked for or on a
-terminal, and the end by ^C. Breaks when a stage or a long loop is silent, when progress gets into the log or stays on
-the screen, when the log misses an error, or when ^C leaves a trace or half a file.
+terminal, the end by ^C or of a killed rank. Breaks when a stage or a long loop is silent, when progress gets into the log or stays on
+the screen, when the log misses an error, when ^C leaves a trace or half a file, or when nothing says which rank was killed.
 
     test_progress.py SQUEAL LAUNCHER"""
 
@@ -14,6 +14,9 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+
+from processes import processes_naming
+from served import own_words
 
 OPTIONS = Path(__file__).resolve().parents[1] / "options"
 COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4 -modes_band 1000,8000".split()
@@ -137,6 +140,30 @@ def check_stop_on_ranks(r):
             "^C of mpirun: one rank says so", f"{rest}\n{logged}\n{version}")
 
 
+def check_killed_rank(r):
+    """One rank of two is killed, by the system or for its time: one line, the launcher's status, nothing left behind."""
+    for number, rank in ((signal.SIGKILL, 1), (signal.SIGXCPU, 0)):
+        name = f"killed{rank}"
+        process = subprocess.Popen([r.launcher, "-n", "2", r.squeal, *SCENE, *MEDIUM, "-squeal_progress", "1", "-output_dir", name],
+                                   cwd=r.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while (line := process.stderr.readline()) and not line.startswith("Modes"):
+            continue
+        mine = f"OMPI_COMM_WORLD_RANK={rank}".encode()
+        found = [n for n in processes_naming(name) if mine in Path(f"/proc/{n}/environ").read_bytes().split(b"\0")]
+        os.kill(max(found), number)  # the younger of two: the other one watches it
+        rest = process.communicate(timeout=PATIENCE)[1]
+        said = [line for line in own_words(rest).splitlines() if line.startswith("squeal: error")]
+        cause = ", by the system where memory has run out, or by hand" if number == signal.SIGKILL else ""
+        wanted = f"squeal: error: rank {rank} was killed by {signal.Signals(number).name}{cause}; files in {name} that bear their " \
+            "final name are complete"
+        r.check(len(found) == 2 and process.returncode == 128 + number and said == [wanted], f"rank {rank} killed by {number}",
+                f"{found} {process.returncode} {rest}")
+        begun = time.monotonic()
+        while processes_naming(name) and time.monotonic() - begun < PATIENCE:
+            time.sleep(0.01)
+        r.check(not processes_naming(name), "no rank is left")
+
+
 def main():
     signal.signal(signal.SIGINT, signal.default_int_handler)  # else what nohup and & ignore, the runs ignore too
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
@@ -146,6 +173,7 @@ def main():
         check_left_and_interrupt(r)
         check_stop_in_statics(r)
         check_stop_on_ranks(r)
+        check_killed_rank(r)
     if r.faults:
         print(f"{len(r.faults)} failed: {'; '.join(r.faults)}")
     return 1 if r.faults else 0

@@ -14,6 +14,7 @@
 #include "print.h"
 #include "memory.h"
 #include "progress.h"
+#include "watch.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <petsctime.h>
@@ -102,6 +103,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
 
   PetscFunctionBeginUser;
   (void)signal(SIGXFSZ, SIG_IGN); /* a file beyond `ulimit -f` is an error of the write, as a full disk is */
+  WatchBegin();
   PetscCallMPI(MPI_Init(argc, argv));
   if (!help && HelpAnswer(*argc, *argv)) exit(MPI_Finalize());
   if (!help) HelpHush(*argc, *argv);

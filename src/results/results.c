@@ -3,6 +3,7 @@
 */
 #include "resultsimpl.h"
 #include "base/path.h"
+#include "base/watch.h"
 #include <squeal/quantity.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ PetscErrorCode ResultsOpenDirectory(Results results)
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
              "cannot write into the folder -output_dir %s: %s; choose another", results->dir, strerror(error));
   PetscCall(ResultsLock(results));
+  WatchFolder(results->dir);
   PetscCall(EarlierRead(results));
   PetscFunctionReturn(0);
 }

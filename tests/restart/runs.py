@@ -93,8 +93,10 @@ class Runs:
         return self.folder / name / file
 
     def ranks(self, name, process):
-        """Processes of a run without its launcher, which one rank has not (scripts/mpirun)."""
-        return [rank for rank in ranks_of(self.folder / name) if self.arguments.ranks == 1 or rank != process.pid]
+        """Processes of a run without its launcher, which one rank has not (scripts/mpirun), and what that starts beside the ranks."""
+        programs = dict(processes("cmdline"))
+        own = [rank for rank in ranks_of(self.folder / name) if self.arguments.ranks == 1 or rank != process.pid]
+        return [rank for rank in own if not programs.get(rank, b"").split(b"\0")[0].endswith(b"sh")]
 
     def restart(self, name, *options):
         """Tries to go on: exit status, and the lines that complain."""
