@@ -63,7 +63,7 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map);
    MapSetFromOptions - reads what to vary. Collective.
 
    Options Database Keys:
-+  -map_parameter <name[,name]> - as -sweep_parameter, and also the speed and mu_slope of a contact and the force (N, its
++  -map_parameter <name[,name]> - as -sweep_parameter, and also the speed of a contact and all of its friction law and the force (N, its
 length), pressure (Pa) or moment (N m) of a load that has one of them
 .  -map_values <first:last:n>   - as -sweep_values: first:last:n, first:last:n:log, or v1,v2,...
 .  -map_values_2 <values>       - those of the second parameter

@@ -95,7 +95,7 @@ class Study:
     def title(self):
         """Ranges, and of the friction coefficients that do not vary those that a line has room for, three at most."""
         fixed = [f"{row['parameter']} {row['value']:.4g}" for row in self.parameters
-                 if row["swept"] == 0 and not row["link"] and row["parameter"].endswith("_mu")]
+                 if row["swept"] == 0 and not row["link"] and row["parameter"].endswith(("_mu", "_mu_static", "_mu_kinetic"))]
         linked = [[row["parameter"] for row in self.parameters if row["link"] == axis.name] for axis in self.axes]
         ranges = [" and ".join([axis.name, *names]) + axis.range().removeprefix(axis.name) for axis, names in zip(self.axes, linked)]
         words = [*ranges, *filter(None, [self.where])]

@@ -114,6 +114,9 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscOptionsEnd();
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
   c->friction.speed = c->speed;
+  PetscCheck(!FrictionNeedsSpeed(&c->friction) || c->speed > 0 || Vec3Length(c->rotation) > 0 || Vec3Length(c->slip) == 0, comm,
+             PETSC_ERR_USER_INPUT, "contact %s: friction depends on the sliding speed: give a positive -%s_speed (m/s) with -%s_slip",
+             c->name, c->name, c->name);
   PetscCall(InterfaceCheckFinite(comm, c));
   PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
              "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
@@ -316,8 +319,7 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
     else if (c->law == CONTACT_PENALTY)
-      PetscCall(
-        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
     if (c->n_off)

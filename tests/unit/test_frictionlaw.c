@@ -21,6 +21,19 @@ static int TestCoulomb(void)
   return failed;
 }
 
+/* Breaks when: mu is not mu_k + (mu_s - mu_k) exp(-s / s_0). By hand: exp(-ln 2) = 1/2 */
+static int TestStaticKinetic(void)
+{
+  const FrictionLaw law    = {.kind = 1, .speed = 2, .parameter = {0.5, 0.3, 0.1}};
+  int               failed = CheckClose("at rest", FrictionMu(&law, 0), 0.5, 1e-15);
+
+  failed += CheckClose("half way down", FrictionMu(&law, 0.1 * log(2)), 0.4, 1e-15);
+  failed += CheckClose("its slope", FrictionSlope(&law, 0.1 * log(2)), -1, 1e-14);
+  failed += CheckClose("far beyond", FrictionMu(&law, 10), 0.3, 1e-15);
+  failed += CheckTrue("it knows the speed itself", FrictionNeedsSpeed(&law) && FrictionVaries(&law), 0);
+  return failed;
+}
+
 /* d f / d x by central differences, f mu or mu' at the stated speed; x a parameter of the law, or that speed (j < 0) */
 static PetscReal Difference(const FrictionLaw *law, PetscReal (*f)(const FrictionLaw *), int j)
 {
@@ -59,6 +72,9 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   (void)size;
   *failed += TestCoulomb();
   *failed += TestDerivatives(&(FrictionLaw){.speed = 2, .parameter = {0.3, -0.01}});
+  *failed += TestStaticKinetic();
+  *failed += TestDerivatives(&(FrictionLaw){.kind = 1, .speed = 0.15, .parameter = {0.5, 0.3, 0.1}});
+  *failed += TestDerivatives(&(FrictionLaw){.kind = 1, .speed = 3, .parameter = {0.2, 0.6, 1.5}});
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,8 @@
 """A deck (decks/deck.py) of the options and the mesh of a scene: what squeal computes with, in CalculiX's terms. What these do not
 have is a note."""
 
+import math
+
 import numpy
 
 from ..decks.deck import Axes, Block, Contact, Deck, Load, Material, Place, Section, Spring, Support, Tie
@@ -198,6 +200,17 @@ def add_loads(build):
                            for node, share in zip(nodes, shares)]
 
 
+def friction(options, owner):
+    """Friction coefficient at the sliding speed."""
+    if options.text(f"{owner}_friction_law") != "static_kinetic":
+        return options.number(f"{owner}_mu", "0")
+    static, kinetic, decay = (options.number(f"{owner}_mu_{name}", "0") for name in ("static", "kinetic", "decay_speed"))
+    if any(options.numbers(f"{owner}_rotation", "0,0,0")):
+        raise BadInput(f"{options.path}: {owner}_friction_law static_kinetic with a rotation: each point has a friction coefficient of "
+                       "its own, which a deck cannot say")
+    return kinetic + (static - kinetic) * math.exp(-options.number(f"{owner}_speed", "0") / decay)
+
+
 def add_contacts(build, sliding):
     """Pairs of surfaces; a deck of sliding says where to."""
     options, deck = build.options, build.deck
@@ -206,7 +219,7 @@ def add_contacts(build, sliding):
         if len(names) != 2:
             raise BadInput(f"{options.path}: {owner}_surfaces must name two: slave,master")
         slave, master = (build.surface(name, f"-{owner}_surfaces") for name in names)
-        mu = options.number(f"{owner}_mu", "0")
+        mu = friction(options, owner)
         contact = Contact(owner, slave, master, Place(owner, 0), mu or None, contact_stiffness(build, owner, slave))
         contact.slip = options.numbers(f"{owner}_slip", "0,0,0") if sliding else ()
         deck.contacts.append(contact)

@@ -101,12 +101,21 @@ def sliding_words(scene, name):
     return f"{slave} slides towards {direction(scene.value(f'{name}_slip'))}" if any(slip) else ""
 
 
+def friction_words(scene, name):
+    """A friction law."""
+    if scene.value(f"{name}_friction_law") == "static_kinetic":
+        decay = scene.si("m/s") * scene.number(f"{name}_mu_decay_speed")
+        return (f"friction coefficient {scene.value(f'{name}_mu_static', '0')} at rest, {scene.value(f'{name}_mu_kinetic', '0')} in "
+                f"fast sliding, decay speed {figures(decay, 4)} m/s")
+    slope = scene.si("s/m") * scene.number(f"{name}_mu_slope")
+    return f"friction coefficient {scene.value(f'{name}_mu', '0')}{f', its slope {figures(slope, 4)} s/m' if slope else ''}"
+
+
 def contact_words(scene, name):
     """An interface."""
     slave, _, master = scene.value(f"{name}_surfaces").partition(",")
     motion = sliding_words(scene, name) or "no sliding is prescribed"
     speed = scene.si("m/s") * scene.number(f"{name}_speed")
-    slope = scene.si("s/m") * scene.number(f"{name}_mu_slope")
     law = "exact constraint"
     if scene.value(f"{name}_law") == "penalty":
         kn, area = numbers(scene.value(f"{name}_kn")), scene.si("N/m^3") * scene.number(f"{name}_kn_per_area")
@@ -114,9 +123,8 @@ def contact_words(scene, name):
                f"normal stiffness {quantity(scene.si('N/m') * kn[0], 'N/m')} per pair")
     if scene.value("analysis", "modes") in ("transient", "map", "cycle"):
         law = "exact contact in time"
-    return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, friction "
-            f"coefficient "
-            f"{scene.value(f'{name}_mu', '0')}{f', its slope {figures(slope, 4)} s/m' if slope else ''}; {law}.")
+    return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, "
+            f"{friction_words(scene, name)}; {law}.")
 
 
 def load_words(scene, name):
@@ -199,5 +207,7 @@ def scene_words(scene):
 def headline(scene):
     """One line for lists of folders."""
     parts = scene.names("parts")
+    first = next(iter(scene.names("contacts")), None)
+    mu = "mu_static" if first and scene.value(f"{first}_friction_law") == "static_kinetic" else "mu"
     return f"{scene.value('analysis', 'modes')}, {count(len(parts), 'part')}" + (
-        f", mu {scene.value(scene.names('contacts')[0] + '_mu', '0')}" if scene.names("contacts") else "")
+        f", {mu} {scene.value(f'{first}_{mu}', '0')}" if first else "")

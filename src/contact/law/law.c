@@ -3,8 +3,9 @@
    coulombs.h, included here, and its row in the table.
 */
 #include "coulombs.h"
+#include "statickinetic.h"
 
-static const FrictionKind *const kinds[] = {&coulombs_law};
+static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law};
 
 #define LARGEST_MU 1.5 /* of rubber on dry concrete */
 #define N_KINDS    ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(kinds))
