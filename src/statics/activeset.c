@@ -46,6 +46,14 @@ static StatusChange SafeguardChoose(Safeguard *s, PetscInt n_wrong)
   return s->tries-- > 0 ? CHANGE_ALL : CHANGE_LAST;
 }
 
+/* Whether a hasty iteration gives up: where more pairs are wrong than there were before it may go round for long */
+static PetscBool SafeguardGivesUp(Safeguard *s, PetscInt n_wrong)
+{
+  if (n_wrong > s->least) return PETSC_TRUE;
+  s->least = n_wrong;
+  return PETSC_FALSE;
+}
+
 /* Laws of all rows at the present status */
 static void LawsSet(const Active *a, LawRow law[])
 {
@@ -230,7 +238,7 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ActiveIsReversed(const Active *a, PetscReal friction, PetscBool *reversed)
+PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *reversed)
 {
   Active  at = *a;
   LawRow *law;
@@ -241,7 +249,7 @@ PetscErrorCode ActiveIsReversed(const Active *a, PetscReal friction, PetscBool *
   if (friction == 0 || (!PairRowsCoulomb(a->rows) && !a->rows->S)) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(a->rows->n, &law));
   LawsSet(&at, law);
-  PetscCall(SmallIsReversed(&(SmallSystem){a->compliance, friction, law, a->free, a->rtol}, reversed));
+  PetscCall(SmallIsReversed(&(SmallSystem){a->compliance, friction, law, a->free, a->rtol}, &a->n_factored, reversed));
   PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
@@ -275,6 +283,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
     if (!n_changed) PetscCall(Damp(a, l, w, residual));
     PetscCall(StatusUpdate(a, &guard, &n_changed));
     PetscCall(ActiveSlipResidual(a, &residual));
+    if (a->hasty && SafeguardGivesUp(&guard, n_changed)) *outcome = ACTIVE_REPEATS;
     if (n_changed || residual > SLIPPING) continue;
     if (a->rtol == EXACT || a->compliance->W) {
       if (!a->compliance->W) PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));

@@ -1,8 +1,10 @@
 /*
    What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: with
-   Coulomb's law by continuation in a regularisation of friction (soften.c); statuses of sliding pairs, and of all
-   without friction, are found by pivoting (pivot.c); then fewer change per iteration; then all friction coefficients
-   are raised from 0 in steps, each begun from the equilibrium before it, with half the step after a failure.
+   Coulomb's law by continuation in a regularisation of friction (soften.c), which begins as soon as more pairs become
+   wrong from one iteration to the next, since going round costs more; where it fails the active set is asked to its end;
+   statuses of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per
+   iteration; then all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with
+   half the step after a failure.
    Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the wrong sign
    (small.c, determinant.c) is none that can be reached from there, hence a failure too: on the way forces grow beyond
    any bound, the bodies jam. So they do where the last equilibrium's pairs would have such a system with the whole
@@ -105,13 +107,19 @@ PetscErrorCode ActiveSolve(Active *a, ActiveOutcome *outcome)
 {
   PetscFunctionBeginUser;
   a->friction = 1;
+  a->hasty    = PairRowsCoulomb(a->rows);
   PetscCall(ActiveIterate(a, PETSC_FALSE, outcome));
+  a->hasty = PETSC_FALSE;
   a->first = *outcome;
   if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(CertificateCheck(a));
   if (PairRowsCoulomb(a->rows)) {
     PetscCall(Restart(a));
     PetscCall(ActiveSoften(a, outcome));
+    if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
+    PetscCall(Restart(a));
+    PetscCall(ActiveIterate(a, PETSC_FALSE, outcome));
+    a->first = *outcome;
     if (*outcome == ACTIVE_CONVERGED) PetscFunctionReturn(0);
   }
   PetscCall(IterateSurely(a, outcome));

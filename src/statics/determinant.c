@@ -104,13 +104,15 @@ static PetscErrorCode DeterminantTry(Mat A, PetscInt *percent, PetscInt *reason,
 }
 
 /* Rows without a stiffness of their own delay pivots by more than MUMPS foresees: then with more room */
-static PetscErrorCode DeterminantSign(Mat A, PetscBool *negative)
+static PetscErrorCode DeterminantSign(Mat A, PetscInt *n_factored, PetscBool *negative)
 {
   PetscInt reason, percent = DETERMINANT_SPACE;
 
   PetscFunctionBeginUser;
-  do PetscCall(DeterminantTry(A, &percent, &reason, negative));
-  while (percent > 0);
+  do {
+    PetscCall(DeterminantTry(A, &percent, &reason, negative));
+    (*n_factored)++;
+  } while (percent > 0);
   PetscCheck(reason >= 0 || reason == -10, PetscObjectComm((PetscObject)A), PETSC_ERR_NOT_CONVERGED,
              "whether the bodies jam cannot be said: MUMPS' factorisation failed (INFOG(1) = %" PetscInt_FMT
              "); raise -static_dense to the number of rows",
@@ -118,7 +120,7 @@ static PetscErrorCode DeterminantSign(Mat A, PetscBool *negative)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
+PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscInt *n_factored, PetscBool *reversed)
 {
   Mat block[4], nest, whole;
 
@@ -131,7 +133,7 @@ PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
   PetscCall(LawMatrix(s, LAW_DISPLACEMENT, &block[3]));
   PetscCall(MatCreateNest(s->compliance->rows->comm, 2, NULL, 2, NULL, block, &nest));
   PetscCall(MatConvert(nest, MATAIJ, MAT_INITIAL_MATRIX, &whole));
-  PetscCall(DeterminantSign(whole, reversed));
+  PetscCall(DeterminantSign(whole, n_factored, reversed));
   PetscCall(MatDestroy(&whole));
   PetscCall(MatDestroy(&nest));
   for (int i = 1; i < 4; i++) PetscCall(MatDestroy(&block[i]));

@@ -189,6 +189,7 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
     PetscCall(EquilibriumStep(a));
   }
   s->n_it = a->n_it;
+  s->n_factored += a->n_factored;
   PetscCall(TippingCheck(a));
   PetscCall(EquilibriumRefine(a));
   PetscCall(FrictionCheck(a));

@@ -25,6 +25,7 @@
 #define DESCENT       1e-4 /* of the residual along a step */
 #define SHORTEST_STEP (1.0 / 65536)
 #define ENOUGH        1e-10 /* residual of the laws, relative to the largest force */
+#define ENOUGH_SOFT   1e-3  /* and of softened ones, from which only the next softness begins */
 #define ENOUGH_PLACES 1e-14 /* or to the scale: rounding where forces are small beside gaps */
 #define MOST_GROWTH   4.0   /* growth of the scale in a step */
 #define LEAST_DRAG    1e-8  /* below 1, which is friction in proportion to slip */
@@ -151,20 +152,20 @@ static PetscErrorCode SoftenStep(Active *a, const Kept *from, PetscReal drag, Pe
 }
 
 /* Residual from which on the laws are obeyed, m */
-static PetscErrorCode SoftenEnough(const Active *a, PetscReal *enough)
+static PetscErrorCode SoftenEnough(const Active *a, PetscReal soft, PetscReal *enough)
 {
   PetscReal force = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) force = PetscMax(force, PetscAbsReal(a->l[a->rows->first[p]]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &force, 1, MPIU_REAL, MPI_MAX, a->rows->comm));
-  *enough = PetscMax(ENOUGH * force, ENOUGH_PLACES * a->scale);
+  *enough = PetscMax((soft > 0 ? ENOUGH_SOFT : ENOUGH) * force, ENOUGH_PLACES * a->scale);
   PetscFunctionReturn(0);
 }
 
-/* Newton's method at the present softness; l and w are in equilibrium (balanced), or the first step is a whole one from
-   the statuses given */
-static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *converged)
+/* Newton's method at a softness; l and w are in equilibrium (balanced), or the first step is a whole one from the
+   statuses given */
+static PetscErrorCode SoftenIterate(Active *a, PetscReal soft, PetscBool balanced, PetscBool *converged)
 {
   PetscReal    residual = PETSC_MAX_REAL, drag = 0, enough;
   PetscBool    falls;
@@ -173,6 +174,7 @@ static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *co
 
   PetscFunctionBeginUser;
   *converged = PETSC_FALSE;
+  SoftenSet(a, soft);
   PetscCall(KeptCreate(a, &from));
   if (balanced) PetscCall(SoftenMeasure(a, &residual));
   for (PetscInt it = 0; it < a->max_it && drag <= MOST_DRAG && !*converged; it++, a->n_it++) {
@@ -184,7 +186,7 @@ static PetscErrorCode SoftenIterate(Active *a, PetscBool balanced, PetscBool *co
       continue;
     }
     drag = drag > LEAST_DRAG ? drag / DRAG_FACTOR : 0;
-    PetscCall(SoftenEnough(a, &enough));
+    PetscCall(SoftenEnough(a, soft, &enough));
     *converged = residual <= enough ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCall(KeptDestroy(&from));
@@ -203,8 +205,7 @@ static PetscErrorCode SoftenLower(Active *a, Kept *kept, PetscBool *converged)
 
     PetscCall(Keep(a, 0, kept));
     do {
-      SoftenSet(a, next);
-      PetscCall(SoftenIterate(a, PETSC_TRUE, converged));
+      PetscCall(SoftenIterate(a, next, PETSC_TRUE, converged));
       if (*converged) break;
       if (next > 0) factor = PetscSqrtReal(factor);
       next = soft / factor;
@@ -225,8 +226,7 @@ PetscErrorCode ActiveSoften(Active *a, ActiveOutcome *outcome)
 
   PetscFunctionBeginUser;
   PetscCall(KeptCreate(a, &kept));
-  SoftenSet(a, SOFTEST);
-  PetscCall(SoftenIterate(a, PETSC_FALSE, &converged));
+  PetscCall(SoftenIterate(a, SOFTEST, PETSC_FALSE, &converged));
   PetscCall(SoftenLower(a, &kept, &converged));
   SoftenSet(a, 0);
   PetscCall(KeptDestroy(&kept));

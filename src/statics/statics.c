@@ -149,6 +149,7 @@ static PetscErrorCode StaticsFactor(Statics s)
     if (same && parameters[i].body && s->p[i] != s->factored[i]) same = PETSC_FALSE;
     s->factored[i] = s->p[i];
   }
+  s->n_factored = same ? 0 : 1;
   if (!same) {
     PetscCall(ComplianceDestroy(&s->compliance));
     PetscCall(ComplianceCreate(s->operators, s->p, &s->rows, s->dense, &s->progress, &s->compliance));

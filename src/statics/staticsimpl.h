@@ -99,7 +99,7 @@ typedef struct {
   const Compliance *compliance;
   Vec               f, u; /* forces on the bodies, N, and displacements of all unknowns */
   PetscReal         size; /* of all forces, N */
-  PetscInt          load_steps, max_it, n_it;
+  PetscInt          load_steps, max_it, n_it, n_factored;
   char              place[256]; /* the point in words, for messages */
   PetscReal         friction;   /* factor of all friction coefficients, 0 .. 1 */
   PetscReal         rtol;       /* of GMRES on the small system */
@@ -108,6 +108,7 @@ typedef struct {
   ContactStatus    *status;   /* [n_pairs] to begin with, then as found */
   PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
   PetscReal        *l, *w;    /* [rows] contact forces over kappa, m; displacements of the rows, m */
+  PetscBool         hasty;    /* the iteration gives up soon, since other ways follow */
   ActiveOutcome     first;    /* of the iteration with the whole friction */
   PetscBool         pressed;  /* an equilibrium without friction was found */
   PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
@@ -142,7 +143,7 @@ struct _p_Statics {
   PetscReal *p, *factored; /* [n_parameters] the point of the solution, and that of the factorisation or NULL */
   /* the solution */
   PetscBool         solved;
-  PetscInt          n_parameters, n_it;
+  PetscInt          n_parameters, n_it, n_factored; /* iterations; sparse factorisations of the last solution */
   ContactStatus    *status; /* [n_pairs] open, stick or slip */
   ContactState     *state;  /* [n_pairs] gap, forces, status */
   Vec               u;      /* displacements, m; length: all unknowns */
@@ -206,8 +207,8 @@ PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 /* small.c - l and w [rows] of the small system; reversed = whether the determinant is negative, dense ones only */
 PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                                        PetscBool *reversed);
-/* determinant.c - reversed for any: its sign by a sparse factorisation of bodies and pairs */
-PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscBool *reversed);
+/* determinant.c - reversed for any: its sign by a sparse factorisation of bodies and pairs, counted in n_factored */
+PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscInt *n_factored, PetscBool *reversed);
 
 /* pivot.c - statuses of sliding pairs, or of all without friction, by complementary pivoting on the dense small
    system; found is false where there is no solution or none is found */
@@ -225,7 +226,7 @@ PETSC_INTERN PetscErrorCode ActiveFindScale(Active *active);
 /* Iterates from the present status at the present friction; sure changes fewer pairs at a time */
 PETSC_INTERN PetscErrorCode ActiveIterate(Active *active, PetscBool sure, ActiveOutcome *outcome);
 /* Whether the small system at the present status and a factor of friction has a determinant of the wrong sign */
-PETSC_INTERN PetscErrorCode ActiveIsReversed(const Active *active, PetscReal friction, PetscBool *reversed);
+PETSC_INTERN PetscErrorCode ActiveIsReversed(Active *active, PetscReal friction, PetscBool *reversed);
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 

@@ -38,8 +38,11 @@ PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",
                                      s->n_free, s->n_free > 1 ? "s" : "", s->n_free > 1 ? "are" : "is"));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "equilibrium to %.2g of the load after %" PetscInt_FMT " iteration%s\n",
-                                   (double)s->equilibrium, s->n_it, s->n_it == 1 ? "" : "s"));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "equilibrium to %.2g of the load after %" PetscInt_FMT " iteration%s and %" PetscInt_FMT
+                                   " factorisation%s of the bodies\n",
+                                   (double)s->equilibrium, s->n_it, s->n_it == 1 ? "" : "s", s->n_factored,
+                                   s->n_factored == 1 ? "" : "s"));
   if (s->view_kkt) PetscCall(ContactViewKKT(&s->kkt, viewer));
   PetscFunctionReturn(0);
 }

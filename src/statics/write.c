@@ -112,6 +112,8 @@ static PetscErrorCode StaticsNote(Statics s, Results results)
   PetscCall(ContactPrintKKT(&kkt, sizeof(text), text));
   PetscCall(ResultsNote(results, "kkt", "%s", text));
   PetscCall(ResultsNote(results, "equilibrium", "%.1e", (double)equilibrium));
+  PetscCall(ResultsNote(results, "iterations", "%" PetscInt_FMT, s->n_it));
+  PetscCall(ResultsNote(results, "factorisations", "%" PetscInt_FMT, s->n_factored));
   PetscFunctionReturn(0);
 }
 
