@@ -6,7 +6,8 @@
 Scenes are those of random_scenes.py on coarser meshes, with loads in time, rings that hang on nothing, and random matrices. Breaks when a
 rank decides from its own rows what all must decide alike, when how far an iteration came or the order of the parts shows in a result, or
 when rounding resolves a tie between equal values. Reference: one rank. Numbers agree to 1e-9 of the largest of their unit in the
-table; eigenvalues and onsets to 1e-9 or to what both state as their errors. Where they do not, one rank runs again with the last
+table; eigenvalues and onsets to 1e-9 or to what both state as their errors; where no left vectors were asked for, a run on one
+rank that has them tells the condition of each eigenvalue. Where they do not, one rank runs again with the last
 digit of the disc's density changed: what that does to a row of a run in time, or to a map or a cycle, ranks may do a thousand times;
 the rest of a run that is chaotic is so not compared. A run with that digit that ends otherwise, or lacks a table or rows, excuses
 nothing there. What one number of ranks refuses all refuse, in the same words; --refused says how many may be. --keep DIR keeps the
@@ -32,7 +33,7 @@ class Runs:
 
     def __init__(self, start, kind, seed, folder):
         self.start, self.kind, self.folder, self.found, self.chaotic, self.worst = start, kind, folder, [], 0, 0.0
-        self.other = None  # folder with another digit, and its outcome
+        self.other, self.known = None, None  # folders with another digit and with left vectors, and their outcomes
         text, self.words = scene_of(kind, seed)
         (folder / "scene.yaml").write_text(text)
         (folder / "words").write_text(" ".join(self.words))
@@ -50,11 +51,18 @@ class Runs:
         self.other = self.other or self.run("digit", 1, *DIGIT)
         return self.other[0] if self.other[1].status == 0 else None
 
+    def left(self):
+        """Folder of one rank with left vectors where the scene has none, and so no errors."""
+        if self.kind != "modes" or "-modes_left" not in self.words:
+            return None
+        self.known = self.known or self.run("left", 1, "-modes_left", "1")
+        return self.known[0] if self.known[1].status == 0 else None
+
     def beside(self, ranks, first, out):
         """Compares the tables of two folders."""
         tables, missing = compared(first, out)
-        if any(table.found for table in tables) and self.digit():
-            tables, missing = compared(first, out, self.digit())
+        if any(table.found for table in tables) and (self.digit() or self.left()):
+            tables, missing = compared(first, out, self.digit(), self.left())
         self.chaotic += any(table.first < len(table.one) for table in tables)
         self.worst = max([self.worst, *(table.worst for table in tables)])
         differences = missing + [text for table in tables for text in table.found]
@@ -103,13 +111,18 @@ def main():
     parser.add_argument("--kind", default=",".join(KINDS), help=f"of {', '.join(KINDS)}")
     parser.add_argument("--first", type=int, default=0, help="number of the first scene of each kind")
     parser.add_argument("--count", type=int, default=2, help="of each kind")
+    parser.add_argument("--scenes", help="KIND:NUMBER,... in place of these")
     parser.add_argument("--ranks", default="2,3,5", help="beside one")
     parser.add_argument("--refused", type=float, default=0, metavar="SHARE", help="of the scenes of a kind that may be refused (0)")
     parser.add_argument("--keep", type=Path)
     arguments = parser.parse_args()
     start, failed = starter(arguments.squeal, LIMIT), 0
-    for kind in arguments.kind.split(","):
-        judged = [judge(arguments, start, kind, seed) for seed in range(arguments.first, arguments.first + arguments.count)]
+    scenes = {kind: range(arguments.first, arguments.first + arguments.count) for kind in arguments.kind.split(",")}
+    if arguments.scenes:
+        chosen = [word.split(":") for word in arguments.scenes.split(",")]
+        scenes = {kind: [int(number) for other, number in chosen if other == kind] for kind, _ in chosen}
+    for kind, seeds in scenes.items():
+        judged = [judge(arguments, start, kind, seed) for seed in seeds]
         different, solved = sum(bool(runs.found) for runs, _ in judged), sum(done for _, done in judged)
         failed += different + (len(judged) - solved > arguments.refused * len(judged))
         print(f"{kind}: {len(judged)} scenes, {solved} solved, {sum(runs.chaotic > 0 for runs, _ in judged)} chaotic, {different} differ, "

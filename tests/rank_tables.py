@@ -36,6 +36,12 @@ def stated(row):
     return error if math.isfinite(error) else 0
 
 
+def of_condition(row, left):
+    """Error of the eigenvalue of a row without left vectors, rad/s: the condition of the row with them times its own backward error."""
+    own, known = float(row["backward_error"]), float(left["backward_error"])
+    return stated(left) * max(1, own / known) if known > 0 else stated(left)
+
+
 def apart(x, y):
     """Difference of two fields; none where they are the same, infinite where one is no number."""
     if x == y:
@@ -47,10 +53,11 @@ def apart(x, y):
 
 
 class Comparison:
-    """Differences of the rows of one table; `digit` has those of one rank with another last digit."""
+    """Differences of the rows of one table; `digit` has those of one rank with another last digit, `left` those with left vectors."""
 
-    def __init__(self, name, one, other, digit=None):
+    def __init__(self, name, one, other, digit=None, left=None):
         self.name, self.one, self.other = name, one, other
+        self.left = left if left and len(left) == len(one) and name == "modes.csv" else None
         self.found, self.worst, self.first = [], 0.0, len(one)
         self.columns = [column for column in (one[0] if one else ()) if not any(word in column for word in ESTIMATES)]
         self.grown = self.growth(digit) if digit is not None else [0] * len(one)
@@ -90,9 +97,12 @@ class Comparison:
 
     def eigenvalues(self):
         for i, (p, q) in enumerate(zip(self.one, self.other)):
-            x, y, allowed = eigenvalue(p), eigenvalue(q), max(stated(p) + stated(q), 1e-6)
+            x, y, errors = eigenvalue(p), eigenvalue(q), [stated(p), stated(q)]
+            if self.left:
+                errors = [of_condition(row, self.left[i]) for row in (p, q)]
+            allowed = max(sum(errors), 1e-6)
             size = 0 if abs(x - y) <= allowed else abs(x - y) / abs(x) if x else math.inf
-            self.say(i, f"{x:.12g} and {y:.12g} rad/s, which state {stated(p):.2g} and {stated(q):.2g}", size)
+            self.say(i, f"{x:.12g} and {y:.12g} rad/s, which state {errors[0]:.2g} and {errors[1]:.2g}", size)
 
     def stated_values(self, column, error):
         """A column with its errors."""
@@ -121,10 +131,11 @@ class Comparison:
         return self
 
 
-def compared(one, other, digit=None):
-    """Comparisons of the tables of two folders, beside those of a third one, and the names of tables that one of them lacks."""
+def compared(one, other, digit=None, left=None):
+    """Comparisons of the tables of two folders, beside those with another digit and with left vectors, and the names of tables that one
+    of the two lacks."""
     names = sorted({path.name for folder in (one, other) for path in folder.glob("*.csv")})
     missing = [f"no {name} in one" for name in names if not ((one / name).exists() and (other / name).exists())]
     both = [name for name in names if (one / name).exists() and (other / name).exists()]
-    third = {name: read(digit / name) for name in both if (digit / name).exists()} if digit else {}
-    return [Comparison(name, read(one / name), read(other / name), third.get(name)).compare() for name in both], missing
+    third, fourth = ({name: read(more / name) for name in both if (more / name).exists()} if more else {} for more in (digit, left))
+    return [Comparison(name, read(one / name), read(other / name), third.get(name), fourth.get(name)).compare() for name in both], missing

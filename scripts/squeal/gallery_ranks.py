@@ -50,7 +50,7 @@ RUNS = {
                          why="at 51 ms friction stops it, and which node sticks first hangs on rounding"),
     "massi2005": Run("massi2005", quick=SMALL),
     "massi2005 static": Run("massi2005", words="-analysis static", quick=SMALL),
-    "massi2005_coarse": Run("massi2005 massi2005_coarse", quick="-rig_disc_elements 9,67,1"),
+    "massi2005_coarse": Run("massi2005 massi2005_coarse", quick="-rig_disc_elements 9,67,1 -rig_pad_elements 4,4,2"),
     "massi2005_frf": Run("massi2005 massi2005_frf", quick=SMALL + "-frf_frequencies 100:15000:150"),
     "massi2005_sweep": Run("massi2005 massi2005_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),
     "massi2005_fitted_sweep": Run("massi2005 massi2005_sweep massi2005_fitted_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),

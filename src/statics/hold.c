@@ -125,29 +125,54 @@ static PetscErrorCode UnknownFind(Operators operators, PetscInt unknown, Unknown
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size)
+/* What f would move, sum of (f . r) r: its largest entry, where that is, and the work of f along it */
+static PetscErrorCode HoldMove(const Hold *hold, Vec f, PetscInt *at, PetscScalar *largest, PetscScalar *work)
 {
-  PetscInt     which, at;
-  PetscScalar  along, largest;
-  UnknownPlace place;
-  Vec          motion;
+  PetscInt    which;
+  PetscScalar along;
+  Vec         motion;
 
   PetscFunctionBeginUser;
-  if (!hold->n) PetscFunctionReturn(0);
-  PetscCall(VecDuplicate(f, &motion)); /* what f would move: sum of (f . r) r */
+  PetscCall(VecDuplicate(f, &motion));
   PetscCall(VecSet(motion, 0));
   for (PetscInt i = 0; i < hold->n; i++) {
     PetscCall(VecDot(f, hold->r[i], &along));
     PetscCall(VecAXPY(motion, along, hold->r[i]));
   }
-  PetscCall(LargestEntry(1, &motion, &which, &at));
-  PetscCall(EntryGet(motion, at, &largest));
-  PetscCall(VecDot(f, motion, &along));
-  PetscCall(UnknownFind(operators, at, &place));
+  PetscCall(LargestEntry(1, &motion, &which, at));
+  PetscCall(EntryGet(motion, *at, largest));
+  PetscCall(VecDot(f, motion, work));
   PetscCall(VecDestroy(&motion));
-  PetscCheck(
-    PetscAbsScalar(along) <= RESISTED * size * PetscAbsScalar(largest), PetscObjectComm((PetscObject)f),
-    PETSC_ERR_USER_INPUT,
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldIsPushed(const Hold *hold, Vec f, PetscReal size, PetscBool *pushed)
+{
+  PetscInt    at;
+  PetscScalar largest, work;
+
+  PetscFunctionBeginUser;
+  *pushed = PETSC_FALSE;
+  if (!hold->n) PetscFunctionReturn(0);
+  PetscCall(HoldMove(hold, f, &at, &largest, &work));
+  *pushed = PetscAbsScalar(work) <= RESISTED * size * PetscAbsScalar(largest) ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size)
+{
+  PetscInt     at;
+  PetscScalar  along, largest;
+  PetscBool    pushed;
+  UnknownPlace place;
+
+  PetscFunctionBeginUser;
+  PetscCall(HoldIsPushed(hold, f, size, &pushed));
+  if (!pushed) PetscFunctionReturn(0);
+  PetscCall(HoldMove(hold, f, &at, &largest, &along));
+  PetscCall(UnknownFind(operators, at, &place));
+  SETERRQ(
+    PetscObjectComm((PetscObject)f), PETSC_ERR_USER_INPUT,
     "no equilibrium: %s push part %s with %.6g N along a rigid motion that nothing resists, which moves it most along "
     "%c, at %.6g, %.6g, %.6g m; give -supports, -springs or other -loads",
     force, place.name, (double)PetscAbsScalar(along / largest), "xyz"[place.direction], (double)place.x[0],

@@ -175,6 +175,7 @@ PETSC_INTERN PetscErrorCode FreeMotionsCreate(Operators operators, const PetscRe
 /* hold.c - the free motions of A, held by pins that are added to A; errors for a load (or
    any force on the bodies) along one of them; u without them */
 PETSC_INTERN PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold);
+PETSC_INTERN PetscErrorCode HoldIsPushed(const Hold *hold, Vec f, PetscReal size, PetscBool *pushed);
 PETSC_INTERN PetscErrorCode HoldCheck(Operators operators, const Hold *hold, const char force[], Vec f, PetscReal size);
 /* The part that moves most freely where A, of the closed pairs only, has more free motions, else NULL */
 PETSC_INTERN PetscErrorCode HoldFindLoose(Operators operators, const PetscReal p[], const Hold *hold, Mat A,

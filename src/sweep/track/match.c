@@ -17,11 +17,12 @@
 */
 #include "match.h"
 
-#define SMALL  0.3
-#define BESIDE 0.4
-#define LOST   0.7
-#define PLACE  0.1 /* score for keeping the place in the order of frequency */
-#define LEAST  0.1 /* score below which modes of an uncertain component are not matched */
+#define SMALL   0.3
+#define BESIDE  0.4
+#define LOST    0.7
+#define PLACE   0.1 /* score for keeping the place in the order of frequency */
+#define LEAST   0.1 /* score below which modes of an uncertain component are not matched */
+#define ROUNDED 1e-12 /* of an eigenvalue */
 
 /* strength[i, j] of all modes */
 static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match *match)
@@ -170,7 +171,8 @@ PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const Reduced
   PetscFunctionReturn(0);
 }
 
-/* Place of mode i in its component by ascending order[]; among equals the less stable is first */
+/* Place of mode i in its component by ascending order[]; among equals the less stable is first, and of modes that rounding or their
+   errors alone part, the earlier one */
 static PetscInt ComponentPlace(const ReducedModes *modes, const PetscInt component[], const PetscReal order[],
                                PetscInt i)
 {
@@ -178,12 +180,13 @@ static PetscInt ComponentPlace(const ReducedModes *modes, const PetscInt compone
 
   for (PetscInt k = 0; k < modes->n; k++) {
     const PetscReal close = 1e-6 * PetscAbsReal(order[i]), growth = creal(modes->lambda[k]) - creal(modes->lambda[i]);
+    const PetscReal noise = ROUNDED * cabs(modes->lambda[i]) + modes->error[i] + modes->error[k];
 
     if (k == i || component[k] != component[i]) continue;
     if (PetscAbsReal(order[k] - order[i]) > close)
       place += order[k] < order[i];
     else
-      place += growth > 0 || (growth == 0 && k < i);
+      place += PetscAbsReal(growth) > noise ? growth > 0 : k < i;
   }
   return place;
 }
