@@ -1,7 +1,7 @@
 /*
    Cycle - limit cycles of the reduced model (reduced.h) directly: a periodic motion under constant loads and sliding, by
    shooting with Newton's method, its stability by Floquet multipliers, and the branch of such cycles over a parameter through
-   folds: friction, its slope or the speed of a contact, a load, or a parameter of the bodies such as a modulus.
+   folds: a parameter of the friction law or the speed of a contact, a load, or a parameter of the bodies such as a modulus.
 
    The state x = (eta, rate, lambda, q) at t_n is all that a step knows of the past. N steps of length T / N are the map
    Phi(x, T, p), p the parameter; its derivative M = dPhi/dx is the product of the derivatives of the steps, exact where no status of a pair

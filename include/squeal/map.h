@@ -4,7 +4,7 @@
    and downwards, so that states that depend on the way are found on both: hysteresis. Each line of the map begins with the
    sliding state of its first point, and the scene's impulses hit it anew at every point.
 
-   Parameters. mu and its slope, sliding speeds and loads leave the reduced bodies as they are. All others (moduli, densities,
+   Parameters. Those of friction laws, sliding speeds and loads leave the reduced bodies as they are. All others (moduli, densities,
    springs, damping) need bodies of their own and hence come second: the bodies are reduced once for each value.
 
    A transient is looked at in windows of -map_window, T. Of the total normal force f in a window: mean, rms about it, the

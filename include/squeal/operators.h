@@ -89,8 +89,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
    spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by friction), and
-   with friction damping mu_slope (s/m), force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu and mu_slope
-   standing for the parameters of its friction law (frictionlaw.h); contact_mu
+   with friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu standing for the parameters
+   of its friction law (frictionlaw.h), of which those that decide mu' alone are there with friction damping; contact_mu
    for loaded or dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
    a mu only where it holds by friction. Then of each load force (N, the length of the vector) or pressure (Pa), and moment (N m,
    likewise). Not collective.

@@ -8,7 +8,7 @@
       normal    0 <= lambda_n,  0 <= gap_{n+1},  lambda_n gap_{n+1} = 0
       Coulomb   |lambda_T| <= mu lambda_n; slip velocity 0 (stick), or lambda_T = mu lambda_n s / |s| on the master, s
                 the slave's slip velocity over the step (slip)
-   without regularisation. mu follows the slip speed (mu_slope, contact.h), extrapolated from the last two half steps.
+   without regularisation. mu is that of the slip speed (frictionlaw.h), extrapolated from the last two half steps.
    Block Gauss-Seidel on W = G M^-1 G', the cone of each pair solved exactly; residual of the natural map; warm start.
    Each node has Cartesian components of its body's frame.
 

@@ -5,7 +5,7 @@
 
    so that what is symmetric can be factored by itself (solver/lowrank.h). A row of L is the tangential displacement of
    a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the area; c_t holds
-   k_n mu.
+   k_n mu. Terms one after another with one L, as of friction at several speeds, have its rows once, with R = sum_t c_t / c_1 R_t.
 */
 #include "base/matrixadd.h"
 #include "pencilimpl.h"
@@ -59,6 +59,32 @@ static PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
   PetscFunctionReturn(0);
 }
 
+/* The first term after t that has another left factor */
+static PetscInt BlockEnd(const Terms *terms, PetscInt t)
+{
+  PetscInt end = t + 1;
+
+  while (end < terms->n && terms->term[t].left && terms->term[end].left == terms->term[t].left) end++;
+  return end;
+}
+
+/* sum_k c_k / c_t R_k over the terms from t to `end`; the caller destroys it */
+static PetscErrorCode RightCreate(const Terms *terms, const PetscReal p[], PetscInt t, PetscInt end, Mat *R)
+{
+  const PetscReal c = OperatorsTermCoefficient(&terms->term[t], p);
+
+  PetscFunctionBeginUser;
+  if (end == t + 1) {
+    PetscCall(PetscObjectReference((PetscObject)terms->term[t].right));
+    *R = terms->term[t].right;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatDuplicate(terms->term[t].right, MAT_COPY_VALUES, R));
+  for (PetscInt k = t + 1; k < end; k++)
+    PetscCall(MatAXPY(*R, OperatorsTermCoefficient(&terms->term[k], p) / c, terms->term[k].right, SAME_NONZERO_PATTERN));
+  PetscFunctionReturn(0);
+}
+
 /* All left factors times their coefficients, or all right factors, below one another */
 static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], PetscBool right, Mat *S)
 {
@@ -66,9 +92,10 @@ static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], Pets
   MPI_Comm comm = MPI_COMM_NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < terms->n; t++) {
+  for (PetscInt t = 0, end; t < terms->n; t = end) {
     const Mat A = right ? terms->term[t].right : terms->term[t].left;
 
+    end = TakesPart(&terms->term[t], p) ? BlockEnd(terms, t) : t + 1;
     if (!TakesPart(&terms->term[t], p)) continue;
     PetscCall(PetscObjectGetComm((PetscObject)A, &comm));
     PetscCall(MatGetLocalSize(A, &n, &n_columns));
@@ -77,12 +104,16 @@ static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], Pets
   }
   PetscCall(MatCreateAIJ(comm, n_rows, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, longest, NULL, longest, NULL, S));
   PetscCall(MatGetOwnershipRange(*S, &first, NULL));
-  for (PetscInt t = 0; t < terms->n; t++) {
+  for (PetscInt t = 0, end; t < terms->n; t = end) {
     const OperatorsTerm *term = &terms->term[t];
+    Mat                  R;
 
+    end = TakesPart(term, p) ? BlockEnd(terms, t) : t + 1;
     if (!TakesPart(term, p)) continue;
-    PetscCall(RowsCopy(right ? 1 : OperatorsTermCoefficient(term, p), right ? term->right : term->left, first, *S));
+    PetscCall(RightCreate(terms, p, t, end, &R));
+    PetscCall(RowsCopy(right ? 1 : OperatorsTermCoefficient(term, p), right ? R : term->left, first, *S));
     PetscCall(MatGetLocalSize(term->left, &n, NULL));
+    PetscCall(MatDestroy(&R));
     first += n;
   }
   PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));

@@ -167,7 +167,7 @@ static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, 
   PetscFunctionReturn(0);
 }
 
-/* The term of friction at speed k. Several have no factors of their own: there would be as many rows more */
+/* The term of friction at speed k */
 static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
 {
   const PetscInt mu[] = {g->q.kn, -1, g->closed};
@@ -182,7 +182,7 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
   PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
-  if (g->q.n_nodes == 1) PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
+  PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
   PetscCall(MatDestroy(&WN));
   PetscCall(MatDestroy(&TN));
   PetscCall(VecDestroy(&weights));
