@@ -26,7 +26,7 @@ def main():
     _, lines = deck(sys.argv[1])
     mu = [float(after.split(",")[0]) for line, after in zip(lines, lines[1:]) if line.upper().startswith("*FRICTION")]
     said, none = deck(sys.argv[2])
-    words = contact_words(Provenance(Path(sys.argv[1])), "contact")
+    words = contact_words(Provenance(Path(sys.argv[1]) / "scene.yaml"), "contact")
     print(mu, said.strip(), words)
     if WORDS not in words:
         raise SystemExit(1)
