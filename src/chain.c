@@ -243,6 +243,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));
   PetscCall(FrfSetModes(chain->frf, chain->modes));
+  PetscCall(FrfSetResults(chain->frf, chain->results, sliding ? chain->statics : NULL));
   if (chain->analysis == ANALYSIS_FRF) PetscCall(FrfSetUp(chain->frf));
   PetscCall(OperatorsGetSave(chain->operators, &folder));
   if (!folder[0]) PetscFunctionReturn(0);

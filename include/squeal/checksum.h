@@ -36,6 +36,9 @@ PetscErrorCode ChecksumCreate(MPI_Comm comm, Checksum *checksum);
     collective, same call on all ranks. @*/
 PetscErrorCode ChecksumSetPart(Checksum checksum, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 
+/*@ ChecksumDropPart - takes a part away, where there is one of that name. Not collective, same call on all ranks. @*/
+PetscErrorCode ChecksumDropPart(Checksum checksum, const char name[]);
+
 /*@ ChecksumAddReals - adds n numbers to the part; Ints and String alike (NULL counts as empty). Not collective, same
     values on all ranks. @*/
 PetscErrorCode ChecksumAddReals(Checksum checksum, PetscInt n, const PetscReal values[]);

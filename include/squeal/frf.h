@@ -30,6 +30,8 @@
 #pragma once
 
 #include <squeal/modes.h>
+#include <squeal/results.h>
+#include <squeal/statics.h>
 
 typedef struct _p_Frf *Frf;
 
@@ -55,6 +57,10 @@ PetscErrorCode FrfSetOperators(Frf frf, Operators operators);
     becomes 0 to 1.5 times the highest frequency. Not collective. @*/
 PetscErrorCode FrfSetModes(Frf frf, Modes modes);
 
+/*@ FrfSetResults - the folder in which a direct response is kept as it grows, for one that goes on; statics: of which the pencil has
+    the sliding state, or NULL (both referenced until FrfWrite()). Not collective. @*/
+PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics);
+
 /*@ FrfSetPencil - the system, at its point when FrfSolve() is called (referenced until then). Not collective. @*/
 PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil);
 
@@ -70,7 +76,8 @@ without a mesh the number of an unknown, from 1
 .  -frf_times <low:high:n>        - s; the answer of the modes to an impulse of 1 N s as well; or a list
 .  -frf_method <modal>            - superposition of modes; direct solves the whole system at each frequency
 .  -frf_rtol <1e-8>               - largest estimated relative error of the modal method, rounding apart
--  -frf_max_steps <30>            - most steps of the residual term
+.  -frf_max_steps <30>            - most steps of the residual term
+-  -frf_restart <true>            - go on where a direct response of the same scene in -output_dir was stopped
 
    Errors: PETSC_ERR_USER_INPUT for frequencies that are not positive, directions that are none.
 @*/

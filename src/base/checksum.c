@@ -65,6 +65,18 @@ PetscErrorCode ChecksumSetPart(Checksum c, const char format[], ...)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ChecksumDropPart(Checksum c, const char name[])
+{
+  const PetscInt k = ChecksumFindPart(c->n, c->part, name);
+
+  PetscFunctionBeginUser;
+  if (k < 0) PetscFunctionReturn(0);
+  c->present = 0;
+  PetscCall(PetscArraymove(&c->part[k], &c->part[k + 1], c->n - k - 1));
+  c->n--;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ChecksumAdd(Checksum c, const void *bytes, size_t size)
 {
   PetscFunctionBeginUser;

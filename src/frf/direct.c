@@ -168,14 +168,17 @@ static PetscErrorCode DirectSolve(Frf frf, const PencilMatrices *pencil, Direct 
 PetscErrorCode FrfSolveDirect(Frf frf)
 {
   PencilMatrices pencil;
+  PetscInt       n_kept;
   Direct         d = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(frf->pencil, &pencil));
   PetscCall(DirectCreate(frf, &pencil, &d));
-  PetscCall(ProgressBegin(&frf->progress, "frequencies", frf->n));
-  for (PetscInt i = 0; i < frf->n; i++) {
+  PetscCall(FrfResume(frf, &n_kept));
+  PetscCall(ProgressBegin(&frf->progress, "frequencies", frf->n - n_kept));
+  for (PetscInt i = n_kept; i < frf->n; i++) {
     PetscCall(DirectSolve(frf, &pencil, &d, i));
+    PetscCall(FrfKeep(frf, i + 1));
     PetscCall(ProgressStep(&frf->progress));
   }
   PetscCall(ProgressEnd(&frf->progress));

@@ -31,6 +31,14 @@ PetscErrorCode FrfSetModes(Frf frf, Modes modes)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics)
+{
+  PetscFunctionBeginUser;
+  frf->journal = (Journal){frf->comm, results, frf->journal.scene, "a response", "response"};
+  frf->statics = statics;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil)
 {
   PetscFunctionBeginUser;
@@ -177,6 +185,7 @@ PetscErrorCode FrfDestroy(Frf *frf)
   PetscCall(PetscFree(s->output));
   PetscCall(PetscFree3(s->re, s->im, s->error));
   PetscCall(PetscFree(s->peak));
+  PetscCall(ChecksumDestroy(&s->journal.scene));
   PetscCall(PetscFree(*frf));
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,11 @@
 /* Private to frf/: the record of the solver */
 #pragma once
 
+#include "results/journal/journal.h"
 #include "solver/shiftinvert.h"
 #include <squeal/quantity.h>
 #include <squeal/frf.h>
+#include <squeal/statics.h>
 #include <complex.h>
 
 typedef enum { FRF_MODAL, FRF_DIRECT, N_FRF_METHODS } FrfMethod;
@@ -13,6 +15,8 @@ struct _p_Frf {
   Operators operators;
   Modes     modes;
   Pencil    pencil;
+  Statics   statics; /* whose sliding state the pencil is about, or NULL */
+  Journal   journal; /* of a direct response */
   /* set by options */
   char       force[256], frequencies[4096], times[4096], directions[8];
   PetscBool  has_directions;
@@ -25,6 +29,7 @@ struct _p_Frf {
   FrfMethod  method;
   PetscReal  rtol;
   PetscInt   max_steps;
+  PetscBool  restart;
   /* input and outputs, vectors of all unknowns */
   char       input[256]; /* in words */
   Vec        f;          /* force of 1 N */
@@ -54,6 +59,11 @@ PETSC_INTERN PetscErrorCode FrfProject(Frf frf, Vec *right, Vec **left);
 /* modal.c, direct.c - the response at all frequencies */
 PETSC_INTERN PetscErrorCode FrfSolveModal(Frf frf);
 PETSC_INTERN PetscErrorCode FrfSolveDirect(Frf frf);
+
+/* kept.c - how many frequencies an earlier run has kept; keeps the first n; takes away what is kept. Collective. */
+PETSC_INTERN PetscErrorCode FrfResume(Frf frf, PetscInt *n);
+PETSC_INTERN PetscErrorCode FrfKeep(Frf frf, PetscInt n);
+PETSC_INTERN PetscErrorCode FrfForget(Frf frf);
 
 /* contribution.c - how much each mode gives to the response */
 typedef struct {

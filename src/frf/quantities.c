@@ -10,6 +10,11 @@ static const char *FrfIdleDirect(const void *frf)
   return ((const struct _p_Frf *)frf)->method == FRF_DIRECT ? "not used by -frf_method direct" : NULL;
 }
 
+static const char *FrfIdleModal(const void *frf)
+{
+  return ((const struct _p_Frf *)frf)->method == FRF_MODAL ? "not used without -frf_method direct" : NULL;
+}
+
 static const Quantity rows[] = {
   {"-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", NULL, QUANTITY_TEXT, FRF_AT(force)},
   {"-frf_directions", "in which the response is recorded: some of x, y, z", NULL, QUANTITY_TEXT, FRF_AT(directions),
@@ -22,6 +27,8 @@ static const Quantity rows[] = {
    .initial = 1e-8, QUANTITY_POSITIVE, .idle = FrfIdleDirect},
   {"-frf_max_steps", "most steps of the residual term", NULL, QUANTITY_INT, FRF_AT(max_steps), .initial = 30, QUANTITY_POSITIVE,
    .idle = FrfIdleDirect},
+  {"-frf_restart", "go on where a direct response of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL, FRF_AT(restart),
+   .initial = PETSC_TRUE, .idle = FrfIdleModal},
 };
 
 const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};

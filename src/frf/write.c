@@ -185,5 +185,6 @@ PetscErrorCode FrfWrite(Frf frf, Results results)
   PetscCall(FrfWriteResponse(frf, results));
   PetscCall(FrfWritePeaks(frf, results));
   if (frf->n_times) PetscCall(FrfWriteImpulse(frf, results));
+  PetscCall(FrfForget(frf));
   PetscFunctionReturn(0);
 }

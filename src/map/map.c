@@ -173,7 +173,7 @@ static PetscErrorCode MapSetUp(Map map, Results results)
              "-map_verify %" PetscInt_FMT " must be at most the %" PetscInt_FMT " points of the map", map->n_verify,
              n_points);
   PetscCall(ResultsGetDirectory(results, &map->folder));
-  PetscCall(MapSumScene(map));
+  PetscCall(MapJournalOpen(map, results));
   PetscFunctionReturn(0);
 }
 
@@ -240,6 +240,7 @@ PetscErrorCode MapDestroy(Map *map)
   for (PetscInt k = 0; k < MAP_MAX_AXES; k++) PetscCall(PetscFree((*map)->axis[k].value));
   PetscCall(PetscFree((*map)->row));
   PetscCall(PetscFree((*map)->p));
+  PetscCall(ChecksumDestroy(&(*map)->journal.scene));
   PetscCall(PetscFree(*map));
   PetscFunctionReturn(0);
 }

@@ -205,12 +205,12 @@ PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
 {
   Map       map  = w->map;
   PetscBool good = PETSC_FALSE;
-  PetscInt  first;
-  MapKept   kept = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive, 0};
+  PetscInt  first = 0;
+  MapKept   kept = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive};
 
   PetscFunctionBeginUser;
   w->n_alive = 0;
-  PetscCall(MapResumeChain(map, chain, &first, row, &kept));
+  if (w->bodies->kept) PetscCall(MapResumeChain(map, chain, &first, row, &kept));
   if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = first; k < map->n_linked; k++) {
     MapChainPlace(map, chain, k, &row[k]);

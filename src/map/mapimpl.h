@@ -3,9 +3,9 @@
 
 #include <squeal/quantity.h>
 #include <squeal/map.h>
-#include <squeal/results.h>
 #include "base/progress.h"
 #include "reduced/parameter.h"
+#include "results/journal/journal.h"
 
 #define MAP_RTOL            1e-9 /* of the contact laws (map.h) */
 #define MAP_MAX_AXES        2
@@ -71,6 +71,7 @@ typedef struct {
   FrictionLaw *friction;           /* [n_pairs] of the scene */
   PetscInt     n_hits;
   PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
+  PetscBool    kept; /* by an earlier run, whose chains belong to them */
 } MapBodies;
 
 /* Differences of a run at a point from that of the map, NAN of what is not compared; or the largest of all points */
@@ -117,7 +118,7 @@ struct _p_Map {
   /* restart */
   PetscBool   restart;
   const char *folder;
-  uint64_t    scene;     /* checksum */
+  Journal     journal;
   PetscInt    n_resumed; /* rows of this rank */
 };
 
@@ -234,13 +235,11 @@ typedef struct {
   PetscInt            n_twins;
   ReducedState       *twin; /* [n_twins] and how many are alive */
   PetscInt           *n_alive;
-  uint64_t            sum; /* of its rows */
 } MapKept;
 
-/* mapkeep.c - checksum of the scene; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
-   where there are none of this scene; takes their files away. Chains are not collective; their last row is written, and those
-   before it are there */
-PETSC_INTERN PetscErrorCode MapSumScene(Map map);
+/* mapkeep.c - the journal; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
+   where there are none of this scene; takes their files away. Chains are not collective, and are taken with kept bodies only */
+PETSC_INTERN PetscErrorCode MapJournalOpen(Map map, Results results);
 PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
 PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *bodies, PetscBool *good);
 PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept);

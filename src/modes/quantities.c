@@ -22,14 +22,16 @@ static const Quantity rows[] = {
    QUANTITY_INT, MODES_AT(most), .initial = 3000, MODES_GIVEN(has_most), QUANTITY_NOT_NEGATIVE},
   {"-modes_max_time", "time that a solution may take (0: any); asked after every solve", "s", QUANTITY_REAL, MODES_AT(max_time),
    .initial = 3600, QUANTITY_NOT_NEGATIVE},
-  {"-modes_left", "left vectors: condition and error of each eigenvalue", NULL, QUANTITY_BOOL, MODES_AT(left), .initial = PETSC_TRUE},
+  {"-modes_left", "left vectors: condition and error of each eigenvalue", NULL, QUANTITY_BOOL, MODES_AT(left), .initial = PETSC_TRUE,
+   .restart = PETSC_TRUE},
   {"-modes_filters", "write modal filters, which find the modes' amplitudes in a transient", NULL, QUANTITY_BOOL, MODES_AT(filters)},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc), .text = "disc",
-   MODES_GIVEN(has_disc)},
+   MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
   {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD, MODES_AT(is_static),
    .words = contacts, .restart = PETSC_TRUE},
   {MODES_DAMPING, "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
-   NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route)},
+   NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),
+   .restart = PETSC_TRUE},
 };
 
 const QuantityTable modes_quantities = {"Modes", "modes.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};

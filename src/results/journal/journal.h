@@ -47,8 +47,12 @@ PETSC_INTERN PetscErrorCode JournalKeep(const Journal *journal, const char name[
 PETSC_INTERN PetscErrorCode JournalRead(const Journal *journal, const char name[], PetscInt n, JournalItem item[],
                                         Fault *fault);
 
-/* JournalTake - the same for a run that begins anew without: of a file that is there and not taken a warning says why, and
-   ends as `then`. Collective. */
+/* JournalWarn - of a file that is there and that some of the ranks of `comm` have a fault with a warning says why it is not taken, and
+   ends as `then`. Collective on `comm`, which may be larger than the journal's. */
+PETSC_INTERN PetscErrorCode JournalWarn(const Journal *journal, MPI_Comm comm, const char name[], const char then[],
+                                        Fault *fault, PetscBool *taken);
+
+/* JournalTake - reads for a run that begins anew without, and warns. Collective. */
 PETSC_INTERN PetscErrorCode JournalTake(const Journal *journal, const char name[], const char then[], PetscInt n,
                                         JournalItem item[], PetscBool *taken);
 

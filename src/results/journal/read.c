@@ -248,22 +248,6 @@ PetscErrorCode JournalRead(const Journal *journal, const char name[], PetscInt n
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode JournalTake(const Journal *journal, const char name[], const char then[], PetscInt n, JournalItem item[],
-                           PetscBool *taken)
-{
-  Fault       fault;
-  JournalKind kind;
-
-  PetscFunctionBeginUser;
-  PetscCall(JournalRead(journal, name, n, item, &fault));
-  *taken = fault.code ? PETSC_FALSE : PETSC_TRUE;
-  if (*taken) PetscFunctionReturn(0);
-  PetscCall(JournalFind(journal->comm, journal->results, name, &kind));
-  if (kind != JOURNAL_NONE)
-    PetscCall(PetscFPrintf(journal->comm, stderr, "squeal: warning: %s; %s\n", fault.text, then));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode JournalFind(MPI_Comm comm, Results results, const char name[], JournalKind *kind)
 {
   char        path[PETSC_MAX_PATH_LEN], magic[sizeof(JOURNAL_MAGIC)] = "";
@@ -285,5 +269,30 @@ PetscErrorCode JournalFind(MPI_Comm comm, Results results, const char name[], Jo
   }
   PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, comm));
   *kind = (JournalKind)found;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JournalWarn(const Journal *journal, MPI_Comm comm, const char name[], const char then[], Fault *fault,
+                           PetscBool *taken)
+{
+  JournalKind kind;
+
+  PetscFunctionBeginUser;
+  PetscCall(FaultsAgree(comm, fault));
+  *taken = fault->code ? PETSC_FALSE : PETSC_TRUE;
+  if (*taken) PetscFunctionReturn(0);
+  PetscCall(JournalFind(comm, journal->results, name, &kind));
+  if (kind != JOURNAL_NONE) PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: %s; %s\n", fault->text, then));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JournalTake(const Journal *journal, const char name[], const char then[], PetscInt n, JournalItem item[],
+                           PetscBool *taken)
+{
+  Fault fault;
+
+  PetscFunctionBeginUser;
+  PetscCall(JournalRead(journal, name, n, item, &fault));
+  PetscCall(JournalWarn(journal, journal->comm, name, then, &fault, taken));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,112 @@
+/*
+   What a killed direct response goes on from: the file frf_restart, the responses of all frequencies so far, written anew after each
+   and taken away when all are there.
+*/
+#include "frfimpl.h"
+#include "base/interrupt.h"
+#include "base/path.h"
+
+#define FRF_KEPT "frf_restart"
+
+/* A force or an output, by its entries of all unknowns */
+static PetscErrorCode FrfSumVector(Vec v, Checksum c)
+{
+  const PetscScalar *array;
+  PetscInt           n;
+  uint64_t           sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(v, &n));
+  PetscCall(VecGetArrayRead(v, &array));
+  sum = ChecksumBytes(CHECKSUM_BEGIN, array, sizeof(*array) * (size_t)n);
+  PetscCall(VecRestoreArrayRead(v, &array));
+  PetscCall(ChecksumAddPieces(c, 1, &sum));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FrfSumScene(Frf frf, Checksum c)
+{
+  const OperatorsParameter *parameters;
+  Model                     model;
+  Contact                   contact;
+  PetscReal                *p;
+  PetscInt                  n;
+  PetscMPIInt               size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(frf->comm, &size));
+  PetscCall(OperatorsGetModel(frf->operators, &model, &contact));
+  if (model) PetscCall(ModelAddChecksum(model, PETSC_FALSE, c));
+  if (contact) PetscCall(ContactAddChecksum(contact, c));
+  PetscCall(OperatorsAddChecksum(frf->operators, c));
+  if (frf->statics) PetscCall(StaticsAddChecksum(frf->statics, c));
+  PetscCall(OperatorsGetParameters(frf->operators, &n, &parameters));
+  PetscCall(OperatorsCreatePoint(frf->operators, NULL, &p));
+  PetscCall(ChecksumSetPart(c, "the response"));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){size, frf->n_outputs}));
+  PetscCall(ChecksumAddReals(c, n, p));
+  PetscCall(ChecksumAddReals(c, frf->n, frf->freq));
+  PetscCall(FrfSumVector(frf->f, c));
+  for (PetscInt k = 0; k < frf->n_outputs; k++) PetscCall(FrfSumVector(frf->l[k], c));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* The responses of n frequencies; n < 0: any */
+static void FrfListItems(Frf frf, PetscInt n, JournalItem item[3])
+{
+  const PetscInt m = n < 0 ? 1 : frf->n_outputs;
+
+  item[0] = (JournalItem){"real parts", n * m, n < 0 ? NULL : frf->re};
+  item[1] = (JournalItem){"imaginary parts", n * m, n < 0 ? NULL : frf->im};
+  item[2] = (JournalItem){"errors", n, n < 0 ? NULL : frf->error};
+}
+
+PetscErrorCode FrfResume(Frf frf, PetscInt *n)
+{
+  PetscReal  *to[3] = {frf->re, frf->im, frf->error};
+  JournalItem item[3];
+  PetscBool   taken;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  if (!frf->restart || !frf->journal.results) PetscFunctionReturn(0);
+  PetscCall(ChecksumCreate(frf->comm, &frf->journal.scene));
+  PetscCall(FrfSumScene(frf, frf->journal.scene));
+  FrfListItems(frf, -1, item);
+  PetscCall(JournalTake(&frf->journal, FRF_KEPT, "the response begins anew", 3, item, &taken));
+  if (taken) *n = item[2].n;
+  for (int k = 0; k < 3; k++) {
+    if (taken) PetscCall(PetscArraycpy(to[k], item[k].values, item[k].n));
+    PetscCall(PetscFree(item[k].values));
+  }
+  if (taken)
+    PetscCall(PetscPrintf(frf->comm, "going on with %" PetscInt_FMT " of %" PetscInt_FMT " frequencies kept\n", *n, frf->n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfKeep(Frf frf, PetscInt n)
+{
+  JournalItem item[3];
+
+  PetscFunctionBeginUser;
+  if (!frf->restart || !frf->journal.results) PetscFunctionReturn(0);
+  FrfListItems(frf, n, item);
+  PetscCall(JournalKeep(&frf->journal, FRF_KEPT, 3, item, &frf->restart));
+  if (frf->restart)
+    InterruptSays("%d of %d frequencies are kept, with which the same command goes on", (int)n, (int)frf->n);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrfForget(Frf frf)
+{
+  const char *folder;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  if (frf->method != FRF_DIRECT || !frf->restart || !frf->journal.results) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_rank(frf->comm, &rank));
+  PetscCall(ResultsGetDirectory(frf->journal.results, &folder));
+  if (!rank) PathForget(folder, FRF_KEPT);
+  PetscFunctionReturn(0);
+}
