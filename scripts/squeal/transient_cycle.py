@@ -16,6 +16,7 @@ WIDTH = 0.2  # of the band about the main line, relative to its frequency
 DETACHED = 1e-6  # of the mean normal force: below it the surfaces are apart
 N_MODES = 3  # fitted at most in the window of growth
 LISTED = 3e-3  # a mode with less than this part of the strongest amplitude in the window is not listed,
+RETURNS = 0.1  # of its size, how near a motion comes to itself that is a limit cycle
 STEADY = 0.05  # largest relative change of the root mean square between two halves of what is called steady
 KNOWN = 30.0  # 1/s, and none of a larger error, except the strongest
 
@@ -31,6 +32,24 @@ class Quantity(NamedTuple):
 def part(times, first, last):
     """Slice of the samples between two times."""
     return slice(int(numpy.searchsorted(times, first)), int(numpy.searchsorted(times, last, side="right")))
+
+
+def nearest_return(values):
+    """Least |x(t + lag) - x(t)| over sqrt(2) |x| for lags from a quarter to half of the record, between samples by a parabola."""
+    values = values - values.mean()
+    n, least = len(values), max(2, len(values) // 4)
+    spectrum = numpy.fft.rfft(values, 2 * n)
+    lags = numpy.arange(n // 2)
+    squares = numpy.concatenate(([0], numpy.cumsum(values**2)))
+    size = (squares[n - lags] + squares[n] - squares[lags]) / 2
+    alike = numpy.fft.irfft(abs(spectrum)**2)[:n // 2] / numpy.where(size > 0, size, 1)
+    before, here, after = alike[least - 1:-2], alike[least:-1], alike[least + 1:]
+    if not len(here) or not size[-1] > 0:
+        return 1.0
+    bend = numpy.minimum(before - 2 * here + after, 0)
+    top = (here >= before) & (here >= after) & (bend < 0)
+    rise = numpy.where(top, (after - before)**2 / (8 * numpy.where(top, -bend, 1)), 0)
+    return float(numpy.sqrt(max(0, 1 - (here + rise).max())))
 
 
 class Vibration:
@@ -114,7 +133,18 @@ class Vibration:
             return "steady" if abs(change) <= STEADY else "grows" if change > 0 else "decays"
         if self.growth.slope < 0:
             return "decays"
-        return "limit cycle" if self.growth.saturation is not None else "grows"
+        if not self.saturated():
+            return "grows"
+        return "limit cycle" if self.misses_itself() <= RETURNS else "bounded vibration"
+
+    def saturated(self):
+        """Whether it grew up to a bound: to a limit cycle where it repeats itself."""
+        return bool(self.growth and self.growth.slope >= 0 and self.growth.saturation is not None)
+
+    def misses_itself(self):
+        """How far the part that is looked at is from itself a quarter to half of its length later, at the nearest, relative to its size: 0
+        where it is periodic, 1 where the two have nothing in common."""
+        return nearest_return(self.signal[self.steady])
 
     def change_of_rms(self):
         """Relative change of the root mean square from the first half of the part that is looked at to its second."""
@@ -124,7 +154,7 @@ class Vibration:
 
     def find_cycle(self, band):
         """The part after saturation, else the second half; spectrum and main line of this part."""
-        if self.regime() == "limit cycle" and self.time[-1] - self.growth.saturation > PERIODS / self.line[0]:
+        if self.saturated() and self.time[-1] - self.growth.saturation > PERIODS / self.line[0]:
             later = part(self.time, self.growth.saturation, self.time[-1])
             line = main_line(self.time[later], self.signal[later], band or self.band)
             self.steady, self.line = (later, line) if line else (self.steady, self.line)
@@ -133,7 +163,7 @@ class Vibration:
             resolution = max(3 / length, self.line[0] / 100)
             self.density = power_density(self.time[self.steady], self.signal[self.steady], resolution)
             self.harmonics = {}  # of what repeats itself; a spectrum of a decay has no such lines
-            if self.regime() in ("steady", "limit cycle"):
+            if self.saturated() or self.regime() == "steady":
                 self.harmonics = harmonic_levels(self.time[self.steady], self.signal[self.steady], self.line[0])
             self.other = other_line(self.time[self.steady], self.signal[self.steady], self.line[0], LOWEST)
 
@@ -148,7 +178,7 @@ def vibration_quantities(vibration, unit):
         for i, mode in enumerate(vibration.modes[1:], 2):
             yield Quantity(f"growth_{i}", mode.growth, mode.error, "1/s")
             yield Quantity(f"growth_frequency_{i}", mode.freq, mode.error / (2 * numpy.pi), "Hz")
-    if vibration.regime() == "limit cycle":
+    if vibration.saturated():
         yield Quantity("saturation", vibration.growth.saturation, None, "s")
     if vibration.line:
         values = vibration.signal[vibration.steady]
@@ -160,6 +190,8 @@ def vibration_quantities(vibration, unit):
         yield Quantity("rms", values.std(), apart, unit)
         yield Quantity("peak", abs(values).max(), None, unit)
         yield Quantity("change_of_rms", vibration.change_of_rms(), None, "-")
+        if vibration.saturated():
+            yield Quantity("misses_itself", vibration.misses_itself(), None, "-")
         for number, level in vibration.harmonics.items():
             yield Quantity(f"harmonic_{number}", level, None, "dB")
         if vibration.other:

@@ -249,7 +249,7 @@ def draw_growth(vibration, name, case):
         below.plot(MS * times, 2 * [KHZ * vibration.fit.freq], color=VERMILION, lw=2.6, ls=(0, (4, 1.6)), zorder=4)
         for panel in (axes, below):
             panel.axvspan(*(MS * times), color=WINDOW, lw=0, zorder=0)
-    if vibration.regime() == "limit cycle":
+    if vibration.saturated():
         axes.axvline(MS * vibration.growth.saturation, color=GREEN, lw=1.6, ls=":", label="saturation")
     if axes.get_legend_handles_labels()[0]:
         corner = "lower left" if vibration.regime() == "decays" else "lower right"

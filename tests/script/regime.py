@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """What scripts/plot/transient calls a vibration, on made-up signals: one that dies out within 3 ms is not steady, whatever
-lines beat in it, and has no harmonics; one of constant amplitude is, and has them; a few periods tell nothing. And that
-scripts/paper takes only what decays for the stable brake of the paper, whose vibration decreases. Breaks when a word,
-the harmonics or the verdict say more than the data allow."""
+lines beat in it, and has no harmonics; one of constant amplitude is, and has them; what grows to a bound is a limit cycle
+only where it repeats itself; a few periods tell nothing. And that scripts/paper takes only what decays for the stable brake
+of the paper, whose vibration decreases. Breaks when a word, the harmonics or the verdict say more than the data allow."""
 
 import sys
 from pathlib import Path
@@ -21,6 +21,18 @@ def vibration(length, envelope):
     return Vibration(time, envelope(time) * carrier, 0.0)
 
 
+def bounded(length, envelope):
+    """A line with noise about it, whose phase wanders: it is never twice the same."""
+    time = numpy.arange(0, length, 2e-6)
+    draw = numpy.random.default_rng(1)
+    turn = numpy.cumsum(draw.normal(size=len(time))) * 0.02
+    return Vibration(time, envelope(time) * numpy.sin(2 * numpy.pi * 1e4 * time + turn), 0.0)
+
+
+def saturates(time):
+    return 1e-3 * numpy.exp(numpy.minimum(1200 * time, 7))
+
+
 def line(length, envelope):
     time = numpy.arange(0, length, 2e-6)
     wave = numpy.sin(2 * numpy.pi * 1e4 * time) + 0.1 * numpy.sin(4 * numpy.pi * 1e4 * time)
@@ -36,6 +48,8 @@ CASES = {
     "3 ms, one line that falls in two steps": (
         line(3e-3, lambda t: 0.2 + 0.4 * (t < 1.9e-3) + 0.4 * (t < 8e-4)), {"decays"}, False),
     "20 ms of constant amplitude": (line(2e-2, lambda t: 1.0), {"steady"}, True),
+    "20 ms, grows into a line and its harmonic": (line(2e-2, saturates), {"limit cycle"}, True),
+    "20 ms, grows into a line that wanders": (bounded(2e-2, saturates), {"bounded vibration"}, True),
     "1 ms": (line(1e-3, lambda t: 1.0), {"too short to tell"}, False),
     "20 ms, exponential decay": (line(2e-2, lambda t: numpy.exp(-200 * t)), {"decays"}, False),
 }

@@ -122,7 +122,7 @@ def growth_claims(record):
     normal = record.run.normal[record.vibration.steady]
     share = float((normal <= 0).mean())
     yield Claim("acceleration of the pad's edge", "grows exponentially to a maximum", growth_words(record.vibration),
-                record.vibration.regime() == "limit cycle")
+                record.vibration.saturated())
     yield Claim("normal force in the steady state", "strong oscillation; the pad is not said to detach",
                 f"{figures(normal.min(), 3)} to {figures(normal.max(), 3)} N, zero for {fixed(100 * share, 1)} % of "
                 "the time", share == 0)

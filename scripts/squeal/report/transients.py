@@ -117,7 +117,7 @@ def growth_figure(folder, record):
     if fit:
         values = fit.amplitude * numpy.exp(fit.growth * (window - vibration.fit_start))
         panel.line(MS * window, values, "vermilion thick", f"exponential fitted: {signed(fit.growth)} 1/s")
-    if vibration.regime() == "limit cycle":
+    if vibration.saturated():
         panel.rule(x=MS * vibration.growth.saturation, colour="green dashed", tip="saturation")
     chart = Chart("amplitude of the main line", record.time_axis(), [panel]).markup(f"{folder.key}-growth-chart",
                                                                                     "half")
