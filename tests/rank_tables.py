@@ -11,7 +11,8 @@ UNITS = "_percent", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s
 # In names of columns that tell what rounding leaves
 ESTIMATES = "error", "condition", "damping_ratio", "check", "residual", "period_slope", "worst_ratio", "sweeps", "pairs_changed", \
     "steps_changed", "onset_distance"
-VALUES = {"onsets.csv": ("critical_value", "error_estimate")}  # with the column that states its error
+# A column with the one that states its error
+VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv": ("growth_rad_s", "error_rad_s")}
 
 
 def read(path):

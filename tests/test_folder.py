@@ -21,7 +21,7 @@ SMALL = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements
          "-rig_beam_elements", "3", "-modes_band", "500,2000"]
 LONG = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
         "-rig_beam_elements", "3", "-ts_max_time", "10", "-dynamics_live", "0"]
-WRITTEN = ["modes.csv", "modes.h5", "modes.xmf", "scene.yaml"]
+WRITTEN = ["modes.csv", "modes.h5", "modes.xmf", "modes_causes.csv", "scene.yaml"]
 LIMIT = 60  # seconds for runs of less than one
 
 

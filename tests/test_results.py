@@ -95,7 +95,7 @@ def check_stale(r):
     r.check(r.files() == sorted(["reactions.csv", "scene.yaml", "static.csv", "static.h5", "static.xmf", *mine]),
             "after statics only its files and those of the user", done)
     done = r.scene("modes", "-output_fields", "0")
-    r.check(r.files() == sorted(["modes.csv", "scene.yaml", *mine]), "after modes without fields only modes.csv", done)
+    r.check(r.files() == sorted(["modes.csv", "modes_causes.csv", "scene.yaml", *mine]), "after modes without fields only tables", done)
     done = r.scene("transient", "-dynamics_shape", r.folder / "out", ranks=2)
     r.check(done.returncode != 0, "a shape needs modes.h5", done)
     r.scene("modes")

@@ -20,6 +20,7 @@
 typedef struct _p_Pencil *Pencil;
 
 #define OPERATORS_MAX_FACTORS 5
+#define OPERATORS_MAX_CAUSE   128 /* characters */
 
 typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
 
@@ -48,7 +49,18 @@ typedef struct {
     const OperatorsFriction *friction; /* borrowed from the operators, NULL for none */
     PetscBool slope; /* mu' of it, else mu */
   } factor[OPERATORS_MAX_FACTORS];
+  PetscInt    constraint; /* of the friction of an exact contact: which of its left null spaces; else -1 */
+  const char *cause_kind; /* what the term is, in words, where it may make modes grow or decay */
+  char        cause[OPERATORS_MAX_CAUSE]; /* the contact, option or matrix that it comes from */
+  PetscInt    cause_index;                /* among those of PencilGetCauses() */
 } OperatorsTerm;
+
+/* One of the reasons why modes grow or decay */
+typedef struct {
+  const char *kind; /* "friction", "friction damping", "falling friction", "material damping", "dashpot", "bushing", "point", "spin",
+                       "follower force", "stiffness matrix", "damping matrix", "mass matrix" */
+  char        name[OPERATORS_MAX_CAUSE]; /* of the contact, or of the option or matrix, e.g. pad_beta */
+} PencilCause;
 
 /* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed. Where only friction makes K
    unsymmetric, and -operators_factors is not lu, K = K_even + left' right, K_even symmetric, left and right with a row for
@@ -124,6 +136,22 @@ PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter);
 
 /*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
+
+/*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name as one. Valid
+    after PencilReleaseTerms() too. Collective. @*/
+PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **causes);
+
+/*@
+   PencilMeasureCauses - the shares of the causes in the growth of one eigenvalue, from the imaginary part of u^H (lambda^2 M +
+   lambda C + K) u = 0. Their sum is sigma, but for what the residual of the eigenvector leaves. Collective.
+
+   Input Parameters:
++  sigma, omega - the eigenvalue, 1/s and rad/s, omega > 0
+-  ur, ui       - its right vector, of all unknowns; ui NULL for a real one
+   Output Parameter:
+.  growth       - [causes of PencilGetCauses(), called before] 1/s
+@*/
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[]);
 
 /*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are
     formed: half of the memory, where no other point will be asked for. Afterwards PencilSetParameters() and

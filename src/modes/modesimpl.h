@@ -107,6 +107,10 @@ typedef struct {
   char      why[64]; /* why not by projection; empty where it was not tried */
 } Window;
 
+/* causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
+PETSC_INTERN PetscErrorCode ModesWriteCauses(Modes modes, Results results);
+PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
+
 /* quantities.c - rows of the options */
 extern const QuantityTable modes_quantities;
 

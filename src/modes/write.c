@@ -70,6 +70,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes", modes->n));
   if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable; %s\n", n_unstable, modes->completeness));
+  if (n_unstable) PetscCall(ModesViewCauses(modes, viewer));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));
@@ -156,6 +157,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));
   PetscCall(ModesWriteTable(modes, mesh, results));
+  PetscCall(ModesWriteCauses(modes, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));

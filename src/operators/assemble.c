@@ -83,7 +83,9 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
   PetscCall(TermsAdd(&o->terms, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
   PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, M, PETSC_TRUE, 2, (PetscInt[]){i[PART_ALPHA], i[PART_DENSITY]}));
+  PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "alpha"));
   PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, K, PETSC_TRUE, 2, (PetscInt[]){i[PART_BETA], i[PART_YOUNG]}));
+  PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "beta"));
   PetscCall(MatDestroy(&K));
   PetscCall(MatDestroy(&M));
   PetscFunctionReturn(0);
@@ -130,6 +132,7 @@ static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const 
   if (!o->omit) {
     PetscCall(c->create(o, c->of, mask, &A));
     PetscCall(TermsAdd(&o->terms, c->kind, A, PETSC_TRUE, 1, &parameter));
+    PetscCall(TermsSetCause(&o->terms, c->cause, c->owner, what));
     PetscCall(MatDestroy(&A));
   }
   for (int d = 0; d < 3; d++)
@@ -164,7 +167,7 @@ PetscErrorCode OperatorsAddComponents(Operators o, const Components *c, PetscInt
 /* Parameters and terms of a list of springs or dashpots */
 static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
 {
-  const Components c = {kind, g->name, g->quantity, g->unit, g->value, ShareDiagonalCreate, g};
+  const Components c = {kind, "dashpot", g->name, g->quantity, g->unit, g->value, ShareDiagonalCreate, g};
   PetscInt         index[3];
 
   PetscFunctionBeginUser;

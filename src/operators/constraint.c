@@ -247,7 +247,8 @@ static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair
     for (PetscInt p = 0; p < n; p++)
       part[p] = list[p]->interface == interface ? FrictionNodeShare(q, k, list[p]->speed) : 0;
     PetscCall(NullSpaceCreate(pencil, n, list, part, &pencil->left[pencil->n_left]));
-    pencil->left_mu[pencil->n_left++] = &q->node[k];
+    pencil->left_interface[pencil->n_left] = interface;
+    pencil->left_mu[pencil->n_left++]      = &q->node[k];
   }
   PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
@@ -266,7 +267,7 @@ PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
     PetscCall(ConstraintCheckChains(pencil, n, list));
     PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, &interfaces));
     for (PetscInt i = 0; i < n_interfaces; i++) n_nodes += pencil->operators->interface[i].n_nodes;
-    PetscCall(PetscCalloc2(n_nodes, &pencil->left, n_nodes, &pencil->left_mu));
+    PetscCall(PetscCalloc3(n_nodes, &pencil->left, n_nodes, &pencil->left_mu, n_nodes, &pencil->left_interface));
     PetscCall(InjectionCreate(pencil, n, list, NULL, &pencil->E));
     PetscCall(NullSpaceCreate(pencil, n, list, NULL, &pencil->Zr));
     for (PetscInt i = 0; i < n_interfaces; i++)
@@ -280,7 +281,7 @@ PetscErrorCode PencilDestroyNullSpaces(Pencil pencil)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < pencil->n_left; i++) PetscCall(MatDestroy(&pencil->left[i]));
-  PetscCall(PetscFree2(pencil->left, pencil->left_mu));
+  PetscCall(PetscFree3(pencil->left, pencil->left_mu, pencil->left_interface));
   PetscCall(MatDestroy(&pencil->Zr));
   PetscCall(MatDestroy(&pencil->E));
   PetscCall(TermsDestroy(&pencil->projected));

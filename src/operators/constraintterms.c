@@ -43,6 +43,7 @@ static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const 
     term        = &pencil->projected.term[pencil->projected.n - 1];
     term->scale = base->scale;
     term->n     = n + (i ? 1 : 0);
+    term->constraint = i - 1;
     PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
                term->n);
     PetscCall(PetscArraycpy(term->factor, base->factor, n));

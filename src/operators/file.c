@@ -131,7 +131,10 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
 
   PetscFunctionBeginUser;
   for (int i = OPERATOR_K; i <= OPERATOR_C; i++)
-    if (A[i]) PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
+    if (A[i]) {
+      PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
+      PetscCall(TermsSetCause(&o->terms, o->terms.term[o->terms.n - 1].cause_kind, "operators", letters[i]));
+    }
   if (!A[OPERATOR_H]) PetscFunctionReturn(0);
   mu = ParametersFind(&o->parameters, "contact_mu");
   if (mu < 0) {
@@ -140,6 +143,7 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
     o->mu = mu;
   }
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
+  PetscCall(TermsSetCause(&o->terms, "friction", NULL, "contact"));
   PetscFunctionReturn(0);
 }
 

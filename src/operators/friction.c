@@ -113,8 +113,10 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt
   PetscCall(TermsProduct(1, g->T, along, g->T, &TT));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
   PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_TRUE));
+  PetscCall(TermsSetCause(&pencil->base, "falling friction", NULL, g->c->name));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_FALSE));
+  PetscCall(TermsSetCause(&pencil->base, "friction damping", NULL, g->c->name));
   term                     = &pencil->base.term[pencil->base.n - 1];
   term->factor[0].absolute = PETSC_TRUE;
   term->factor[2].power    = -1;
@@ -182,6 +184,7 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
   PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
+  PetscCall(TermsSetCause(&pencil->base, "friction", NULL, g->c->name));
   PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
   PetscCall(MatDestroy(&WN));
   PetscCall(MatDestroy(&TN));

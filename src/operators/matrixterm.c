@@ -104,6 +104,7 @@ static PetscErrorCode MatrixTermAdd(Operators o, const MatrixTerm *term)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < term->n; i++) parameter[i] = ParametersFind(&o->parameters, term->parameter[i]);
   PetscCall(TermsAdd(&o->terms, term->kind, term->A, (PetscBool)(term->even || !o->symmetric), term->n, parameter));
+  PetscCall(TermsSetCause(&o->terms, o->terms.term[o->terms.n - 1].cause_kind, NULL, term->name));
   PetscCall(TermsSetPowers(&o->terms, term->power));
   o->terms.term[o->terms.n - 1].scale = term->scale;
   PetscFunctionReturn(0);

@@ -21,8 +21,10 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
   if (operators->model) PetscCall(PencilAddContact(s));
   if (state && state->geometric)
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->geometric, PETSC_TRUE, 0, NULL));
-  if (state && state->follower)
+  if (state && state->follower) {
     PetscCall(TermsAdd(&s->base, OPERATORS_STIFFNESS, state->follower, PETSC_FALSE, 0, NULL));
+    PetscCall(TermsSetCause(&s->base, "follower force", NULL, "static_follower"));
+  }
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
   PetscCall(operators->model ? PencilTakeDependents(s) : PencilScaleMultipliers(s));
   PetscFunctionReturn(0);
@@ -221,6 +223,7 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil)
   PetscCall(PencilGetMatrices(pencil, &m));
   PetscCall(PencilGetFrictionless(pencil, &m));
   PetscCall(PencilGetParts(pencil, &parts));
+  PetscCall(PencilFormCauses(pencil));
   PetscCall(TermsRelease(&pencil->base));
   PetscCall(TermsRelease(&pencil->projected));
   PetscCall(TermsRelease(&o->terms));
@@ -325,6 +328,8 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   PetscCall(MatDestroy(&s->half));
   PetscCall(PencilDestroyNullSpaces(s));
   PetscCall(TermsDestroy(&s->base));
+  PetscCall(TermsDestroy(&s->causing));
+  PetscCall(PetscFree(s->cause));
   PetscCall(ParametersDestroy(&s->parameters));
   PetscCall(PetscFree(s->group));
   PetscCall(PetscFree(s->slips));

@@ -36,8 +36,12 @@ struct _p_Pencil {
   PetscInt  n_left;    /* Zl = Zr + sum_i mu_i left[i] */
   Mat      *left;      /* [n_left] */
   const OperatorsFriction **left_mu; /* [n_left] mu_i (borrowed) */
+  PetscInt *left_interface; /* [n_left] */
   Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
   TermsSum  sum[N_PENCIL_SUMS];
+  Terms        causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
+  PetscInt     n_causes;
+  PencilCause *cause;
   PetscBool mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool released;    /* the terms are gone */
   PetscBool has_factors; /* left' right was formed at the present point */
@@ -48,6 +52,9 @@ struct _p_Pencil {
 
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
+
+/* causes.c - keeps the terms that make modes grow or decay at the present point, where they are there */
+PETSC_INTERN PetscErrorCode PencilFormCauses(Pencil pencil);
 
 /* The sum that is K without friction in the unknowns of the pencil */
 static inline PencilSum PencilEven(Pencil pencil)

@@ -220,6 +220,7 @@ static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[],
   PetscCall(PetscFree(displacement));
   PetscCall(MatAXPY(S, -1, Q, UNKNOWN_NONZERO_PATTERN));
   PetscCall(TermsAdd(&o->spin, OPERATORS_DAMPING, G, PETSC_FALSE, 2, (PetscInt[]){spin, density}));
+  PetscCall(TermsSetCause(&o->spin, "spin", name, "spin"));
   PetscCall(TermsAdd(&o->spin, OPERATORS_STIFFNESS, S, PETSC_TRUE, 3, (PetscInt[]){spin, spin, density}));
   PetscCall(MatDestroy(&G));
   PetscCall(MatDestroy(&Q));

@@ -25,6 +25,8 @@ PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool s
   term->frictional = symmetric ? PETSC_FALSE : PETSC_TRUE;
   term->symmetric  = symmetric;
   term->scale      = 1;
+  term->constraint = -1;
+  term->cause_kind = kind == OPERATORS_STIFFNESS ? "stiffness matrix" : kind == OPERATORS_DAMPING ? "damping matrix" : "mass matrix";
   term->n          = n;
   for (PetscInt i = 0; i < n; i++) {
     term->factor[i].parameter = parameter[i];
@@ -39,6 +41,16 @@ PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[])
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < term->n; i++) term->factor[i].power = power[i];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TermsSetCause(Terms *terms, const char kind[], const char owner[], const char what[])
+{
+  OperatorsTerm *term = &terms->term[terms->n - 1];
+
+  PetscFunctionBeginUser;
+  term->cause_kind = kind;
+  PetscCall(PetscSNPrintf(term->cause, sizeof(term->cause), "%s%s%s", owner ? owner : "", owner ? "_" : "", what));
   PetscFunctionReturn(0);
 }
 

@@ -31,6 +31,8 @@ typedef struct {
    kinds, are zero at p */
 PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
                                      const PetscInt parameter[]);
+/* Names what the last term may make modes grow by: kind, and the option <owner>_<what>, or <what> alone where owner is NULL */
+PETSC_INTERN PetscErrorCode TermsSetCause(Terms *terms, const char kind[], const char owner[], const char what[]);
 /* Gives the factors of the last term powers that are not 1 */
 PETSC_INTERN PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[]);
 /* Tells that the last term is left' right */

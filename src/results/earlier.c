@@ -27,6 +27,7 @@ static const struct {
   {"onsets.csv",        NULL                },
   {"verify.csv",        NULL                },
   {"sensitivities.csv", NULL                },
+  {"modes_causes.csv",  NULL                },
   {"robustness.csv",    NULL                },
   {"parameters.csv",    NULL                },
   {"frf.csv",           NULL                },

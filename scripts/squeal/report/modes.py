@@ -4,6 +4,7 @@ import math
 
 from ..bodies import Scene, opened
 from ..tables import BadInput, flag, header, optional, read_table
+from .causes import causes
 from .charts import Axis, Chart, Panel
 from .markup import Column, Part, count, figure, figures, fixed, legend, missing, section, signed, table, tag
 from .shapes import Bodies, Shape, data_script, viewer
@@ -210,7 +211,7 @@ def modes_part(folder, room):
         shapes, bodies = shapes_of(modes, folder, room)
     except BadInput as error:
         shapes, bodies = folder.lacks(error), None
-    content = section(key, "Modes", eigenvalues(modes, folder), shapes, tag("h4", "Table of modes"),
+    content = section(key, "Modes", eigenvalues(modes, folder), causes(modes, folder), shapes, tag("h4", "Table of modes"),
                       mode_table(modes, folder),
                       tag("div", contributions(modes, folder), errors(modes, folder), class_="pair"))
     return Part(content, bodies and (folder.key, bodies), error_facts(modes), verdict(modes))

@@ -1,0 +1,110 @@
+/*
+   Why modes grow or decay: modes_causes.csv, and the largest shares of unstable ones in the view.
+
+   Error of a share, an estimate of first order: the vector is off by about d / g, d the error of the eigenvalue and g the distance
+   of the next one, so that the share is off by d + 2 s d / g, s the largest share of the mode, and by what the balance leaves. Modes of
+   one eigenvalue have no shares of their own, and errors as large as these.
+*/
+#include "modesimpl.h"
+
+#define CAUSES_SHOWN 3 /* of a mode */
+
+/* Shares of one mode */
+typedef struct {
+  PetscReal *growth; /* [causes] 1/s */
+  PetscReal  rest, error; /* of the growth, what they leave of it; of each share, 1/s */
+  PetscBool  known;       /* the mode has a frequency */
+} ModeShares;
+
+/* Distance of mode i from the next one, rad/s; infinite for one alone */
+static PetscReal ModeGap(const Modes modes, PetscInt i)
+{
+  PetscReal gap = PETSC_MAX_REAL;
+
+  for (PetscInt k = 0; k < modes->n; k++) {
+    const Mode *a = &modes->mode[i], *b = &modes->mode[k];
+
+    if (k != i) gap = PetscMin(gap, PetscSqrtReal(PetscSqr(a->sigma - b->sigma) + PetscSqr(a->omega - b->omega)));
+  }
+  return gap;
+}
+
+static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, ModeShares *s)
+{
+  const Mode *m       = &modes->mode[i];
+  PetscReal   largest = 0;
+
+  PetscFunctionBeginUser;
+  s->known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
+  if (!s->known) PetscFunctionReturn(0);
+  PetscCall(PencilMeasureCauses(modes->pencil, m->sigma, m->omega, modes->right.xr[i], modes->right.xi[i], s->growth));
+  s->rest = m->sigma;
+  for (PetscInt k = 0; k < n; k++) {
+    s->rest -= s->growth[k];
+    largest = PetscMax(largest, PetscAbsReal(s->growth[k]));
+  }
+  s->error = m->error + 2 * largest * PetscMin(1, m->error / ModeGap(modes, i)) + PetscAbsReal(s->rest);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesWriteCauses(Modes modes, Results results)
+{
+  const PencilCause *cause;
+  PetscInt           n;
+  ModeShares         s;
+  ResultsTable       table;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &s.growth));
+  PetscCall(ResultsTableOpen(results, "modes_causes", "mode,cause,kind,growth_rad_s,error_rad_s", &table));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    PetscCall(ModeMeasureShares(modes, i, n, &s));
+    for (PetscInt k = 0; k < n && s.known; k++)
+      PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.3g", (int)i + 1, cause[k].name, cause[k].kind, (double)(s.growth[k] + 0),
+                                (double)s.error));
+    if (s.known) PetscCall(ResultsTableRow(table, "%d,,rest,%.15g,%.3g", (int)i + 1, (double)s.rest, (double)s.error));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscCall(PetscFree(s.growth));
+  PetscFunctionReturn(0);
+}
+
+/* The largest share that is not shown, or -1 */
+static PetscInt CauseNext(PetscInt n, const PetscReal growth[], const PetscBool shown[])
+{
+  PetscInt largest = -1;
+
+  for (PetscInt k = 0; k < n; k++)
+    if (!shown[k] && (largest < 0 || PetscAbsReal(growth[k]) > PetscAbsReal(growth[largest]))) largest = k;
+  return largest;
+}
+
+PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer)
+{
+  const PencilCause *cause;
+  PetscInt           n;
+  ModeShares         s;
+  PetscBool         *shown;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
+  PetscCall(PetscMalloc2(n, &s.growth, n, &shown));
+  for (PetscInt i = 0; i < modes->n && n; i++) {
+    if (!modes->mode[i].unstable) continue;
+    PetscCall(ModeMeasureShares(modes, i, n, &s));
+    if (!s.known) continue;
+    PetscCall(PetscArrayzero(shown, n));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s:", i + 1, (double)modes->mode[i].sigma));
+    for (PetscInt k = 0; k < PetscMin(n, CAUSES_SHOWN); k++) {
+      const PetscInt at = CauseNext(n, s.growth, shown);
+
+      shown[at] = PETSC_TRUE;
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : "", cause[at].kind, cause[at].name, (double)s.growth[at]));
+    }
+    PetscCall(PetscViewerASCIIPrintf(viewer, n > CAUSES_SHOWN ? ", others in modes_causes.csv\n" : "\n"));
+  }
+  PetscCall(PetscFree2(s.growth, shown));
+  PetscFunctionReturn(0);
+}

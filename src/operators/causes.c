@@ -1,0 +1,168 @@
+/*
+   Why an eigenvalue grows. From (lambda^2 M + lambda C + K) u = 0, lambda = sigma + i omega, K = sum_t c_t A_t and so on, the
+   imaginary part of u^H (...) u = 0 is, with q_t = u^H A_t u,
+
+      sigma D = - sum_stiffness c_t Im q_t - omega sum_damping c_t Re q_t - (sigma^2 - omega^2) sum_mass c_t Im q_t,
+
+      D = 2 omega u^H M u + sum_damping c_t Im q_t      (kg rad/s times m^2),
+
+   exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, nor has a gyroscopic
+   term. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...) Zr q = 0: interface i adds w_i = mu_i (Zl_i q)^H (...) u, of which
+   -Im w_i / D is the share, the limit of the penalty's.
+*/
+#include "pencilimpl.h"
+
+/* Whether a term can have a share */
+static PetscBool TermHasShare(const OperatorsTerm *term, const PetscReal p[])
+{
+  if (OperatorsTermCoefficient(term, p) == 0) return PETSC_FALSE;
+  return term->kind == OPERATORS_DAMPING || !term->symmetric ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Index of a cause, a new one where it is not there */
+static PetscErrorCode CauseFind(Pencil pencil, const char kind[], const char name[], PetscInt *index)
+{
+  PetscInt i = 0;
+
+  PetscFunctionBeginUser;
+  while (i < pencil->n_causes && (strcmp(pencil->cause[i].name, name) || strcmp(pencil->cause[i].kind, kind))) i++;
+  *index = i;
+  if (i < pencil->n_causes) PetscFunctionReturn(0);
+  PetscCall(PetscRealloc((size_t)++pencil->n_causes * sizeof(*pencil->cause), &pencil->cause));
+  pencil->cause[i].kind = kind;
+  PetscCall(PetscStrncpy(pencil->cause[i].name, name, sizeof(pencil->cause[i].name)));
+  PetscFunctionReturn(0);
+}
+
+/* Keeps a term, with the coefficient at the present point and its cause */
+static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
+{
+  Terms                  *causing = &pencil->causing;
+  const PetscInt          n       = causing->n;
+  const PetscBool         exact = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  const Terms             one   = {.n = 1, .term = (OperatorsTerm *)term};
+  const char             *name  = term->cause;
+  const ContactInterface *c;
+  PetscInt                n_interfaces;
+
+  PetscFunctionBeginUser;
+  if (exact) PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, &c));
+  if (exact) name = c[pencil->left_interface[term->constraint]].name;
+  PetscCall(TermsAppend(causing, &one));
+  PetscCall(CauseFind(pencil, exact ? "friction" : term->cause_kind, name, &causing->term[n].cause_index));
+  causing->term[n].scale = OperatorsTermCoefficient(term, pencil->parameters.p);
+  causing->term[n].n     = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilFormCauses(Pencil pencil)
+{
+  const PetscReal *p = pencil->parameters.p;
+
+  PetscFunctionBeginUser;
+  if (pencil->released) PetscFunctionReturn(0); /* formed before */
+  PetscCall(TermsDestroy(&pencil->causing));
+  pencil->n_causes = 0;
+  PetscCall(PencilProjectTerms(pencil));
+  for (PetscInt t = 0; t < pencil->base.n; t++)
+    if (TermHasShare(&pencil->base.term[t], p)) PetscCall(CauseTermAdd(pencil, &pencil->base.term[t]));
+  for (PetscInt t = 0; t < pencil->projected.n; t++) {
+    const OperatorsTerm *term = &pencil->projected.term[t];
+
+    if (term->constraint >= 0 && OperatorsTermCoefficient(term, p) != 0) PetscCall(CauseTermAdd(pencil, term));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **causes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilFormCauses(pencil));
+  *n      = pencil->n_causes;
+  *causes = pencil->cause;
+  PetscFunctionReturn(0);
+}
+
+/* A complex vector, x[1] NULL where it is real, and room for a product */
+typedef struct {
+  Vec x[2], y;
+} CauseVector;
+
+/* re + i im = x^H A x */
+static PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
+{
+  PetscScalar d[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  form[0] = form[1] = 0;
+  for (int k = 0; k < 2 && v->x[k]; k++) {
+    PetscCall(MatMult(A, v->x[k], v->y));
+    PetscCall(VecMDot(v->y, v->x[1] ? 2 : 1, v->x, d));
+    form[0] += PetscRealPart(d[k]);
+    form[1] += k ? PetscRealPart(d[0]) : -PetscRealPart(d[1]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The vector in the unknowns of the pencil; u itself where nothing is projected */
+static PetscErrorCode VectorRestrict(Pencil pencil, const CauseVector *u, CauseVector *q)
+{
+  PetscFunctionBeginUser;
+  *q = (CauseVector){{NULL, NULL}, NULL};
+  if (!pencil->Zr) PetscFunctionReturn(0);
+  for (int k = 0; k < 2 && u->x[k]; k++) {
+    PetscCall(MatCreateVecs(pencil->Zr, &q->x[k], NULL));
+    PetscCall(PencilRestrict(pencil, u->x[k], q->x[k]));
+  }
+  PetscCall(VecDuplicate(q->x[0], &q->y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode VectorDestroy(CauseVector *v)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) PetscCall(VecDestroy(&v->x[k]));
+  PetscCall(VecDestroy(&v->y));
+  PetscFunctionReturn(0);
+}
+
+/* What a term adds to -sigma D and to D, of form = x^H A x */
+static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal omega, const PetscReal form[2], PetscReal *D)
+{
+  const PetscReal re = term->scale * form[0], im = term->scale * form[1], square = sigma * sigma - omega * omega;
+
+  if (term->constraint >= 0) { /* Im(lambda^k q) */
+    if (term->kind == OPERATORS_STIFFNESS) return im;
+    return term->kind == OPERATORS_DAMPING ? sigma * im + omega * re : square * im + 2 * sigma * omega * re;
+  }
+  if (term->kind == OPERATORS_STIFFNESS) return im;
+  if (term->kind == OPERATORS_MASS) return square * im;
+  *D += im;
+  return omega * re;
+}
+
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[])
+{
+  CauseVector u = {{ur, ui}, NULL}, q;
+  PetscReal   form[2], D;
+  Mat         M;
+
+  PetscFunctionBeginUser;
+  PetscCheck(omega > 0, pencil->comm, PETSC_ERR_ARG_OUTOFRANGE, "a real eigenvalue has no balance of this kind");
+  PetscCall(PencilGetMass(pencil, &M));
+  PetscCall(VecDuplicate(ur, &u.y));
+  PetscCall(VectorRestrict(pencil, &u, &q));
+  PetscCall(VectorForm(&u, M, form));
+  D = 2 * omega * form[0];
+  PetscCall(PetscArrayzero(growth, pencil->n_causes));
+  for (PetscInt t = 0; t < pencil->causing.n; t++) {
+    const OperatorsTerm *term = &pencil->causing.term[t];
+
+    PetscCall(VectorForm(term->constraint >= 0 ? &q : &u, term->A, form));
+    growth[term->cause_index] += TermShare(term, sigma, omega, form, &D);
+  }
+  for (PetscInt i = 0; i < pencil->n_causes; i++) growth[i] /= -D;
+  PetscCall(VectorDestroy(&q));
+  PetscCall(VecDestroy(&u.y));
+  PetscFunctionReturn(0);
+}

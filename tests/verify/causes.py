@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Shares of growth, modes_causes.csv, beside independent numbers:
+
+    causes.py terms RESULTS N SPEED    the model of tests/affine.py: vectors of LAPACK's companion form, dense matrices
+    causes.py uniform RESULTS A B      C = A M + B K: -A / 2 and -B |lambda|^2 / 2
+    causes.py limit RESULTS OTHER TOL  an exact contact beside a stiff penalty: the same causes, TOL of the largest share
+    causes.py same RESULTS OTHER       other ranks
+"""
+
+import csv
+import math
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from affine import companion, model
+
+SHARE = 1e-8  # of the largest share of a mode
+
+
+def read(folder, name):
+    with (Path(folder) / name).open(newline="") as table:
+        return list(csv.DictReader(table))
+
+
+def eigenvalues(folder):
+    return {int(row["mode"]): complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"]))
+            for row in read(folder, "modes.csv")}
+
+
+def shares(folder):
+    """Mode -> cause -> 1/s; the rest must be within the error of the eigenvalue, and all of them add up to its growth."""
+    found = defaultdict(dict)
+    for row in read(folder, "modes_causes.csv"):
+        found[int(row["mode"])][row["cause"], row["kind"]] = float(row["growth_rad_s"])
+    values = eigenvalues(folder)
+    errors = {int(row["mode"]): 2 * math.pi * float(row["error_hz"]) for row in read(folder, "modes.csv")}
+    for mode, causes in found.items():
+        largest = max(map(abs, causes.values()))
+        if abs(sum(causes.values()) - values[mode].real) > 1e-12 * largest:
+            sys.exit(f"mode {mode}: {causes} do not add up to {values[mode].real}")
+        if abs(causes.pop(("", "rest"))) > errors[mode] + 1e-12 * largest:
+            sys.exit(f"mode {mode}: the rest is more than the error {errors[mode]}")
+    if set(found) != {mode for mode, value in values.items() if value.imag > 0}:
+        sys.exit(f"{sorted(found)} of {sorted(values)} have causes")
+    return found
+
+
+def errors(folder):
+    """Mode -> stated error of a share, 1/s."""
+    return {int(row["mode"]): float(row["error_rad_s"]) for row in read(folder, "modes_causes.csv")}
+
+
+def compare(mode, found, exact, tolerance, stated=math.inf):
+    largest = max(map(abs, exact.values()))
+    worst = max(abs(found.get(name, 0) - exact.get(name, 0)) for name in set(found) | set(exact))
+    if worst > min(tolerance * largest, stated + 1e-13 * largest):
+        sys.exit(f"mode {mode}: {found}, must be {exact}")
+    return worst / largest
+
+
+def exact_terms(matrices, w, eigenvalue):
+    """Shares by the vector of LAPACK that belongs to the eigenvalue."""
+    values, vectors = numpy.linalg.eig(companion(matrices, w))
+    at = numpy.argmin(abs(values - eigenvalue))
+    x, n = vectors[: len(matrices["M"].toarray()), at], {"M": 0, "DG": 1, "D1": 1, "DR": 1}
+    value, form = values[at], {name: x.conj() @ (matrix.toarray() @ x) for name, matrix in matrices.items()}
+    scale = {"DR": 1 / w, "DG": w, "KGEO": w**2}
+    form = {name: scale.get(name, 1) * number for name, number in form.items()}
+    whole = 2 * value.imag * form["M"].real + sum(form[name].imag for name in ("DG", "D1", "DR"))
+    damping = {name.lower(): -value.imag * form[name].real / whole for name in n if n[name]}
+    return damping | {"kr": -form["KR"].imag / whole}
+
+
+def main():
+    what, folder, *rest = sys.argv[1:]
+    found, stated, worst = shares(folder), errors(folder), 0
+    values = eigenvalues(folder)
+    if what == "terms":
+        matrices = model(int(rest[0]))
+        for mode, causes in found.items():
+            exact, own = exact_terms(matrices, float(rest[1]), values[mode]), {name: value for (name, _), value in causes.items()}
+            worst = max(worst, compare(mode, own, exact, SHARE, stated[mode]))
+    elif what == "uniform":
+        alpha, beta = map(float, rest)
+        for mode, causes in found.items():
+            sums = defaultdict(float)
+            for (name, _), value in causes.items():
+                sums[name.rsplit("_", 1)[1]] += value
+            exact = {"alpha": -alpha / 2, "beta": -beta * abs(values[mode]) ** 2 / 2}
+            worst = max(worst, compare(mode, sums, exact, SHARE, stated[mode]))
+    else:
+        other = shares(rest[0])
+        for mode, causes in found.items():
+            worst = max(worst, compare(mode, causes, other[mode], float(rest[1]) if what == "limit" else SHARE))
+    print(f"{len(found)} modes, worst {worst:.1e} of the largest share")
+
+
+if __name__ == "__main__":
+    main()
