@@ -1,5 +1,6 @@
 /* Rows of options: read, checked, refused, summed. A value is read where it lies */
 #include <squeal/quantity.h>
+#include <string.h>
 
 /* An upper limit of rounding alone: nobody comes near it */
 #define QUANTITY_FAR 1e20
@@ -74,6 +75,22 @@ static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const 
   PetscFunctionReturn(0);
 }
 
+/* The unit behind what the help says first: "largest growth, 1/s (0: any)" */
+static PetscErrorCode HelpWithUnit(const Quantity *row, size_t size, char help[])
+{
+  const char  *second = strpbrk(row->help, ";(");
+  const size_t length = strlen(row->help);
+  size_t       first  = second ? (size_t)(second - row->help) : length;
+
+  PetscFunctionBeginUser;
+  if (first < length && first > 0 && row->help[first - 1] == ' ') first--;
+  if (row->unit)
+    PetscCall(PetscSNPrintf(help, size, "%.*s, %s%s", (int)first, row->help, row->unit, row->help + first));
+  else
+    PetscCall(PetscStrncpy(help, row->help, size));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner)
 {
   void     *value = QuantityValue(row, owner);
@@ -81,7 +98,7 @@ static PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char h
   char      help[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(help, sizeof(help), "%s%s%s", row->help, row->unit ? ", " : "", row->unit ? row->unit : ""));
+  PetscCall(HelpWithUnit(row, sizeof(help), help));
   switch (row->kind) {
   case QUANTITY_BOOL:
     PetscCall(OptionsGetBool(PetscOptionsObject, row->name, help, value));
