@@ -16,6 +16,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from served import own_words
+
 SOURCE = Path(__file__).resolve().parents[1]
 SMALL = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
          "-rig_beam_elements", "3", "-modes_band", "500,2000"]
@@ -54,7 +56,8 @@ class Runner:
 
     def refused(self, done, words, what):
         """One line on stderr with the words, and a status that is not 0."""
-        lines = done.stderr.splitlines()
+        lines = own_words(done.stderr).split("\n")
+        lines = [line for line in lines if line]
         self.check(done.returncode == 1 and len(lines) == 1 and all(word in lines[0] for word in words), what, done)
 
 
