@@ -109,6 +109,8 @@ class Comparison:
         """A column with its errors."""
         for i, (p, q) in enumerate(zip(self.one, self.other)):
             x, y, allowed = float(p[column]), float(q[column]), float(p[error] or 0) + float(q[error] or 0)
+            if not math.isfinite(allowed):
+                continue  # without left vectors no error is known
             size = 0 if abs(x - y) <= allowed else abs(x - y) / (abs(x) or 1)
             self.say(i, f"{column} {x:.15g} and {y:.15g}, which state {allowed:.2g}", size)
 

@@ -129,12 +129,14 @@ PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char n
 
 PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records)
 {
-  char **names, *record, prefix[MAX_NAME], title[MAX_NAME];
+  char   **names, *record, prefix[MAX_NAME], title[MAX_NAME];
+  PetscInt count;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(comm, list->option, list->help, n, &names));
-  PetscCall(PetscCalloc((size_t)*n * list->size, &record));
+  PetscCall(OptionsGetNames(comm, list->option, list->help, &count, &names));
+  PetscCall(PetscCalloc((size_t)count * list->size, &record));
   *(void **)records = record;
+  *n                = count; /* after an error there are none */
   for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
   for (PetscInt i = 0; i < *n; i++, record += list->size) {
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", names[i]));

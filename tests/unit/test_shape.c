@@ -299,10 +299,10 @@ int main(int argc, char **argv)
   PetscCall(ModelOnRanksDestroy(&own));
   PetscCall(ModelOnRanksDestroy(&all));
   PetscCall(TestModes(&scratch, &failed));
-  failed += CheckTrue("three files",
+  failed += CheckTrue("four files",
                       ScratchRemove(&scratch, "modes.csv") && ScratchRemove(&scratch, "modes.h5") &&
-                        ScratchRemove(&scratch, "modes.xmf"),
-                      3);
+                        ScratchRemove(&scratch, "modes.xmf") && ScratchRemove(&scratch, "modes_causes.csv"),
+                      4);
   failed += CheckTrue("no other file is left", ScratchDestroy(&scratch), 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));
   PetscCall(SlepcFinalize());
