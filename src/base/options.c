@@ -130,13 +130,12 @@ PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char n
 PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records)
 {
   char   **names, *record, prefix[MAX_NAME], title[MAX_NAME];
-  PetscInt count;
+  PetscInt count; /* *n, which stays 0 where the names are refused */
 
   PetscFunctionBeginUser;
   PetscCall(OptionsGetNames(comm, list->option, list->help, &count, &names));
   PetscCall(PetscCalloc((size_t)count * list->size, &record));
-  *(void **)records = record;
-  *n                = count; /* after an error there are none */
+  *(void **)records = record, *n = count;
   for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
   for (PetscInt i = 0; i < *n; i++, record += list->size) {
     PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", names[i]));
@@ -331,8 +330,7 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 {
   char        value[MAX_NAME], names[MAX_LIST], place[PETSC_MAX_PATH_LEN], unit[MAX_NAME];
   const char *wrong;
-  int         most;
-
+  int most;
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (sscanf(message, "Number of options %*d < max number of options %d", &most) == 1) {
