@@ -156,7 +156,7 @@ static PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, 
 /* Whether a number is outside the limits of its row */
 static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
 {
-  if (x < row->least || (row->open && x == row->least)) return PETSC_TRUE;
+  if (!(x >= row->least) || (row->open && x == row->least)) return PETSC_TRUE;
   return row->most != 0 && (x > row->most || (row->open && x == row->most)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
