@@ -9,6 +9,7 @@
 */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "watch.h"
+#include <errno.h>
 #include <limits.h>
 #include <signal.h>
 #include <stdio.h>
@@ -57,7 +58,8 @@ static void WatchEnd(const char rank[])
   const struct rlimit none = {0, 0};
   int                 status, number;
 
-  while (waitpid(watched, &status, 0) < 0) continue;
+  while (waitpid(watched, &status, 0) < 0)
+    if (errno != EINTR) _exit(1);
   if (WIFEXITED(status)) _exit(WEXITSTATUS(status));
   number = WTERMSIG(status);
   if (number != SIGINT && number != SIGTERM) WatchSay(rank, number);
@@ -75,6 +77,7 @@ void WatchBegin(void)
   if (!size || !rank || atoi(size) < 2) return;
   folder = mmap(NULL, PATH_MAX, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (folder == MAP_FAILED) folder = NULL;
+  (void)signal(SIGCHLD, SIG_DFL); /* else nobody learns how the rank ended */
   watched = folder ? fork() : -1;
   if (watched > 0) {
     WatchSignals();

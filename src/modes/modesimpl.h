@@ -34,7 +34,7 @@ PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* mov
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
 
 /* Routes of a damped solution: by projection where its measure allows, always, never */
-enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP };
+typedef enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP } DampingRoute;
 
 #define MODES_DAMPING "-modes_damping"
 
@@ -54,7 +54,7 @@ struct _p_Modes {
   PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, has_target, has_count, has_nearest, has_route, has_disc, left, is_static, keep, filters;
   PetscInt  count;
-  PetscInt  damping;  /* route of a damped solution: DAMPING_AUTO ... */
+  DampingRoute damping; /* of a damped solution */
   PetscInt  n_shifts; /* of a band; 0: chosen */
   char      disc[64];
   Progress  progress;

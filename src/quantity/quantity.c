@@ -20,6 +20,7 @@ static PetscErrorCode QuantityReadWord(OptionsItems PetscOptionsObject, const ch
   PetscInt n = 0, chosen = *value;
 
   PetscFunctionBeginUser;
+  PetscCheck(row->size == sizeof(*value), PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s is no enumeration", row->name);
   while (row->words[n]) n++;
   PetscCall(PetscOptionsEList(row->name, help, header, row->words, n, row->words[chosen], &chosen, given));
   *value = (int)chosen;
