@@ -137,7 +137,7 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
   PetscCheck(c->kt == 0 || FrictionExists(&c->friction), comm, PETSC_ERR_USER_INPUT,
-             "-%s_kt%s %.6g does nothing without friction; give -%s_mu or leave it out", c->name,
+             "-%s_kt%s %.6g does nothing without friction; give a coefficient of -%s_friction_law, or leave it out", c->name,
              c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
   PetscCheck(c->kt == 0 || !c->damping, comm, PETSC_ERR_USER_INPUT,
              "-%s_friction_damping does nothing where the contact holds by friction (-%s_kt%s); leave one out", c->name,

@@ -15,7 +15,8 @@
 #include <math.h>
 
 #define FRICTION_RTOL  1e-10
-#define FRICTION_NODES 32 /* at most */
+#define FRICTION_MISS  1e-8 /* most at other parameters */
+#define FRICTION_NODES 32   /* at most */
 #define FRICTION_PLACES 101 /* at which mu is looked at */
 #define FRICTION_OCTAVES 3
 
@@ -241,15 +242,41 @@ static PetscErrorCode NodesChoose(Operators o, const ContactInterface *c, const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsCheckFriction(Operators o, const PetscReal p[])
+{
+  const ContactInterface *c;
+  PetscInt                n;
+  OperatorsFriction       node[FRICTION_NODES];
+
+  PetscFunctionBeginUser;
+  if (!o->interface) PetscFunctionReturn(0);
+  PetscCall(ContactGetInterfaces(o->contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) {
+    const InterfaceParameters *q = &o->interface[i];
+    PetscReal                  miss;
+
+    if (q->n_nodes <= 1) continue;
+    PetscCall(PetscArraycpy(node, q->node, q->n_nodes));
+    node[0].law = FactorLaw(&q->node[0], p);
+    miss        = NodesMiss(node, q->n_nodes, q->range, q->speed >= 0 ? p[q->speed] : q->stated);
+    PetscCheck(miss <= FRICTION_MISS, o->comm, PETSC_ERR_USER_INPUT,
+               "contact %s: friction at these parameters is known to %.1e of it alone, between the speeds that the scene needs; write "
+               "the scene with a speed or decay speed nearer to them",
+               c[i].name, (double)miss);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Speeds at which mu is a factor */
 static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const ContactInterface *c, InterfaceParameters *q)
 {
-  PetscReal          range[2] = {-INFINITY, -INFINITY}; /* - least, most ratio */
+  PetscReal         *range = q->range;
   PetscInt           n, n_all;
   const ContactPair *pairs;
 
   PetscFunctionBeginUser;
   if (!c->slides) PetscFunctionReturn(0);
+  range[0] = range[1] = -INFINITY; /* - least, most */
   PetscCall(PetscCalloc1(FRICTION_NODES, &q->node));
   PetscCall(ContactGetPairs(o->contact, &n, &n_all, &pairs));
   for (PetscInt p = 0; p < n; p++) {

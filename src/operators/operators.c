@@ -125,10 +125,10 @@ PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, 
 
   PetscFunctionBeginUser;
   PetscCall(ParameterCheck(operators->comm, &operators->parameters.list[parameter], value));
-  if (!operators->n_named) PetscFunctionReturn(0);
   PetscCall(OperatorsCreatePoint(operators, NULL, &p));
   p[parameter] = value;
-  for (PetscInt t = 0; t < operators->terms.n; t++) {
+  PetscCall(OperatorsCheckFriction(operators, p));
+  for (PetscInt t = 0; t < operators->terms.n && operators->n_named; t++) {
     const PetscReal c = OperatorsTermCoefficient(&operators->terms.term[t], p);
 
     PetscCheck(PetscAbsReal(c) <= MATRIX_LARGEST, operators->comm, PETSC_ERR_USER_INPUT,

@@ -21,6 +21,7 @@ typedef struct {
   PetscInt           law[FRICTION_PARAMETERS];
   PetscInt           kn, kt, force, speed;
   PetscReal          stated;  /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
+  PetscReal          range[2]; /* least and most sliding speed of its pairs, of V */
   PetscInt           n_nodes; /* sliding speeds at which mu is a factor of terms, 0 where nothing says along what it slides */
   OperatorsFriction *node;    /* [n_nodes] */
 } InterfaceParameters;
@@ -137,6 +138,8 @@ PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 /* frictionfactor.c - parameters of the contact, and the speeds at which mu is a factor of terms; part of pairs that slide at
    `speed` (m/s) in the terms of node k; the end. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
+/* Raises the error for a point at which the speeds of the nodes do not give the friction between them. Same on all ranks. */
+PETSC_INTERN PetscErrorCode OperatorsCheckFriction(Operators operators, const PetscReal p[]);
 PETSC_INTERN PetscReal      FrictionNodeShare(const InterfaceParameters *interface, PetscInt k, PetscReal speed);
 PETSC_INTERN PetscErrorCode OperatorsDestroyContactParameters(Operators operators);
 

@@ -58,6 +58,7 @@ PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
   for (PetscInt i = 0; i < n; i++) PetscCall(ParameterCheck(pencil->comm, &pencil->parameters.list[i], p[i]));
   PetscCall(PetscArraycmp(pencil->parameters.p, p, n, &same));
   if (same) PetscFunctionReturn(0);
+  PetscCall(OperatorsCheckFriction(pencil->operators, p));
   PetscCall(PencilCheckTerms(pencil));
   PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;

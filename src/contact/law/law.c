@@ -106,16 +106,22 @@ static PetscErrorCode KindRead(MPI_Comm comm, const char name[], FrictionLaw *la
   PetscFunctionReturn(0);
 }
 
-/* Refuses parameters of laws that were not chosen */
+/* Refuses parameters of laws that were not chosen; those of files are taken out, with a warning */
 static PetscErrorCode KindsRefuse(MPI_Comm comm, const char name[], const FrictionLaw *chosen)
 {
-  char why[256];
+  char why[256], instead[256], option[256];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_friction_law %s", name, KindOf(chosen)->name));
+  PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_friction_law is %s", name, KindOf(chosen)->name));
   for (PetscInt k = 0; k < N_KINDS; k++)
-    for (PetscInt j = 0; j < kinds[k]->n && k != chosen->kind; j++)
-      PetscCall(OptionsRefuseOf(comm, name, kinds[k]->parameter[j].row.name + 1, why));
+    for (PetscInt j = 0; j < kinds[k]->n && k != chosen->kind; j++) {
+      const char *const own = kinds[k]->parameter[j].row.name + 1;
+
+      PetscCall(OptionsRefuseOf(comm, name, own, why));
+      PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, own));
+      PetscCall(OptionsDrop(comm, option, instead));
+    }
   PetscFunctionReturn(0);
 }
 

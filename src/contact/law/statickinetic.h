@@ -46,6 +46,7 @@ static PetscBool StaticKineticVaries(const FrictionLaw *law)
 
 static const char *StaticKineticRemark(const FrictionLaw *law)
 {
+  if (law->parameter[0] == 0 && law->parameter[1] == 0) return "no friction: -..._mu_static and -..._mu_kinetic are zero or not given";
   return law->parameter[1] > law->parameter[0] ? "kinetic friction is above static: it rises with the slip speed" : NULL;
 }
 
