@@ -16,13 +16,15 @@ typedef struct {
   PetscBool  known;       /* the mode has a frequency */
 } ModeShares;
 
-/* Distance of mode i from the next one, rad/s; infinite for one alone */
+/* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */
 static PetscReal ModeGap(const Modes modes, PetscInt i)
 {
-  PetscReal gap = PETSC_MAX_REAL;
+  const Mode *a   = &modes->mode[i];
+  PetscReal   gap = 2 * a->omega;
 
+  for (int k = 0; k < 2 && modes->has_band; k++) gap = PetscMin(gap, PetscAbsReal(a->omega - 2 * PETSC_PI * modes->band[k]));
   for (PetscInt k = 0; k < modes->n; k++) {
-    const Mode *a = &modes->mode[i], *b = &modes->mode[k];
+    const Mode *b = &modes->mode[k];
 
     if (k != i) gap = PetscMin(gap, PetscSqrtReal(PetscSqr(a->sigma - b->sigma) + PetscSqr(a->omega - b->omega)));
   }
@@ -32,7 +34,7 @@ static PetscReal ModeGap(const Modes modes, PetscInt i)
 static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, ModeShares *s)
 {
   const Mode *m       = &modes->mode[i];
-  PetscReal   largest = 0;
+  PetscReal   largest = 0, gap;
 
   PetscFunctionBeginUser;
   s->known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
@@ -43,7 +45,8 @@ static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, Mod
     s->rest -= s->growth[k];
     largest = PetscMax(largest, PetscAbsReal(s->growth[k]));
   }
-  s->error = m->error + 2 * largest * PetscMin(1, m->error / ModeGap(modes, i)) + PetscAbsReal(s->rest);
+  gap      = ModeGap(modes, i);
+  s->error = m->error + 2 * largest * (m->error < gap ? m->error / gap : 1) + PetscAbsReal(s->rest);
   PetscFunctionReturn(0);
 }
 
@@ -71,13 +74,15 @@ PetscErrorCode ModesWriteCauses(Modes modes, Results results)
   PetscFunctionReturn(0);
 }
 
-/* The largest share that is not shown, or -1 */
-static PetscInt CauseNext(PetscInt n, const PetscReal growth[], const PetscBool shown[])
+/* The largest share above its error that is not shown, or -1 */
+static PetscInt CauseNext(PetscInt n, const ModeShares *s, const PetscBool shown[])
 {
   PetscInt largest = -1;
 
   for (PetscInt k = 0; k < n; k++)
-    if (!shown[k] && (largest < 0 || PetscAbsReal(growth[k]) > PetscAbsReal(growth[largest]))) largest = k;
+    if (!shown[k] && !(PetscAbsReal(s->growth[k]) <= s->error) &&
+        (largest < 0 || PetscAbsReal(s->growth[k]) > PetscAbsReal(s->growth[largest])))
+      largest = k;
   return largest;
 }
 
@@ -97,13 +102,14 @@ PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer)
     if (!s.known) continue;
     PetscCall(PetscArrayzero(shown, n));
     PetscCall(PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s:", i + 1, (double)modes->mode[i].sigma));
-    for (PetscInt k = 0; k < PetscMin(n, CAUSES_SHOWN); k++) {
-      const PetscInt at = CauseNext(n, s.growth, shown);
+    for (PetscInt k = 0; k < CAUSES_SHOWN; k++) {
+      const PetscInt at = CauseNext(n, &s, shown);
 
+      if (at < 0) break;
       shown[at] = PETSC_TRUE;
       PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : "", cause[at].kind, cause[at].name, (double)s.growth[at]));
     }
-    PetscCall(PetscViewerASCIIPrintf(viewer, n > CAUSES_SHOWN ? ", others in modes_causes.csv\n" : "\n"));
+    PetscCall(PetscViewerASCIIPrintf(viewer, CauseNext(n, &s, shown) < 0 ? "\n" : ", others in modes_causes.csv\n"));
   }
   PetscCall(PetscFree2(s.growth, shown));
   PetscFunctionReturn(0);

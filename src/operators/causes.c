@@ -6,9 +6,9 @@
 
       D = 2 omega u^H M u + sum_damping c_t Im q_t      (kg rad/s times m^2),
 
-   exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, nor has a gyroscopic
-   term. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...) Zr q = 0: interface i adds w_i = mu_i (Zl_i q)^H (...) u, of which
-   -Im w_i / D is the share, the limit of the penalty's.
+   exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, and a gyroscopic term
+   one of rounding: it has a part in D alone. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...) Zr q = 0: interface i adds
+   w_i = mu_i (Zl_i q)^H (...) u, of which -Im w_i / D is the share, the limit of the penalty's.
 */
 #include "pencilimpl.h"
 

@@ -94,6 +94,8 @@ def main():
             worst = max(worst, compare(mode, sums, exact, SHARE, stated[mode]))
     else:
         other = shares(rest[0])
+        if set(found) != set(other):
+            sys.exit(f"{sorted(found)} and {sorted(other)} have causes")
         for mode, causes in found.items():
             worst = max(worst, compare(mode, causes, other[mode], float(rest[1]) if what == "limit" else SHARE))
     print(f"{len(found)} modes, worst {worst:.1e} of the largest share")
