@@ -90,7 +90,7 @@ PetscErrorCode FrfKeep(Frf frf, PetscInt n)
   JournalItem item[3];
 
   PetscFunctionBeginUser;
-  if (!frf->restart || !frf->journal.results) PetscFunctionReturn(0);
+  if (!frf->restart || !frf->journal.results || !JournalIsDue(n)) PetscFunctionReturn(0);
   FrfListItems(frf, n, item);
   PetscCall(JournalKeep(&frf->journal, FRF_KEPT, 3, item, &frf->restart));
   if (frf->restart)

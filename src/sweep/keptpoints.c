@@ -99,6 +99,8 @@ PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follo
   h.same       = follow->first && follow->first == follow->before ? 1 : 0;
   PetscCall(SweepFileName(0, name));
   PetscCall(PlaceMove(sweep, i, points));
+  sweep->n_kept = h.n_places;
+  if (!JournalIsDue(h.n_places)) PetscFunctionReturn(0);
   item[ITEM_BEFORE] = (JournalItem){"vectors", 0, NULL};
   item[ITEM_FIRST]  = (JournalItem){"vectors of the line before", 0, NULL};
   PetscCall(StateMove(sweep, &h, &pack, item, follow));
@@ -108,7 +110,6 @@ PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follo
   PetscCall(PetscFree(item[ITEM_BEFORE].values));
   PetscCall(PetscFree(item[ITEM_FIRST].values));
   PetscCall(JournalPackDestroy(&pack));
-  sweep->n_kept      = h.n_places;
   sweep->places.good = kept; /* else it goes on without */
   if (kept)
     InterruptSays("%d of %d points are kept, with which the same command goes on", (int)h.n_places, (int)sweep->grid.n_places);
@@ -134,7 +135,7 @@ PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow)
     [ITEM_FIRST]  = {"vectors of the line before", -1, NULL}
   };
   JournalPack pack = {.good = PETSC_TRUE};
-  StateHeader h;
+  StateHeader h = {0};
   char        name[64];
   PetscBool   taken;
 

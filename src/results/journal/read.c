@@ -1,5 +1,5 @@
 /*
-   Journal: reads it back (checkpoint.c). Nothing of a file is used before all ranks have found all of it good.
+   Journal: reads it back (write.c). Nothing of a file is used before all ranks have found all of it good.
 */
 #include "base/fault.h"
 #include "base/file.h"
