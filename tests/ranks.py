@@ -1,5 +1,7 @@
 """Numbers of ranks on which the runs of a case of tests/run.py are made, by day and by night."""
 
+import re
+
 
 def fault_of_ranks(case):
     """What is wrong with the numbers of ranks of a case: a run on none that the case makes, or a comparison that no day or night makes."""
@@ -12,7 +14,16 @@ def fault_of_ranks(case):
         run = case["run"][name]
         if "across_ranks" in check and len({*run.get("ranks", own), *run.get("night", [])}) < 2:
             return f"across_ranks of {name}, which is made on one number of ranks by day and by night"
+        met = [{*case["run"][each].get("ranks", own), *case["run"][each].get("night", [])} for each in runs_of(check, case["run"])]
+        if not set.intersection(*met):
+            return f"check '{check.get('why', name)}' compares runs that are never made on the same number of ranks"
     return None
+
+
+def runs_of(check, runs):
+    """Names of the runs that a check looks at."""
+    named = {check.get("run"), check.get("equals_run"), *re.findall(r"{(\w+)}", check.get("command", ""))}
+    return named & set(runs) or {next(iter(runs))}
 
 
 def ranks_of_runs(case, chosen, night):

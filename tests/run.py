@@ -72,7 +72,7 @@ from check import Checker, Failure, Line, require
 from cores import CORES, MIXED, choose_core, mixed
 from forked import run_command
 from processes import processes_naming
-from ranks import fault_of_ranks, ranks_of_runs
+from ranks import fault_of_ranks, ranks_of_runs, runs_of
 from served import own_words, served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
@@ -190,7 +190,7 @@ class Runner:
         """Whether each check of runs that were made here passed."""
         results = []
         for index, check in enumerate(self.case.get("check", []), 1):
-            if self.names(check) <= set(self.made):
+            if runs_of(check, self.case["run"]) <= set(self.made):
                 title = check.get("why", f"check {index}")
                 results.append(attempt(f"{title} on {self.ranks}", checker.make, check))
                 self.write_margin(check, title, results[-1])
@@ -204,11 +204,6 @@ class Runner:
         with self.arguments.margins.open("a", newline="") as file:
             csv.writer(file).writerow([check["hard"], check.get("wrong", ""), title, self.arguments.case.stem,
                                        self.ranks, line.measured, line.allowed, int(result.passed)])
-
-    def names(self, check):
-        """Runs that a check looks at."""
-        named = {check.get("run"), check.get("equals_run"), *re.findall(r"{(\w+)}", check.get("command", ""))}
-        return named & set(self.case["run"]) or {next(iter(self.case["run"]))}
 
     @staticmethod
     def check_errors(path):

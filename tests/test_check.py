@@ -68,6 +68,8 @@ def empty_pass():
     """How many comparisons of ranks that nothing makes, by day or by night, are not refused, or are when something does."""
     wrong = [(ranks, run) for ranks, run, fault in EMPTY
              if bool(fault_of_ranks({"ranks": ranks, "run": {"a": run}, "check": [{"across_ranks": True}]})) != fault]
+    apart = {"ranks": [1, 3], "run": {"a": {"ranks": [1]}, "b": {"ranks": [3]}}, "check": [{"command": "same {a} {b}"}]}
+    wrong += [] if fault_of_ranks(apart) else [([1, 3], "a on 1 beside b on 3")]
     for ranks, run in wrong:
         print(f"FAILED ranks {ranks}, run {run}")
     return len(wrong)
