@@ -158,7 +158,8 @@ def check_killed_rank(r):
             "final name are complete"
         # mpirun of Open MPI 5 leaves the other rank the time to say that it is stopped
         own = [line for line in said if "stopped by SIGTERM" not in line]
-        r.check(len(found) == 2 and process.returncode == 128 + number and own == [wanted] and len(said) <= 2, f"rank {rank} killed by {number}",
+        r.check(len(found) == 2 and process.returncode == 128 + number and own == [wanted] and len(said) <= 2,
+                f"rank {rank} killed by {number}",
                 f"{found} {process.returncode} {rest}")
         begun = time.monotonic()
         while processes_naming(name) and time.monotonic() - begun < PATIENCE:

@@ -153,9 +153,10 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
 @*/
 PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[]);
 
-/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are formed, but for
-    those that PencilGetCauses() lists: without material damping half of the memory, where no other point will be asked for. Afterwards PencilSetParameters() and
-    PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay. Collective. @*/
+/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are
+    formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other point will be
+    asked for. Afterwards PencilSetParameters() and PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay.
+    Collective. @*/
 PetscErrorCode PencilReleaseTerms(Pencil pencil);
 
 /*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
