@@ -1,6 +1,6 @@
 /* The chain of a run, from options to what an analysis begins with: the rooms in their order. No physics */
 #include "chain.h"
-#include "solver/shiftinvert.h"
+#include "solver/factor/shiftinvert.h"
 
 static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle"};
 

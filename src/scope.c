@@ -1,6 +1,6 @@
-/* What stands on the command line and nothing in this analysis has a use for: see base/arguments.c */
+/* What stands on the command line and nothing in this analysis has a use for: see base/options/arguments.c */
 #include "scope.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 /* Whether something asks for an equilibrium */
 static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)

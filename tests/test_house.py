@@ -6,6 +6,7 @@
              nobody another room's private header (*impl.h)
   lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function above 80, no
              function of C with more than six arguments
+  folders    no folder of src has more than 15 files
   columns    no line of C, Python or the shell beyond 140 columns
   strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
@@ -25,8 +26,9 @@ import tempfile
 from pathlib import Path
 
 from house import Script, Source
+from house_planted import PLANTED
 
-MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS = 350, 80, 80, 6, 25, 140
+MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES = 350, 80, 80, 6, 25, 140, 15
 
 CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
@@ -44,7 +46,7 @@ ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kern
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
              "DampedStop": "PEPSetStoppingTestFunction()", "UndampedStop": "EPSSetStoppingTestFunction()"}
 ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
-    ("src/operators/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
+    ("src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 
@@ -84,9 +86,10 @@ def room(path):
 
 def layer(path):
     """Layer of the sweep, "top", or None for other rooms."""
-    if room(path) != "sweep":
+    if room(path) != "sweep" or "sweep" not in path.parts:
         return None
-    return path.parent.name if path.parent.name in LAYERS else "top"
+    folder = path.parts[path.parts.index("sweep") + 1]
+    return folder if folder in LAYERS else "top"
 
 
 def names(house):
@@ -150,6 +153,14 @@ def lengths(house):
         for f in script.definitions:
             if not isinstance(f, ast.ClassDef) and f.end_lineno - f.lineno > MOST_BODY:
                 yield house.say(script.path, f.lineno, f"body of {f.name} has {f.end_lineno - f.lineno} lines, more than {MOST_BODY}")
+
+
+def folders(house):
+    """Folders that are too full."""
+    held = collections.Counter(path.parent for path in house.files("src"))
+    for folder, n_files in sorted(held.items()):
+        if n_files > MOST_FILES:
+            yield house.say(folder, 1, f"{n_files} files, more than {MOST_FILES}")
 
 
 def columns(house):
@@ -261,54 +272,7 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, columns, strata, readmes, options, unused, dead, words)
-
-# Files that break one rule each: rule, words of what it says, files
-MANY = "static void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
-BEGIN = "PetscOptionsBegin(comm, %s, title, NULL);\n  "
-MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m", "a.h", m, &m, NULL);\n}\n'
-MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
-LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
-       'OptionsGetReals(PetscOptionsObject, "-law", 1);\n}\n')
-PLANTED = (
-    (names, "function Twice", {"src/model/a.c": "static int Twice(void)\n{\n  return 1;\n}\n",
-                               "src/modes/b.h": "int Twice(void)\n{\n  return 2;\n}\n"}),
-    (names, "type Grid", {"src/model/a.h": "typedef struct {\n  int n;\n} Grid;\n",
-                          "src/modes/b.h": "typedef int Grid;\n"}),
-    (names, "struct Grid", {f"src/model/{k}.h": "struct Grid {\n  int n;\n};\n" for k in "ab"}),
-    (names, "macro EDGE", {"src/model/a.c": "#define EDGE 1\n", "src/modes/b.c": "#define EDGE 2\n"}),
-    (names, "constant OPEN", {"src/model/a.h": "typedef enum { OPEN } One;\n",
-                              "src/modes/b.h": "typedef enum { SHUT, OPEN } Two;\n"}),
-    (includes, "model includes modes/b.h", {"src/model/a.c": '#include "modes/b.h"\n', "src/modes/b.h": ""}),
-    (includes, "model includes squeal/modes.h", {"src/model/a.c": "#include <squeal/modes.h>\n",
-                                                 "include/squeal/modes.h": ""}),
-    (includes, "sweep/dense includes", {"src/sweep/dense/a.c": '#include "sweep/track/b.h"\n',
-                                        "src/sweep/track/b.h": "", "src/sweep/README.md": "dense/ track/\n"}),
-    (includes, "sweep/basis includes", {"src/sweep/basis/a.c": '#include "sweep/b.h"\n', "src/sweep/b.h": "",
-                                        "src/sweep/README.md": "basis/\n"}),
-    (includes, "is private", {"src/modes/a.c": '#include "model/modelimpl.h"\n', "src/model/modelimpl.h": ""}),
-    (includes, "is no file", {"src/modes/a.c": '#include "gone.h"\n'}),
-    (lengths, "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}), (lengths, "longer than", {"tests/a.py": 351 * "\n"}),
-    (lengths, "a screen", {"src/main.c": 81 * "\n"}),
-    (lengths, "body of Long", {"src/model/a.c": "static void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
-    (lengths, "Many has 7 arguments", {"src/model/a.c": MANY}),
-    (lengths, "body of long", {"tests/a.py": "def long():\n" + 81 * "    pass\n" + "long()\n"}),
-    (columns, "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
-    (columns, "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
-    (strata, "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
-    (strata, "MatIsSymmetric outside", {"src/model/a.c": "static void A(void)\n{\n  MatIsSymmetric(A, 0, &same);\n}\n"}),
-    (readmes, "no README.md", {"src/solver/a.c": ""}),
-    (readmes, "longer than", {"src/model/README.md": 26 * "\n"}),
-    (options, "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
-    (options, "-law is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
-    (unused, "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
-    (unused, "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
-    (dead, "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",
-                             "tests/a.c": "Twice();\n"}),
-    (dead, "Twice must be static", {"src/model/a.c": "int Twice(void)\n{\n  return 1 ? 1 : Twice();\n}\n"}),
-    (words, "nobody's business", {"options/a.yaml": "# see " + "/".join(("", "home", "me")) + "/notes\n"}),
-)
-
+RULES = (names, includes, lengths, folders, columns, strata, readmes, options, unused, dead, words)
 
 def plant(files):
     """What each rule finds in a small house with these files: name of the rule -> violations."""
@@ -328,8 +292,8 @@ def missed():
     yield from (f"house without a fault: {name} finds {found}" for name, found in plant({}).items() if found)
     for rule, said, files in PLANTED:
         found = plant(files)
-        if len(found[rule.__name__]) != 1 or said not in found[rule.__name__][0] or sum(map(len, found.values())) != 1:
-            yield f"planted for {rule.__name__}, '{said}': found {found}"
+        if len(found[rule]) != 1 or said not in found[rule][0] or sum(map(len, found.values())) != 1:
+            yield f"planted for {rule}, '{said}': found {found}"
 
 
 def main():

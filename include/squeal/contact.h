@@ -44,7 +44,7 @@ typedef struct {
   PetscReal x[3];                                    /* position of the slave, m */
   PetscReal n[3], t[3], b[3];                        /* unit vectors */
   PetscReal area;                                    /* positive share of the slave node in its surface, m^2 */
-  PetscReal across; /* |sum_i w_i a_i| at the point that it faces (contact/surface.h) */
+  PetscReal across; /* |sum_i w_i a_i| at the point that it faces (contact/surface/surface.h) */
   PetscReal gap;    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal force;  /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscReal speed;  /* stated sliding speed, m/s; 0 where nothing slides as told */

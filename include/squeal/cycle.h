@@ -5,7 +5,7 @@
 
    The state x = (eta, rate, lambda, q) at t_n is all that a step knows of the past. N steps of length T / N are the map
    Phi(x, T, p), p the parameter; its derivative M = dPhi/dx is the product of the derivatives of the steps, exact where no status of a pair
-   changes at once: the laws are solved for the statuses that each step ended with. Then (solver/shooting.h)
+   changes at once: the laws are solved for the statuses that each step ended with. Then (solver/shooting/shooting.h)
 
       Phi(x, T, p) = x,     phase,     and along a branch the distance in (eta, rate, T, p): pseudo-arclength.
 
@@ -23,7 +23,7 @@
    2.1e-3; in 103 steps, which mix it with the next one to a conjugate pair, 4.3e-2 and 2.4e-2. To ask for 1e-6 is to ask for the exact
    flow.
 
-   T' and x' are known exactly, by Newton's matrix (solver/shooting.h): `period_slope` is T', `phase_multiplier` the eigenvalue m of M.
+   T' and x' are known exactly, by Newton's matrix (shooting.h): `period_slope` is T', `phase_multiplier` the eigenvalue m of M.
    `derivative_check` is the part along x' of M x' + f T', M and f by differences of the flow from the cycles next to this one. By x' and
    T' it is 1 where M and f are those of the flow, where no status changes in between to 1e-9, in 16384 steps to 2e-7 (0.1 % off in the
    derivative of each step makes 6e-4 of it). It is no multiplier, and tells nothing of how near x is to a cycle: that is the residual.

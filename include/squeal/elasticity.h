@@ -7,7 +7,7 @@
    Anisotropic: the components in the order xx, yy, zz, yz, xz, xy of the global axes (Voigt), shear strains twice those
    of the tensor (gamma_yz = du_y/dz + du_z/dy): stress[r] = sum_s C[r][s] strain[s], C symmetric.
 
-   The matrices of it are in kernels/stiffness.h.
+   The matrices of it are in kernels/element/stiffness.h.
 */
 #pragma once
 

@@ -14,7 +14,7 @@
 #define ELEMENT_MAX_NODES   27
 #define ELEMENT_MAX_DOFS    (3 * ELEMENT_MAX_NODES)
 
-struct Solid; /* shape functions and quadrature, kernels/solid.h */
+struct Solid; /* shape functions and quadrature, kernels/element/solid.h */
 
 typedef struct {
   const char    *formulation; /* value of -model_element; NULL for a shape that has one formulation alone */

@@ -231,7 +231,7 @@ PetscErrorCode ModelGetOwnedNodes(Model model, const char set[], PetscInt *n, Pe
 /*@ ModelCreateShares - the shares s_v of the nodes of a set in a quantity that is spread over it, in the first of three
     places of each local node, complete on every rank that has it: 1; adding up to 1; or area, m^2. Collective. The
     caller destroys the vector. Shares in an area are positive, for springs and the like: of faces of first order
-    int N_v dA, of second A int N_v^2 dA / sum_w int N_w^2 dA (kernels/facet.h).
+    int N_v dA, of second A int N_v^2 dA / sum_w int N_w^2 dA (kernels/contact/facet.h).
     Errors: PETSC_ERR_USER_INPUT for a set without a node of an element, and per area for one without faces; `owner` is
     the prefix of the option -owner_set that the message names. @*/
 PetscErrorCode ModelCreateShares(Model model, const char owner[], const char set[], Spread spread, Vec *shares);
@@ -250,7 +250,7 @@ PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
 /*@ ModelGetSetNormals - for each local node, shape [nodes][3], the outward normal of a surface set times the node's
     share of its area (m^2), complete on every rank that has the node. Its direction is that of the sum of the area
-    vectors of the faces around the node (kernels/facet.h): of first order int N_v n dA, whose length is the share too;
+    vectors of the faces around the node (kernels/contact/facet.h): of first order int N_v n dA, whose length is the share too;
     of second order the faces' own normals there with positive weights, and the length that of ModelCreateShares().
     Collective. The caller frees it. @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);

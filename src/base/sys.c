@@ -7,14 +7,14 @@
 */
 #include <squeal/sys.h>
 #include <squeal/options.h>
-#include "blas.h"
+#include "base/algebra/blas.h"
 #include "events.h"
-#include "help.h"
-#include "interrupt.h"
-#include "print.h"
-#include "memory.h"
-#include "progress.h"
-#include "watch.h"
+#include "base/options/help.h"
+#include "base/process/interrupt.h"
+#include "base/process/print.h"
+#include "base/process/memory.h"
+#include "base/process/progress.h"
+#include "base/process/watch.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <petsctime.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "judge.h"
-#include "surface.h"
+#include "contact/surface/surface.h"
 #include <squeal/options.h>
 
 #define CONTACT_MAX 16 /* interfaces of one scene */

@@ -1,18 +1,18 @@
 /*
    Area of a slave node where its faces lie partly over the master, beside a hole, a slot or the rim. A face f of area A_f, with
-   positive shares s_fv of its nodes (kernels/facet.h), sum_v s_fv = A_f, of which the part c_f lies over the master, gives it to
+   positive shares s_fv of its nodes (kernels/contact/facet.h), sum_v s_fv = A_f, of which the part c_f lies over the master, gives it to
    those of its nodes that have a pair, P_f:
 
       a_v = sum_f  s_fv c_f A_f / sum_{u in P_f} s_fu
 
    so that sum_v a_v = sum_f c_f A_f is the area in contact, and k sum_v a_v the stiffness of a contact per area k. c_f is the sum of
-   the areas in which f and the facets of the master lie over each other along the normal of f (kernels/overlap.h), over that of f.
+   the areas in which f and the facets of the master lie over each other along the normal of f (kernels/contact/overlap.h), over that of f.
    Faces with pairs at all nodes, of which less than 1 % hangs over (as chords of one circle differ), count in full, and so do they
    where -X_overhang is given, since then nodes beyond the border press on it. A face without pairs gives nothing.
 */
 #include "contactimpl.h"
-#include "base/vec3.h"
-#include "kernels/overlap.h"
+#include "base/algebra/vec3.h"
+#include "kernels/contact/overlap.h"
 
 #define COVERED 0.99 /* a face of which more lies over the master counts in full */
 #define BARE    1e-9 /* of the area of all its faces: a node with less has no pair */

@@ -4,7 +4,7 @@
 
       u_s = sum_i w_i(xi) u_i + omega x (x_s - x(xi)).
 
-   The weights w_i are those of the facet, of second order too. omega is the turning of the facet there (kernels/arm.h). A
+   The weights w_i are those of the facet, of second order too. omega is the turning of the facet there (kernels/contact/arm.h). A
    gap between the surfaces is a rigid arm, which turns with the master: rigid motions of both bodies are exact. Forces on
    the slave act on the nodes of the facet by the transpose.
 
@@ -20,7 +20,7 @@
    nodes of the facet as well.
 */
 #include "contactimpl.h"
-#include "kernels/arm.h"
+#include "kernels/contact/arm.h"
 
 #define TIE_SHARE   0.05 /* of the size of a facet: the largest distance where none is given */
 #define TIE_TOUCHES 1e-9 /* of that size: rounding of the places, no gap */

@@ -14,7 +14,7 @@
    of the single elements.
 */
 #include "dynamicsimpl.h"
-#include "base/synchronize.h"
+#include "base/algebra/synchronize.h"
 #include <slepceps.h>
 
 #define CRITICAL_MAX_IT 50

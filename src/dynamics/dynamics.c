@@ -2,7 +2,7 @@
    Dynamics: life cycle, options, and the run: bodies -> critical step -> state at the start -> TS -> history.
 */
 #include "dynamicsimpl.h"
-#include "stop.h"
+#include "dynamics/run/stop.h"
 
 PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics)
 {

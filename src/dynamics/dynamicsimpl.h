@@ -8,8 +8,8 @@
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "dynamics/central/tscentral.h"
-#include "laws.h"
-#include "run.h"
+#include "dynamics/run/laws.h"
+#include "dynamics/run/run.h"
 
 #define FILTERS_MOST 256 /* modes of -dynamics_filters_modes */
 
@@ -115,7 +115,7 @@ PETSC_INTERN PetscErrorCode StateVectorFromVec(Model model, const Layout *layout
 PETSC_INTERN PetscErrorCode StateVectorFromDisplacements(Model model, const Layout *layout, Vec u, PetscReal state[]);
 PETSC_INTERN PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscReal state[], Vec x);
 
-/* startstate.c - displacements and velocities at the start; raises errors for what a static start has no place for */
+/* start/state.c - displacements and velocities at the start; raises errors for what a static start has no place for */
 PETSC_INTERN PetscErrorCode DynamicsCheckStatic(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
 
@@ -123,7 +123,7 @@ PETSC_INTERN PetscErrorCode DynamicsStartState(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsSetFilters(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsDestroyFilters(Dynamics dynamics);
 
-/* dynamicskeep.c - checkpoints */
+/* run/keep.c - checkpoints */
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "results/journal/journal.h"
-#include "solver/shiftinvert.h"
+#include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
 #include <squeal/frf.h>
 #include <squeal/statics.h>

@@ -3,7 +3,7 @@
    and taken away when all are there.
 */
 #include "frfimpl.h"
-#include "base/interrupt.h"
+#include "base/process/interrupt.h"
 #include "base/path.h"
 
 #define FRF_KEPT "frf_restart"

@@ -2,8 +2,8 @@
    Superposition of modes with the residual term: Galerkin's method on the span of the modes' vectors and of Krylov
    vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is.
 */
-#include "krylov.h"
-#include "schur.h"
+#include "frf/space/krylov.h"
+#include "frf/space/schur.h"
 
 #define N_LOOKS 33 /* frequencies that are looked at while the space grows */
 

@@ -3,7 +3,7 @@
 */
 #include "mapimpl.h"
 #include "base/gather.h"
-#include "base/progress.h"
+#include "base/process/progress.h"
 #include <squeal/options.h>
 #include <petsctime.h>
 

@@ -3,7 +3,7 @@
 
 #include <squeal/quantity.h>
 #include <squeal/map.h>
-#include "base/progress.h"
+#include "base/process/progress.h"
 #include "reduced/parameter.h"
 #include "results/journal/journal.h"
 
@@ -125,7 +125,7 @@ struct _p_Map {
 /* quantities.c - what options set in it */
 extern const QuantityTable map_quantities;
 
-/* A chain that is run (mapchain.c): bodies, and work */
+/* A chain that is run (point/chain.c): bodies, and work */
 typedef struct _p_MapMarch *MapMarch;
 struct _p_MapMarch {
   Map            map;
@@ -145,7 +145,7 @@ struct _p_MapMarch {
   PetscReal      growth;
   PetscReal     *lambda_n, *sigma, *omega; /* [n_pairs] N, [2 m] */
   MapSample     *sample;                   /* [n_most] */
-  /* twins (maptwins.c) */
+  /* twins (point/twins.c) */
   PetscInt      n_twins;     /* of a point, at most */
   PetscInt      n_alive;     /* of these, that go on from ends of their own */
   ReducedState  start, next; /* where the point begins, and its first twin */
@@ -159,40 +159,40 @@ struct _p_MapMarch {
   PetscReal    *level, *sorted;
 };
 
-/* mapparameter.c - names, links and values of the axes */
+/* map/parameter.c - names, links and values of the axes */
 PETSC_INTERN PetscErrorCode MapAxes(Map map);
 /* Whether an axis has a parameter of the bodies */
 PETSC_INTERN PetscBool MapAxisIsBody(const MapAxis *axis);
 
-/* mapcheck.c - raises the error for a scene of which no map can be made, and for options of the command line that do
+/* map/check.c - raises the error for a scene of which no map can be made, and for options of the command line that do
    nothing; after ReducedPrepare() for a scene without impulses or sliding; for a window, an end and impulses that do not fit to
    each other and to the step */
 PETSC_INTERN PetscErrorCode MapCheck(Map map);
 PETSC_INTERN PetscErrorCode MapCheckPrepared(Map map);
 PETSC_INTERN PetscErrorCode MapCheckTimes(Map map);
 
-/* mapcheck.c - steps dt (s) of a window, which lasts as long with any dt that divides the map's step, and windows of a point at
+/* map/check.c - steps dt (s) of a window, which lasts as long with any dt that divides the map's step, and windows of a point at
    most. Not collective. */
 PETSC_INTERN void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windows);
 
-/* mapmodes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
+/* point/modes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
 PETSC_INTERN void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapFastest *fastest);
 PETSC_INTERN void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row);
 
-/* mapbodies.c - bodies of a line of the map below a cut-off, Hz, 0: the map's; their friction, speeds of sliding
+/* map/bodies.c - bodies of a line of the map below a cut-off, Hz, 0: the map's; their friction, speeds of sliding
    [n_pairs] (m/s) and loads [n_loads] at a place */
 PETSC_INTERN PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodies *bodies);
 PETSC_INTERN PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *bodies, PetscReal speed[],
                                           PetscReal loads[]);
 PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 
-/* mapbodies.c - whether all impulses of the bodies are due at t (s) at the latest. Not collective. */
+/* map/bodies.c - whether all impulses of the bodies are due at t (s) at the latest. Not collective. */
 PETSC_INTERN PetscBool MapBodiesAreHit(const MapBodies *bodies, PetscReal t);
-/* mapbodies.c - sum [m] of the impulses that act at t in steps of dt (s), or NULL: one between two steps acts at both in shares, as in
+/* map/bodies.c - sum [m] of the impulses that act at t in steps of dt (s), or NULL: one between two steps acts at both in shares, as in
    any reduced run. Not collective. */
 PETSC_INTERN const PetscReal *MapBodiesKick(const MapBodies *bodies, PetscReal t, PetscReal dt, PetscReal kick[]);
 
-/* mapshare.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
+/* map/share.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
 PETSC_INTERN PetscErrorCode MapShareCreate(MPI_Comm comm, MapShare *share);
 PETSC_INTERN PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm);
 PETSC_INTERN PetscErrorCode MapShareNext(MapShare *share, PetscInt *k);
@@ -202,7 +202,7 @@ PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
    small. A line has n_jobs for the ranks, and n_bodies */
 PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch);
 
-/* mapchain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all points of a
+/* point/chain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all points of a
    chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
 PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march);
@@ -210,10 +210,10 @@ PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint ro
 PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
-/* mapchain.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
+/* point/chain.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
 PETSC_INTERN PetscErrorCode MapMarchTry(MapMarch march, MapPoint *row);
 
-/* mapjudge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no mode of the
+/* point/judge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no mode of the
    sliding state, or with the pairs that are closed now, grows, and the rms falls from window to window: two of them in which no
    pair changed its status, or four of a small vibration; the regime of a transient that has ended, and its numbers: of the
    windows that agree, or the last half of all. Not collective */
@@ -221,7 +221,7 @@ PETSC_INTERN PetscErrorCode MapMarchLinearise(MapMarch march, const ContactStatu
 PETSC_INTERN PetscErrorCode MapMarchDiesOut(MapMarch march, PetscBool *dies);
 PETSC_INTERN void           MapMarchJudge(MapMarch march, MapPoint *row);
 
-/* maptwins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state; after its
+/* point/twins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state; after its
    transient the twins of it, from `begin`, its row before, and what they say, into the row. Not collective */
 PETSC_INTERN PetscErrorCode MapTwinsCreate(MapMarch march);
 PETSC_INTERN PetscErrorCode MapTwinsBegin(MapMarch march);
@@ -237,7 +237,7 @@ typedef struct {
   PetscInt           *n_alive;
 } MapKept;
 
-/* mapkeep.c - the journal; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
+/* map/keep.c - the journal; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
    where there are none of this scene; takes their files away. Chains are not collective, and are taken with kept bodies only */
 PETSC_INTERN PetscErrorCode MapJournalOpen(Map map, Results results);
 PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
@@ -246,7 +246,7 @@ PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_row
 PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
 
-/* mapforce.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its relative standard
+/* point/force.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its relative standard
    error, as if they were independent; main line of forces dt apart, in records of n, Hz, NAN for none */
 PETSC_INTERN void      MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *sample);
 PETSC_INTERN PetscReal MapForceLevel(PetscInt n, const MapSample sample[], PetscReal *error);
@@ -255,7 +255,7 @@ PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscR
 PETSC_INTERN PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 PETSC_INTERN PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 
-/* mapspread.c - pure: quantiles 5, 50 and 95 % of n numbers, which are sorted; what in 5 of 100 the mean of n numbers is off from
+/* point/spread.c - pure: quantiles 5, 50 and 95 % of n numbers, which are sorted; what in 5 of 100 the mean of n numbers is off from
    that of as many others; the same, relative, of the root of the mean square over n_runs transients of n[] windows, of rms
    [n_runs][stride] */
 PETSC_INTERN PetscErrorCode MapSpreadQuantiles(PetscInt n, PetscReal x[], PetscReal quantile[MAP_N_QUANTILES]);
@@ -263,10 +263,10 @@ PETSC_INTERN PetscReal      MapSpreadOfMean(PetscInt n, const PetscReal x[]);
 PETSC_INTERN PetscReal      MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride,
                                              const PetscReal rms[]);
 
-/* mapverify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
+/* map/verify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
 PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);
 
-/* mapwrite.c - the tables */
+/* map/write.c - the tables */
 PETSC_INTERN PetscErrorCode MapTableOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point);
 PETSC_INTERN PetscErrorCode MapModesOpen(Results results, ResultsTable *table);

@@ -6,8 +6,8 @@
 */
 #include <squeal/element.h>
 #include <string.h>
-#include "kernels/geometric.h"
-#include "kernels/solidshape.h"
+#include "kernels/element/geometric.h"
+#include "kernels/element/solidshape.h"
 
 #define INCOMPATIBLE "incompatible"
 #define FULL         "full"

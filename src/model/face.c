@@ -2,7 +2,7 @@
    Faces of a named surface: their nodes, seen from outside the body, and how many lie between two cells.
 */
 #include "modelimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define FACE_MAX_NODES 9 /* of a biquadratic quadrilateral */
 

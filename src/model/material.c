@@ -3,8 +3,8 @@
    and a point c of it, r = (I - e e') (x - c), the rows are r / |r|, e x r / |r|, e.
 */
 #include "modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/orthotropic.h"
+#include "base/algebra/vec3.h"
+#include "kernels/element/orthotropic.h"
 
 #define NO_RADIUS 1e-8 /* of a cell's size */
 #define CARRIED   1e-8 /* of the mesh */

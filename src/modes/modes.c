@@ -3,9 +3,9 @@
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
-#include "base/memory.h"
-#include "solver/blockkrylov.h"
-#include "solver/ordering.h"
+#include "base/process/memory.h"
+#include "solver/block/krylov.h"
+#include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
 #define MODES_NEAR          1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */

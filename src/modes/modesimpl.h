@@ -1,7 +1,7 @@
 /* Private to modes/: the record of the solver, and the pieces of a solution */
 #pragma once
 
-#include "solver/shiftinvert.h"
+#include "solver/factor/shiftinvert.h"
 #include <squeal/modes.h>
 #include <squeal/options.h>
 #include <squeal/quantity.h>
@@ -212,7 +212,7 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 
 #define LABEL_TIE 1e-6 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
 
-/* labelunknown.c - names after the unknowns that move most */
+/* label/unknown.c - names after the unknowns that move most */
 PETSC_INTERN PetscErrorCode ModesLabelUnknowns(Modes modes);
 
 /* twins.c - of the zeros of a damped system at most one for each rigid mode; trims the list to the modes asked for */
@@ -224,7 +224,7 @@ PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
 PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
 
-/* nullvectors.c - lists a rigid mode of a damped system for each vector of the null space, first of all, and finds their vectors
+/* rigid/vectors.c - lists a rigid mode of a damped system for each vector of the null space, first of all, and finds their vectors
    where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
@@ -233,7 +233,7 @@ PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices 
 PETSC_INTERN PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
                                         Vec x[], PetscReal error[]);
 
-/* nulldecays.c - decays of rigid motions without the rounding of K. Collective */
+/* rigid/decays.c - decays of rigid motions without the rounding of K. Collective */
 PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);
 
 /* label.c - names of the shapes */

@@ -8,7 +8,7 @@
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.)
 */
 #include "complexvec.h"
-#include "solver/orthonormal.h"
+#include "solver/block/orthonormal.h"
 
 #define QUALITY_BLOCK    16   /* modes whose products are made at once */
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */

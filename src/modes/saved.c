@@ -3,7 +3,7 @@
    8 bytes each, as MUMPS estimates them; a quadratic problem is a linear one of twice the unknowns.
 */
 #include "modesimpl.h"
-#include "solver/lowrank.h"
+#include "solver/factor/lowrank.h"
 
 #define BYTES_TO_MB 1e-6
 

@@ -1,8 +1,8 @@
 /*
    Operators: life cycle, parameters, and the matrices of the bodies alone.
 */
-#include "matrixterm.h"
-#include "nodetable.h"
+#include "operators/files/matrixterm.h"
+#include "operators/files/nodetable.h"
 #include "base/events.h"
 #include <math.h>
 #include <unistd.h>

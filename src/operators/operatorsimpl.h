@@ -1,7 +1,7 @@
 /* Private to operators/: the record of the operators */
 #pragma once
 
-#include "terms.h"
+#include "operators/terms/terms.h"
 #include <squeal/options.h>
 #include <squeal/quantity.h>
 

@@ -1,7 +1,7 @@
 /* Parameters that reduced models are varied over: see parameter.h. Named as in sweeps; what acts on the bodies from outside
    comes first. */
 #include "parameter.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 /* A name that is looked for */
 typedef struct {

@@ -4,7 +4,7 @@
 */
 #include "reducedimpl.h"
 #include "idle.h"
-#include "dynamics/stop.h"
+#include "dynamics/run/stop.h"
 #include <squeal/options.h>
 
 #define BY "-dynamics_model reduced"

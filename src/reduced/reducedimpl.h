@@ -4,11 +4,11 @@
 #include <squeal/options.h>
 #include <squeal/quantity.h>
 #include <squeal/reduced.h>
-#include "contact/compliance/contactcompliance.h"
+#include "contact/compliance/compliance.h"
 #include "dynamics/history/history.h"
-#include "dynamics/run.h"
-#include "solver/dense.h"
-#include "solver/shiftinvert.h"
+#include "dynamics/run/run.h"
+#include "solver/dense/dense.h"
+#include "solver/factor/shiftinvert.h"
 
 #define REDUCED_RTOL 1e-12 /* of the contact laws */
 
@@ -23,7 +23,7 @@ struct _p_ReducedStepper {
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
   PetscInt   rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps; the others */
   PetscReal *combined;      /* [n - rank][rank]: what a force on one of the others is on the chosen ones */
-  PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (stepresidual.c); NULL undamped */
+  PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (step/residual.c); NULL undamped */
   PetscReal *R,
     *G; /* [3 n_pairs]^2, NULL undamped; [3 n_pairs][2 m]: q_{n+1} and z(dt) of unit forces of the pairs at t_{n+1} */
   ContactCompliance laws;                    /* NULL without pairs */
@@ -148,7 +148,7 @@ PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, P
 PETSC_INTERN void ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[], PetscReal q[],
                                      PetscReal y[]);
 
-/* steptangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many numbers;
+/* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many numbers;
    the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
 typedef struct _p_ReducedTangent *ReducedTangent;
 PETSC_INTERN PetscInt             ReducedTangentSize(const ReducedModel *model);
@@ -156,7 +156,7 @@ PETSC_INTERN PetscErrorCode       ReducedTangentCreate(ReducedStepper stepper, R
 PETSC_INTERN PetscErrorCode       ReducedTangentApply(ReducedTangent tangent, PetscInt columns, PetscReal X[]);
 PETSC_INTERN PetscErrorCode       ReducedTangentDestroy(ReducedTangent *tangent);
 
-/* bodymodes.c - modes of the unconnected bodies below the cut-off: omega2, C and the vectors */
+/* bodies/modes.c - modes of the unconnected bodies below the cut-off: omega2, C and the vectors */
 PETSC_INTERN PetscErrorCode ReducedFindModes(ReducedRun reduced);
 /* M Phi of the modes that there are */
 PETSC_INTERN PetscErrorCode ReducedWeighModes(ReducedRun reduced);
@@ -218,7 +218,7 @@ PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
                                               ReducedRun *at);
 
-/* stepresidual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much less on the
+/* step/residual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much less on the
    chosen ones: a force that moves the same */
 PETSC_INTERN PetscErrorCode ReducedStepperSetResidual(ReducedStepper stepper);
 PETSC_INTERN void           ReducedStepperSettle(ReducedStepper stepper, const PetscReal lambda[]);

@@ -5,7 +5,7 @@
 */
 #include "resultsimpl.h"
 #include "base/file.h"
-#include "base/interrupt.h"
+#include "base/process/interrupt.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <petsctime.h>

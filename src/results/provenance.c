@@ -3,8 +3,8 @@
    its final name, and is written anew at the end: what a run that is stopped, or finds no room, leaves is known to be its.
 */
 #include "resultsimpl.h"
-#include "base/help.h"
-#include "base/interrupt.h"
+#include "base/options/help.h"
+#include "base/process/interrupt.h"
 #include <squeal/options.h>
 #include <squeal/sys.h>
 #include <stdlib.h>

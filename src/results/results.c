@@ -3,7 +3,7 @@
 */
 #include "resultsimpl.h"
 #include "base/path.h"
-#include "base/watch.h"
+#include "base/process/watch.h"
 #include <squeal/quantity.h>
 #include <string.h>
 

@@ -11,7 +11,7 @@
 
 #include <squeal/checksum.h>
 #include <squeal/results.h>
-#include "base/help.h"
+#include "base/options/help.h"
 #include <hdf5.h>
 #include <stdio.h>
 

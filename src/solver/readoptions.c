@@ -2,8 +2,8 @@
    Options of PETSc's and SLEPc's solvers, read on solvers that are made for nothing else: which names they know depends
    on their types, and a misspelt one must be an error before the run.
 */
-#include "blockkrylov.h"
-#include "shiftinvert.h"
+#include "solver/block/krylov.h"
+#include "solver/factor/shiftinvert.h"
 #include <squeal/options.h>
 #include <slepceps.h>
 #include <slepcpep.h>

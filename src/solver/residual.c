@@ -2,7 +2,7 @@
    Residuals of eigenpairs of the quadratic problem on real matrices; see residual.h.
 */
 #include "residual.h"
-#include "orthonormal.h"
+#include "solver/block/orthonormal.h"
 
 #define RESIDUAL_WIDTH 32 /* columns of a part, as many as BlockMultiply() takes at once */
 

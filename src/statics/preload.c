@@ -3,7 +3,7 @@
 
    Geometric stiffness, of the stress sigma (Pa) in the bodies:
 
-      K_g = int grad N_i . sigma . grad N_j dV   times the 3 x 3 identity                    (kernels/geometric.h)
+      K_g = int grad N_i . sigma . grad N_j dV   times the 3 x 3 identity                    (kernels/element/geometric.h)
 
    Follower stiffness, of the contact forces on the surfaces. Pair p: normal force l, friction f_t, f_b on the master
    along t, b (N); internal forces N' l - T' f_t - B' f_b. When the master's surface turns, by Theta_t u = t . delta n
@@ -27,7 +27,7 @@
    contact of a node with a surface).
 */
 #include "preload.h"
-#include "operators/terms.h"
+#include "operators/terms/terms.h"
 
 PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, Mat *K)
 {

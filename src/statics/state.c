@@ -3,7 +3,7 @@
    displacements as they are, not from the small system.
 */
 #include "staticsimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define STATICS_LOOSE 1e-6 /* of the loads, unbalanced */
 

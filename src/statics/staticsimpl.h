@@ -3,8 +3,8 @@
 
 #include <squeal/quantity.h>
 #include <squeal/statics.h>
-#include "kernels/coulomb.h"
-#include "solver/shiftinvert.h"
+#include "kernels/contact/coulomb.h"
+#include "solver/factor/shiftinvert.h"
 
 /* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
 typedef struct {

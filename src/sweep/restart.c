@@ -5,7 +5,7 @@
    replaced. Sweeps that have no basis keep their points (keptpoints.c).
 */
 #include "sweepimpl.h"
-#include "base/interrupt.h"
+#include "base/process/interrupt.h"
 #include "base/path.h"
 
 /* What stands before the ends of blocks and the samples in each file */

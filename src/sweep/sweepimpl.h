@@ -5,9 +5,9 @@
 #include <squeal/sweep.h>
 #include "results/journal/journal.h"
 #include "sweep/basis/greedy.h"
-#include "status.h"
+#include "sweep/grid/status.h"
 #include "sweep/track/track.h"
-#include "grid.h"
+#include "sweep/grid/grid.h"
 
 #define SWEEP_MAX_TEXT      65536 /* length of a list of values */
 #define SWEEP_MAX_UNCERTAIN 16

@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include "contact/compliance/contactcompliance.h"
+#include "contact/compliance/compliance.h"
 #include <math.h>
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 /* Facets for unit tests: of each shape, curved at random about a flat one */
 #pragma once
 
-#include "kernels/facet.h"
+#include "kernels/contact/facet.h"
 
 #define FACET_CASES 5
 

@@ -5,7 +5,7 @@
 */
 #pragma once
 
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 #include "brake.h"
 
 #define FREE                                                                                                           \

@@ -1,7 +1,7 @@
-/* What the tests of kernels/hex8.h share: the formulations, an irregular patch of elements, and boxes. Lengths in m */
+/* What the tests of kernels/element/hex8.h share: the formulations, an irregular patch of elements, and boxes. Lengths in m */
 #pragma once
 
-#include "kernels/hex8.h"
+#include "kernels/element/hex8.h"
 
 #define N HEX8_DOFS
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "check.h"
-#include "solver/blockkrylov.h"
+#include "solver/block/krylov.h"
 
 /* As -bv_type vecs: there is no array of all columns, of which one could be taken without a copy */
 static inline PetscErrorCode KeepColumnsApart(EPS eps)

@@ -5,7 +5,7 @@
    the same brake set up from options with the other set. What the numbers themselves should be is told by the cases
    sliding_block and massi2005_*.
 */
-#include "base/matrixadd.h"
+#include "base/algebra/matrixadd.h"
 #include "brake.h"
 #include "check.h"
 #include "petscmain.h"

@@ -1,10 +1,10 @@
 /*
-   Unit test of kernels/arm.h for facets of all shapes, curved: the point that a rigid arm holds, against rigid motions and
+   Unit test of kernels/contact/arm.h for facets of all shapes, curved: the point that a rigid arm holds, against rigid motions and
    against the turning of facets that are moved a little.
 */
 #include "check.h"
 #include "facetcases.h"
-#include "kernels/arm.h"
+#include "kernels/contact/arm.h"
 
 #define X(x) ((const double(*)[3])(x))
 

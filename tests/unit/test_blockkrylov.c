@@ -8,7 +8,7 @@
 */
 #include "check.h"
 #include "takenvectors.h"
-#include "solver/blockkrylov.h"
+#include "solver/block/krylov.h"
 
 typedef struct {
   const char    *name;

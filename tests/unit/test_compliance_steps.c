@@ -9,7 +9,7 @@
 */
 #include "check.h"
 #include "compliancescene.h"
-#include "contact/compliance/contactcompliance.h"
+#include "contact/compliance/compliance.h"
 #include "petscmain.h"
 
 #define STEP_PAIRS 36

@@ -1,12 +1,12 @@
 /*
-   Unit test of kernels/cone.h: the laws of contact and friction are evaluated here anew, on random problems and on
+   Unit test of kernels/contact/cone.h: the laws of contact and friction are evaluated here anew, on random problems and on
    those that leave the random ones: directions held, no friction, no force, no slip. No reference numbers are needed: a
    solution is what obeys the laws.
 */
 #include <stdlib.h>
 #include "check.h"
-#include "kernels/cone.h"
-#include "kernels/friction.h"
+#include "kernels/contact/cone.h"
+#include "kernels/contact/friction.h"
 
 /* Uniform in [-1, 1], the same on every machine */
 static double Random(void)

@@ -1,13 +1,13 @@
 /*
-   Unit test of contact/compliance: one pair against the exact solution of kernels/cone.h and against closed forms, made
+   Unit test of contact/compliance: one pair against the exact solution of kernels/contact/cone.h and against closed forms, made
    solutions of two pairs, friction along a line against the enumeration of all statuses, scenes at random against the
    laws, which compliancescene.h writes out a second time.
 */
 #include "check.h"
 #include "compliancescene.h"
-#include "contact/compliance/contactcompliance.h"
+#include "contact/compliance/compliance.h"
 #include "enumerate.h"
-#include "kernels/cone.h"
+#include "kernels/contact/cone.h"
 #include "petscmain.h"
 
 /* What many scenes ended with */

@@ -1,8 +1,8 @@
 /*
-   Unit tests of kernels/coulomb.h: pure functions, pairs and states drawn at random with a fixed seed. All references
+   Unit tests of kernels/contact/coulomb.h: pure functions, pairs and states drawn at random with a fixed seed. All references
    are the laws themselves, written out here a second time.
 */
-#include "kernels/coulomb.h"
+#include "kernels/contact/coulomb.h"
 #include "check.h"
 
 #include <stdint.h>

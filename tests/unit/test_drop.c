@@ -1,11 +1,11 @@
 /*
-   Unit test of kernels/drop.h on warped facets: a point above a known place, along the normal of the undeformed facet,
+   Unit test of kernels/contact/drop.h on warped facets: a point above a known place, along the normal of the undeformed facet,
    is dropped back on that place. The reference is the construction.
 */
 #include <stdlib.h>
 #include "check.h"
 #include "facetcases.h"
-#include "kernels/drop.h"
+#include "kernels/contact/drop.h"
 
 #define X(x) ((const double(*)[3])(x))
 

@@ -7,7 +7,7 @@
 #include <petscdmplex.h>
 #include <squeal/element.h>
 #include "check.h"
-#include "kernels/solidshape.h"
+#include "kernels/element/solidshape.h"
 
 /* Natural coordinates of node i: the mean of those of its corners */
 static void NodePlace(const Element *e, PetscInt i, double xi[3])

@@ -1,11 +1,11 @@
 /*
-   Unit test of kernels/facet.h and nearest.h for facets of all shapes: shape functions, areas, area vectors and their
+   Unit test of kernels/contact/facet.h and nearest.h for facets of all shapes: shape functions, areas, area vectors and their
    derivative, bounds, and the nearest point, against closed forms and constructions.
 */
 #include <stdlib.h>
 #include "check.h"
 #include "facetcases.h"
-#include "kernels/nearest.h"
+#include "kernels/contact/nearest.h"
 
 #define X(x) ((const double(*)[3])(x))
 

@@ -1,9 +1,9 @@
 /*
-   Unit tests of kernels/geometric.h: uniform stress, rigid motions, and Euler's buckling load of a slender bar.
+   Unit tests of kernels/element/geometric.h: uniform stress, rigid motions, and Euler's buckling load of a slender bar.
    E = 210 GPa, nu = 0.3 unless said.
 */
 #include <stdlib.h>
-#include "kernels/geometric.h"
+#include "kernels/element/geometric.h"
 #include "check.h"
 #include "hex8cases.h"
 

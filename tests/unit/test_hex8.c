@@ -1,11 +1,11 @@
 /*
-   Unit tests of kernels/hex8.h, both formulations: what every element must satisfy, whatever its shape.
+   Unit tests of kernels/element/hex8.h, both formulations: what every element must satisfy, whatever its shape.
    E = 210 GPa, nu = 0.3, 7800 kg/m^3.
 */
 #include <stdlib.h>
 #include "check.h"
 #include "hex8cases.h"
-#include "kernels/facet.h"
+#include "kernels/contact/facet.h"
 
 /* Eigenvalues w, ascending, of the symmetric a (destroyed) */
 extern void dsyev_(const char *, const char *, const int *, double *, const int *, double *, double *, const int *,

@@ -1,5 +1,5 @@
 /*
-   Unit tests of kernels/hex8.h against exact solutions of linear elasticity: the patch test, and pure bending by one
+   Unit tests of kernels/element/hex8.h against exact solutions of linear elasticity: the patch test, and pure bending by one
    element, which is what the incompatible modes are for. E = 210 GPa, nu = 0.3 unless said.
 */
 #include <stdlib.h>

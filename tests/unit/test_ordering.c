@@ -6,8 +6,8 @@
 */
 #include <petscksp.h>
 #include "check.h"
-#include "kernels/hex8.h"
-#include "solver/ordering.h"
+#include "kernels/element/hex8.h"
+#include "solver/factor/ordering.h"
 
 #define NX      13
 #define NY      13

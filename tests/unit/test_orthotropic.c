@@ -1,8 +1,8 @@
 /*
-   Unit tests of kernels/orthotropic.h: the strains that engineering constants say, in any axes, and blocks of elements
+   Unit tests of kernels/element/orthotropic.h: the strains that engineering constants say, in any axes, and blocks of elements
    under them. Constants in GPa are those of a lining, all nine different.
 */
-#include "kernels/orthotropic.h"
+#include "kernels/element/orthotropic.h"
 #include "check.h"
 #include "hex8cases.h"
 

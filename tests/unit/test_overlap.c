@@ -1,7 +1,7 @@
 /* Areas in which facets lie over each other against closed forms: squares that are moved, turned and tilted, triangles, and a facet
    of any shape under tiles of others. Breaks when a corner is lost, or the way round of a triangle counts */
 #include "check.h"
-#include "kernels/overlap.h"
+#include "kernels/contact/overlap.h"
 
 /* A facet of n nodes on the square [0, 1]^2 or its lower left half, turned by an angle about its middle, then moved */
 static void Place(int n, double size, double angle, double dx, double dy, double dz, double x[][3])

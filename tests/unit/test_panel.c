@@ -5,8 +5,8 @@
    rows for alike that are not, or a rest of rows or columns for none, would show. And solver/blockfactor on a basis that is
    orthonormal but for little.
 */
-#include "solver/orthonormal.h"
-#include "solver/panel.h"
+#include "solver/block/orthonormal.h"
+#include "solver/block/panel.h"
 #include "check.h"
 #include "petscmain.h"
 

@@ -2,7 +2,7 @@
    Unit test of operators/parameter: limits of the values, and the parameter of loaded matrices, on one and on several
    ranks. And of base/matrixadd, by which sums of terms are formed.
 */
-#include "base/matrixadd.h"
+#include "base/algebra/matrixadd.h"
 #include "brake.h"
 #include "check.h"
 #include "scratch.h"

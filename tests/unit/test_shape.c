@@ -1,11 +1,11 @@
 /*
-   Unit test of dynamics/shape.c: a mode of a run of modes, laid on the mesh of another run.
+   Unit test of dynamics/start/shape.c: a mode of a run of modes, laid on the mesh of another run.
 
    The first part writes shapes that are functions of place and body, u_d = (1 + body) (1 + d + x + 2 y + 4 z), so that
    what must come back is known at every node, whatever ranks wrote and read it. Pad and disc of the coarse brake match,
    so that 25 nodes of either stand at the same places with other values. The second part takes the brake's own modes.
 */
-#include "dynamics/shape.h"
+#include "dynamics/start/shape.h"
 #include <squeal/modes.h>
 #include <hdf5.h>
 #include <slepcsys.h>

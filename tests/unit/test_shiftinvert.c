@@ -1,16 +1,16 @@
 /*
-   Unit test of solver/block.c: solves in blocks with dense matrices whose columns lie apart in memory (leading dimension
+   Unit test of solver/block/block.c: solves in blocks with dense matrices whose columns lie apart in memory (leading dimension
    above the local rows), as newer SLEPc hands them out, and the products with such matrices that the sweep relies on.
 
-   Then solver/lowrank.c: friction as an update of the factors of the symmetric part, with its vectors kept (2 pairs) and
+   Then solver/factor/lowrank.c: friction as an update of the factors of the symmetric part, with its vectors kept (2 pairs) and
    not (40 pairs), at two shifts with one analysis.
 
    Reference: X is chosen at random, B = A X made column by column with MatMult() or MatMultTranspose().
 */
 #include "check.h"
-#include "solver/lowrank.h"
-#include "solver/ordering.h"
-#include "solver/shiftinvert.h"
+#include "solver/factor/lowrank.h"
+#include "solver/factor/ordering.h"
+#include "solver/factor/shiftinvert.h"
 
 #define N       200
 #define COLUMNS 7

@@ -1,9 +1,9 @@
 /*
-   Unit tests of kernels/spin.h on single elements: fields that the shape functions hold exactly, against integrals over a
+   Unit tests of kernels/element/spin.h on single elements: fields that the shape functions hold exactly, against integrals over a
    box by a rule of order 9. The box stands beside the axis, so that nothing vanishes.
 */
-#include "kernels/solidshape.h"
-#include "kernels/spin.h"
+#include "kernels/element/solidshape.h"
+#include "kernels/element/spin.h"
 #include "check.h"
 
 static const SpinFrame frame = {

@@ -1,8 +1,8 @@
 /*
-   Unit tests of kernels/stiffness.h: stiffness and stress of a material given by its matrix C.
+   Unit tests of kernels/element/stiffness.h: stiffness and stress of a material given by its matrix C.
    References: the isotropic formulas with Lame's parameters; work and forces of uniform strain.
 */
-#include "kernels/geometric.h"
+#include "kernels/element/geometric.h"
 #include "check.h"
 #include "hex8cases.h"
 

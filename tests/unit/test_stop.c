@@ -1,8 +1,8 @@
 /*
-   Unit test of dynamics/stop.c: the first signal leaves a mark, the second ends the process, others are not touched,
+   Unit test of dynamics/run/stop.c: the first signal leaves a mark, the second ends the process, others are not touched,
    and handlers of before come back. Processes that are to die are children of this one.
 */
-#include "dynamics/stop.h"
+#include "dynamics/run/stop.h"
 #include "check.h"
 #include <signal.h>
 #include <sys/wait.h>

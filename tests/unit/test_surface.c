@@ -1,11 +1,11 @@
 /*
-   Unit test of contact/surface.h by refinement, on one and on several ranks: slaves that lie exactly on a cylinder of
+   Unit test of contact/surface/surface.h by refinement, on one and on several ranks: slaves that lie exactly on a cylinder of
    radius R face a master whose vertices do, node between nodes. Normals of the pairs and gaps converge to those of the
    cylinder with order 2; the normals of the facets alone would with order 1.
 */
 #include "check.h"
 #include "contact/contactimpl.h"
-#include "kernels/facet.h"
+#include "kernels/contact/facet.h"
 
 #define R 0.2 /* m */
 #define SCENE                                                                                                          \

@@ -1,8 +1,8 @@
 /* Private to contact/compliance/. All in metres: l = lambda / kappa per pair, v = r less slip0 along the tangents. */
 #pragma once
 
-#include "contactcompliance.h"
-#include "kernels/coulomb.h"
+#include "compliance.h"
+#include "kernels/contact/coulomb.h"
 
 #include <petscblaslapack.h>
 
@@ -110,7 +110,7 @@ PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool 
 PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
 PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
-/* chordbase.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column that an index
+/* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column that an index
    adds, NULL where the store is full; the border for the present statuses; A dz against what its rows miss, dz [4 n] */
 PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordRenew(ContactCompliance c);

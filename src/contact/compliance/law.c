@@ -1,6 +1,6 @@
 /*
    The laws of all pairs at forces l (divided by the stiffness of their pair, m) and motions v = free + W kappa l
-   (kernels/coulomb.h, with w = -v); (1 - t) W kappa + t I stands for W kappa on the way of path.c.
+   (kernels/contact/coulomb.h, with w = -v); (1 - t) W kappa + t I stands for W kappa on the way of path.c.
 */
 #include "complianceimpl.h"
 

@@ -3,7 +3,7 @@
    slow. Rows are not exchanged: what small pivots spoil shows in their ratio, which ComplianceLUFactor() returns.
    Columns are eliminated LU_BLOCK at a time, and taken off four others at once.
 */
-#include "base/versions.h"
+#include "base/algebra/versions.h"
 #include "complianceimpl.h"
 
 #define LU_BLOCK 8

@@ -13,8 +13,8 @@
    v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two differ
    by one step where a ramp changes it.
 */
-#include "base/vec3.h"
-#include "base/versions.h"
+#include "base/algebra/vec3.h"
+#include "base/algebra/versions.h"
 #include "projectorimpl.h"
 
 void NodesPredict(ContactProjector p, PetscReal dt)

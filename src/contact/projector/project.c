@@ -1,7 +1,7 @@
 /*
    Contact forces of a step: block Gauss-Seidel over the pairs on W = G M^-1 G', without forming W. Velocities of the
    nodes are kept up to date; at a pair, with q the relative velocity that they give and p its impulse now,
-      q* = q - W_pp p,   p' = the solution of the pair alone with all others as they are (kernels/cone.h),
+      q* = q - W_pp p,   p' = the solution of the pair alone with all others as they are (kernels/contact/cone.h),
       v_s += M_s^-1 (p' - p),   v_i -= w_i M_i^-1 (p' - p)
    The normal velocity contains gap / dt, hence q_n dt is the gap at t_{n+1}; the tangential one the sliding velocity.
    It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
@@ -9,7 +9,7 @@
    Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below
    that.
 */
-#include "base/versions.h"
+#include "base/algebra/versions.h"
 #include "projectorimpl.h"
 
 #define NOISE 16 /* roundings of a relative velocity, by its terms */

@@ -9,7 +9,7 @@
 
 #include <squeal/projector.h>
 #include "contact/contactimpl.h"
-#include "kernels/cone.h"
+#include "kernels/contact/cone.h"
 #include "base/ramp.h"
 
 /* Sliding of the master of one interface */

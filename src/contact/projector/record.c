@@ -6,8 +6,8 @@
       contact   dt lambda_n V_n         friction  -dt lambda_T . V_T        heat  dt lambda_T . s
    so that friction + heat is what the drive of the sliding feeds. lambda_T is the force on the master.
 */
-#include "base/vec3.h"
-#include "base/versions.h"
+#include "base/algebra/vec3.h"
+#include "base/algebra/versions.h"
 #include "projectorimpl.h"
 
 /* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */

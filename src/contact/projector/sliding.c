@@ -9,7 +9,7 @@
    Lengths in m, angles in rad, times in s.
 */
 #include "projectorimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 #include <squeal/options.h>
 
 /* Axis and speed from the parameters of the interface */

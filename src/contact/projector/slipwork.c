@@ -10,7 +10,7 @@
    of v_{n-1/2}, from the velocities of the nodes, and of the slip before that, extrapolated to t_n (prepare.c).
 */
 #include "projectorimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define SLIP_NOISE 16 /* roundings of a displacement */
 

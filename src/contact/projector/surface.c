@@ -1,5 +1,5 @@
 /*
-   Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters (contact/surface.h), and the
+   Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters (contact/surface/surface.h), and the
    slaves. All is made once from the mesh as it is; every rank sees the lists, the root keeps what it needs.
 */
 #include "projectorimpl.h"

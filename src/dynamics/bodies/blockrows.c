@@ -5,7 +5,7 @@
    summed at once. Nodes that ranks share come first, so that the rows of these alone complete g there. The order of all
    sums is that of the blocks: runs repeat bitwise.
 */
-#include "base/versions.h"
+#include "base/algebra/versions.h"
 #include "bodiesimpl.h"
 
 #define AHEAD 8192 /* bytes of blocks, that are asked for before their turn */

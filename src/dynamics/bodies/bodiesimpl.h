@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bodies.h"
-#include "kernels/stencil.h"
+#include "kernels/element/stencil.h"
 #include <petscksp.h>
 
 /* Axis about which a body is swept, or an oblique one along which it is, at least on some rank; the same on all ranks.
@@ -141,7 +141,7 @@ typedef struct {
   PetscReal stiffness[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS]; /* N/m, [3 n_nodes][3 n_nodes], Cartesian */
 } BodiesCell;
 
-/* bodycell.c */
+/* bodies/cell.c */
 PETSC_INTERN PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell);
 /* turns the stiffness to the local bases of its nodes */
 PETSC_INTERN void BodiesTurnCell(const Layout *layout, BodiesCell *cell);
@@ -166,12 +166,12 @@ PETSC_INTERN PetscErrorCode GeneralSetUp(Bodies bodies);
 PETSC_INTERN PetscErrorCode GeneralDestroy(General *general);
 PETSC_INTERN PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *work);
 
-/* bodypoint.c */
+/* points/spring.c */
 PETSC_INTERN PetscErrorCode PointsSetUp(Bodies bodies);
 PETSC_INTERN void           PointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
 PETSC_INTERN void           PointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
 
-/* bodyjoint.c - the rows; forces as of points; Bound adds what they add to the largest omega^2 at most, 1/s^2 */
+/* points/joint.c - the rows; forces as of points; Bound adds what they add to the largest omega^2 at most, 1/s^2 */
 PETSC_INTERN PetscErrorCode JointsSetUpRows(Bodies bodies);
 PETSC_INTERN PetscErrorCode JointsAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
 PETSC_INTERN PetscErrorCode JointsAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
@@ -188,19 +188,19 @@ static inline PetscInt JointAt(const Layout *l, const BodyJoint *joint, PetscInt
   return l->at[v] + i % 3 * l->step[v];
 }
 
-/* pointmass.c - 1/2 q'W q of the mass and inertia of a point, J */
+/* points/mass.c - 1/2 q'W q of the mass and inertia of a point, J */
 PETSC_INTERN PetscReal PointKinetic(const Joint *point, const PetscReal q[6]);
 /* W, mass and inertia of a point */
 PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
 
-/* rigidpoint.c - matrices of a rigid point; forces in the place of those on its nodes, f [layout n] */
+/* points/rigid.c - matrices of a rigid point; forces in the place of those on its nodes, f [layout n] */
 PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
 PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 
 /* What moves a local node besides its cells: bits */
 enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4 };
 
-/* tiednode.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark [n_nodes],
+/* points/tied.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark [n_nodes],
    moves otherwise; forces in the place of those on their nodes, or motions */
 PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, const unsigned char mark[]);
 PETSC_INTERN PetscErrorCode TiedApply(Bodies bodies, PetscBool forces, PetscReal x[]);

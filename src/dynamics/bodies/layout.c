@@ -7,7 +7,7 @@
    after node, those that ranks share first.
 */
 #include "bodiesimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define SAME_AXIS  1e-8 /* of centres that ranks find, relative to the mesh */
 #define NODES_LEAF 256  /* nodes, with their sums about 15 kB */

@@ -4,7 +4,7 @@
       ku += dt g;  d = beta g + alpha M v;  damping += v.d;  f = -ku - d
    On lines between parts of different beta the first term of d is a stencil of its own.
 */
-#include "base/versions.h"
+#include "base/algebra/versions.h"
 #include "bodiesimpl.h"
 
 typedef struct {

@@ -3,7 +3,7 @@
    Newmark's family with beta = 0 and gamma = b (N. M. Newmark, J. Eng. Mech. Div. ASCE 85, 1959), written with the
    velocities of the half steps.
 */
-#include "base/versions.h"
+#include "base/algebra/versions.h"
 #include "tscentral.h"
 #include "base/events.h"
 #include <squeal/options.h>

@@ -7,7 +7,7 @@
    mass of a node; a node of two parts belongs to the frame that was set first.
 */
 #include "externalimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 #include <squeal/options.h>
 
 /* Weights of points */

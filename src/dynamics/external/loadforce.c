@@ -2,7 +2,7 @@
    Loads of the model in time: F(t) = r(t) F with a ramp r, distributed by the model once for all.
 */
 #include "externalimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 PetscErrorCode TimedLoadsSetFromOptions(External external)
 {

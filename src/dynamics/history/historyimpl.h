@@ -68,11 +68,11 @@ PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept)
 /* schedule.c - the intervals of a run of steps dt (0 for not rounded) to `end`: errors as of HistorySetUp(). Collective. */
 PETSC_INTERN PetscErrorCode HistoryFit(History history, PetscReal end, PetscReal dt);
 
-/* historyrow.c - header of transient.csv, which the caller frees, and a row */
+/* history/row.c - header of transient.csv, which the caller frees, and a row */
 PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteRow(History history, const HistoryState *state);
 
-/* historypairs.c - rows of the states of all ranks, by interface and number of the slave */
+/* history/pairs.c - rows of the states of all ranks, by interface and number of the slave */
 PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
                                               PetscReal time, const HistoryPairs *pairs);
 

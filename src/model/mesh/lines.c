@@ -1,11 +1,11 @@
 /*
    Lines along which the cells of a body are swept by an angle or along an axis: the motions that may have swept it are
-   those between opposite faces of its first cell, three at most (kernels/motion.h); swept.c tries them on all cells. An
+   those between opposite faces of its first cell, three at most (kernels/element/motion.h); swept.c tries them on all cells. An
    axis that is none of x, y, z becomes the third one of a frame in which the same is asked.
 */
 #include "model/modelimpl.h"
 #include "swept.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define AXIS_ROW 2 /* the axis in a frame that is not x, y, z */
 

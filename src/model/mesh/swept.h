@@ -2,7 +2,7 @@
 #pragma once
 
 #include <squeal/model.h>
-#include "kernels/motion.h"
+#include "kernels/element/motion.h"
 
 /* Largest difference of coordinates that are meant to be equal, of the size of the body: rounding alone, since whether a
    rank takes its piece of a body for swept must not show in the forces */

@@ -13,7 +13,7 @@
 */
 #include "model/modelimpl.h"
 #include "partition.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 /* Cost of a cell relative to half of one turned about an axis, whose kernel takes about 13 ns: lines along an axis are
    shorter, hence vectorise less well, and blocks of a sparse matrix take 50 to 60 ns (bound by memory) */

@@ -10,11 +10,11 @@
    nu_ij is the contraction along j for stress along i, so that nu_ij / E_i = nu_ji / E_j; p = 1 = 2, z = 3 and
    G_p = E_p / (2 (1 + nu_p)). Axes by directions in x, y, z: 1 as it is given, 2 made orthogonal to it, 3 = 1 x 2; of the
    transversely isotropic one axis 3 alone. Or by a cylinder: at the centre of each cell 1 is radial, 3 along the
-   cylinder's axis, 2 = 3 x 1 circumferential. The conditions are those of kernels/orthotropic.h.
+   cylinder's axis, 2 = 3 x 1 circumferential. The conditions are those of kernels/element/orthotropic.h.
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/orthotropic.h"
+#include "base/algebra/vec3.h"
+#include "kernels/element/orthotropic.h"
 
 #define PARALLEL 1e-6 /* sine of the angle below which two directions are the same */
 

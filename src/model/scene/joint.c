@@ -8,7 +8,7 @@
    which is exact for rigid motions: B u is the motion of the point, and a bushing does not resist where both of its
    sides move as one rigid body. J is the inertia about x_0, where the centre of mass is.
 
-   The nodes of a set that is joined rigidly move as one rigid body (operators/rigid.c).
+   The nodes of a set that is joined rigidly move as one rigid body (operators/points/rigid.c).
 
    J = [xx xy xz; xy yy yz; xz yz zz] with xy = -int x y dm is that of a body when its principal moments are not negative
    and none exceeds the sum of the two others.
@@ -191,7 +191,7 @@ static PetscBool JointIsLoaded(const ModelScene *s, const Joint *joint)
 static PetscErrorCode JointCheckFree(Model model, const Joint *joint)
 {
   const ModelMean *mean = &joint->mean;
-  PetscBool        acts = joint->rigid, asked[6]; /* operators/rigid.c refuses rigid sets that are held */
+  PetscBool        acts = joint->rigid, asked[6]; /* operators/points/rigid.c refuses rigid sets that are held */
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++)

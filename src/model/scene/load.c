@@ -8,8 +8,8 @@
    their directions while the body moves.
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/facet.h"
+#include "base/algebra/vec3.h"
+#include "kernels/contact/facet.h"
 #include <squeal/options.h>
 
 /* The set of a load, or its point with the moment on it */

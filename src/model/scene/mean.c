@@ -9,7 +9,7 @@
    on q act on the nodes as B'f, whose resultants in x_0 are f exactly.
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
+#include "base/algebra/vec3.h"
 
 #define MEAN_FLAT  1e-10 /* of the largest moment of A: below it nothing tells the rotation */
 #define MEAN_CLOSE 1e-9  /* of the set's size: x_0 is in the middle */

@@ -1,11 +1,11 @@
 /*
    Normals of a surface at its nodes, with their shares in the area as lengths. Those of faces of first order are
    the sums of the area vectors int N_v n dA. Of second order these may be zero at corners: there the faces' own normals
-   are summed with positive weights, and get the positive shares as lengths (kernels/facet.h).
+   are summed with positive weights, and get the positive shares as lengths (kernels/contact/facet.h).
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/facet.h"
+#include "base/algebra/vec3.h"
+#include "kernels/contact/facet.h"
 
 /* Adds the area vectors of the faces on this rank to sum[3 v]; second: whether any face is of second order */
 static PetscErrorCode NormalsAdd(Model model, const char set[], PetscScalar sum[], PetscBool *second)

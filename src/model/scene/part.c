@@ -5,7 +5,7 @@
    which is exact at omega_ref and grows with the frequency elsewhere.
 */
 #include "model/modelimpl.h"
-#include "base/fault.h"
+#include "base/process/fault.h"
 #include <squeal/options.h>
 
 /* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */

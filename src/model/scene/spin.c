@@ -1,6 +1,6 @@
 /*
    Parts that spin about an axis of their own while the frame stays: -<part>_spin, rad/s, -<part>_spin_axis and
-   -<part>_spin_centre. What they add to the modes is in kernels/spin.h. That holds for bodies of revolution alone: their
+   -<part>_spin_centre. What they add to the modes is in kernels/element/spin.h. That holds for bodies of revolution alone: their
    first and second moments about the axis,
 
       s = int r dV,  S = int r r' dV,   r = (I - e e') (x - c),
@@ -14,8 +14,8 @@
    0.27.
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/facet.h"
+#include "base/algebra/vec3.h"
+#include "kernels/contact/facet.h"
 
 #define ROUND  0.01 /* of the moments: room for holes and blocks of the mesh */
 #define SMOOTH 0.25 /* of the velocity: room for bolt holes, and for 13 facets around */

@@ -9,11 +9,11 @@
    L_v (m) is the integral of N_v along the edges, straight between neighbouring nodes: halves of an edge, or by Simpson's
    rule a sixth at its ends and two thirds in its middle. For loads A_v = int N_v dA, with the shape functions N_v of the
    faces. Springs, dashpots and whatever else needs
-   shares above 0 has the positive ones of kernels/facet.h; of faces of first order they are the same.
+   shares above 0 has the positive ones of kernels/contact/facet.h; of faces of first order they are the same.
 */
 #include "model/modelimpl.h"
-#include "base/vec3.h"
-#include "kernels/facet.h"
+#include "base/algebra/vec3.h"
+#include "kernels/contact/facet.h"
 
 /* Whether any rank has a face of the set */
 static PetscErrorCode SetHasFaces(Model model, const char set[], PetscBool *has)

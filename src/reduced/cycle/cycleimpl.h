@@ -6,7 +6,7 @@
 #include <squeal/quantity.h>
 #include "reduced/parameter.h"
 #include "reduced/reducedimpl.h"
-#include "solver/shooting.h"
+#include "solver/shooting/shooting.h"
 
 #define CYCLE_BY  "-analysis cycle"
 #define CYCLE_FAR 1e3 /* s, when ramps are over */

@@ -1,6 +1,6 @@
 /*
    The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q), and its
-   derivative M, the product of those of the steps (steptangent.c). A step whose contact laws have no solution ends the period:
+   derivative M, the product of those of the steps (step/tangent.c). A step whose contact laws have no solution ends the period:
    Phi is then infinite, which no cycle comes from: INFINITY, not the large number PETSC_INFINITY, two of which have no difference.
 */
 #include "cycleimpl.h"

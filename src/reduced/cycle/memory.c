@@ -1,6 +1,6 @@
 /* Memory of the reduced models over a parameter, before they are made */
 #include "cycleimpl.h"
-#include "base/memory.h"
+#include "base/process/memory.h"
 
 /* Of a model, MB */
 static double FamilyMegabytes(const CycleFamily *f)

@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include "base/fault.h"
+#include "base/process/fault.h"
 #include <squeal/checksum.h>
 #include <squeal/results.h>
 

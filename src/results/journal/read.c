@@ -1,7 +1,7 @@
 /*
    Journal: reads it back (write.c). Nothing of a file is used before all ranks have found all of it good.
 */
-#include "base/fault.h"
+#include "base/process/fault.h"
 #include "base/file.h"
 #include "journalimpl.h"
 #include <errno.h>

@@ -4,8 +4,8 @@
 */
 #include "basis.h"
 #include "base/events.h"
-#include "solver/orthonormal.h"
-#include "solver/shiftinvert.h"
+#include "solver/block/orthonormal.h"
+#include "solver/factor/shiftinvert.h"
 
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
 {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sweep/dense/reduced.h"
-#include "base/progress.h"
+#include "base/process/progress.h"
 #include <squeal/modes.h>
 #include "entryrows.h"
 

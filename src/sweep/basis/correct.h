@@ -2,7 +2,7 @@
 #pragma once
 
 #include "basis.h"
-#include "solver/shiftinvert.h"
+#include "solver/factor/shiftinvert.h"
 
 /* The full pencil at a point and a factorisation, which may be that of another point; begins as {0} */
 typedef struct {

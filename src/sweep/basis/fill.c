@@ -10,7 +10,7 @@
    than the bodies is an obstacle to other directions than N. No estimate of the error of the projection is to be had.
 */
 #include "basis.h"
-#include "solver/shiftinvert.h"
+#include "solver/factor/shiftinvert.h"
 #include <slepceps.h>
 
 #define WHOLE         200   /* unknowns up to which the basis is the whole space */

@@ -3,7 +3,7 @@
    the results are then sent to all ranks, bit by bit the same.
 */
 #include "points.h"
-#include "base/progress.h"
+#include "base/process/progress.h"
 
 /* The rank that solves point i */
 static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)

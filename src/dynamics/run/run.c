@@ -1,0 +1,86 @@
+/*
+   What a room that integrates the same scenes by other means takes from the options of a transient.
+*/
+#include "dynamics/dynamicsimpl.h"
+#include <squeal/options.h>
+
+/* Options of the explicit integrator: those that change the answer are refused wherever they stand, the others on the
+   command line */
+static PetscErrorCode RunRefuse(Dynamics d, const char by[])
+{
+  static const char idle[] =
+    "-ts_central_b -dynamics_step_fraction -dynamics_step_force -dynamics_kernel -projector_max_it -projector_rtol";
+  char why[160];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used by %s", by));
+  PetscCall(OptionsRefuse(d->comm, idle, why));
+  PetscCall(OptionsRefusePrefix(d->comm, "-ts_monitor -ts_view -ts_adapt_ -ts_trajectory_ -ts_event_", why));
+  PetscCheck(!d->coriolis && !d->centrifugal, d->comm, PETSC_ERR_SUP,
+             "%s knows no inertial forces of parts that turn: leave out -dynamics_coriolis and -dynamics_centrifugal",
+             by);
+  PetscCheck(!d->filters_dir[0], d->comm, PETSC_ERR_SUP,
+             "%s: -dynamics_filters works on state vectors of the mesh; leave it out", by);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsSetEndless(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  d->endless = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsCheckTimes(Dynamics d, PetscReal end, PetscReal dt)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ExternalCheckLate(d->external, end, dt, LATE_ALL));
+  for (PetscInt i = 0; i < d->n_interfaces; i++) {
+    const ContactInterface *c = &d->interfaces[i];
+    PetscReal               delay;
+
+    PetscCall(ContactProjectorGetDelay(d->projector, i, &delay));
+    PetscCall(ExternalCheckDelay(d->external, c->name, delay, end, LATE_ALL));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsGetStep(Dynamics d, PetscReal dt, DynamicsRun *run)
+{
+  PetscFunctionBeginUser;
+  run->dt  = d->dt_asked > 0 ? d->dt_asked : dt;
+  run->end = 0;
+  if (d->endless) PetscFunctionReturn(0);
+  PetscCall(DynamicsFitEnd(d, &run->dt, &run->end));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], PetscReal dt, DynamicsRun *run)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
+             "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
+  PetscCall(RunRefuse(d, by));
+  d->results = results;
+  if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
+  if (d->start == START_STATIC) PetscCall(DynamicsCheckStatic(d));
+  *run = (DynamicsRun){.model               = d->model,
+                       .contact             = d->contact,
+                       .n_interfaces        = d->n_interfaces,
+                       .interfaces          = d->interfaces,
+                       .operators           = d->operators,
+                       .statics             = d->statics,
+                       .external            = d->external,
+                       .projector           = d->projector,
+                       .history             = d->history,
+                       .checkpoint_interval = d->checkpoint_interval,
+                       .check_interval      = d->laws.interval,
+                       .from_static         = d->start == START_STATIC ? PETSC_TRUE : PETSC_FALSE,
+                       .restart             = d->restart,
+                       .view_kkt            = d->view_kkt};
+  PetscCall(DynamicsGetStep(d, dt, run));
+  PetscCall(TSGetMaxSteps(d->ts, &run->n_steps));
+  if (d->restart) PetscCall(ResultsKeep(results, CHECKPOINT_FILE));
+  if (d->shape[0]) PetscCall(ResultsKeepFolder(results, d->shape));
+  PetscFunctionReturn(0);
+}

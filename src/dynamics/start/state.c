@@ -1,0 +1,189 @@
+/*
+   The state at t = 0: displacements u_0 and velocities v_0.
+      rest    u_0 = 0, v_0 the initial velocities of the parts
+      static  u_0 of the sliding state under the loads (statics.h) and motions, and its contact forces; v_0 as at
+              rest. Then nothing
+              moves until something disturbs it: all loads and sliding speeds are in force from the first step.
+   On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), in the
+   phase in which the largest component of x is positive, and with A such that it is the amplitude asked for. m, m/s.
+*/
+#include "dynamics/dynamicsimpl.h"
+#include "shape.h"
+
+/* Raises the error for a time that the sliding state does not know; 0 is none */
+static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char what[])
+{
+  char      option[160];
+  PetscReal length = 1;
+  PetscBool set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s%s", name, what));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, option, &length, &set));
+  PetscCheck(
+    !set || length == 0, d->comm, PETSC_ERR_USER_INPUT,
+    "%s has no place with -dynamics_start static, the steady state under the whole loads: leave it out, or take "
+    "-dynamics_start rest",
+    option);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsCheckStatic(Dynamics d)
+{
+  static const char *const ramps[]    = {"_ramp", "_delay"};
+  const ContactInterface  *interfaces = d->interfaces;
+  const ModelScene        *scene;
+  PetscInt                 n = d->n_interfaces;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(d->model, &scene));
+  for (int r = 0; r < 2; r++) {
+    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r]));
+    for (PetscInt i = 0; i < scene->n_motions; i++) PetscCall(StartCheckAbsent(d, scene->motions[i].name, ramps[r]));
+    for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r]));
+  }
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(interfaces[i].law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
+               "-%s_law penalty: -dynamics_start static needs -%s_law constraint, the law of the dynamics",
+               interfaces[i].name, interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
+/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real and
+   positive. Returns that component. */
+static PetscErrorCode StartTurn(MPI_Comm comm, PetscInt n, PetscReal re[], PetscReal im[], PetscReal *largest)
+{
+  struct {
+    double size;
+    int    rank;
+  } most = {0};
+  double phase[2] = {1, 0};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &most.rank));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal size = hypot(re[i], im[i]);
+
+    if (size <= most.size) continue;
+    most.size = size;
+    phase[0]  = re[i] / size;
+    phase[1]  = im[i] / size;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(phase, 2, MPI_DOUBLE, most.rank, comm));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal r = re[i];
+
+    re[i] = phase[0] * r + phase[1] * im[i];
+    im[i] = phase[0] * im[i] - phase[1] * r;
+  }
+  *largest = most.size;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsGetShape(Dynamics d, PetscReal u[], PetscReal v[])
+{
+  const Mesh *mesh;
+  PetscInt    n;
+  PetscReal  *re, *im, lambda[2], largest = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(d->model, &mesh));
+  n = 3 * mesh->n_nodes;
+  PetscCall(PetscArrayzero(u, n));
+  PetscCall(PetscArrayzero(v, n));
+  if (!d->shape[0]) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(n, &re, n, &im));
+  PetscCall(ShapeRead(d->model,
+                      &(ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", d->shape, "modes.h5",
+                                     "", d->shape_mode},
+                      re, im, lambda));
+  PetscCall(StartTurn(d->comm, n, re, im, &largest));
+  PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s does not move", d->shape_mode, d->shape);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal scale = d->shape_amplitude / largest;
+
+    u[i] = scale * re[i];
+    v[i] = scale * (lambda[0] * re[i] - lambda[1] * im[i]);
+  }
+  PetscCall(PetscFree2(re, im));
+  PetscFunctionReturn(0);
+}
+
+/* u += A re, v += A (sigma re - omega im) */
+static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
+{
+  const PetscInt n = d->layout->n_vertices;
+  PetscReal     *du, *dv;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * n, &du, 3 * n, &dv));
+  PetscCall(DynamicsGetShape(d, du, dv));
+  for (PetscInt i = 0; i < n; i++) {
+    if (d->layout->at[i] < 0) continue;
+    LayoutAdd(d->layout, i, &du[3 * i], u);
+    LayoutAdd(d->layout, i, &dv[3 * i], v);
+  }
+  PetscCall(PetscFree2(du, dv));
+  PetscFunctionReturn(0);
+}
+
+/* 1e-10 of the model's size, m: rounding of coordinates is no penetration */
+static PetscErrorCode StartFindSlack(Dynamics d, PetscReal *slack)
+{
+  const Mesh *mesh;
+  PetscReal   range[2] = {0, 0}; /* largest and smallest coordinate, as maxima */
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(d->model, &mesh));
+  for (PetscInt i = 0; i < 3 * d->layout->n_vertices; i++) {
+    range[0] = PetscMax(range[0], mesh->x[i]);
+    range[1] = PetscMax(range[1], -mesh->x[i]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, d->comm));
+  *slack = 1e-10 * (range[0] + range[1]);
+  PetscFunctionReturn(0);
+}
+
+/* Contact surfaces at displacements u: pairs, and forces of the sliding state where it is the start */
+static PetscErrorCode StartContact(Dynamics d, const PetscReal u[])
+{
+  const ContactState *states = NULL;
+  PetscReal           slack;
+
+  PetscFunctionBeginUser;
+  if (!d->projector) PetscFunctionReturn(0);
+  if (d->start == START_STATIC) PetscCall(StaticsGetState(d->statics, &states, NULL));
+  for (PetscInt i = 0; i < d->surface.n; i++) LayoutGet(d->layout, d->surface.vertex[i], u, &d->surface.u[3 * i]);
+  PetscCall(StartFindSlack(d, &slack));
+  if (d->shape[0]) slack += PetscAbsReal(d->shape_amplitude);
+  PetscCall(ContactProjectorStart(d->projector, 0, d->surface.u, slack, states));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsStartState(Dynamics d)
+{
+  PetscScalar *u, *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(d->u, &u));
+  PetscCall(VecGetArray(d->v, &v));
+  PetscCall(ExternalSetVelocity(d->external, v));
+  if (d->start == START_STATIC) {
+    Vec displacement;
+
+    PetscCall(DynamicsCheckStatic(d));
+    PetscCall(StaticsSolve(d->statics, NULL));
+    PetscCall(StaticsGetState(d->statics, NULL, &displacement));
+    PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));
+  }
+  if (d->shape[0]) PetscCall(StartAddShape(d, u, v));
+  PetscCall(BodiesMakeRigid(d->bodies, u));
+  PetscCall(BodiesMakeRigid(d->bodies, v));
+  PetscCall(StartContact(d, u));
+  PetscCall(BodiesSetState(d->bodies, u, v, d->ku));
+  PetscCall(VecRestoreArray(d->v, &v));
+  PetscCall(VecRestoreArray(d->u, &u));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,232 @@
+/*
+   A chain: a line of the map in one direction, point after point, each from the end of the one before, until its regime is known
+   (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is made anew.
+*/
+#include "map/mapimpl.h"
+
+PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march)
+{
+  const ReducedModel *model = &bodies->model;
+  MapMarch            w;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(march));
+  w         = *march;
+  w->map    = map;
+  w->bodies = bodies;
+  w->dt     = dt;
+  MapCountWindows(map, dt, &w->n, &w->n_most);
+  PetscCall(ReducedStateCreate(model, &w->state));
+  PetscCall(ReducedStateCreate(model, &w->rest));
+  PetscCall(ReducedReportCreate(model, &w->report));
+  w->report.works = PETSC_FALSE;
+  PetscCall(ReducedStepperCreate(model, dt, rtol, &w->stepper));
+  PetscCall(PetscCalloc6(model->n_pairs, &w->sliding, model->n_loads, &w->loads, model->m, &w->kick, w->n_most * w->n,
+                         &w->slip, w->n_most * w->n, &w->force, w->n_most, &w->sample));
+  PetscCall(PetscCalloc6(model->n_pairs, &w->status, model->n_pairs, &w->closed, model->n_pairs, &w->known,
+                         model->n_pairs, &w->lambda_n, 2 * model->m, &w->sigma, 2 * model->m, &w->omega));
+  PetscCall(MapTwinsCreate(w));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapMarchDestroy(MapMarch *march)
+{
+  MapMarch w = *march;
+
+  PetscFunctionBeginUser;
+  if (!w) PetscFunctionReturn(0);
+  PetscCall(MapTwinsDestroy(w));
+  PetscCall(ReducedStepperDestroy(&w->stepper));
+  PetscCall(ReducedStateDestroy(&w->state));
+  PetscCall(ReducedStateDestroy(&w->rest));
+  PetscCall(ReducedReportDestroy(&w->report));
+  PetscCall(PetscFree6(w->sliding, w->loads, w->kick, w->slip, w->force, w->sample));
+  PetscCall(PetscFree6(w->status, w->closed, w->known, w->lambda_n, w->sigma, w->omega));
+  PetscCall(PetscFree(*march));
+  PetscFunctionReturn(0);
+}
+
+/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after MapMarchLinearise() there */
+static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
+{
+  MapFastest fastest;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedLineariseInertia(&w->bodies->model, w->closed, w->lambda_n, w->sigma, w->omega));
+  MapModesJudge(2 * w->bodies->model.m, w->sigma, w->omega, &fastest);
+  row->whole = fastest.growth;
+  PetscFunctionReturn(0);
+}
+
+/* Statuses at t_{n+1}: whether they are those at the beginning of the window, and whether all closed pairs stick */
+static void MarchLook(MapMarch w, MapSample *sample)
+{
+  PetscInt n_closed = 0, n_stick = 0;
+
+  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++) {
+    const ContactStatus status = w->state.status[i];
+
+    n_closed += status != CONTACT_OPEN;
+    n_stick += status == CONTACT_STICK;
+    if (status != w->status[i]) sample->changed = PETSC_TRUE;
+  }
+  sample->stick += (n_closed && n_stick == n_closed) / (PetscReal)w->n;
+}
+
+/* Whether contact feeds the motion */
+static PetscBool MarchIsMade(const MapMarch w)
+{
+  return ReducedContactFeeds(w->contact, PetscAbsReal(w->friction) + w->given);
+}
+
+/* The steps of the next window, and what its forces are like */
+static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
+{
+  const PetscInt n_pairs = w->bodies->model.n_pairs;
+  PetscReal     *force   = &w->force[w->n * w->n_windows];
+  PetscReal     *slip    = &w->slip[w->n * w->n_windows];
+  MapSample     *now     = &w->sample[w->n_windows];
+
+  PetscFunctionBeginUser;
+  *now = (MapSample){0};
+  PetscCall(PetscArraycpy(w->status, w->state.status, n_pairs));
+  for (PetscInt k = 0; k < w->n; k++) {
+    const PetscReal *kick = MapBodiesKick(w->bodies, w->state.time, w->dt, w->kick);
+
+    if (kick) now->changed = now->hit = PETSC_TRUE;
+    PetscCall(ReducedStep(w->stepper, &(ReducedDrive){w->loads, w->sliding, kick}, &w->state, &w->report));
+    w->given += kick ? PetscAbsReal(w->report.external) : 0;
+    ReducedGetContactWork(&w->bodies->model, &w->report, &w->contact, &w->friction);
+    force[k] = slip[k] = 0;
+    for (PetscInt i = 0; i < n_pairs; i++) {
+      force[k] += w->state.p[3 * i];
+      slip[k] += w->report.slip[2 * i] / (w->dt * (PetscReal)n_pairs);
+    }
+    MarchLook(w, now);
+    row->steps++;
+  }
+  MapForceMeasure(w->n, force, now);
+  w->n_windows++;
+  PetscCheck(!MarchIsMade(w), PETSC_COMM_SELF, PETSC_ERR_FP, "contact gives %g J", (double)w->contact);
+  PetscFunctionReturn(0);
+}
+
+/* Windows until the regime is known, after the last impulse, or the time is over */
+static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
+{
+  PetscBool dies;
+
+  PetscFunctionBeginUser;
+  for (w->n_windows = 0; w->n_windows < w->n_most;) {
+    PetscCall(MarchWindow(w, row));
+    PetscCall(MapMarchDiesOut(w, &dies));
+    row->end = !MapBodiesAreHit(w->bodies, w->state.time - w->dt)                 ? MAP_TIME
+               : dies                                                             ? MAP_DECAYS
+               : MapIsSettled(w->n_windows, w->sample, w->map->rtol, &row->error) ? MAP_SETTLED
+               : MapIsSteady(w->n_windows, w->sample, w->map->rtol, &row->error)  ? MAP_STEADY
+                                                                                  : MAP_TIME;
+    if (row->end != MAP_TIME) break;
+  }
+  MapMarchJudge(w, row);
+  PetscFunctionReturn(0);
+}
+
+/* The sliding state of a point, its eigenvalues, and where the point begins: there, or where the one before ended */
+static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *begun)
+{
+  const ReducedModel *model   = &w->bodies->model;
+  MapFastest          fastest = {NAN, NAN, NAN};
+  PetscBool           found;
+
+  PetscFunctionBeginUser;
+  PetscCall(MapBodiesMove(w->map, row, w->bodies, w->sliding, w->loads));
+  for (PetscInt i = 0; i < model->n_pairs; i++) w->sliding[i] *= w->dt;
+  PetscCall(ReducedStepperTakeFriction(w->stepper));
+  PetscCall(ReducedEquilibrium(model, w->loads, &w->rest, &found));
+  w->growth = NAN;
+  PetscCall(PetscArrayzero(w->known, model->n_pairs));
+  if (found) PetscCall(MapMarchLinearise(w, w->rest.status, &fastest));
+  if (found) MapModesTake(2 * model->m, w->sigma, w->omega, row);
+  if (found && model->Mx) PetscCall(MarchWeigh(w, row));
+  if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
+  row->growth    = fastest.growth;
+  row->mode_freq = fastest.freq;
+  row->index     = fastest.index;
+  w->state.time  = 0;
+  *begun         = found || go_on ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapMarchTry(MapMarch w, MapPoint *row)
+{
+  PetscErrorCode error;
+  PetscReal      kinetic;
+
+  PetscFunctionBeginUser;
+  w->contact = w->friction = 0;
+  ReducedEnergy(&w->bodies->model, &w->state, &kinetic, &w->given);
+  w->given += kinetic;
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = MarchRun(w, row);
+  PetscCall(PetscPopErrorHandler());
+  PetscCheck(!error || error == PETSC_ERR_NOT_CONVERGED || error == PETSC_ERR_FP, PETSC_COMM_SELF, error,
+             "a transient of the map ended by PETSc's error %d", (int)error);
+  if (error) row->regime = MAP_UNKNOWN, row->end = MAP_FAILED;
+  row->fault = MarchIsMade(w) ? MAP_MADE : error == PETSC_ERR_FP ? MAP_NO_NUMBER : MAP_NO_FORCES;
+  PetscFunctionReturn(0);
+}
+
+/* A point; false where it failed, of which no other rank knows: laws without solution, or a motion beyond numbers */
+static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *good)
+{
+  MapPoint begin;
+
+  PetscFunctionBeginUser;
+  PetscCall(MarchBegin(w, go_on, row, good));
+  begin = *row;
+  if (*good) {
+    PetscCall(MapTwinsBegin(w));
+    PetscCall(MapMarchTry(w, row));
+  } else row->regime = MAP_UNKNOWN, row->end = MAP_FAILED, row->fault = MAP_NO_STATE;
+  if (row->end == MAP_FAILED) *good = PETSC_FALSE;
+  PetscCall(MapTwinsRun(w, &begin, row));
+  PetscFunctionReturn(0);
+}
+
+void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
+{
+  const PetscInt way = chain % map->n_ways, down = map->direction == MAP_BOTH ? way : map->direction == MAP_DOWN;
+  const PetscInt place = map->direction == MAP_APART ? way : down ? map->n_linked - 1 - k : k;
+
+  *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down};
+}
+
+PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
+{
+  Map       map  = w->map;
+  PetscBool good = PETSC_FALSE;
+  PetscInt  first = 0;
+  MapKept   kept = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive};
+
+  PetscFunctionBeginUser;
+  w->n_alive = 0;
+  if (w->bodies->kept) PetscCall(MapResumeChain(map, chain, &first, row, &kept));
+  if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = first; k < map->n_linked; k++) {
+    MapChainPlace(map, chain, k, &row[k]);
+    PetscCall(MarchPoint(w, good, &row[k], &good));
+    PetscCall(MapKeepChain(map, chain, k + 1, row, &kept));
+    PetscCall(ProgressStep(&map->progress));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapMarchAlone(MapMarch w, MapPoint *row)
+{
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  w->n_twins = 0;
+  PetscCall(MarchPoint(w, PETSC_FALSE, row, &good));
+  PetscFunctionReturn(0);
+}

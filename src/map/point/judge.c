@@ -1,0 +1,112 @@
+/*
+   What a transient is when it ends, and whether it has: windows that die out, settle or are steady (map.h), and its numbers.
+*/
+#include "map/mapimpl.h"
+
+#define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
+#define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
+#define MARCH_TREND    1.5  /* of the rms, from a quarter of the windows to the next: growth */
+
+PetscErrorCode MapMarchLinearise(MapMarch w, const ContactStatus status[], MapFastest *fastest)
+{
+  const ReducedModel *model = &w->bodies->model;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    w->closed[i]   = status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
+    w->lambda_n[i] = w->rest.p[3 * i];
+  }
+  PetscCall(ReducedLineariseSliding(model, w->closed, w->lambda_n, w->sigma, w->omega));
+  MapModesJudge(2 * model->m, w->sigma, w->omega, fastest);
+  w->growth = fastest->growth;
+  PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));
+  PetscFunctionReturn(0);
+}
+
+/* Whether `growth` is that of the pairs that are closed now, all of which slip */
+static PetscBool MarchIsKnown(const MapMarch w)
+{
+  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
+    if (w->state.status[i] != (w->known[i] ? CONTACT_SLIP : CONTACT_OPEN)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+PetscErrorCode MapMarchDiesOut(MapMarch w, PetscBool *dies)
+{
+  const MapSample *s    = &w->sample[w->n_windows - 1];
+  const PetscBool  tiny = s->rms <= MARCH_TINY * s->mean, small = s->rms <= MARCH_SMALL * s->mean;
+  const PetscInt   n = s->changed ? 4 : 2;
+  MapFastest       fastest;
+
+  PetscFunctionBeginUser;
+  *dies = PETSC_FALSE;
+  if (w->n_windows < n || (s->changed && !small)) PetscFunctionReturn(0);
+  for (PetscInt k = 1; k < n && !tiny; k++)
+    if (s[1 - k].rms >= s[-k].rms) PetscFunctionReturn(0);
+  if (!MarchIsKnown(w) && !s->changed) PetscCall(MapMarchLinearise(w, w->state.status, &fastest));
+  *dies = w->growth < 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much beyond the one
+   before, or, where a mode grows, where it rises in each window of the last half, or where no pair changed its status there, so
+   that the motion is linear */
+static MapRegime MarchTrend(const MapMarch w)
+{
+  const PetscInt   n      = w->n_windows;
+  const MapSample *s      = w->sample;
+  PetscBool        linear = MarchIsKnown(w), rises = PETSC_TRUE;
+  PetscReal        error;
+  const PetscReal  ratio =
+    MapForceLevel(n / 4, &s[n - n / 4], &error) / MapForceLevel(n / 4, &s[n - 2 * (n / 4)], &error);
+
+  for (PetscInt k = n - n / 2; k < n; k++) {
+    if (s[k].changed) linear = PETSC_FALSE;
+    if (s[k].rms <= (1 + w->map->rtol) * s[k - 1].rms) rises = PETSC_FALSE;
+  }
+  if (linear && w->growth < 0) return MAP_STABLE;
+  if (ratio >= MARCH_TREND || (w->growth > 0 && (linear || rises))) return MAP_GROWTH;
+  if (ratio <= 1 / MARCH_TREND && w->growth < 0) return MAP_STABLE;
+  return MAP_CYCLE;
+}
+
+/* Means over windows first .. */
+static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
+{
+  const PetscReal n = (PetscReal)(w->n_windows - first);
+
+  for (PetscInt k = first; k < w->n_windows; k++) {
+    const MapSample *s = &w->sample[k];
+
+    row->mean += s->mean / n;
+    row->open += s->open / n;
+    row->stick += s->stick / n;
+    row->peak = k == first ? s->peak : PetscMax(row->peak, s->peak);
+  }
+}
+
+void MapMarchJudge(MapMarch w, MapPoint *row)
+{
+  const PetscInt  n = w->n, last = w->n_windows;
+  const PetscInt  first = row->end == MAP_DECAYS    ? last - 1
+                          : row->end == MAP_SETTLED ? last - MAP_SETTLED_WINDOWS
+                                                    : last / 2;
+  const PetscInt  half  = (last - first) / 2;
+  const PetscReal dt = w->dt, change = row->error;
+
+  w->first = first;
+  MarchAverage(w, first, row);
+  row->rms    = MapForceLevel(last - first, &w->sample[first], &row->error);
+  row->time   = w->state.time;
+  row->regime = row->end == MAP_DECAYS ? MAP_STABLE : row->end == MAP_TIME ? MarchTrend(w) : MAP_CYCLE;
+  if (row->end == MAP_DECAYS) row->error = NAN;
+  if (row->end == MAP_SETTLED) row->error = change;
+  if (row->regime == MAP_CYCLE && row->stick > MAP_STICKING_SHARE) row->regime = MAP_STICKING;
+  row->freq = row->freq_error = NAN;
+  if (row->regime == MAP_STABLE) return;
+  row->freq = MapForceLine(last - first, n, &w->slip[n * first], dt);
+  if (half)
+    row->freq_error = PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
+                                   MapForceLine(half, n, &w->slip[n * (last - half)], dt));
+}
+

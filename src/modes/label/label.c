@@ -1,0 +1,304 @@
+/*
+   Names of shapes. The out-of-plane displacement w of the disc's nodes is fitted, by least squares weighted with
+   nodal mass, as
+
+      w(r, theta) = sum_m sum_j P_j(rho) (a_mj cos m theta + b_mj sin m theta),   m = 0..16, j = 0..4,
+
+   P_j Legendre polynomials of the radius mapped to rho in [-1, 1], theta measured about the disc's axis from the
+   contact. The nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with
+   most energy decides), the nodal diameters half the antinodes of that family around the rim, since a stiff contact
+   mixes neighbouring harmonics, and cosine against sine tells an antinode at the contact (+). Axis and centre are
+   those of the part's inertia tensor, so any mesh in any position serves. Where a contact surface goes all around the
+   axis, only the ring from its least radius outward counts, not a hat inside of it.
+
+   A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of
+   plane, else after the part that takes most part. Participation of part p is |y^T M_p x| from left and right
+   vectors, the share of the part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic energy;
+   at a lock-in, where the right vector moves one body and the left one the other, about one half for each of the two
+   (I. J. Perez-Arriaga et al., IEEE Trans. Power Apparatus and Systems 101, 1982: participation factors).
+*/
+#include "modes/modesimpl.h"
+#include "disc.h"
+#include <ctype.h>
+#include <string.h>
+
+#define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
+
+/* Participation of the parts and the disc's fit of all modes, summed over ranks */
+typedef struct {
+  PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
+  PetscBool   by_unknown;                /* what is no disc is named after the unknown that moves most */
+  PetscReal **mass;                      /* [part][local node] */
+  PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
+  PetscReal  *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
+  PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
+  Disc        frame;
+} Labels;
+
+/* sum_v m_v a_v . b_v */
+static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[], const PetscReal b[])
+{
+  PetscReal sum = 0;
+
+  for (PetscInt v = 0; v < n; v++)
+    sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
+  return sum;
+}
+
+/* Adds participation and the disc's right-hand sides of mode i; without left vectors y = conj(x) */
+static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, Labels *l)
+{
+  Vec xr, xi, yr, yi;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
+  PetscCall(OperatorsGetNodal(operators, xr, l->x[0]));
+  PetscCall(OperatorsGetNodal(operators, xi, l->x[1]));
+  PetscCall(OperatorsGetNodal(operators, yr ? yr : xr, l->y[0]));
+  PetscCall(OperatorsGetNodal(operators, yr ? yi : xi, l->y[1]));
+  for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
+  for (PetscInt part = 0; part < l->n_parts; part++) {
+    const PetscInt   n     = l->n_vertices;
+    const PetscReal *m     = l->mass[part];
+    PetscReal       *share = &l->share[2 * (i * l->n_parts + part)];
+
+    share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
+    share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
+  }
+  for (int k = 0; k < (xi ? 2 : 1) && l->disc >= 0; k++) DiscProject(&l->frame, 2 * i + k, l->x[k], &l->energy[2 * i]);
+  PetscFunctionReturn(0);
+}
+
+/* Writes the name of mode i, and its participation in per cent */
+static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
+{
+  double *const share = &modes->part_percent[i * l->n_parts];
+  PetscReal     total = 0;
+  PetscInt      most  = 0;
+  Mode         *mode  = &modes->mode[i];
+  PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt part = 0; part < l->n_parts; part++) {
+    const PetscReal *z = &l->share[2 * (i * l->n_parts + part)];
+
+    share[part] = PetscSqrtReal(z[0] * z[0] + z[1] * z[1]);
+    total += share[part];
+    if (share[part] > (1 + LABEL_TIE) * share[most]) most = part;
+  }
+  if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total &&
+      l->energy[2 * i + 1] > (1 + LABEL_TIE) * 0.5 * l->energy[2 * i] && !rigid)
+    PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
+  else if (!l->by_unknown || rigid)
+    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
+  for (PetscInt part = 0; part < l->n_parts; part++) share[part] = total > 0 ? 100 * (share[part] / total) : 0;
+  PetscFunctionReturn(0);
+}
+
+/* Marks the local nodes on the surfaces of the contacts; free marks */
+static PetscErrorCode SurfacesMark(Model model, Contact contact, PetscInt n_vertices, PetscBool **marks)
+{
+  const ContactInterface *interfaces;
+  PetscInt                n_interfaces, n, *vertex;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_vertices, marks));
+  PetscCall(ContactGetInterfaces(contact, &n_interfaces, &interfaces));
+  for (PetscInt i = 0; i < 2 * n_interfaces; i++) {
+    PetscCall(ModelGetSetNodes(model, i % 2 ? interfaces[i / 2].master : interfaces[i / 2].slave, &n, &vertex));
+    for (PetscInt k = 0; k < n; k++) (*marks)[vertex[k]] = PETSC_TRUE;
+    PetscCall(PetscFree(vertex));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Whether points that nobody calls a disc are flat as one: a square bar has an axis too */
+static PetscErrorCode PointsAreFlat(const Mesh *mesh, const Disc *disc, PetscBool *flat)
+{
+  PetscReal farthest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
+    PetscReal along = 0;
+
+    for (int d = 0; d < 3; d++) along += (mesh->x[3 * v + d] - disc->centre[d]) * disc->axis[d];
+    farthest = PetscMax(farthest, PetscAbsReal(along));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &farthest, 1, MPIU_REAL, MPI_MAX, disc->comm));
+  *flat = farthest < 0.5 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether a word stands in a name, between what are no letters */
+static PetscErrorCode NameHasWord(const char name[], const char word[], PetscBool *has)
+{
+  const char *at = name;
+  size_t      length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrlen(word, &length));
+  for (*has = PETSC_FALSE; !*has && (at = strstr(at, word)); at++)
+    *has =
+      (at == name || !isalpha((unsigned char)at[-1])) && !isalpha((unsigned char)at[length]) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether a part is the disc by a word of its name, in small or capital letters */
+static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
+{
+  static const char *const names[] = {"disc", "disk", "rotor"};
+  char                     name[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(name, part, sizeof(name)));
+  PetscCall(PetscStrtolower(name));
+  *is_disc = PETSC_FALSE;
+  for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !*is_disc; i++)
+    PetscCall(NameHasWord(name, names[i], is_disc));
+  PetscFunctionReturn(0);
+}
+
+/* The part of -modes_disc; where nothing is said and no part is called disc, the only one that is by its name; else -1 */
+static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *disc)
+{
+  PetscInt  n = 0, by_name = -1;
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  for (PetscInt part = 0; part < mesh->n_parts; part++) {
+    PetscCall(PetscStrcmp(mesh->part[part], modes->disc, &same));
+    if (same) *disc = part;
+    PetscCall(NameIsDisc(mesh->part[part], &same));
+    n += same;
+    if (same) by_name = part;
+  }
+  PetscCheck(*disc >= 0 || !modes->has_disc, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_disc '%s' is none of the -parts", modes->disc);
+  if (*disc < 0 && n == 1) *disc = by_name;
+  PetscFunctionReturn(0);
+}
+
+/* The disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc. Points without parts may be
+   one */
+static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, const Mesh *mesh, Labels *l)
+{
+  PetscReal centre[3];
+  PetscBool same, found = PETSC_FALSE, *surface = NULL;
+
+  PetscFunctionBeginUser;
+  l->disc = model || mesh->n_parts > 1 ? -1 : 0;
+  PetscCall(LabelsNameDisc(modes, mesh, &l->disc));
+  if (l->disc < 0) PetscFunctionReturn(0);
+  if (model) PetscCall(ContactGetCentre(contact, centre, &found));
+  if (model) PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));
+  PetscCall(DiscCreate(modes->comm,
+                       &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL, surface}, modes->n,
+                       &l->frame, &same));
+  PetscCall(PetscFree(surface));
+  if (same && !model && mesh->n_parts == 1) PetscCall(PointsAreFlat(mesh, &l->frame, &same));
+  if (!same) l->disc = -1;
+  PetscFunctionReturn(0);
+}
+
+/* Masses, room and the disc */
+static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh *mesh, Labels *l)
+{
+  Model   model;
+  Contact contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  l->n_parts    = mesh->n_parts;
+  l->n_vertices = mesh->n_nodes;
+  PetscCall(PetscMalloc1(l->n_parts, &l->mass));
+  PetscCall(PetscCalloc2(2 * modes->n * l->n_parts, &l->share, 2 * modes->n, &l->energy));
+  PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
+                         3 * l->n_vertices, &l->y[1]));
+  PetscCall(LabelsWeigh(modes, mesh, l->mass));
+  PetscCall(LabelsFindDisc(modes, model, contact, mesh, l));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LabelsDestroy(Labels *l)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt part = 0; part < l->n_parts; part++) PetscCall(PetscFree(l->mass[part]));
+  PetscCall(PetscFree(l->mass));
+  PetscCall(PetscFree2(l->share, l->energy));
+  PetscCall(PetscFree4(l->x[0], l->x[1], l->y[0], l->y[1]));
+  PetscCall(DiscDestroy(&l->frame));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesLabel(Modes modes)
+{
+  Labels      l = {0};
+  const Mesh *mesh;
+  Model       model;
+  Operators   operators;
+  PetscInt    n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCall(OperatorsGetMesh(operators, &mesh));
+  if (!mesh) {
+    PetscCall(ModesLabelUnknowns(modes));
+    PetscFunctionReturn(0);
+  }
+  n = modes->n * mesh->n_parts;
+  PetscCall(LabelsCreate(modes, operators, mesh, &l));
+  l.by_unknown = !model && mesh->n_parts == 1 ? PETSC_TRUE : PETSC_FALSE; /* better than one name for all */
+  if (l.by_unknown) PetscCall(ModesLabelUnknowns(modes));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, operators, i, &l));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, modes->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
+  if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
+  PetscCall(PetscFree(modes->part_percent));
+  PetscCall(PetscMalloc1(n, &modes->part_percent));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, mesh, i));
+  PetscCall(LabelsDestroy(&l));
+  PetscFunctionReturn(0);
+}
+
+/* Adds one complex vector of the pencil, expanded to all unknowns */
+static PetscErrorCode SpectrumAddExpanded(Pencil pencil, PetscBool left, Vec r, Vec i, Vec work[2], Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilExpand(pencil, left, r, work[0]));
+  PetscCall(PencilExpand(pencil, left, i, work[1]));
+  PetscCall(SpectrumAdd(s, 0, 0, work[0], work[1]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char label[][32])
+{
+  const PetscInt  n      = given->n;
+  struct _p_Modes shapes = *modes;
+  Operators       operators;
+  Vec             work[2];
+
+  PetscFunctionBeginUser;
+  shapes.n            = n;
+  shapes.part_percent = NULL;
+  PetscCall(SpectrumCreate(n, &shapes.right));
+  PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
+  PetscCall(PetscCalloc1(n, &shapes.mode));
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsCreateVec(operators, &work[0]));
+  PetscCall(VecDuplicate(work[0], &work[1]));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_FALSE, given->xr[i], given->xi[i], work, &shapes.right));
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_TRUE, given->yr[i], given->yi[i], work, &shapes.left_spectrum));
+    shapes.mode[i].rigid = given->rigid[i];
+  }
+  PetscCall(ModesLabel(&shapes));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(label[i], shapes.mode[i].label, 32));
+  PetscCall(VecDestroy(&work[0]));
+  PetscCall(VecDestroy(&work[1]));
+  PetscCall(SpectrumDestroy(&shapes.right));
+  PetscCall(SpectrumDestroy(&shapes.left_spectrum));
+  PetscCall(PetscFree(shapes.mode));
+  PetscCall(PetscFree(shapes.part_percent));
+  PetscFunctionReturn(0);
+}

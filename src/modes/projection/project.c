@@ -1,0 +1,290 @@
+/*
+   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and some
+   beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's method
+   with one real basis V for both sides (two bases make the dense problem ill-conditioned) gives lambda, x, y with residuals
+
+      r = Q(lambda) x,   s = Q(lambda)' y,
+
+   and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step of
+   shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003). The
+   error of an eigenvalue is the product of those of its two vectors, hence left vectors need less. Where rounding lies is
+   not known beforehand: corrections that no longer add a direction to V have settled, too, within PROJECT_ROUNDING.
+
+   No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings none
+   from beyond them where its measure is below one (projection/fit.c). Where it is above DAMPING_WEAK the route is that of
+   damped.c.
+*/
+#include "projection.h"
+#include "base/process/memory.h"
+#include "solver/block/orthonormal.h"
+
+#define DAMPING_WEAK     0.9
+#define PROJECT_ATTEMPTS 3 /* with ever more undamped modes */
+#define PROJECT_ROUNDS   8
+#define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
+#define PROJECT_LEFT     1e-11
+#define PROJECT_ROUNDING 10   /* times these, where corrections add nothing to the basis any more */
+#define PROJECT_ROOM     2.5  /* columns of the basis beside undamped vectors */
+#define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
+
+static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
+static const char why_guard[]  = "damping moves modes by more than the guard";
+static const char why_differ[] = "undamped right and left modes differ";
+
+/* Removes what lies farther from the shift than the distance */
+static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = s->n - 1; i >= 0; i--) {
+    const PetscComplex lambda = SpectrumLambda(s, i);
+
+    if (cabs(-lambda * lambda - shift) >= distance) PetscCall(SpectrumRemove(s, i));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Frictionless modes of the band that were found */
+static PetscInt CountInBand(const Window *window, const Spectrum *s)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) n += s->omega[i] >= window->edge[0] && s->omega[i] <= window->edge[1];
+  return n;
+}
+
+/* Undamped right and left vectors of the window and a guard, as far as both reach; complete = none is missing */
+static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped, Window *window, ShiftInvert *si,
+                                    PetscReal *reach, PetscBool *complete)
+{
+  Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
+  const PetscBool counted = undamped->symmetric && window->expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
+  Window          wide    = *window;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesSolveRight(modes, undamped, window, si));
+  window->counted = counted;
+  *reach          = right->reach;
+  *complete       = !counted || CountInBand(window, right) == window->expected ? PETSC_TRUE : PETSC_FALSE;
+  if (!modes->left || counted) PetscFunctionReturn(0);
+  PetscCall(UndampedSolve(modes, undamped, window, si, PETSC_TRUE, left));
+  *reach = PetscMin(right->reach, left->reach);
+  if (*reach < PETSC_MAX_REAL) *reach *= 1 - 1e-9;
+  PetscCall(SpectrumTrim(si->shift, *reach, right));
+  PetscCall(SpectrumTrim(si->shift, *reach, left));
+  *complete = right->n == left->n ? PETSC_TRUE : PETSC_FALSE;
+  wide.low = 0, wide.high = PETSC_MAX_REAL, wide.count = 0;
+  if (*complete) PetscCall(LeftMatch(modes, &wide, &window->worst, complete));
+  if (*complete && CopiesDoubtful(modes, window, right)) *complete = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Forgets the spectra */
+static PetscErrorCode SpectraDestroy(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SpectrumDestroy(&modes->right));
+  PetscCall(SpectrumDestroy(&modes->left_spectrum));
+  PetscFunctionReturn(0);
+}
+
+/* The largest backward errors of right and left vectors */
+static void WorstErrors(const ProjectionModes *found, PetscReal worst[2])
+{
+  worst[0] = worst[1] = 0;
+  for (PetscInt i = 0; i < found->n; i++)
+    for (int side = 0; side < 2; side++) worst[side] = PetscMax(worst[side], found->backward[side][i]);
+}
+
+/* Whether the modes have no more digits than these on a basis that corrections left as it was */
+static PetscBool AtRounding(const Projection *p, const ProjectionModes *found, PetscInt size_before)
+{
+  PetscReal worst[2];
+
+  WorstErrors(found, worst);
+  return found->size == size_before && worst[0] <= PROJECT_ROUNDING * p->limit[0] &&
+             worst[1] <= PROJECT_ROUNDING * p->limit[1]
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* With -info */
+static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *found, PetscInt n_columns)
+{
+  PetscReal worst[2];
+
+  PetscFunctionBeginUser;
+  WorstErrors(found, worst);
+  PetscCall(PetscInfo(p->V,
+                      "%" PetscInt_FMT " modes on %" PetscInt_FMT
+                      " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
+                      " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
+                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns, (double)p->window->beyond,
+                      (double)found->lambda_reach, (double)p->reach));
+  PetscFunctionReturn(0);
+}
+
+/* The modes on the present basis: followed from what they were, or all anew */
+static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionModes *found)
+{
+  ProjectionModes before   = *found;
+  PetscBool       followed = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!anew) PetscCall(ProjectionFollow(p, &before, found, &followed));
+  if (anew || !followed) PetscCall(ProjectionEigen(p, found));
+  if (!anew) PetscCall(ProjectionModesDestroy(&before));
+  PetscFunctionReturn(0);
+}
+
+/* Corrects the modes until all have settled; settled = they have, and the window is covered */
+static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
+{
+  PetscInt n_columns = 1, size = 0;
+
+  PetscFunctionBeginUser;
+  *settled = PETSC_FALSE;
+  for (int round = 0; round < PROJECT_ROUNDS && n_columns; round++, size = found->size) {
+    PetscCall(FindModes(p, round ? PETSC_FALSE : PETSC_TRUE, found));
+    if (found->lambda_reach > p->reach) break;
+    PetscCall(ProjectionCorrect(p, found, &n_columns));
+    PetscCall(InfoRound(p, found, n_columns));
+    if (AtRounding(p, found, size)) n_columns = 0;
+  }
+  *settled = n_columns ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* The modes of the window in place of the undamped ones */
+static PetscErrorCode PutModes(Projection *p, const ProjectionModes *found)
+{
+  Modes modes = p->modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpectraDestroy(modes));
+  PetscCall(ProjectionLift(p, found, PETSC_FALSE, &modes->right));
+  PetscCall(WindowSelect(p->window, &modes->right));
+  if (!modes->left) PetscFunctionReturn(0);
+  PetscCall(ProjectionLift(p, found, PETSC_TRUE, &modes->left_spectrum));
+  PetscCall(WindowSelect(p->window, &modes->left_spectrum));
+  PetscFunctionReturn(0);
+}
+
+/* Where damping leaves the vectors as they are */
+static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
+{
+  Modes    modes = p->modes;
+  Spectrum right, left = {.n = 0};
+
+  PetscFunctionBeginUser;
+  window->beyond       = 0;
+  window->mapped       = PETSC_TRUE;
+  window->mapped_alpha = p->alpha;
+  window->mapped_beta  = p->beta;
+  PetscCall(ProjectionMap(p, &modes->right, &right));
+  if (modes->left) PetscCall(ProjectionMap(p, modes->left_spectrum.n ? &modes->left_spectrum : &modes->right, &left));
+  PetscCall(SpectraDestroy(modes));
+  modes->right         = right;
+  modes->left_spectrum = left;
+  PetscCall(WindowSelect(window, &modes->right));
+  PetscCall(WindowSelect(window, &modes->left_spectrum));
+  if (ProjectionEdge(p, window->count ? WindowNearest(window, &modes->right) : 0) > p->reach) *why = why_guard;
+  PetscFunctionReturn(0);
+}
+
+/* Undamped vectors in the basis, with what damping leaves of their residuals where there are others beyond them. Of each kind
+   of vectors one set is there at a time: new memory costs as much as products with it. */
+static PetscErrorCode AddModal(Projection *p, ModalBlock modal[2])
+{
+  Modes modes = p->modes;
+
+  PetscFunctionBeginUser;
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ModalBlocksReduce(p, &modes->right, &modes->left_spectrum, modal));
+  PetscCall(SpectraDestroy(modes));
+  p->room = (PetscInt)(PROJECT_ROOM * (modal[0].n + modal[1].n));
+  for (int side = 0; side < 2 && modal[side].n; side++) {
+    PetscCall(ProjectionAdd(p, PROJECT_DISTINCT, modal[side].x));
+    PetscCall(BVDestroy(&modal[side].x));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* By Galerkin's method and corrections */
+static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window, const char **why)
+{
+  Modes           modes = p->modes;
+  ProjectionModes found;
+  PetscBool       settled;
+
+  PetscFunctionBeginUser;
+  p->limit[0] = PROJECT_RIGHT;
+  p->limit[1] = PROJECT_LEFT;
+  PetscCall(AddModal(p, modal));
+  window->beyond = 0;
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
+  if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
+  if (*why) PetscFunctionReturn(0);
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
+  PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
+  PetscCall(Iterate(p, &found, &settled));
+  if (settled) PetscCall(PutModes(p, &found));
+  window->n_basis = found.size;
+  if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
+  PetscCall(ProjectionModesDestroy(&found));
+  PetscFunctionReturn(0);
+}
+
+/* From the undamped modes to the damped ones; why is set where the route ends before */
+static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why)
+{
+  Modes      modes = p->modes;
+  ModalBlock modal[2];
+  PetscBool  exact, zero;
+
+  PetscFunctionBeginUser;
+  window->rigid  = 0;
+  window->mapped = PETSC_FALSE;
+  for (PetscInt i = 0; i < modes->right.n; i++) {
+    PetscCall(ProjectionIsZero(p, &modes->right, i, &zero));
+    window->rigid += zero;
+  }
+  PetscCall(ModalBlocksCreate(p, &modes->right, &modes->left_spectrum, modal));
+  PetscCall(ProjectionFit(p, &modes->right, modal));
+  PetscCall(ProjectionIsExact(p, &modes->right, &exact));
+  if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO)
+    *why = why_whole;
+  else
+    PetscCall(exact ? MapModes(p, window, why) : Project(p, modal, window, why));
+  PetscCall(ModalBlocksDestroy(modal));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done)
+{
+  PencilMatrices undamped = *pencil;
+  const char    *why      = why_differ;
+  Projection     p;
+  PetscBool      complete = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  undamped.C = NULL;
+  PetscCall(ProjectionCreate(modes, pencil, window, &p));
+  PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), RELEASE_MATRIX, &p.si));
+  MemoryReturn();
+  window->guard = PETSC_TRUE;
+  for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
+    if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);
+    if (attempt && !complete) CopiesMakeRoom(modes, window, &modes->right);
+    PetscCall(SpectraDestroy(modes));
+    PetscCall(ProjectionForget(&p));
+    PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
+    why = complete ? NULL : why_differ;
+    if (complete) PetscCall(AddDamping(&p, window, &why));
+  }
+  *done = why ? PETSC_FALSE : PETSC_TRUE;
+  if (why && why != why_whole) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
+  if (why) PetscCall(SpectraDestroy(modes));
+  window->guard = PETSC_FALSE;
+  if (why) window->extra = 6, window->rigid = 0;
+  PetscCall(ProjectionDestroy(&p));
+  PetscFunctionReturn(0);
+}

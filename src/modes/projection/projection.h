@@ -1,0 +1,111 @@
+/* Private to modes/: a damped window by projection on undamped vectors; see project.c */
+#pragma once
+
+#include "modes/complexvec.h"
+
+#define PROJECTION_KEEP 1e-3 /* of the residual of a mode: less of it is left to the next round */
+
+/* Undamped vectors of one side as real columns, a complex one as two, with C and M times them; or with C' and M' */
+typedef struct {
+  PetscInt   n;
+  PetscInt  *mode; /* [n] whose column it is in the spectrum */
+  BV         x, Cx, Mx;
+  PetscReal *tolerance; /* what may remain of the columns of Cx, once they are what damping leaves of residuals */
+} ModalBlock;
+
+/* One real basis V for right and left vectors, orthonormal in M but for little, which V'MV tells, and the dense model on it */
+typedef struct {
+  Modes                 modes;
+  const PencilMatrices *pencil;
+  Mat                   transposed[3]; /* K', C', M' where these differ from K, C, M; else references to them */
+  Mat                   spread;        /* right' where K = K_even + left' right; transposed[0] is K_even then */
+  const Window         *window;
+  ShiftInvert           si;          /* of P = K - s M */
+  PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
+  PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
+  PetscReal             norms[3];    /* of K, C, M, Frobenius */
+  PetscReal             limit[2];    /* backward errors of settled right and left vectors */
+  BV                    V;
+  BV                    pairs[2]; /* left V, right V where there is `spread` */
+  PetscInt              k, room;  /* columns of V; for how many there is to be room at least */
+  PetscReal            *K, *C, *M; /* V'KV, V'CV, V'MV [k * k], column-major */
+} Projection;
+
+/* Eigenvalues of the dense model that belong to the window, omega >= 0, with right and left vectors x' x = y' y = 1,
+   turned so that x^T x is real and positive; and the backward errors of the vectors V x and V y */
+typedef struct {
+  PetscInt      n, size;
+  PetscComplex *lambda;       /* [n] rad/s */
+  PetscComplex *vectors[2];   /* [n][size] right and left, in coordinates of V */
+  PetscReal    *backward[2];  /* [n], infinite before they are known */
+  PetscReal     lambda_reach; /* largest |kappa(lambda) - s| on the edge of what the window claims */
+} ProjectionModes;
+
+/* kappa of the undamped problem that C = alpha M + beta K maps to lambda */
+static inline PetscComplex ProjectionKappa(const Projection *p, PetscComplex lambda)
+{
+  return -(lambda * lambda + p->alpha * lambda) / (1 + p->beta * lambda);
+}
+
+/* projection/space.c - the basis and its model */
+PETSC_INTERN PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window,
+                                             Projection *p);
+/* Y += right' left X, what friction adds to transposed[0] X; nothing where that is K' */
+PETSC_INTERN PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y);
+/* Takes in what the block (overwritten) holds beyond V, leaving out directions shorter than drop beside its longest
+   column */
+PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block);
+/* Empties the basis */
+PETSC_INTERN PetscErrorCode ProjectionForget(Projection *p);
+PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
+
+/* projection/start.c - blocks of both spectra, without C' x and M' x of left ones as yet; of conjugate pairs of kappa one vector is
+   enough */
+PETSC_INTERN PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left,
+                                              ModalBlock modal[2]);
+PETSC_INTERN PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2]);
+/* In place of C x what damping of first order leaves of the residuals of vectors of the window, r of right and s of left ones;
+   M x is destroyed */
+PETSC_INTERN PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectrum *right, const Spectrum *left,
+                                              ModalBlock modal[2]);
+/* Adds P^-1 r and P^-T s of them to the basis; they are overwritten */
+PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, ModalBlock modal[2]);
+
+/* projection/fit.c - alpha and beta; exact where R x vanishes for all vectors of the window */
+PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBlock modal[2]);
+/* The measure of damping: the spectral radius of (K - s M)^-1 lambda R / (1 + beta lambda) on the complement of V,
+   |lambda| at the top of the window, estimated from a random block */
+PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho);
+
+/* projection/map.c - whether C = alpha M + beta K; the spectrum of the damped problem then, right or left */
+PETSC_INTERN PetscErrorCode ProjectionIsExact(const Projection *p, const Spectrum *right, PetscBool *exact);
+/* Whether an undamped mode is rigid: kappa is zero within rounding */
+PETSC_INTERN PetscErrorCode ProjectionIsZero(const Projection *p, const Spectrum *s, PetscInt i, PetscBool *zero);
+PETSC_INTERN PetscErrorCode ProjectionMap(const Projection *p, const Spectrum *from, Spectrum *to);
+
+/* projection/dense.c - whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it, or
+   where V holds every mode */
+PETSC_INTERN PetscBool ProjectionHas(const Projection *p, PetscComplex lambda);
+/* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away from
+   a target */
+PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
+/* Eigenvalues of the dense model in the window */
+PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
+PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
+
+/* The modes on the basis that has grown since, each followed from what it was but for settled ones; followed = false where
+   one is lost or found twice */
+PETSC_INTERN PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
+                                             PetscBool *followed);
+
+/* projection/extend.c - adds P^-1 r of the right residuals and P^-T s of the left ones to the basis, as few as span them
+   within the tolerances of their columns; either block may be NULL, they are overwritten. n_columns = how many, may be
+   NULL */
+PETSC_INTERN PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const tolerance[2],
+                                             PetscInt *n_columns);
+/* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the limits to the basis:
+   n_columns of them, 0 where all have settled */
+PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
+/* The vectors V x, or V y, as a spectrum */
+PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
+                                           Spectrum *s);

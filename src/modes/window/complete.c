@@ -1,0 +1,166 @@
+/*
+   What a solution says about its completeness. Without damping and friction the inertia of K - s M at the ends of the band
+   proves it. Else two independent searches are compared, those of right and of left vectors, which begin from different
+   starts on one shared factorisation a shift, and the frictionless, undamped count stands beside the modes found. There a mode is a pair of
+   eigenvalues lambda: conjugates, of which one is listed, or two real ones where damping keeps it from oscillating. A
+   rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
+*/
+#include "modes/modesimpl.h"
+
+#define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
+
+/* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero is one
+   mode with another zero, which is not listed, or with a decay; two decays are one mode */
+static void CountReal(Modes modes, PetscInt *rows, PetscInt *pairs, PetscInt *at_zero)
+{
+  PetscInt decays = 0;
+
+  *at_zero = 0;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    *at_zero += modes->mode[i].rigid;
+    decays += !modes->mode[i].rigid && modes->mode[i].omega == 0;
+  }
+  *rows  = *at_zero + decays;
+  *pairs = *at_zero + (PetscMax(0, decays - *at_zero) + 1) / 2;
+}
+
+/* The count without friction and damping, and why that of the rows may differ from it */
+static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, char text[], size_t size)
+{
+  PetscInt rows, pairs, at_zero;
+  char     real[192] = "", other[128] = "", zeros[128] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (window->expected < 0 || window->count) PetscFunctionReturn(0);
+  CountReal(modes, &rows, &pairs, &at_zero);
+  if (at_zero && window->rigid)
+    PetscCall(PetscSNPrintf(zeros, sizeof(zeros), "; %" PetscInt_FMT " at zero, one for each motion that nothing resists, K x = 0",
+                            at_zero));
+  if (rows != pairs)
+    PetscCall(PetscSNPrintf(real, sizeof(real),
+                            "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s",
+                            rows, pairs, pairs == 1 ? "" : "s"));
+  if (modes->n - rows + pairs != window->expected)
+    PetscCall(PetscStrncpy(other, ", the others lie beyond that growth or have left the band", sizeof(other)));
+  if (modes->n - rows + pairs > window->expected)
+    PetscCall(PetscStrncpy(other, ", the others came into the band by friction, damping or spin", sizeof(other)));
+  PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s",
+                          zeros, real, window->expected, other));
+  PetscFunctionReturn(0);
+}
+
+/* How the undamped modes of a projection are known to be complete, and what damping does to that */
+static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
+                                         size_t size)
+{
+  char undamped[192] = "inertia counts the undamped modes in the band";
+
+  PetscFunctionBeginUser;
+  if (!window->counted)
+    PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
+                            "two independent searches of the undamped modes agree to %.1e", (double)window->worst));
+  PetscCall(PetscSNPrintf(text, size, "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
+                          undamped, region, (double)window->beyond, rest));
+  PetscFunctionReturn(0);
+}
+
+/* Why a damped solution was not done by projection */
+static PetscErrorCode DescribeRoute(const Window *window, PetscBool dense, char text[], size_t size)
+{
+  char measure[80] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!window->why[0]) PetscFunctionReturn(0);
+  if (window->beyond >= 0)
+    PetscCall(PetscSNPrintf(measure, sizeof(measure), " (strength %.2g beyond the undamped modes of the window)",
+                            (double)window->beyond));
+  PetscCall(PetscSNPrintf(text, size, "; solved as a quadratic problem (%s), since %s%s", dense ? "LAPACK" : "PEP",
+                          window->why, measure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WindowDescribe(Modes modes, const Window *window)
+{
+  char         frictionless[512], region[64] = "", route[256], massless[192] = "";
+  char        *text = modes->completeness;
+  const size_t size = sizeof(modes->completeness);
+
+  PetscFunctionBeginUser;
+  PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
+  PetscCall(DescribeRoute(window, modes->dense, route, sizeof(route)));
+  if (window->most < INFINITY)
+    PetscCall(
+      PetscSNPrintf(massless, sizeof(massless),
+                    "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
+                    (double)window->most));
+  if (!window->count)
+    PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
+  if (window->proven && window->count)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
+                            window->expected));
+  else if (window->proven)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none is missing: inertia counts %" PetscInt_FMT " in the band",
+                            window->expected));
+  else if (window->project && (modes->left || window->counted))
+    PetscCall(DescribeProjection(window, region, frictionless, text, size));
+  else if (modes->left && modes->dense)
+    PetscCall(PetscSNPrintf(text, size,
+                            "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
+                            "transposes, to %.1e%s%s",
+                            (double)window->worst, region, frictionless));
+  else if (modes->left)
+    PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",
+                            (double)window->worst, region, frictionless));
+  else
+    PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
+  PetscCall(PetscStrlcat(text, route, size));
+  PetscCall(PetscStrlcat(text, massless, size));
+  PetscFunctionReturn(0);
+}
+
+/* Why there may be too many modes; empty where nothing tells */
+static PetscErrorCode WindowDoubt(Modes modes, const Window *window, size_t size, char doubt[])
+{
+  Operators operators;
+  Model     model;
+
+  PetscFunctionBeginUser;
+  doubt[0] = '\0';
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  if (model) PetscCall(ModelDescribeDoubt(model, PetscMax(window->high, window->target) / (2 * PETSC_PI), size, doubt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WindowCheckCount(Modes modes, const Window *window)
+{
+  char doubt[512] = "", below[64] = "";
+
+  PetscFunctionBeginUser;
+  if (!modes->has_band || window->expected < 0) PetscFunctionReturn(0);
+  if (!modes->has_most) PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
+  if (modes->most == 0 || window->expected <= (doubt[0] ? MODES_DOUBTED : modes->most)) PetscFunctionReturn(0);
+  if (window->below > 0) PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->below));
+  SETERRQ(modes->comm, PETSC_ERR_USER_INPUT,
+          "-modes_band %.6g,%.6g holds %" PetscInt_FMT " modes%s%s%s; narrow the band (Hz), or give -modes_most %" PetscInt_FMT
+          " to compute them",
+          (double)modes->band[0], (double)modes->band[1], window->expected, below, doubt[0] ? ": " : "", doubt, window->expected);
+}
+
+PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[])
+{
+  char doubt[512];
+
+  PetscFunctionBeginUser;
+  PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
+  PetscCheck(!doubt[0], modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "the eigensolver did not converge all modes of the window: %s", doubt);
+  SETERRQ(
+    modes->comm, PETSC_ERR_NOT_CONVERGED,
+    "the eigensolver did not converge all modes of the window; raise -%s_max_it or -%s_ncv, or narrow -modes_band",
+    solver, solver);
+}

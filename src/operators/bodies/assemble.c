@@ -1,0 +1,194 @@
+/*
+   Terms of the bodies, springs and dashpots. Of each part p, at its Poisson's ratio, K_p (m) per unit Young's modulus E
+   (E_1 where it is not isotropic: all other moduli keep their ratio to it) and M_p (m^3) per unit density rho; of each
+   list of springs or dashpots the diagonal matrix of its nodes' shares:
+      K = sum_p E_p K_p + sum_s k_s D_s,   M = sum_p rho_p M_p,
+      C = sum_p (alpha_p rho_p M_p + beta_p E_p K_p) + sum_d c_d D_d
+   and those of bushings and points (joint.c).
+*/
+#include "operators/operatorsimpl.h"
+
+/* Replaces the consistent mass of an element by the lumped one */
+static void MassLump(const Element *element, PetscReal mass[])
+{
+  const PetscInt n = 3 * element->n_nodes;
+  PetscReal      lumped[ELEMENT_MAX_NODES];
+
+  ElementLump(element, mass, lumped);
+  for (PetscInt i = 0; i < n * n; i++) mass[i] = i % n == i / n ? lumped[i / n / 3] : 0;
+}
+
+/* Adds local cell c to K_p and M_p */
+static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
+{
+  const Element *element;
+  const Mesh    *mesh;
+  Elasticity     unit;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
+  PetscCall(ModelGetElasticity(o->model, c, 1, 1, &unit));
+  n = 3 * element->n_nodes;
+  for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
+  PetscCall(ElementMatrices(element, x, &unit, ke, me));
+  if (o->lump) MassLump(element, me);
+  PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
+  PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+/* K_p and M_p of one part */
+static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Mat *M)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(PatternCreate(o->model, part, o->lump, K, M));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (mesh->cell_part[c] == part) PetscCall(OperatorsAddCell(o, c, *K, *M));
+  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*M, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and terms of one part */
+static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
+{
+  const struct {
+    const char *name, *unit;
+    PetscReal   value;
+  } what[N_PART_PARAMETERS] = {
+    {"young",   "Pa",     p->young  },
+    {"density", "kg/m^3", p->density},
+    {"alpha",   "1/s",    p->alpha  },
+    {"beta",    "s",      p->beta   }
+  };
+  PetscInt i[N_PART_PARAMETERS];
+  Mat      K, M;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < N_PART_PARAMETERS; k++) {
+    const OperatorsParameter q = {.unit = what[k].unit, .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
+
+    PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &i[k]));
+  }
+  if (o->omit) PetscFunctionReturn(0);
+  PetscCall(OperatorsCreatePart(o, part, &K, &M));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, M, PETSC_TRUE, 2, (PetscInt[]){i[PART_ALPHA], i[PART_DENSITY]}));
+  PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "alpha"));
+  PetscCall(TermsAdd(&o->terms, OPERATORS_DAMPING, K, PETSC_TRUE, 2, (PetscInt[]){i[PART_BETA], i[PART_YOUNG]}));
+  PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "beta"));
+  PetscCall(MatDestroy(&K));
+  PetscCall(MatDestroy(&M));
+  PetscFunctionReturn(0);
+}
+
+/* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask */
+static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const PetscBool mask[3], Mat *D)
+{
+  const Grounded    *g = of;
+  const Mesh        *mesh;
+  const PetscScalar *share;
+  PetscInt           n_vertices, *vertices;
+  Vec                shares;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(MatCreateAIJ(o->comm, mesh->n_own, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, D));
+  PetscCall(ModelCreateShares(o->model, g->name, g->set, g->spread, &shares));
+  PetscCall(VecGetArrayRead(shares, &share));
+  PetscCall(ModelGetOwnedNodes(o->model, g->set, &n_vertices, &vertices));
+  for (PetscInt j = 0; j < 3 * n_vertices; j++) {
+    const PetscInt row = mesh->unknown[3 * vertices[j / 3] + j % 3];
+
+    if (mask[j % 3]) PetscCall(MatSetValues(*D, 1, &row, 1, &row, &share[3 * vertices[j / 3]], ADD_VALUES));
+  }
+  PetscCall(PetscFree(vertices));
+  PetscCall(VecRestoreArrayRead(shares, &share));
+  PetscCall(VecDestroy(&shares));
+  PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*D, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Parameter and term of the directions of the mask, which share one value */
+static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const char what[], const PetscBool mask[3],
+                                        PetscReal value, PetscInt index[3])
+{
+  PetscInt parameter;
+  Mat      A;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParametersAdd(&o->parameters, c->owner, what,
+                          &(OperatorsParameter){.unit = c->unit, .value = value, .closed = PETSC_TRUE}, &parameter));
+  if (!o->omit) {
+    PetscCall(c->create(o, c->of, mask, &A));
+    PetscCall(TermsAdd(&o->terms, c->kind, A, PETSC_TRUE, 1, &parameter));
+    PetscCall(TermsSetCause(&o->terms, c->cause, c->owner, what));
+    PetscCall(MatDestroy(&A));
+  }
+  for (int d = 0; d < 3; d++)
+    if (mask[d]) index[d] = parameter;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAddComponents(Operators o, const Components *c, PetscInt index[3])
+{
+  PetscBool mask[3], uniform = PETSC_TRUE, any = PETSC_FALSE;
+  PetscReal value = 0;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) {
+    index[d] = -1;
+    mask[d]  = c->value[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (mask[d] && value != 0 && c->value[d] != value) uniform = PETSC_FALSE;
+    if (mask[d]) value = c->value[d], any = PETSC_TRUE;
+  }
+  if (any && uniform) PetscCall(ComponentsAddTerm(o, c, c->what, mask, value, index));
+  for (int d = 0; d < 3 && !uniform; d++) {
+    const PetscBool only[3] = {(PetscBool)(d == 0), (PetscBool)(d == 1), (PetscBool)(d == 2)};
+    char            name[32];
+
+    if (!mask[d]) continue;
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", c->what, "xyz"[d]));
+    PetscCall(ComponentsAddTerm(o, c, name, only, c->value[d], index));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Parameters and terms of a list of springs or dashpots */
+static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
+{
+  const Components c = {kind, "dashpot", g->name, g->quantity, g->unit, g->value, ShareDiagonalCreate, g};
+  PetscInt         index[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsAddComponents(o, &c, index));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAssemble(Operators o)
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCheck(mesh->n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsAddPart(o, i, &scene->parts[i]));
+  for (PetscInt i = 0; i < scene->n_springs; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i]));
+  for (PetscInt i = 0; i < scene->n_dashpots; i++)
+    PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i]));
+  PetscCall(OperatorsAddJoints(o));
+  PetscFunctionReturn(0);
+}

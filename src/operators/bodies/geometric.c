@@ -1,0 +1,60 @@
+/*
+   Geometric stiffness of the bodies, of the stress of static displacements (kernels/element/geometric.h).
+*/
+#include "operators/operatorsimpl.h"
+
+/* Adds local cell c with displacements u, three values per local node */
+static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
+{
+  const Element *element;
+  const Mesh    *mesh;
+  PetscInt       n, vertices[ELEMENT_MAX_NODES], rows[ELEMENT_MAX_DOFS];
+  PetscReal      x[ELEMENT_MAX_DOFS], ue[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(ModelGetCell(model, c, &element, vertices, x));
+  n = 3 * element->n_nodes;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt at = 3 * vertices[i / 3] + i % 3;
+
+    rows[i] = mesh->unknown[at];
+    ue[i]   = u[at];
+  }
+  PetscCall(ElementGeometric(element, x, material, ue, ke));
+  PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
+  PetscFunctionReturn(0);
+}
+
+/* Adds all local cells */
+static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[], Model model, const PetscReal u[],
+                                        Mat K)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(model, &mesh));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    OperatorsMaterial values;
+    Elasticity        material;
+
+    PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
+    PetscCall(ModelGetElasticity(model, c, values.young, values.density, &material));
+    PetscCall(GeometricAddCell(model, c, &material, u, K));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K)
+{
+  Mat bodies;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(operators, p, &bodies, NULL, NULL)); /* couples the same unknowns */
+  PetscCall(MatDuplicate(bodies, MAT_DO_NOT_COPY_VALUES, K));
+  PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
+  PetscCall(GeometricAddCells(operators, p, operators->model, u, *K));
+  PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,310 @@
+/*
+   Terms of the contact, linearised about steady sliding with normal force N0 and speed v per pair:
+      K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1); with a k_n
+                                               per area N'A N and -T'A N, A the areas of the pairs
+      K += k_t (T'T + B'B)                     pairs that stick, of an interface that holds by friction; also per area
+      C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
+   of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
+   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Where mu differs
+   from pair to pair, terms with mu or mu' stand once for each of several speeds k, with the pairs' parts L_k (frictionfactor.c). Only
+   closed pairs take part; those of a group g make terms of their own, with the parameter closed_g as one more factor.
+   Signs: slip velocity of the slave relative to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master
+   acts along it, and internal forces stand on the left.
+*/
+#include "operators/pencilimpl.h"
+#include "base/algebra/vec3.h"
+#include <math.h>
+
+PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
+{
+  Mat WR = R;
+
+  PetscFunctionBeginUser;
+  if (weights) {
+    PetscCall(MatDuplicate(R, MAT_COPY_VALUES, &WR));
+    PetscCall(MatDiagonalScale(WR, weights, NULL));
+  }
+  PetscCall(MatTransposeMatMult(L, WR, MAT_INITIAL_MATRIX, PETSC_DEFAULT, A));
+  PetscCall(MatProductClear(*A));
+  PetscCall(MatScale(*A, scale));
+  if (weights) PetscCall(MatDestroy(&WR));
+  PetscFunctionReturn(0);
+}
+
+/* Closed pairs of one interface in one group */
+typedef struct {
+  const ContactInterface *c;
+  InterfaceParameters     q;
+  PetscReal               total;    /* normal force of the interface, N */
+  PetscInt                more;     /* 1 where the terms have the factor closed_g, else 0 */
+  PetscInt                closed;   /* index of that parameter */
+  PetscInt                n, *pair; /* of this rank */
+  Mat                     N, T, B;
+} FrictionGroup;
+
+static PetscErrorCode FrictionGroupCreate(Pencil pencil, PetscInt interface, PetscInt group, FrictionGroup *g)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all;
+  Contact            contact = pencil->operators->contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetInterfaces(contact, &n, &g->c));
+  g->c += interface;
+  g->q      = pencil->operators->interface[interface];
+  g->total  = pencil->total[interface];
+  g->more   = group > 0 ? 1 : 0;
+  g->closed = pencil->n_scene + group - 1;
+  g->n      = 0;
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
+  PetscCall(PetscMalloc1(n, &g->pair));
+  for (PetscInt p = 0; p < n; p++)
+    if (pairs[p].interface == interface && pencil->group[p] == group) g->pair[g->n++] = p;
+  PetscCall(ContactCreatePairOperators(contact, g->n, g->pair, &g->N, &g->T, &g->B));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FrictionGroupDestroy(FrictionGroup *g)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&g->N));
+  PetscCall(MatDestroy(&g->T));
+  PetscCall(MatDestroy(&g->B));
+  PetscCall(PetscFree(g->pair));
+  PetscFunctionReturn(0);
+}
+
+/* Weights of the pairs at speed k: along = L_k N0 / N, across = L_k N0 / N V / v */
+static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec across, Vec along)
+{
+  const PetscReal    speed = g->q.stated;
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(across, &row, NULL));
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  for (PetscInt i = 0; i < g->n; i++) {
+    const PetscReal own = pairs[g->pair[i]].speed, share = FrictionNodeShare(&g->q, k, own) * pencil->force[g->pair[i]] / g->total;
+
+    PetscCall(VecSetValue(across, row + i, share * speed / own, INSERT_VALUES));
+    PetscCall(VecSetValue(along, row + i, share, INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(across));
+  PetscCall(VecAssemblyEnd(across));
+  PetscCall(VecAssemblyBegin(along));
+  PetscCall(VecAssemblyEnd(along));
+  PetscFunctionReturn(0);
+}
+
+/* Terms of the friction damping at speed k */
+static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
+{
+  const PetscInt slope[] = {-1, g->q.force, g->closed}, mu[] = {-1, g->q.force, g->q.speed, g->closed};
+  OperatorsTerm *term;
+  Vec            across, along;
+  Mat            BB, TT;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(g->T, NULL, &across));
+  PetscCall(VecDuplicate(across, &along));
+  PetscCall(DampingSetWeights(pencil, g, k, across, along));
+  PetscCall(TermsProduct(1, g->B, across, g->B, &BB));
+  PetscCall(TermsProduct(1, g->T, along, g->T, &TT));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
+  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_TRUE));
+  PetscCall(TermsSetCause(&pencil->base, "falling friction", NULL, g->c->name));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
+  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_FALSE));
+  PetscCall(TermsSetCause(&pencil->base, "friction damping", NULL, g->c->name));
+  term                     = &pencil->base.term[pencil->base.n - 1];
+  term->factor[0].absolute = PETSC_TRUE;
+  term->factor[2].power    = -1;
+  PetscCall(MatDestroy(&BB));
+  PetscCall(MatDestroy(&TT));
+  PetscCall(VecDestroy(&across));
+  PetscCall(VecDestroy(&along));
+  PetscFunctionReturn(0);
+}
+
+/* Areas of the pairs where the stiffness is per area, else NULL */
+static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  *weights = NULL;
+  if (!g->c->per_area) PetscFunctionReturn(0);
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  PetscCall(MatCreateVecs(g->N, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++)
+    PetscCall(VecSetValue(*weights, row + i, ContactPairStiffness(g->c, &pairs[g->pair[i]], 1), INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
+/* Areas of the pairs times their part at speed k of several; NULL where all are 1 */
+static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PenaltyCreateWeights(pencil, g, weights));
+  if (g->q.n_nodes == 1) PetscFunctionReturn(0);
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  if (!*weights) PetscCall(MatCreateVecs(g->N, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++) {
+    const ContactPair *pair = &pairs[g->pair[i]];
+
+    PetscCall(VecSetValue(*weights, row + i, FrictionNodeShare(&g->q, k, pair->speed) * ContactPairStiffness(g->c, pair, 1),
+                          INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
+/* The term of friction at speed k */
+static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
+{
+  const PetscInt mu[] = {g->q.kn, -1, g->closed};
+  Mat            TN, WN;
+  Vec            weights;
+
+  PetscFunctionBeginUser;
+  PetscCall(SlideCreateWeights(pencil, g, k, &weights));
+  PetscCall(MatDuplicate(g->N, MAT_COPY_VALUES, &WN));
+  PetscCall(MatScale(WN, -1));
+  if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
+  PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
+  PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
+  PetscCall(TermsSetCause(&pencil->base, "friction", NULL, g->c->name));
+  PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
+  PetscCall(MatDestroy(&WN));
+  PetscCall(MatDestroy(&TN));
+  PetscCall(VecDestroy(&weights));
+  PetscFunctionReturn(0);
+}
+
+/* Terms of the penalty law; without friction where nothing says along what the interface slides */
+static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
+{
+  const PetscInt kn[] = {g->q.kn, g->closed};
+  Mat            NN;
+  Vec            weights;
+
+  PetscFunctionBeginUser;
+  PetscCall(PenaltyCreateWeights(pencil, g, &weights));
+  PetscCall(TermsProduct(1, g->N, weights, g->N, &NN));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
+  PetscCall(MatDestroy(&NN));
+  PetscCall(VecDestroy(&weights));
+  for (PetscInt k = 0; k < g->q.n_nodes; k++) PetscCall(SlideAdd(pencil, g, k));
+  PetscFunctionReturn(0);
+}
+
+/* 1 or the area of each pair that sticks, 0 of one that slips */
+static PetscErrorCode HoldCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
+{
+  const ContactPair *pairs;
+  PetscInt           n, n_all, row;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  PetscCall(MatCreateVecs(g->T, NULL, weights));
+  PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
+  for (PetscInt i = 0; i < g->n; i++) {
+    const PetscInt  p     = g->pair[i];
+    const PetscReal holds = g->c->kt_per_area ? pairs[p].area : 1;
+
+    if (!pencil->slips[p]) PetscCall(VecSetValue(*weights, row + i, holds, INSERT_VALUES));
+  }
+  PetscCall(VecAssemblyBegin(*weights));
+  PetscCall(VecAssemblyEnd(*weights));
+  PetscFunctionReturn(0);
+}
+
+/* Terms of the pairs that stick */
+static PetscErrorCode HoldAdd(Pencil pencil, const FrictionGroup *g)
+{
+  const PetscInt kt[] = {g->q.kt, g->closed};
+  Vec            weights;
+  Mat            along[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(HoldCreateWeights(pencil, g, &weights));
+  PetscCall(TermsProduct(1, g->T, weights, g->T, &along[0]));
+  PetscCall(TermsProduct(1, g->B, weights, g->B, &along[1]));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, along[i], PETSC_TRUE, 1 + g->more, kt));
+    PetscCall(MatDestroy(&along[i]));
+  }
+  PetscCall(VecDestroy(&weights));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilAddContact(Pencil pencil)
+{
+  const ContactInterface *c;
+  PetscInt                n, n_rows;
+  FrictionGroup           g;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt group = 0; group <= pencil->n_groups; group++) {
+      PetscCall(FrictionGroupCreate(pencil, i, group, &g));
+      PetscCall(MatGetSize(g.N, &n_rows, NULL));
+      if (n_rows && c[i].law == CONTACT_PENALTY) PetscCall(PenaltyAdd(pencil, &g));
+      if (n_rows && c[i].kt > 0) PetscCall(HoldAdd(pencil, &g));
+      for (PetscInt k = 0; k < g.q.n_nodes && n_rows && c[i].damping && g.total > 0; k++) PetscCall(DampingAdd(pencil, &g, k));
+      PetscCall(FrictionGroupDestroy(&g));
+    }
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for friction that changes with the slip speed, where modes are to know nothing of it */
+static PetscErrorCode FrictionCheckDamps(MPI_Comm comm, const ContactInterface *c)
+{
+  const FrictionParameter *parameter;
+  const PetscInt           n = FrictionGetParameters(&c->friction, &parameter);
+
+  PetscFunctionBeginUser;
+  if (c->damping) PetscFunctionReturn(0);
+  for (PetscInt j = 0; j < n; j++)
+    PetscCheck(parameter[j].steady || c->friction.parameter[j] == 0, comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s does nothing without -%s_friction_damping", c->name, parameter[j].row.name + 1, c->name);
+  PetscCheck(!c->slides || !FrictionVaries(&c->friction), comm, PETSC_ERR_USER_INPUT,
+             "friction of contact %s changes with the slip speed: give -%s_friction_damping, which damps with mu' N", c->name,
+             c->name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilCheckSliding(Pencil pencil)
+{
+  const ContactInterface *c;
+  PetscInt                n, n_closed = 0;
+
+  PetscFunctionBeginUser;
+  if (!pencil->operators->model) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < pencil->n_pairs; p++) n_closed += pencil->group[p] >= 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_closed, 1, MPIU_INT, MPI_SUM, pencil->comm));
+  if (pencil->from_state && !n_closed) PetscFunctionReturn(0); /* the bodies alone */
+  PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCheck(c[i].slides || ((!FrictionExists(&c[i].friction) || c[i].kt > 0) && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
+               "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the "
+               "surface, or -%s_kt (N/m per pair) where it holds by friction",
+               c[i].name, c[i].name, c[i].name);
+    PetscCheck(!c[i].damping || c[i].force > 0 || pencil->has_forces, pencil->comm, PETSC_ERR_USER_INPUT,
+               "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
+    PetscCall(FrictionCheckDamps(pencil->comm, &c[i]));
+  }
+  PetscFunctionReturn(0);
+}

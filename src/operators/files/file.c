@@ -1,0 +1,310 @@
+/*
+   Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another. Each is
+   one term, H with the coefficient contact_mu; matrixterm.c has those of the list -terms. K, M and C count as terms that
+   are there without friction, symmetric or not.
+*/
+#include "base/file.h"
+#include "matrixterm.h"
+#include "operators/pencilimpl.h"
+#include <errno.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
+static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
+                                                  "friction part per unit mu, N/m"};
+
+PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsObject)
+{
+  char name[64], help[160];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_OPERATORS; i++) {
+    PetscBool set;
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_load_%s", letters[i]));
+    PetscCall(PetscSNPrintf(help, sizeof(help), "PETSc binary file of the %s", meanings[i]));
+    PetscCall(OptionsGetPath(PetscOptionsObject, name, help, o->load[i], NULL));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
+    PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
+    PetscCall(PetscCalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
+    o->n_dense[i] = OPERATORS_MAX_DENSE;
+    PetscCall(OptionsCheckWords(PetscOptionsObject, name, PETSC_FALSE));
+    PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
+    if (!set) o->n_dense[i] = 0;
+    PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
+               "-operators_load_%s and -operators_dense_%s exclude each other", letters[i], letters[i]);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Rows of a matrix in any order */
+static PetscErrorCode MatrixAddChecksum(Mat A, Checksum c)
+{
+  PetscInt  begin, end;
+  uint64_t *piece;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  PetscCall(PetscMalloc1(end - begin, &piece));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+    uint64_t          *sum = &piece[row - begin];
+
+    PetscCall(MatGetRow(A, row, &n, &columns, &values));
+    *sum = ChecksumBytes(CHECKSUM_BEGIN, &row, sizeof(row));
+    *sum = ChecksumBytes(*sum, columns, (size_t)n * sizeof(*columns));
+    *sum = ChecksumBytes(*sum, values, (size_t)n * sizeof(*values));
+    PetscCall(MatRestoreRow(A, row, &n, &columns, &values));
+  }
+  PetscCall(ChecksumAddPieces(c, end - begin, piece));
+  PetscCall(PetscFree(piece));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "matrices"));
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
+  if (o->model) PetscFunctionReturn(0);
+  PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
+  PetscCall(MatrixTermsAddChecksum(o, c));
+  for (PetscInt t = 0; t < o->terms.n; t++) PetscCall(MatrixAddChecksum(o->terms.term[t].A, c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_values, const PetscReal values[], Mat *A)
+{
+  const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
+  PetscInt       first, last;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT,
+             "%s has %" PetscInt_FMT " values, which is no square number", option, n_values);
+  for (PetscInt i = 0; i < n_values; i++)
+    PetscCheck(PetscAbsReal(values[i]) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
+               "%s value %.6g must be of at most %g", option, (double)values[i], MATRIX_LARGEST);
+  PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
+  PetscCall(MatGetOwnershipRange(*A, &first, &last));
+  for (PetscInt i = first; i < last; i++)
+    for (PetscInt j = 0; j < n; j++) PetscCall(MatSetValue(*A, i, j, values[i * n + j], INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Opens a binary file of PETSc, which by itself would read NAME.info beside it as an options file, and write one */
+static PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerCreate(comm, viewer));
+  PetscCall(PetscViewerSetType(*viewer, PETSCVIEWERBINARY));
+  PetscCall(PetscViewerBinarySetSkipInfo(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerBinarySetSkipOptions(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerFileSetMode(*viewer, mode));
+  PetscCall(PetscViewerFileSetName(*viewer, file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char file[], Mat *A)
+{
+  PetscViewer viewer;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixFileCheck(comm, option, file));
+  PetscCall(MatrixViewerOpen(comm, file, FILE_MODE_READ, &viewer));
+  PetscCall(MatCreate(comm, A));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatLoad(*A, viewer));
+  PetscCall(PetscViewerDestroy(&viewer));
+  PetscFunctionReturn(0);
+}
+
+/* Adds the terms and the parameter */
+static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
+{
+  static const OperatorsTermKind kind[] = {OPERATORS_STIFFNESS, OPERATORS_MASS, OPERATORS_DAMPING};
+  PetscInt                       mu;
+
+  PetscFunctionBeginUser;
+  for (int i = OPERATOR_K; i <= OPERATOR_C; i++)
+    if (A[i]) {
+      PetscCall(TermsAdd(&o->terms, kind[i], A[i], PETSC_TRUE, 0, NULL));
+      PetscCall(TermsSetCause(&o->terms, o->terms.term[o->terms.n - 1].cause_kind, "operators", letters[i]));
+    }
+  if (!A[OPERATOR_H]) PetscFunctionReturn(0);
+  mu = ParametersFind(&o->parameters, "contact_mu");
+  if (mu < 0) {
+    PetscCall(ParametersAdd(&o->parameters, "contact", "mu",
+                            &(OperatorsParameter){.unit = "", .value = o->loaded_mu, .lower = -INFINITY}, &mu));
+    o->mu = mu;
+  }
+  PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));
+  PetscCall(TermsSetCause(&o->terms, "friction", NULL, "contact"));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for matrices that do not fit each other */
+static PetscErrorCode OperatorsCheckMatrices(Operators o, Mat A[N_OPERATORS])
+{
+  PetscInt n = -1, rows, columns, first = 0;
+
+  PetscFunctionBeginUser;
+  for (int i = OPERATOR_K; i <= OPERATOR_M && !o->n_named; i++)
+    PetscCheck(A[i], o->comm, PETSC_ERR_USER_INPUT,
+               "-operators_load_%s or -operators_dense_%s is missing: K and M are both needed", letters[i], letters[i]);
+  for (int i = 0; i < N_OPERATORS; i++) {
+    if (!A[i]) continue;
+    PetscCall(MatGetSize(A[i], &rows, &columns));
+    if (n < 0) n = rows, first = i;
+    PetscCheck(rows == n && columns == n, o->comm, PETSC_ERR_USER_INPUT,
+               "matrix %s is %" PetscInt_FMT " x %" PetscInt_FMT ", but %c has %" PetscInt_FMT
+               " rows: all must be square and alike",
+               letters[i], rows, columns, "KMCH"[first], n);
+  }
+  PetscCheck(A[OPERATOR_H] || o->loaded_mu == 0 || ParametersFind(&o->parameters, "contact_mu") >= 0, o->comm,
+             PETSC_ERR_USER_INPUT, "-contact_mu %.6g does nothing without -operators_load_h or -operators_dense_h",
+             (double)o->loaded_mu);
+  PetscFunctionReturn(0);
+}
+
+/* One of the four, from its file or its list; NULL where neither is given */
+static PetscErrorCode OperatorsReadMatrix(Operators o, int i, Mat *A)
+{
+  char option[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-operators_%s_%s", o->load[i][0] ? "load" : "dense", letters[i]));
+  if (o->load[i][0])
+    PetscCall(MatrixReadFile(o->comm, option, o->load[i], A));
+  else if (o->n_dense[i])
+    PetscCall(MatrixReadDense(o->comm, option, o->n_dense[i], o->dense[i], A));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsLoad(Operators o)
+{
+  Mat A[N_OPERATORS] = {NULL};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_OPERATORS; i++) PetscCall(OperatorsReadMatrix(o, i, &A[i]));
+  PetscCall(OperatorsCheckMatrices(o, A));
+  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M], &o->mass_singular));
+  for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++)
+    if (A[i]) PetscCall(MatrixIsSymmetric(A[i], &o->symmetric));
+  PetscCall(OperatorsAddMatrices(o, A));
+  if (o->n_named) PetscCall(MatrixTermsAdd(o));
+  for (PetscInt t = 0; t < o->terms.n && !o->symmetric; t++) o->terms.term[t].symmetric = PETSC_FALSE;
+  for (int i = 0; i < N_OPERATORS; i++) PetscCall(MatDestroy(&A[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Writes one matrix or vector under a temporary name, then renames it */
+static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObject A)
+{
+  char           file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];
+  PetscViewer    viewer;
+  PetscMPIInt    rank;
+  PetscErrorCode error;
+  int            failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
+  PetscCall(PetscSNPrintf(part, sizeof(part), "%s.part", file));
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) failed = FileMake(part);
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", part,
+             FileReason(failed));
+  PetscCall(MatrixViewerOpen(o->comm, part, FILE_MODE_WRITE, &viewer));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  errno = 0;
+  error = PetscObjectView(A, viewer);
+  if (!error) error = PetscViewerDestroy(&viewer); /* some disks tell only here that they are full */
+  failed = errno;
+  PetscCall(PetscPopErrorHandler());
+  if (error) (void)unlink(part);
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
+             strerror(failed));
+  failed = rank == 0 && rename(part, file) ? errno : 0;
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_WRITE, "cannot write '%s' of -operators_save: %s", file,
+             strerror(failed));
+  PetscFunctionReturn(0);
+}
+
+/* An earlier run's file of what this one does not have */
+static PetscErrorCode PencilRemoveObject(const Operators o, const char name[])
+{
+  char        file[PETSC_MAX_PATH_LEN];
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/%s.bin", o->save, name));
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0) (void)unlink(file); /* mostly there is none */
+  PetscFunctionReturn(0);
+}
+
+/* The folder is this run's until it ends: matrices of two runs make no system */
+static PetscErrorCode PencilSaveBegin(Operators o)
+{
+  PetscMPIInt rank;
+  int         failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0 && o->save_lock <= 0) {
+    o->save_lock = FolderLock(o->save);
+    failed       = o->save_lock < 0 ? errno : 0;
+  }
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN,
+             "another run writes into the folder -operators_save %s; choose another, or wait for its end", o->save);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilSave(Pencil pencil)
+{
+  Operators      o = pencil->operators;
+  PencilMatrices m;
+  PencilParts    parts = {.K = NULL};
+  PetscMPIInt    rank;
+  int            failed = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(o->comm, &rank));
+  if (rank == 0 && mkdir(o->save, 0777) && errno != EEXIST) failed = errno;
+  PetscCallMPI(MPI_Bcast(&failed, 1, MPI_INT, 0, o->comm));
+  PetscCheck(!failed, o->comm, PETSC_ERR_FILE_OPEN, "cannot make the folder '%s' of -operators_save: %s", o->save,
+             strerror(failed));
+  PetscCall(PencilSaveBegin(o));
+  PetscCall(PencilGetMatrices(pencil, &m));
+  if (!pencil->Zr || !o->model)
+    PetscCall(PencilGetParts(pencil, &parts));
+  else
+    parts = (PencilParts){.K = m.K, .M = m.M, .C = m.C};
+  PetscCall(PencilSaveObject(o, "K", (PetscObject)parts.K));
+  PetscCall(PencilSaveObject(o, "M", (PetscObject)parts.M));
+  PetscCall(parts.C ? PencilSaveObject(o, "C", (PetscObject)parts.C) : PencilRemoveObject(o, "C"));
+  PetscCall(parts.H ? PencilSaveObject(o, "H", (PetscObject)parts.H) : PencilRemoveObject(o, "H"));
+  PetscCall(PencilRemoveObject(o, "F"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilSaveLoad(Pencil pencil, Vec f)
+{
+  PencilMatrices m;
+  Vec            g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(pencil, &m));
+  PetscCall(MatCreateVecs(m.K, NULL, &g));
+  PetscCall(PencilProjectForce(pencil, PETSC_FALSE, f, g));
+  PetscCall(PencilSaveObject(pencil->operators, "F", (PetscObject)g));
+  PetscCall(VecDestroy(&g));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,85 @@
+/* Copies of the reduced bodies (reduced.h), states, reports of steps, and their end */
+#include "reduced/reducedimpl.h"
+
+PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
+{
+  const PetscInt   m = from->m, n = from->n_pairs, N = from->n_ports;
+  const PetscInt   size[]   = {m, m * m, m * N, N * N, 3 * n * m, 9 * n * n, 9 * n * n};
+  const PetscReal *source[] = {from->omega2, from->C, from->P, from->W, from->Cm, from->Cx, from->Mx};
+  PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx, &to->Mx};
+
+  PetscFunctionBeginUser;
+  *to = *from;
+  for (int i = 0; i < 7; i++) {
+    if (!source[i]) continue;
+    PetscCall(PetscMalloc1(size[i], copy[i]));
+    PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
+  }
+  PetscCall(PetscMalloc2(n, &to->gap, n, &to->friction));
+  PetscCall(PetscArraycpy(to->gap, from->gap, n));
+  PetscCall(PetscArraycpy(to->friction, from->friction, n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedModelDestroy(ReducedModel *model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(model->omega2));
+  PetscCall(PetscFree(model->C));
+  PetscCall(PetscFree(model->P));
+  PetscCall(PetscFree(model->W));
+  PetscCall(PetscFree(model->Cm));
+  PetscCall(PetscFree(model->Cx));
+  PetscCall(PetscFree(model->Mx));
+  PetscCall(PetscFree2(model->gap, model->friction));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
+{
+  PetscFunctionBeginUser;
+  *state = (ReducedState){.time = 0};
+  PetscCall(PetscCalloc4(model->m, &state->eta, model->m, &state->rate, model->n_ports, &state->p, model->n_ports,
+                         &state->last));
+  PetscCall(PetscCalloc3(3 * model->n_pairs, &state->q, 3 * model->n_pairs, &state->y, model->n_pairs, &state->status));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to)
+{
+  PetscFunctionBeginUser;
+  to->time = from->time;
+  PetscCall(PetscArraycpy(to->eta, from->eta, model->m));
+  PetscCall(PetscArraycpy(to->rate, from->rate, model->m));
+  PetscCall(PetscArraycpy(to->p, from->p, model->n_ports));
+  PetscCall(PetscArraycpy(to->last, from->last, model->n_ports));
+  PetscCall(PetscArraycpy(to->q, from->q, 3 * model->n_pairs));
+  PetscCall(PetscArraycpy(to->y, from->y, 3 * model->n_pairs));
+  PetscCall(PetscArraycpy(to->status, from->status, model->n_pairs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedStateDestroy(ReducedState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(state->eta, state->rate, state->p, state->last));
+  PetscCall(PetscFree3(state->q, state->y, state->status));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *report)
+{
+  const PetscInt n = model->n_pairs;
+
+  PetscFunctionBeginUser;
+  *report = (ReducedReport){.works = PETSC_TRUE};
+  PetscCall(PetscCalloc4(n, &report->contact, n, &report->friction, n, &report->heat, 2 * n, &report->slip));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedReportDestroy(ReducedReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(report->contact, report->friction, report->heat, report->slip));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,247 @@
+/*
+   Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open and
+   without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C = Phi'C Phi.
+
+   Of bodies that a parameter has changed a little those modes are taken, as many, that resemble the ones of another reduction.
+*/
+#include "reduced/reducedimpl.h"
+#include "reduced/parameter.h"
+#include "solver/block/orthonormal.h"
+
+#define ORTHONORMAL  1e-7 /* largest |Phi'M Phi - I| */
+#define CUTOFF_NOISE 10   /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
+
+/* The pencil of the bodies: every pair open, neither damping nor spin */
+static PetscErrorCode ReducedCreatePencil(ReducedRun r)
+{
+  const OperatorsParameter *parameter;
+  const PetscReal          *p;
+  PetscInt                  n_pairs, n_all, n, *open;
+  const ContactPair        *pair;
+  PetscReal                *still;
+  SlidingState              state;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(r->run.contact, &n_pairs, &n_all, &pair));
+  PetscCall(PetscMalloc1(n_pairs, &open));
+  for (PetscInt i = 0; i < n_pairs; i++) open[i] = -1;
+  PetscCall(SlidingStateCreate(n_pairs, 0, open, &state));
+  PetscCall(PetscFree(open));
+  PetscCall(OperatorsLinearise(r->run.operators, &state, &r->bodies));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscCall(PencilGetParameters(r->bodies, &n, &parameter, &p));
+  if (r->p) p = r->p;
+  PetscCall(PetscMalloc1(n, &still));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool is;
+
+    PetscCall(ReducedUnitIsGyration(parameter[i].unit, &is));
+    still[i] = is && parameter[i].body ? 0 : p[i]; /* a contact that turns is none of them */
+  }
+  PetscCall(PencilSetParameters(r->bodies, still));
+  PetscCall(PetscFree(still));
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a cut-off whose square is rounding of the largest K_ii / M_ii */
+static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pencil)
+{
+  const PetscScalar *k, *m;
+  PetscInt           n;
+  PetscReal          largest = 0, least;
+  Vec                K, M;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(pencil->K, &K, &M));
+  PetscCall(MatGetDiagonal(pencil->K, K));
+  PetscCall(MatGetDiagonal(pencil->M, M));
+  PetscCall(VecGetLocalSize(K, &n));
+  PetscCall(VecGetArrayRead(K, &k));
+  PetscCall(VecGetArrayRead(M, &m));
+  for (PetscInt i = 0; i < n; i++) largest = PetscMax(largest, m[i] > 0 ? k[i] / m[i] : 0);
+  PetscCall(VecRestoreArrayRead(K, &k));
+  PetscCall(VecRestoreArrayRead(M, &m));
+  PetscCall(VecDestroy(&K));
+  PetscCall(VecDestroy(&M));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, r->comm));
+  least = PetscSqrtReal(CUTOFF_NOISE * PETSC_MACHINE_EPSILON * largest) / (2 * PETSC_PI);
+  PetscCheck(r->cutoff >= least, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz is too low: on this mesh frequencies below %.3g Hz are rounding; take one above "
+             "the highest frequency of interest",
+             (double)r->cutoff, (double)least);
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a cut-off without modes below it */
+static PetscErrorCode ReducedCountModes(ReducedRun r, const PencilMatrices *pencil)
+{
+  PetscReal   omega = 2 * PETSC_PI * r->cutoff;
+  PetscInt    n, n_unknowns;
+  ShiftInvert counter;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(pencil->K, &n_unknowns, NULL));
+  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, &r->progress, &counter));
+  PetscCall(ShiftInvertCountBelow(pencil, 1e-4, &counter, &omega, &n));
+  PetscCall(ShiftInvertDestroy(&counter));
+  PetscCheck(n > 0, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz: the unconnected bodies have no mode below it; take a higher one",
+             (double)r->cutoff);
+  PetscCheck(n < n_unknowns, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_cutoff %.6g Hz: all %" PetscInt_FMT
+             " modes lie below it, and no compliance is left for the pairs; "
+             "take a lower one",
+             (double)r->cutoff, n);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedWeighModes(ReducedRun r)
+{
+  Mat M;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMass(r->bodies, &M));
+  PetscCall(BlockMultiply(M, r->Phi, r->MPhi));
+  PetscFunctionReturn(0);
+}
+
+/* Columns of A in the order of `chosen` [m] in its place */
+static PetscErrorCode ColumnsKeep(PetscInt m, const PetscInt chosen[], Mat *A)
+{
+  PetscInt n_own;
+  MPI_Comm comm;
+  Mat      B;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectGetComm((PetscObject)*A, &comm));
+  PetscCall(MatGetLocalSize(*A, &n_own, NULL));
+  PetscCall(MatCreateDense(comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &B));
+  for (PetscInt k = 0; k < m; k++) {
+    Vec from, to;
+
+    PetscCall(MatDenseGetColumnVecRead(*A, chosen[k], &from));
+    PetscCall(MatDenseGetColumnVecWrite(B, k, &to));
+    PetscCall(VecCopy(from, to));
+    PetscCall(MatDenseRestoreColumnVecWrite(B, k, &to));
+    PetscCall(MatDenseRestoreColumnVecRead(*A, chosen[k], &from));
+  }
+  PetscCall(MatDestroy(A));
+  *A = B;
+  PetscFunctionReturn(0);
+}
+
+/* Keeps of all modes those that hold most of the modes of `like`: the largest rows of Phi'M Phi_like */
+static PetscErrorCode ReducedKeepAlike(ReducedRun r)
+{
+  const PetscInt n = r->model.m, m = r->like->model.m;
+  PetscInt      *order;
+  PetscReal     *A, *share;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n >= m, r->comm, PETSC_ERR_USER_INPUT,
+             "-cycle_range: at one of its values the bodies have %" PetscInt_FMT
+             " modes below %.6g Hz, fewer than the %" PetscInt_FMT
+             " of the scene: take a range nearer to the value of the scene, which must not be 0",
+             n, (double)r->cutoff, m);
+  PetscCall(PetscMalloc3(n * m, &A, n, &share, n, &order));
+  PetscCall(ReducedGram(r->MPhi, r->like->Phi, A));
+  for (PetscInt i = 0; i < n; i++) {
+    order[i] = i;
+    share[i] = 0;
+    for (PetscInt j = 0; j < m; j++) share[i] -= PetscSqr(A[i + n * j]);
+  }
+  PetscCall(PetscSortRealWithArrayInt(n, share, order));
+  PetscCall(PetscSortInt(m, order)); /* frequencies ascend again */
+  for (PetscInt k = 0; k < m; k++) r->model.omega2[k] = r->model.omega2[order[k]];
+  PetscCall(ColumnsKeep(m, order, &r->Phi));
+  PetscCall(ColumnsKeep(m, order, &r->MPhi));
+  r->model.m = m;
+  PetscCall(PetscFree3(A, share, order));
+  PetscFunctionReturn(0);
+}
+
+/* Vectors, of all unknowns, and frequencies from the solver of the modes */
+static PetscErrorCode ReducedTakeModes(ReducedRun r)
+{
+  const Mode *mode;
+  PetscInt    m, n_own;
+  Mat         M;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(r->body_modes, &m, &mode));
+  PetscCall(PencilGetMass(r->bodies, &M));
+  PetscCall(MatGetLocalSize(M, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &r->Phi));
+  PetscCall(PetscCalloc1(m, &r->model.omega2));
+  for (PetscInt k = 0; k < m; k++) {
+    Vec x, column;
+
+    PetscCall(ModesGetVectors(r->body_modes, k, &x, NULL, NULL, NULL));
+    PetscCall(MatDenseGetColumnVecWrite(r->Phi, k, &column));
+    PetscCall(VecCopy(x, column));
+    PetscCall(MatDenseRestoreColumnVecWrite(r->Phi, k, &column));
+    r->model.omega2[k] = mode[k].rigid ? 0 : PetscSqr(mode[k].omega);
+  }
+  r->model.m = m;
+  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &r->MPhi));
+  PetscCall(ReducedWeighModes(r));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for vectors that are not orthonormal in M */
+static PetscErrorCode ReducedCheckModes(ReducedRun r)
+{
+  const PetscInt m = r->model.m;
+  PetscReal     *H;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m * m, &H));
+  PetscCall(ReducedGram(r->Phi, r->MPhi, H));
+  for (PetscInt i = 0; i < m * m; i++) r->orthonormal = PetscMax(r->orthonormal, PetscAbsReal(H[i] - (i % m == i / m)));
+  PetscCall(PetscFree(H));
+  PetscCheck(r->orthonormal < ORTHONORMAL, r->comm, PETSC_ERR_PLIB, "modes of the bodies are orthonormal to %.2e only",
+             (double)r->orthonormal);
+  PetscFunctionReturn(0);
+}
+
+/* Phi'C Phi */
+static PetscErrorCode ReducedSetDamping(ReducedRun r)
+{
+  const PetscInt m = r->model.m;
+  Mat            C, CPhi;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
+  if (!C) PetscFunctionReturn(0);
+  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
+  PetscCall(BlockMultiply(C, r->Phi, CPhi));
+  PetscCall(PetscMalloc1(m * m, &r->model.C));
+  PetscCall(ReducedGram(r->Phi, CPhi, r->model.C));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < j; i++)
+      r->model.C[i + m * j] = r->model.C[j + m * i] = 0.5 * (r->model.C[i + m * j] + r->model.C[j + m * i]);
+  PetscCall(MatDestroy(&CPhi));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedFindModes(ReducedRun r)
+{
+  const PetscReal band[2] = {0, r->cutoff};
+  PencilMatrices  pencil;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedCreatePencil(r));
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCheck(!pencil.C, r->comm, PETSC_ERR_PLIB, "modes of the bodies see damping");
+  PetscCall(ReducedCheckCutoff(r, &pencil));
+  PetscCall(ReducedCountModes(r, &pencil));
+  PetscCall(ModesCreate(r->comm, &r->body_modes));
+  PetscCall(ModesSetPencil(r->body_modes, r->bodies));
+  PetscCall(ModesSetBand(r->body_modes, band));
+  PetscCall(ModesSolve(r->body_modes));
+  PetscCall(ReducedTakeModes(r));
+  if (r->like) PetscCall(ReducedKeepAlike(r));
+  PetscCall(ReducedCheckModes(r));
+  PetscCall(ReducedSetDamping(r));
+  PetscFunctionReturn(0);
+}

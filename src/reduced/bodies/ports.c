@@ -1,0 +1,182 @@
+/*
+   Ports as vectors V of all unknowns: of a pair the force on its slave along n, t and b, with the opposite on the master,
+   so that V'u is what opens the gap and the slip of the slave; of a load its forces; of a probe 1 N along x, y, z. Impulses J
+   act on the modes alone, as Phi'J.
+*/
+#include "reduced/reducedimpl.h"
+
+/* Rows -n, -t, -b times (u_m - u_s) of the local pairs */
+static PetscErrorCode PortsCreatePairs(ReducedRun r)
+{
+  const ContactPair *pair;
+  PetscInt           n, n_all, *row;
+  PetscReal(*direction)[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(r->run.contact, &n, &n_all, &pair));
+  PetscCall(PetscMalloc2(3 * n, &row, 3 * n, &direction));
+  for (PetscInt i = 0; i < 3 * n; i++) {
+    const PetscReal *e = i % 3 == 0 ? pair[i / 3].n : i % 3 == 1 ? pair[i / 3].t : pair[i / 3].b;
+
+    row[i] = i / 3;
+    for (int d = 0; d < 3; d++) direction[i][d] = -e[d];
+  }
+  PetscCall(ContactCreateRows(r->run.contact, 3 * n, row, (const PetscReal(*)[3])direction, &r->G));
+  PetscCall(PetscFree2(row, direction));
+  r->n_local       = n;
+  r->model.n_pairs = n_all;
+  PetscCallMPI(MPI_Exscan(&n, &r->begin, 1, MPIU_INT, MPI_SUM, r->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The force 1 on the unknown of node `vertex` (-1 on ranks that do not name it), direction d, as column k */
+static PetscErrorCode PortSetUnit(ReducedRun r, PetscInt vertex, int d, PetscReal value, PetscInt k, Mat columns)
+{
+  const Mesh *mesh;
+  PetscInt    row = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  if (vertex >= 0) row = mesh->unknown[3 * vertex + d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &row, 1, MPIU_INT, MPI_MAX, r->comm));
+  if (row >= mesh->first_own && row < mesh->first_own + mesh->n_own) {
+    PetscScalar *v;
+    PetscInt     stride;
+
+    PetscCall(MatDenseGetLDA(columns, &stride));
+    PetscCall(MatDenseGetArray(columns, &v));
+    v[k * stride + row - mesh->first_own] += value;
+    PetscCall(MatDenseRestoreArray(columns, &v));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Nodal forces to column k */
+static PetscErrorCode PortSetNodal(ReducedRun r, Vec nodal, PetscInt k, Mat columns)
+{
+  Vec column;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetColumnVecWrite(columns, k, &column));
+  PetscCall(OperatorsTakeNodal(r->run.operators, nodal, column));
+  PetscCall(MatDenseRestoreColumnVecWrite(columns, k, &column));
+  PetscFunctionReturn(0);
+}
+
+/* Loads, then the weight where there is gravity */
+static PetscErrorCode PortsSetLoads(ReducedRun r)
+{
+  const ModelScene *scene;
+  Vec               nodal;
+  PetscReal         total[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  for (PetscInt i = 0; i < r->model.n_loads; i++) {
+    PetscCall(ModelCreateNodal(r->run.model, &nodal));
+    if (i < scene->n_loads)
+      PetscCall(ModelAddLoad(r->run.model, i, NULL, nodal));
+    else
+      PetscCall(OperatorsAddWeight(r->run.operators, r->p, nodal, total));
+    PetscCall(PortSetNodal(r, nodal, i, r->others));
+    PetscCall(VecDestroy(&nodal));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A probe at the next port; its node remembers which */
+static PetscErrorCode PortsAddProbe(ReducedRun r, const Probe *probe, PetscInt *next)
+{
+  PetscFunctionBeginUser;
+  if (probe->vertex >= 0) r->vertex_port[probe->vertex] = 3 * r->model.n_pairs + *next;
+  for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, probe->vertex, d, 1, (*next)++, r->others));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PortsSetProbes(ReducedRun r)
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscInt          next = r->model.n_loads;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &r->vertex_port));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) r->vertex_port[i] = -1;
+  for (PetscInt i = 0; i < scene->n_probes; i++) PetscCall(PortsAddProbe(r, &scene->probes[i], &next));
+  for (PetscInt i = 0; i < scene->n_circles; i++)
+    for (PetscInt k = 0; k < scene->circles[i].n; k++) PetscCall(PortsAddProbe(r, &scene->circles[i].probe[k], &next));
+  PetscFunctionReturn(0);
+}
+
+/* Phi'J of each impulse */
+static PetscErrorCode PortsSetHits(ReducedRun r)
+{
+  PetscInt n_own;
+  Mat      J;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExternalCountHits(r->run.external, &r->n_hits));
+  if (!r->n_hits) PetscFunctionReturn(0);
+  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, r->n_hits, NULL, &J));
+  PetscCall(MatZeroEntries(J));
+  PetscCall(PetscMalloc2(r->n_hits * r->model.m, &r->hits, r->n_hits, &r->hit_due));
+  for (PetscInt i = 0; i < r->n_hits; i++) {
+    ExternalHit hit;
+    PetscInt    vertex;
+
+    PetscCall(ExternalFindHit(r->run.external, i, &hit, &vertex));
+    r->hit_due[i] = hit.time;
+    for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, vertex, d, hit.impulse[d], i, J));
+  }
+  PetscCall(ReducedGram(r->Phi, J, r->hits));
+  PetscCall(MatDestroy(&J));
+  PetscFunctionReturn(0);
+}
+
+/* P of the pairs: row i of G Phi on the rank that has it */
+static PetscErrorCode PortsSetShapes(ReducedRun r)
+{
+  const PetscInt     m = r->model.m, n = 3 * r->model.n_pairs;
+  const PetscScalar *value;
+  PetscInt           stride;
+  Mat                GPhi;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m * r->model.n_ports, &r->model.P));
+  PetscCall(MatMatMult(r->G, r->Phi, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GPhi));
+  PetscCall(MatDenseGetLDA(GPhi, &stride));
+  PetscCall(MatDenseGetArrayRead(GPhi, &value));
+  for (PetscInt i = 0; i < 3 * r->n_local; i++)
+    for (PetscInt k = 0; k < m; k++) r->model.P[m * (3 * r->begin + i) + k] = value[k * stride + i];
+  PetscCall(MatDenseRestoreArrayRead(GPhi, &value));
+  PetscCall(MatDestroy(&GPhi));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->model.P, (PetscMPIInt)(m * n), MPIU_REAL, MPI_SUM, r->comm));
+  PetscCall(ReducedGram(r->Phi, r->others, &r->model.P[m * n]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetPorts(ReducedRun r)
+{
+  const ModelScene *scene;
+  PetscInt          n_own;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCall(PortsCreatePairs(r));
+  r->model.n_loads  = scene->n_loads + (ModelHasGravity(r->run.model) ? 1 : 0);
+  r->model.n_probes = scene->n_probes;
+  for (PetscInt i = 0; i < scene->n_circles; i++) r->model.n_probes += scene->circles[i].n;
+  r->model.n_ports = 3 * r->model.n_pairs + r->model.n_loads + 3 * r->model.n_probes;
+  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, r->model.n_loads + 3 * r->model.n_probes,
+                           NULL, &r->others));
+  PetscCall(MatZeroEntries(r->others));
+  PetscCall(PortsSetLoads(r));
+  PetscCall(PortsSetProbes(r));
+  PetscCall(PortsSetHits(r));
+  PetscCall(PortsSetShapes(r));
+  PetscFunctionReturn(0);
+}

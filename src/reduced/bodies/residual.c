@@ -1,0 +1,210 @@
+/*
+   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the modes
+   before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free show by
+   rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most. Where displacements follow others,
+   u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
+*/
+#include "reduced/reducedimpl.h"
+#include "base/process/memory.h"
+#include "solver/block/orthonormal.h"
+
+#define RESIDUAL_BLOCK 64  /* right-hand sides at once */
+#define RESIDUAL_SHIFT 1e4 /* cut-off over the root of -s */
+
+/* X -= A (B'X), A and B [unknowns][m] */
+static PetscErrorCode ComplementOf(Mat A, Mat B, Mat X)
+{
+  const PetscScalar *a;
+  PetscScalar       *x, *product;
+  PetscInt           n, m, columns, lda, ldx;
+  PetscReal         *H;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(A, &n, NULL));
+  PetscCall(MatGetSize(A, NULL, &m));
+  PetscCall(MatGetSize(X, NULL, &columns));
+  PetscCall(PetscMalloc2(m * columns, &H, n * columns, &product));
+  PetscCall(ReducedGram(B, X, H));
+  PetscCall(MatDenseGetLDA(A, &lda));
+  PetscCall(MatDenseGetLDA(X, &ldx));
+  PetscCall(MatDenseGetArrayRead(A, &a));
+  ReducedTimes(&(DenseBlock){a, n, m, lda}, &(DenseBlock){H, m, columns, m}, product);
+  PetscCall(MatDenseRestoreArrayRead(A, &a));
+  PetscCall(MatDenseGetArray(X, &x));
+  for (PetscInt j = 0; j < columns; j++)
+    for (PetscInt i = 0; i < n; i++) x[j * ldx + i] -= product[j * n + i];
+  PetscCall(MatDenseRestoreArray(X, &x));
+  PetscCall(PetscFree2(H, product));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
+{
+  Mat Z;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
+  PetscCall(ComplementOf(r->MPhi, r->Phi, B));
+  PetscCall(ShiftInvertApplyThrough(&r->inverse, Z, B, X));
+  PetscCall(ComplementOf(r->Phi, r->MPhi, X));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. of V as the dense B: of G' and of the others */
+static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat B)
+{
+  const PetscInt     n_pairs = 3 * r->model.n_pairs;
+  PetscInt           n_own, n, stride, ldo;
+  PetscScalar       *b;
+  const PetscScalar *o;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockTakeColumns(Gt, first, B));
+  PetscCall(MatGetLocalSize(B, &n_own, NULL));
+  PetscCall(MatGetSize(B, NULL, &n));
+  PetscCall(MatDenseGetLDA(B, &stride));
+  PetscCall(MatDenseGetLDA(r->others, &ldo));
+  PetscCall(MatDenseGetArray(B, &b));
+  PetscCall(MatDenseGetArrayRead(r->others, &o));
+  for (PetscInt k = PetscMax(first, n_pairs); k < first + n; k++)
+    PetscCall(PetscArraycpy(&b[(k - first) * stride], &o[(k - n_pairs) * ldo], n_own));
+  PetscCall(MatDenseRestoreArrayRead(r->others, &o));
+  PetscCall(MatDenseRestoreArray(B, &b));
+  PetscFunctionReturn(0);
+}
+
+/* Columns first .. of A [N] from X: V'X, rows of pairs of this rank; of the others, where N has them, the sum over all */
+static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt N, PetscReal A[])
+{
+  const PetscInt     n_others = N - 3 * r->model.n_pairs;
+  const PetscScalar *value;
+  PetscReal         *H;
+  PetscInt           n, stride;
+  Mat                GX;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(X, NULL, &n));
+  PetscCall(MatMatMult(r->G, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GX));
+  PetscCall(MatDenseGetLDA(GX, &stride));
+  PetscCall(MatDenseGetArrayRead(GX, &value));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < 3 * r->n_local; i++) A[(first + k) * N + 3 * r->begin + i] = value[k * stride + i];
+  PetscCall(MatDenseRestoreArrayRead(GX, &value));
+  PetscCall(MatDestroy(&GX));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &A[first * N], (PetscMPIInt)(n * N), MPIU_REAL, MPI_SUM, r->comm));
+  if (!n_others) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n_others * n, &H));
+  PetscCall(ReducedGram(r->others, X, H));
+  for (PetscInt k = 0; k < n; k++)
+    PetscCall(PetscArraycpy(&A[(first + k) * N + N - n_others], &H[k * n_others], n_others));
+  PetscCall(PetscFree(H));
+  PetscFunctionReturn(0);
+}
+
+/* X of the columns first .. of V, and work of its size */
+typedef struct {
+  PetscInt first;
+  Mat      X, B, Y;
+} ResidualColumns;
+
+/* Columns of A = X'D X = V'R D X from X of pairs, and of Phi'D X, or NULL */
+static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumns *c, PetscReal A[], PetscReal mixed[])
+{
+  PetscFunctionBeginUser;
+  if (!A) PetscFunctionReturn(0);
+  PetscCall(BlockMultiply(D, c->X, c->B));
+  if (mixed) PetscCall(ReducedGram(r->Phi, c->B, &mixed[c->first * r->model.m]));
+  PetscCall(ReducedApplyResidual(r, c->B, c->Y));
+  PetscCall(ResidualTake(r, c->Y, c->first, 3 * r->model.n_pairs, A));
+  PetscFunctionReturn(0);
+}
+
+/* Symmetric to the last bit */
+static void ResidualSymmetrise(PetscInt N, PetscReal A[])
+{
+  for (PetscInt j = 0; j < N; j++)
+    for (PetscInt i = 0; i < j; i++) A[i + N * j] = A[j + N * i] = 0.5 * (A[i + N * j] + A[j + N * i]);
+}
+
+/* Columns first .. first + n - 1 of all that is made of V */
+static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], PetscInt first, PetscInt n)
+{
+  const PetscInt  N = r->model.n_ports;
+  PetscInt        n_own;
+  ResidualColumns c = {.first = first};
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(Gt, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &c.B));
+  PetscCall(PortsGetColumns(r, Gt, first, c.B));
+  PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.X));
+  PetscCall(ReducedApplyResidual(r, c.B, c.X));
+  PetscCall(ResidualTake(r, c.X, first, N, r->model.W));
+  if (first < 3 * r->model.n_pairs) {
+    PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.Y));
+    PetscCall(ResidualTakeForm(r, form[0], &c, r->model.Cx, r->model.Cm));
+    PetscCall(ResidualTakeForm(r, form[1], &c, r->model.Mx, NULL));
+    PetscCall(MatDestroy(&c.Y));
+  }
+  PetscCall(MatDestroy(&c.B));
+  PetscCall(MatDestroy(&c.X));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for dense matrices of the pairs, on each rank, that this machine does not hold, or PetscInt does not count */
+static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
+{
+  const double N = r->model.n_ports, n = 3 * (double)r->model.n_pairs,
+               copies = 2 + (damped ? 2 : 0) + (r->weighs ? 1 : 0);
+  const double gb =
+    8e-9 * (N * N + copies * n * n) * MemoryRanks(); /* W; of the stepper W, the laws', HW, and Cx, Mx */
+  PetscBool given;
+  double    fits[3];
+
+  PetscFunctionBeginUser;
+  fits[0] = 1e-3 * MemoryRoom(&given);
+  fits[1] = N * N < PETSC_MAX_INT ? 0 : -1;
+  fits[2] = -gb; /* machines may have other numbers of ranks */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 3, MPI_DOUBLE, MPI_MIN, r->comm));
+  PetscCheck(-fits[2] <= fits[0] && fits[1] == 0, r->comm, PETSC_ERR_USER_INPUT,
+             "-dynamics_model reduced: the dense compliance of %" PetscInt_FMT
+             " pairs takes %.3g GB on a machine, more than %s (%.3g GB)%s; take a coarser contact, or "
+             "-dynamics_model full",
+             r->model.n_pairs, -fits[2], given ? "-squeal_memory" : "is free", fits[0],
+             fits[1] < 0 ? ", and has more entries than can be counted" : "");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetResidual(ReducedRun r)
+{
+  const PetscInt  N = r->model.n_ports, n_pairs = 3 * r->model.n_pairs;
+  const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->cutoff / RESIDUAL_SHIFT);
+  PencilMatrices  pencil;
+  PetscInt        n;
+  Mat             Gt, C, form[2]; /* damping, mass */
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
+  form[0] = C;
+  PetscCall(ResidualCheckMemory(r, C ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(PencilGetMass(r->bodies, &form[1]));
+  PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
+  PetscCall(MatTranspose(r->G, MAT_INITIAL_MATRIX, &Gt));
+  PetscCall(PetscCalloc1(N * N, &r->model.W));
+  if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Cx));
+  if (C) PetscCall(PetscCalloc1(n_pairs * r->model.m, &r->model.Cm));
+  if (r->weighs) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Mx));
+  PetscCall(ProgressBegin(&r->progress, "compliance of the ports, blocks", (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
+  for (PetscInt first = 0; first < N; first += n) {
+    n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
+    PetscCall(ResidualBlock(r, Gt, form, first, n));
+    PetscCall(ProgressStep(&r->progress));
+  }
+  PetscCall(ProgressEnd(&r->progress));
+  PetscCall(MatDestroy(&Gt));
+  ResidualSymmetrise(N, r->model.W);
+  if (C) ResidualSymmetrise(n_pairs, r->model.Cx);
+  if (r->weighs) ResidualSymmetrise(n_pairs, r->model.Mx);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,110 @@
+/*
+   Cut-off and step. What -dynamics_cutoff and -ts_dt leave open is begun with what the band of interest tells, and then
+   chosen such that growth of the unstable modes in that band is off by -dynamics_growth_rtol at most in the run: one half of it
+   for the reduction, by a higher cut-off, one half for the step, whose error falls with its square.
+*/
+#include "reduced/reducedimpl.h"
+
+#define CUTOFF      20e3 /* Hz, where nothing says which band is of interest */
+#define CUTOFF_BAND 4    /* times the upper end of -modes_band */
+#define RAISE       1.5  /* of the cut-off at once */
+#define MOST_RAISES 4
+#define SHORTER     0.9 /* of the largest step that would do */
+
+PetscErrorCode ReducedChooseCutoff(ReducedRun r)
+{
+  PetscBool has_band;
+  PetscReal band[2], growth;
+
+  PetscFunctionBeginUser;
+  r->chooses = r->cutoff > 0 ? PETSC_FALSE : PETSC_TRUE;
+  r->why     = "as -dynamics_cutoff says";
+  if (!r->chooses) PetscFunctionReturn(0);
+  PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
+  if (has_band) PetscCall(ModesGetBand(r->mesh_modes, band, &growth));
+  r->cutoff = has_band ? CUTOFF_BAND * band[1] : CUTOFF;
+  r->why    = has_band ? "4 times the end of -modes_band" : "no -modes_band says which frequencies are of interest";
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSetStep(ReducedRun r, PetscReal dt)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DynamicsGetStep(r->dynamics, dt, &r->run));
+  r->dt = r->run.dt;
+  PetscCheck(
+    r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
+    "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
+    (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for an unstable mode of the mesh above the cut-off */
+static PetscErrorCode ChooseCheck(ReducedRun r)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < r->n_compared; i++)
+    PetscCheck(!r->compared[i].unstable || r->compared[i].mesh[1] < 2 * PETSC_PI * r->cutoff, r->comm,
+               PETSC_ERR_USER_INPUT,
+               "-dynamics_cutoff %.6g Hz is below the unstable mode at %.6g Hz; take at least twice that",
+               (double)r->cutoff, (double)(r->compared[i].mesh[1] / (2 * PETSC_PI)));
+  PetscFunctionReturn(0);
+}
+
+/* Growth of the unstable modes beside that of the mesh, and with the inertia of what the cut-off leaves out: where no mesh is
+   compared but -dynamics_growth_rtol is given, that is what it may be off by */
+static PetscErrorCode ChooseJudge(ReducedRun r)
+{
+  PetscReal off;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedCompare(r));
+  PetscCall(ReducedWeighGrowth(r, &off));
+  if (r->not_compared && r->has_rtol) r->miss_model = off;
+  PetscFunctionReturn(0);
+}
+
+/* Says where what was asked for is not reached, by the cut-off or by the step */
+static PetscErrorCode ChooseWarn(ReducedRun r)
+{
+  const PetscReal off = r->miss_model + r->miss_steps;
+
+  PetscFunctionBeginUser;
+  if (r->has_rtol && off > r->growth_rtol)
+    PetscCall(PetscFPrintf(
+      r->comm, stderr,
+      "squeal: warning: -dynamics_growth_rtol %.3g is not reached: growth may be off by %.2g of itself with the "
+      "cut-off %.6g Hz, and by %.2g with the step %.3g s; say a higher -dynamics_cutoff, a shorter -ts_dt\n",
+      (double)r->growth_rtol, (double)r->miss_model, (double)r->cutoff, (double)r->miss_steps, (double)r->dt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedChoose(ReducedRun r)
+{
+  const PetscReal half = 0.5 * r->growth_rtol;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedReduce(r));
+  PetscCall(ReducedCompareMesh(r));
+  PetscCall(ChooseCheck(r));
+  PetscCall(ChooseJudge(r));
+  if (!r->chooses) PetscFunctionReturn(0);
+  for (int i = 0; i < MOST_RAISES && r->miss_model > half; i++) {
+    r->cutoff *= RAISE;
+    r->why = r->not_compared ? "by the growth of unstable modes beside that with the inertia of what is above"
+                             : "by the growth of unstable modes beside that of the mesh";
+    PetscCall(ReducedForget(r));
+    PetscCall(ReducedSetStep(r, 1 / (2 * PETSC_PI * r->cutoff)));
+    PetscCall(ReducedReduce(r));
+    PetscCall(ChooseJudge(r));
+  }
+  for (int i = 0; i < MOST_RAISES && r->miss_steps > half; i++) {
+    const PetscReal dt = r->dt;
+
+    PetscCall(ReducedSetStep(r, SHORTER * dt * PetscSqrtReal(half / r->miss_steps)));
+    if (r->dt == dt) break; /* -ts_dt */
+    PetscCall(ReducedCompare(r));
+  }
+  PetscCall(ChooseWarn(r));
+  PetscFunctionReturn(0);
+}

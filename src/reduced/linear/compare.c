@@ -1,0 +1,158 @@
+/*
+   The error of the reduction before the run: eigenvalues of the reduced model about the sliding state, as they are and as the
+   steps see them (warp.c), beside those of the mesh in -modes_band, with the same pairs closed. All have friction damping, as
+   Coulomb's law in time does.
+*/
+#include "reduced/reducedimpl.h"
+#include "base/gather.h"
+
+#define GROWTH_LEAST 1e-4 /* of the angular frequency: smaller growth is not resolved any better */
+
+/* Why the mesh has no modes to compare with, or NULL */
+static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
+{
+  PetscBool has_band;
+
+  PetscFunctionBeginUser;
+  *why = r->compare ? NULL : "-dynamics_compare false";
+  PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
+  if (!has_band && !*why) *why = "no -modes_band";
+  for (PetscInt i = 0; i < r->run.n_interfaces && !*why; i++) {
+    const ContactInterface *c = &r->run.interfaces[i];
+
+    if (c->law != CONTACT_CONSTRAINT) *why = "the penalty law of the modes is not exact contact";
+    if (!c->slides && FrictionExists(&c->friction)) *why = "nothing says along what the contact slides";
+    if (!c->damping && FrictionVaries(&c->friction)) *why = "friction that depends on a speed which is not given";
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The pairs of all ranks that are closed in the state, and their normal forces */
+static PetscErrorCode CompareTakeClosed(ReducedRun r, const SlidingState *state)
+{
+  PetscInt *group;
+
+  PetscFunctionBeginUser;
+  PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*group), state->group, NULL, &group));
+  PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*r->lambda_n), state->lambda_n, NULL, &r->lambda_n));
+  PetscCall(PetscMalloc1(r->model.n_pairs, &r->closed));
+  r->n_closed = 0;
+  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
+    r->closed[i] = group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    r->n_closed += r->closed[i];
+  }
+  PetscCall(PetscFree(group));
+  PetscFunctionReturn(0);
+}
+
+/* The nearest of n eigenvalues to that of the mesh */
+static void CompareMatch(PetscInt n, const PetscReal sigma[], const PetscReal omega[], const PetscReal mesh[2],
+                         PetscReal found[2])
+{
+  PetscReal nearest = PETSC_MAX_REAL;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal distance = hypot(sigma[i] - mesh[0], omega[i] - mesh[1]);
+
+    if (omega[i] < 0 || distance >= nearest) continue;
+    nearest  = distance;
+    found[0] = sigma[i];
+    found[1] = omega[i];
+  }
+}
+
+/* Modes of the mesh about the state */
+static PetscErrorCode CompareSolveMesh(ReducedRun r, const SlidingState *state)
+{
+  const Mode *mode;
+  Pencil      pencil;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsLinearise(r->run.operators, state, &pencil));
+  PetscCall(ModesSetPencil(r->mesh_modes, pencil));
+  PetscCall(ModesSolve(r->mesh_modes));
+  PetscCall(ModesGet(r->mesh_modes, &r->n_compared, &mode));
+  PetscCall(PetscCalloc1(r->n_compared, &r->compared));
+  for (PetscInt i = 0; i < r->n_compared; i++) {
+    r->compared[i].mesh[0]  = mode[i].sigma;
+    r->compared[i].mesh[1]  = mode[i].omega;
+    r->compared[i].unstable = mode[i].unstable;
+    PetscCall(PetscStrncpy(r->compared[i].label, mode[i].label, sizeof(r->compared[i].label)));
+  }
+  PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedCompareMesh(ReducedRun r)
+{
+  SlidingState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(CompareFindObstacle(r, &r->not_compared));
+  if (r->not_compared) PetscFunctionReturn(0);
+  PetscCall(StaticsSolveSliding(r->run.statics, NULL, &state));
+  PetscCall(StaticsRelease(r->run.statics));
+  PetscCall(CompareTakeClosed(r, &state));
+  PetscCall(CompareSolveMesh(r, &state));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
+/* The largest errors of growth over the unstable modes, relative to it or to a small part of the frequency */
+static void CompareJudge(ReducedRun r)
+{
+  r->miss_model = r->miss_steps = 0;
+  for (PetscInt i = 0; i < r->n_compared; i++) {
+    const ReducedPair *c = &r->compared[i];
+
+    const PetscReal scale = PetscMax(c->mesh[0], GROWTH_LEAST * c->mesh[1]);
+
+    if (!c->unstable) continue;
+    r->miss_model = PetscMax(r->miss_model, PetscAbsReal(c->reduced[0] - c->mesh[0]) / scale);
+    r->miss_steps = PetscMax(r->miss_steps, PetscAbsReal(c->steps[0] - c->reduced[0]) / scale);
+  }
+}
+
+PetscErrorCode ReducedCompare(ReducedRun r)
+{
+  const PetscInt n = 2 * r->model.m;
+  PetscReal     *sigma, *omega;
+
+  PetscFunctionBeginUser;
+  if (r->not_compared) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n, &sigma, n, &omega));
+  PetscCall(ReducedLineariseSliding(&r->model, r->closed, r->lambda_n, sigma, omega));
+  for (PetscInt i = 0; i < r->n_compared; i++)
+    CompareMatch(n, sigma, omega, r->compared[i].mesh, r->compared[i].reduced);
+  PetscCall(ReducedLineariseSteps(&r->model, r->dt, r->closed, r->lambda_n, sigma, omega));
+  for (PetscInt i = 0; i < r->n_compared; i++)
+    CompareMatch(n, sigma, omega, r->compared[i].reduced, r->compared[i].steps);
+  PetscCall(PetscFree2(sigma, omega));
+  CompareJudge(r);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedCompareView(ReducedRun r, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (r->not_compared) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "eigenvalues of the mesh not compared: %s\n", r->not_compared));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "eigenvalues about the sliding state, %" PetscInt_FMT " of %" PetscInt_FMT
+                                   " pairs closed: mesh, reduced, reduced in steps of %.6g s\n",
+                                   r->n_closed, r->model.n_pairs, (double)r->dt));
+  for (PetscInt i = 0; i < r->n_compared; i++) {
+    const ReducedPair *c = &r->compared[i];
+
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s  %s\n",
+      (double)(c->mesh[1] / (2 * PETSC_PI)), (double)c->mesh[0], (double)(c->reduced[1] / (2 * PETSC_PI)),
+      (double)c->reduced[0], (double)(c->steps[1] / (2 * PETSC_PI)), (double)c->steps[0], c->label));
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "growth of unstable modes: reduced off by %.2g %% at most, steps by %.2g %% more\n",
+                                   (double)(100 * r->miss_model), (double)(100 * r->miss_steps)));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,76 @@
+/*
+   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses. One at T
+   between two times of the run acts at both, in the shares max(0, 1 - |T - t_n| / dt), so that its mean time is T: all at
+   one of them would shift the phase of what it starts by up to omega dt.
+*/
+#include "reduced/reducedimpl.h"
+
+PetscErrorCode ReducedDriveCreate(ReducedRun r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(r->model.n_loads, &r->loads, r->model.n_pairs, &r->sliding, r->model.m, &r->kick));
+  PetscFunctionReturn(0);
+}
+
+void ReducedSetLoads(ReducedRun r, PetscReal t, PetscReal factor[])
+{
+  const PetscInt n = r->model.n_loads - (ModelHasGravity(r->run.model) ? 1 : 0);
+
+  for (PetscInt i = 0; i < r->model.n_loads; i++)
+    factor[i] = i < n && !r->run.from_static ? ExternalGetLoadFactor(r->run.external, i, t) : 1;
+}
+
+/* Sum of the shares of Phi'J; hit is false where there is none */
+static PetscErrorCode DriveKick(ReducedRun r, PetscBool *hit)
+{
+  const PetscInt m = r->model.m;
+
+  PetscFunctionBeginUser;
+  *hit = PETSC_FALSE;
+  PetscCall(PetscArrayzero(r->kick, m));
+  for (PetscInt i = 0; i < r->n_hits; i++) {
+    const PetscReal share = 1 - PetscAbsReal(r->hit_due[i] - r->state.time) / r->dt;
+
+    if (!(share > 0)) continue;
+    for (PetscInt k = 0; k < m; k++) r->kick[k] += share * r->hits[m * i + k];
+    *hit = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* One that acts in some step before t_n has acted */
+PetscErrorCode ReducedReportHits(ReducedRun r)
+{
+  PetscReal *time;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(r->n_hits, &time));
+  for (PetscInt i = 0; i < r->n_hits; i++) time[i] = r->hit_due[i] < r->state.time ? r->hit_due[i] : -1;
+  PetscCall(DynamicsWriteImpulses(r->dynamics, r->sums, time));
+  PetscCall(PetscFree(time));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedGetWay(ReducedRun r, PetscInt i, PetscReal *way)
+{
+  const PetscReal t[2] = {r->state.time, r->state.time + r->dt};
+  PetscBool       turning;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactProjectorGetWay(r->run.projector, r->pair[i].interface, t, way, &turning));
+  *way *= r->pair[i].speed;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedDriveSet(ReducedRun r, ReducedDrive *drive)
+{
+  const PetscReal end = r->state.time + r->dt;
+  PetscBool       hit;
+
+  PetscFunctionBeginUser;
+  ReducedSetLoads(r, end, r->loads);
+  for (PetscInt i = 0; i < r->model.n_pairs; i++) PetscCall(ReducedGetWay(r, i, &r->sliding[i]));
+  PetscCall(DriveKick(r, &hit));
+  *drive = (ReducedDrive){r->loads, r->sliding, hit ? r->kick : NULL};
+  PetscFunctionReturn(0);
+}

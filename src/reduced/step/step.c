@@ -1,0 +1,340 @@
+/*
+   One step of the reduced model (reduced.h) and its account of energy: first with lambda_{n+1} = 0, which gives the free
+   displacements of the pairs, then lambda_{n+1} from the laws, then with it.
+*/
+#include "reduced/reducedimpl.h"
+#include <petscblaslapack.h>
+
+void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[], PetscReal y[])
+{
+  const PetscReal    one  = 1;
+  const PetscBLASInt rows = (PetscBLASInt)A->rows, columns = (PetscBLASInt)A->columns, stride = (PetscBLASInt)A->stride;
+  const PetscBLASInt unit = 1;
+
+  if (rows && columns)
+    BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
+}
+
+PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
+{
+  PetscReal y = 0;
+
+  for (PetscInt k = 0; k < model->m; k++) y += model->P[k + model->m * port] * eta[k];
+  for (PetscInt i = 0; i < model->n_ports; i++) y += model->W[i + model->n_ports * port] * p[i];
+  return y;
+}
+
+/* Impulses act at the beginning; the work that they do, J */
+static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const ReducedState *state)
+{
+  const PetscInt m    = s->model->m;
+  PetscReal      work = 0;
+
+  for (PetscInt k = 0; k < m; k++) {
+    s->x[k]     = state->eta[k];
+    s->x[m + k] = state->rate[k] + (kick ? kick[k] : 0);
+    if (kick) work += kick[k] * 0.5 * (state->rate[k] + s->x[m + k]);
+  }
+  return work;
+}
+
+/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read */
+static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[])
+{
+  const PetscBLASInt one = 1;
+  PetscReal          sum = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscBLASInt rows = (PetscBLASInt)j;
+    const PetscReal   *a    = &A[stride * j];
+
+    if (x[j] != 0) sum += x[j] * (2 * BLASdot_(&rows, a, &one, x, &one) + a[j] * x[j]);
+  }
+  return sum;
+}
+
+void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
+{
+  const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;
+
+  *kinetic = *strain = 0;
+  for (PetscInt k = 0; k < model->m; k++) {
+    *kinetic += 0.5 * s->rate[k] * s->rate[k];
+    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
+  }
+  *strain += 0.5 * SymmetricForm(n, model->n_ports, model->W, s->q);
+  *strain += 0.5 * SymmetricForm(n_others, model->n_ports, &model->W[(model->n_ports + 1) * n], &s->p[n]);
+  for (PetscInt j = n; j < model->n_ports; j++)
+    for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
+}
+
+/* next = E z + F g with g = P mean */
+static void StepperRespond(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m     = model->m;
+
+  for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
+  for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
+  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
+}
+
+/* Adds -Cm dq / dt to g, and what it changes to next */
+static void StepperDrag(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
+
+  for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, s->product);
+  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, s->product, s->next);
+  for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] += s->product[k];
+}
+
+/* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n) / dt = W
+   mean(lambda). `next` holds the answer without dq, then with it */
+static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  for (PetscInt i = 0; i < n; i++) s->dq[i] = 0;
+  StepperRespond(s);
+  for (PetscInt i = 0; i < n; i++) {
+    s->q[i] = s->HW ? state->q[i] : state->p[i];
+    s->r[i] = s->mean[i] - state->q[i]; /* work */
+  }
+  if (!s->HW) return;
+  for (PetscInt k = 0; k < m; k++) s->product[k] = -(s->next[k] - s->x[k]) / s->dt;
+  ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
+  ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
+  for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
+  StepperDrag(s);
+}
+
+/* Mean forces of the step, with lambda_{n+1} or without */
+static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBool without)
+{
+  const PetscInt n = 3 * s->model->n_pairs;
+
+  for (PetscInt i = 0; i < s->model->n_ports; i++)
+    s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
+}
+
+static inline PetscBool Carries(const PetscReal l[3])
+{
+  return l[0] != 0 || l[1] != 0 || l[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* y += A lambda of the pairs that carry, A [3 n_pairs][rows] */
+static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[], const PetscReal lambda[],
+                               PetscReal y[])
+{
+  for (PetscInt i = 0, end; i < model->n_pairs; i = end + 1) {
+    while (i < model->n_pairs && !Carries(&lambda[3 * i])) i++;
+    for (end = i; end < model->n_pairs && Carries(&lambda[3 * end]);) end++;
+    ReducedBlockTimes(&(DenseBlock){&A[3 * i * rows], rows, 3 * (end - i), rows}, PETSC_FALSE, 1, &lambda[3 * i], y);
+  }
+}
+
+/* lambda_{n+1} joins what the step has without it: z(dt), q_{n+1}, and where works are asked for the forces g on the modes */
+static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  StepperAddCarrying(model, 2 * m, s->G, state->p, s->next);
+  for (PetscInt i = 0; i < n; i++) s->r[i] = s->HW ? 0 : state->p[i];
+  if (s->HW) StepperAddCarrying(model, n, s->R, state->p, s->r);
+  for (PetscInt i = 0; i < n; i++) {
+    s->q[i] += s->r[i];
+    s->dq[i] += s->HW ? s->r[i] : 0;
+  }
+  if (!works) return;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_FALSE, 0.5, state->p, &s->x[2 * m]);
+  if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
+}
+
+void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[], PetscReal y[])
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  (void)StepperKick(s, NULL, state);
+  StepperSetMean(s, state, PETSC_FALSE);
+  StepperSolveResidual(s, state);
+  if (s->HW) ReducedStepperSettle(s, state->p);
+  for (PetscInt i = 0; i < 2 * m; i++) next[i] = s->next[i];
+  for (PetscInt i = 0; i < n; i++) {
+    q[i] = s->q[i];
+    y[i] = 0;
+  }
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, next, y);
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, q, y);
+}
+
+/* Free displacements P eta + W q + W loads, and what slip counts from */
+static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
+
+  for (PetscInt i = 0; i < n; i++) s->free[i] = i % 3 ? 0 : model->gap[i / 3];
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->next, s->free);
+  ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
+  ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n], s->free);
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
+    s->slip0[2 * i + 1] = state->y[3 * i + 2];
+  }
+}
+
+/* Forces and statuses of the pairs at t_{n+1} */
+static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, ReducedReport *report)
+{
+  const PetscInt       n = s->model->n_pairs;
+  const ContactStatus *status;
+  const PetscReal     *slip;
+  ComplianceReport     solved;
+
+  PetscFunctionBeginUser;
+  report->residual = 0;
+  report->its      = 0;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
+  PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
+             "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
+             ", must be %.0e; friction of mu %.3g may have no solution on these bodies: take "
+             "-dynamics_model full",
+             (double)(state->time + s->dt), (double)solved.residual, solved.worst + 1, (double)s->rtol,
+             (double)FrictionSteady(&s->model->friction[PetscMax(0, solved.worst)]));
+  PetscCall(ContactComplianceGetStatus(s->laws, &status));
+  PetscCall(PetscArraycpy(state->status, status, n));
+  PetscCall(ContactComplianceGetSlip(s->laws, &slip));
+  PetscCall(PetscArraycpy(s->slip, slip, 3 * n));
+  report->residual = solved.residual;
+  report->its      = solved.iterations;
+  PetscFunctionReturn(0);
+}
+
+/* Heat of a pair's friction in a step, J: its slip s (m) along -p, p the friction at t_{n+1}, for which Coulomb's law holds
+   together with s, so that p . s <= 0; times the mean of |p| and of |last| at t_n (N), second order in the step. None of a
+   pair that is open at t_{n+1}, nor of one that sticks beyond the rounding of s */
+static PetscReal FrictionHeat(const PetscReal p[2], const PetscReal last[2], const PetscReal s[2])
+{
+  const PetscReal size = hypot(p[0], p[1]);
+
+  return size > 0 ? -0.5 * (1 + hypot(last[0], last[1]) / size) * (p[0] * s[0] + p[1] * s[1]) : 0;
+}
+
+/* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
+static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport *report)
+{
+  for (PetscInt i = 0; i < s->model->n_pairs; i++) {
+    const PetscReal *mean = &s->mean[3 * i], *slip = &s->slip[3 * i + 1];
+    PetscReal        dy[3];
+
+    for (int d = 0; d < 3; d++) {
+      const PetscReal y = s->slip[3 * i + d] + (d ? s->slip0[2 * i + d - 1] : -s->model->gap[i]);
+
+      dy[d]               = y - state->y[3 * i + d];
+      state->y[3 * i + d] = y;
+    }
+    for (int d = 0; d < 2; d++) report->slip[2 * i + d] = slip[d];
+    report->contact[i]  = mean[0] * dy[0];
+    report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
+    if (!report->works) continue;
+    report->heat[i] = FrictionHeat(&state->p[3 * i + 1], &state->last[3 * i + 1], slip);
+  }
+}
+
+/* Work of the loads, J: mean . (change of their displacements), less what only lambda - q makes of a load that changes */
+static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, N = model->n_ports, n = 3 * model->n_pairs;
+  PetscReal           work = 0;
+
+  for (PetscInt i = 0; i < N; i++) s->port[i] = i < n ? s->q[i] - state->q[i] : state->p[i] - state->last[i];
+  for (PetscInt j = n; j < n + model->n_loads; j++) {
+    const PetscReal *w  = &model->W[N * j];
+    PetscReal        dy = 0, lag = 0;
+
+    for (PetscInt k = 0; k < m; k++) dy += model->P[k + m * j] * (s->next[k] - s->x[k]);
+    for (PetscInt i = 0; i < N; i++) dy += w[i] * s->port[i];
+    for (PetscInt i = 0; i < n; i++) lag += w[i] * (s->mean[i] - 0.5 * (s->q[i] + state->q[i]));
+    work += s->mean[j] * dy - lag * s->port[j];
+  }
+  return work;
+}
+
+/* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual */
+static PetscReal StepperDamping(ReducedStepper s)
+{
+  const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
+  PetscReal      work = 0;
+
+  if (!s->Q) return 0;
+  for (PetscInt i = 0; i < 3 * m; i++) s->product[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->Q, 3 * m, 3 * m, 3 * m}, PETSC_FALSE, 1, s->x, s->product);
+  for (PetscInt i = 0; i < 3 * m; i++) work += s->x[i] * s->product[i];
+  if (!s->HW) return work;
+  for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
+  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, 2, s->dq, s->product);
+  for (PetscInt k = 0; k < m; k++) work += (s->next[k] - s->x[k]) * s->product[k] / s->dt;
+  return work + SymmetricForm(n, n, s->model->Cx, s->dq) / s->dt;
+}
+
+/* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
+static void StepperGuess(PetscInt n, PetscInt n_ports, ReducedState *state)
+{
+  for (PetscInt i = 0; i < n_ports; i++) {
+    const PetscReal p = state->p[i];
+
+    if (i < n) state->p[i] = 2 * p - state->last[i];
+    state->last[i] = p;
+  }
+}
+
+PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      m = model->m, n = 3 * model->n_pairs;
+
+  PetscFunctionBeginUser;
+  report->external = StepperKick(s, drive->kick, state);
+  StepperGuess(n, model->n_ports, state);
+  for (PetscInt i = 0; i < model->n_loads; i++) state->p[n + i] = drive->loads[i];
+  StepperSetMean(s, state, PETSC_TRUE);
+  StepperSolveResidual(s, state);
+  if (!s->HW) PetscCall(PetscArrayzero(s->q, n));
+  StepperSetFree(s, drive, state);
+  PetscCall(StepperSolveLaws(s, state, report));
+  StepperSetMean(s, state, PETSC_FALSE);
+  StepperAddForces(s, state, report->works);
+  if (s->HW) ReducedStepperSettle(s, state->p);
+  StepperAccount(s, state, report);
+  if (report->works) report->external += StepperLoadWork(s, state);
+  if (report->works) PetscCall(ReducedStepperSetDamping(s));
+  if (report->works) report->damping = -StepperDamping(s);
+  PetscCall(PetscArraycpy(state->q, s->q, n));
+  PetscCall(PetscArraycpy(state->eta, s->next, m));
+  PetscCall(PetscArraycpy(state->rate, &s->next[m], m));
+  state->time += s->dt;
+  PetscFunctionReturn(0);
+}
+
+void ReducedGetContactWork(const ReducedModel *model, const ReducedReport *report, PetscReal *contact,
+                           PetscReal *friction)
+{
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    *contact += report->contact[i];
+    *friction += report->friction[i];
+  }
+}
+
+PetscBool ReducedContactFeeds(PetscReal contact, PetscReal others)
+{
+  return LedgerContactFeeds(contact, others);
+}

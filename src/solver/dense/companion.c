@@ -1,0 +1,185 @@
+/*
+   The dense problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0, y^T Q(lambda) = 0, by shift and invert about a
+   real shift s > 0 with P = Q(s) (P = K + s^2 M without damping):
+
+      undamped  P^-1 M x = theta x,                        kappa = -lambda^2 = 1 / theta - s^2,  y = P^-T w
+      damped    [0 I; -P^-1 s^2 M, -P^-1 (2 s^2 M + s C)] [x; theta x] = theta [x; theta x],
+                lambda = s (1 + 1 / theta),                                                     y = P^-T b
+
+   where w is the left vector of P^-1 M and b the second block of that of the companion matrix. (Put lambda = s (1 +
+   nu): nu^2 s^2 M + nu (2 s^2 M + s C) + P = 0, theta = 1 / nu. For a left vector [a; b] the first column of the
+   companion equation gives theta a^T = -b^T P^-1 s^2 M, and theta times the second b^T P^-1 (theta^2 P + theta (2 s^2
+   M + s C) + s^2 M) = 0.)
+
+   Contact makes K stiff: largest eigenvalues of K x = kappa M x may be 1e14 times those looked for, and QR iterations
+   on M^-1 K leave errors of eps times the largest. Here they are eps (kappa + s^2)^2 / (kappa_min + s^2), whatever the
+   largest; s^2 between the ends of the window makes that small for all of it. What remains is what rounding in the
+   given K does, which callers estimate.
+*/
+#include "pencil.h"
+
+#define ON_SHIFT 1e3 /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
+
+static PetscErrorCode DenseShiftedCreate(const DensePencil *pencil, PetscReal shift, DenseShifted *w)
+{
+  PetscFunctionBeginUser;
+  w->pencil = pencil;
+  w->n      = pencil->n;
+  w->N      = pencil->damped ? 2 * w->n : w->n;
+  w->shift  = shift;
+  PetscCall(PetscMalloc3(w->n * w->n, &w->P, w->N * w->N, &w->B, w->n, &w->pivot));
+  PetscCall(PetscCalloc4(w->N, &w->wr, w->N, &w->wi, w->N * w->N, &w->R, w->N * w->N, &w->L));
+  PetscFunctionReturn(0);
+}
+
+/* P = Q(shift) */
+static void FormP(DenseShifted *w)
+{
+  const DensePencil *q = w->pencil;
+
+  for (PetscInt i = 0; i < w->n * w->n; i++) w->P[i] = q->K[i] + w->shift * (w->shift * q->M[i] + q->C[i]);
+}
+
+/* Symmetric: M x = theta P x; definite is false where P is not */
+static PetscErrorCode SolveSymmetric(DenseShifted *w, PetscBool *definite)
+{
+  PetscFunctionBeginUser;
+  FormP(w);
+  PetscCall(PetscArraycpy(w->R, w->pencil->M, w->n * w->n));
+  PetscCall(PetscArrayzero(w->wi, w->n));
+  PetscCall(DenseSymmetricEigen(w->n, w->R, w->P, w->wr, definite));
+  PetscFunctionReturn(0);
+}
+
+/* Companion matrix of theta^2 + theta P^-1 (2 s^2 M + s C) + P^-1 s^2 M, [2 n * 2 n] */
+static PetscErrorCode FormCompanion(DenseShifted *w)
+{
+  const DensePencil *q = w->pencil;
+  const PetscInt     n = w->n, N = w->N;
+  const PetscReal    s = w->shift;
+  PetscReal         *row; /* lower half, [2 n][n] */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * N, &row));
+  for (PetscInt i = 0; i < n * n; i++) {
+    row[i]         = -s * s * q->M[i];
+    row[n * n + i] = -s * (2 * s * q->M[i] + q->C[i]);
+  }
+  PetscCall(DenseSolve(n, w->P, w->pivot, PETSC_FALSE, N, row));
+  PetscCall(PetscArrayzero(w->B, N * N));
+  for (PetscInt i = 0; i < n; i++) w->B[(n + i) * N + i] = 1;
+  for (PetscInt j = 0; j < N; j++) PetscCall(PetscArraycpy(w->B + j * N + n, row + j * n, n));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
+/* General: LU of P, then the standard problem */
+static PetscErrorCode SolveGeneral(DenseShifted *w, PetscBool *singular)
+{
+  PetscFunctionBeginUser;
+  FormP(w);
+  PetscCall(DenseFactor(w->n, w->P, w->pivot, singular));
+  if (*singular) PetscFunctionReturn(0);
+  if (w->pencil->damped) {
+    PetscCall(FormCompanion(w));
+  } else {
+    PetscCall(PetscArraycpy(w->B, w->pencil->M, w->n * w->n));
+    PetscCall(DenseSolve(w->n, w->P, w->pivot, PETSC_FALSE, w->n, w->B));
+  }
+  PetscCall(DenseEigen(w->N, w->B, w->wr, w->wi, w->L, w->R));
+  PetscFunctionReturn(0);
+}
+
+/* Whether an eigenvalue lies on the shift: |theta| s^2 (undamped), |theta| (damped) are about one otherwise */
+static PetscBool IsOnShift(const DenseShifted *w)
+{
+  const PetscReal unit = w->pencil->damped ? 1 : w->shift * w->shift;
+
+  for (PetscInt i = 0; i < w->N; i++)
+    if (hypot(w->wr[i], w->wi[i]) * unit > ON_SHIFT) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode DenseShiftedSolve(const DensePencil *pencil, PetscReal shift, DenseShifted *w)
+{
+  PetscBool bad = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(DenseShiftedCreate(pencil, shift, w));
+  for (int attempt = 0; attempt < 12 && bad; attempt++) {
+    if (attempt) w->shift *= 1.7;
+    if (pencil->symmetric) {
+      PetscCall(SolveSymmetric(w, &bad));
+      bad = bad ? PETSC_FALSE : PETSC_TRUE;
+    } else {
+      PetscCall(SolveGeneral(w, &bad));
+    }
+    if (!bad) bad = IsOnShift(w);
+  }
+  PetscCheck(!bad, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
+             "dense pencil of size %" PetscInt_FMT ": no shift up to %.6g rad/s at which it is regular", w->n,
+             (double)w->shift);
+  PetscFunctionReturn(0);
+}
+
+PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *lambda)
+{
+  const PetscComplex theta = CMPLX(w->wr[i], w->wi[i]);
+  PetscComplex       kappa;
+
+  if (theta == 0) return PETSC_FALSE;
+  if (w->pencil->damped) {
+    *lambda = w->wi[i] == 0 ? CMPLX(w->shift * (1 + 1 / w->wr[i]), 0) : w->shift * (1 + 1 / theta);
+    return cimag(*lambda) >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  }
+  if (w->wi[i] == 0) {
+    const PetscReal real = 1 / w->wr[i] - w->shift * w->shift;
+
+    *lambda = real > 0 ? CMPLX(0, PetscSqrtReal(real)) : CMPLX(PetscSqrtReal(-real), 0);
+    return PETSC_TRUE;
+  }
+  kappa   = 1 / theta - w->shift * w->shift;
+  *lambda = csqrt(-kappa);
+  if (cimag(*lambda) < 0) *lambda = -*lambda;
+  return PETSC_TRUE;
+}
+
+/* Rows of eigenvector i of LAPACK's real storage from offset on, x [n]; conjugate for left vectors */
+static void VectorGet(const DenseShifted *w, const PetscReal V[], PetscInt i, PetscInt offset, PetscBool left,
+                      PetscComplex x[])
+{
+  const PetscReal  sign = left ? -1 : 1;
+  const PetscInt   at   = w->wi[i] < 0 ? i - 1 : i;
+  const PetscReal *r = V + at * w->N + offset, *c = r + w->N;
+
+  for (PetscInt k = 0; k < w->n; k++)
+    x[k] = w->wi[i] == 0 ? CMPLX(r[k], 0) : CMPLX(r[k], w->wi[i] > 0 ? sign * c[k] : -sign * c[k]);
+}
+
+void DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[])
+{
+  VectorGet(w, w->R, i, 0, PETSC_FALSE, x);
+}
+
+PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[])
+{
+  const PetscInt n = w->n;
+  PetscReal     *parts;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * n, &parts));
+  VectorGet(w, w->L, i, w->N - n, PETSC_TRUE, y);
+  DenseSplit(n, y, parts);
+  PetscCall(DenseSolve(n, w->P, w->pivot, PETSC_TRUE, 2, parts));
+  DenseUnite(n, parts, y);
+  PetscCall(PetscFree(parts));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseShiftedDestroy(DenseShifted *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(w->P, w->B, w->pivot));
+  PetscCall(PetscFree4(w->wr, w->wi, w->R, w->L));
+  PetscFunctionReturn(0);
+}

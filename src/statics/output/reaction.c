@@ -1,0 +1,216 @@
+/*
+   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of a node
+
+      reaction = sum K_e u_e + k u - load - contact force,
+
+   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e. What is
+   left at nodes that ties make follow others acts on these.
+   Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points and loads sum to zero;
+   reactions.csv lists them all.
+*/
+#include "statics/staticsimpl.h"
+
+/* Internal forces minus loads and contact forces at all local nodes, three values each */
+static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
+{
+  PetscReal weight[3], size;
+  Vec       part;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreateNodal(s->model, local));
+  PetscCall(ModelCreateNodal(s->model, &part));
+  PetscCall(OperatorsInternalForces(s->operators, s->p, s->u, *local));
+  PetscCall(OperatorsPrescribedForces(s->operators, s->p, part));
+  PetscCall(VecAXPY(*local, 1, part));
+  PetscCall(ContactNodalForces(s->contact, s->state, part));
+  PetscCall(VecAXPY(*local, -1, part));
+  PetscCall(VecSet(part, 0));
+  PetscCall(OperatorsAddLoads(s->operators, s->p, part, &size));
+  PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
+  PetscCall(VecAXPY(*local, -1, part));
+  PetscCall(VecDestroy(&part));
+  PetscCall(ContactPassForces(s->contact, *local));
+  PetscFunctionReturn(0);
+}
+
+/* Sum of a local vector over the nodes of a set, each once, in some directions; what was summed is set to zero, so
+   that a direction that two supports hold counts for the first */
+static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool direction[3], Vec local,
+                                  PetscReal sum[3])
+{
+  PetscScalar *value;
+  PetscInt     n, *v;
+  MPI_Comm     comm;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetComm(model, &comm));
+  PetscCall(ModelGetOwnedNodes(model, set, &n, &v));
+  PetscCall(VecGetArray(local, &value));
+  for (int d = 0; d < 3; d++) {
+    sum[d] = 0;
+    for (PetscInt i = 0; i < n && direction[d]; i++) {
+      sum[d] += PetscRealPart(value[3 * v[i] + d]);
+      value[3 * v[i] + d] = 0;
+    }
+  }
+  PetscCall(VecRestoreArray(local, &value));
+  PetscCall(PetscFree(v));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReactionRow(ResultsTable table, const char name[], const char kind[], const PetscReal force[3])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g", name, kind, (double)force[0], (double)force[1],
+                            (double)force[2]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
+{
+  PetscScalar *nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreateNodal(s->model, local));
+  PetscCall(VecGetArray(*local, &nodal));
+  PetscCall(ModelGetDisplaced(s->model, s->u, nodal));
+  PetscCall(VecRestoreArray(*local, &nodal));
+  PetscFunctionReturn(0);
+}
+
+/* Springs pull with their present stiffness: the parameters are named after the list, one for all directions or one for
+   each */
+static PetscErrorCode ReactionStiffness(Statics s, const Grounded *g, PetscReal stiffness[3])
+{
+  const OperatorsParameter *parameters;
+  PetscInt                  n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  for (int d = 0; d < 3; d++) {
+    char all[192], one[192];
+
+    stiffness[d] = 0;
+    PetscCall(PetscSNPrintf(all, sizeof(all), "%s_%s", g->name, g->quantity));
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s_%s_%c", g->name, g->quantity, "xyz"[d]));
+    for (PetscInt i = 0; i < n && g->value[d] != 0; i++)
+      if (!strcmp(parameters[i].name, all) || !strcmp(parameters[i].name, one)) stiffness[d] = s->p[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* k u of one list of springs at all local nodes, N; the caller destroys the vector */
+static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec displacement, Vec *forces)
+{
+  const PetscReal *u;
+  PetscReal        stiffness[3], *f;
+  PetscInt         n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReactionStiffness(s, g, stiffness));
+  PetscCall(ModelCreateShares(s->model, g->name, g->set, g->spread, forces));
+  PetscCall(VecGetLocalSize(*forces, &n));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  PetscCall(VecGetArray(*forces, &f));
+  for (PetscInt i = n - 1; i >= 0; i--) f[i] = f[i - i % 3] * stiffness[i % 3] * u[i];
+  PetscCall(VecRestoreArray(*forces, &f));
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of bushings to the ground and points with stiffness, and of bushings between two sets: -k q, on a of the two */
+static PetscErrorCode ReactionsWriteJoints(Statics s, Vec displacement, ResultsTable table)
+{
+  const ModelScene *scene;
+  const PetscReal  *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  for (PetscInt i = 0; i < scene->n_joints + scene->n_points; i++) {
+    const Joint *joint = i < scene->n_joints ? &scene->joints[i] : &scene->points[i - scene->n_joints];
+    PetscReal    q[6], k[6], c[6], m;
+
+    PetscCall(OperatorsGetJoint(s->operators, s->p, i, k, c, &m));
+    if (k[0] + k[1] + k[2] + k[3] + k[4] + k[5] == 0) continue;
+    PetscCall(ModelGetMeanMotion(s->model, &joint->mean, u, q));
+    for (int d = 0; d < 3; d++) q[d] *= -k[d];
+    PetscCall(ReactionRow(table, joint->name,
+                          joint->is_point    ? "point"
+                          : joint->set[1][0] ? "bushing on a"
+                                             : "bushing",
+                          q));
+  }
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of supports, motions and springs */
+static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
+{
+  const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
+  const ModelScene *scene;
+  PetscReal         force[3];
+  Vec               unbalance, u, spring;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ReactionUnbalance(s, &unbalance));
+  PetscCall(StaticsCreateDisplacements(s, &u));
+  for (PetscInt i = 0; i < scene->n_springs; i++) { /* at what motions hold; elsewhere supports hold u = 0 */
+    PetscCall(ReactionCreateSpring(s, &scene->springs[i], u, &spring));
+    PetscCall(VecAXPY(unbalance, 1, spring));
+    PetscCall(VecDestroy(&spring));
+  }
+  for (PetscInt i = 0; i < scene->n_supports; i++) {
+    PetscCall(ReactionSum(s->model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
+    PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
+  }
+  for (PetscInt i = 0; i < scene->n_motions; i++) {
+    PetscCall(ReactionSum(s->model, scene->motions[i].set, scene->motions[i].direction, unbalance, force));
+    PetscCall(ReactionRow(table, scene->motions[i].name, "motion", force));
+  }
+  for (PetscInt i = 0; i < scene->n_springs; i++) {
+    PetscCall(ReactionCreateSpring(s, &scene->springs[i], u, &spring));
+    PetscCall(VecScale(spring, -1));
+    PetscCall(ReactionSum(s->model, scene->springs[i].set, all, spring, force));
+    PetscCall(VecDestroy(&spring));
+    PetscCall(ReactionRow(table, scene->springs[i].name, "spring", force));
+  }
+  PetscCall(ReactionsWriteJoints(s, u, table));
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&unbalance));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReactionWriteWeight(Statics s, ResultsTable table)
+{
+  PetscReal weight[3];
+  Vec       nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreateNodal(s->model, &nodal));
+  PetscCall(OperatorsAddWeight(s->operators, s->p, nodal, weight));
+  PetscCall(VecDestroy(&nodal));
+  PetscCall(ReactionRow(table, "gravity", "weight", weight));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsWriteReactions(Statics s, Results results)
+{
+  const ModelScene *scene;
+  ResultsTable      table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
+  PetscCall(ReactionsWriteHolders(s, table));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCall(ReactionRow(table, scene->loads[i].name, "load", scene->loads[i].force));
+  if (ModelHasGravity(s->model)) PetscCall(ReactionWriteWeight(s, table));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCall(ReactionRow(table, s->rows.interface[i].name, "contact on master", s->resultant[i].force));
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}

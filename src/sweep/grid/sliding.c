@@ -1,0 +1,214 @@
+/*
+   -modes_contact static: the contact status at every place of the sweep is that of the sliding state at the same values
+   of the parameters. All statuses are known before the reduced model is made. Pairs that are open at some places and
+   closed at others become groups with the parameters closed_g = 0 or 1, so that their stiffness, too, is an affine term
+   of the pencil: one basis then serves all statuses.
+
+   A change of status between two points is bracketed by bisection, the widest bracket first, and the ends of the
+   bracket become places of the sweep themselves. A further status found on the way becomes a segment of its own.
+*/
+#include "sweep/sweepimpl.h"
+
+#define MAX_BISECTIONS 30   /* of a sweep */
+#define BRACKET_WIDTH  1e-4 /* relative width of a bracket that is not divided any more */
+
+PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status)
+{
+  PetscBool *closed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(state->n_pairs, &closed));
+  for (PetscInt i = 0; i < state->n_pairs; i++) closed[i] = state->group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(StatusListAdd(&sweep->statuses, closed, status));
+  PetscCall(PetscFree(closed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status)
+{
+  SlidingState state;
+  PetscReal   *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridFill(&sweep->grid, place, p);
+  PetscCall(StaticsSolveSliding(sweep->statics, p, &state));
+  PetscCall(SweepStatusTake(sweep, &state, status));
+  PetscCall(SlidingStateDestroy(&state));
+  sweep->n_static++;
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* The place before the widest bracket, relative to its values, of a change of status on one line that is to be divided,
+   or -1 */
+static PetscInt WidestChange(const SweepGrid *grid)
+{
+  PetscReal widest = BRACKET_WIDTH;
+  PetscInt  at     = -1;
+
+  for (PetscInt k = 0; k + 1 < grid->n_places; k++) {
+    const SweepPlace *a = &grid->place[k], *b = a + 1;
+    const PetscReal   largest = PetscMax(PetscAbsReal(a->value[0]), PetscAbsReal(b->value[0]));
+    const PetscReal   width   = PetscAbsReal(b->value[0] - a->value[0]) / largest;
+
+    if (a->line == b->line && a->status != b->status && width > widest) widest = width, at = k;
+  }
+  return at;
+}
+
+/* Narrows the brackets */
+static PetscErrorCode ChangesBracket(Sweep sweep)
+{
+  SweepGrid *grid = &sweep->grid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt n = 0, k = WidestChange(grid); n < MAX_BISECTIONS && k >= 0; n++, k = WidestChange(grid)) {
+    SweepPlace middle = grid->place[k];
+
+    middle.point    = -1;
+    middle.value[0] = GridMiddle(grid, 0, middle.value[0], grid->place[k + 1].value[0]);
+    PetscCall(SweepStatusSolve(sweep, &middle, &middle.status));
+    PetscCall(GridInsert(grid, k + 1, &middle));
+  }
+  for (PetscInt k = grid->n_places - 2; k > 0; k--) { /* only the ends of the brackets are of use */
+    const SweepPlace *place = &grid->place[k];
+
+    if (place->point < 0 && place[-1].status == place->status && place[1].status == place->status) GridRemove(grid, k);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscBool SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most)
+{
+  const SweepGrid *grid     = &sweep->grid;
+  const PetscInt  *n_closed = sweep->statuses.n_closed;
+  PetscBool        changes  = PETSC_FALSE;
+
+  *least = *most = n_closed[grid->place[0].status];
+  for (PetscInt k = 1; k < grid->n_places; k++) {
+    *least = PetscMin(*least, n_closed[grid->place[k].status]);
+    *most  = PetscMax(*most, n_closed[grid->place[k].status]);
+    if (grid->place[k].status != grid->place[0].status) changes = PETSC_TRUE;
+  }
+  return changes;
+}
+
+/* Groups with the exact constraint are no affine terms */
+static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
+{
+  const PetscReal          *value = sweep->grid.value[0];
+  const OperatorsParameter *parameters;
+  const ContactPair        *pair;
+  Contact                   contact;
+  PetscInt                  n, n_all, least, most;
+  PetscBool                 exact = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+  for (PetscInt p = 0; p < n; p++) {
+    PetscReal mu, kn;
+
+    PetscCall(OperatorsGetInterface(sweep->operators, NULL, pair[p].interface, &mu, &kn));
+    if (group[p] > 0 && PetscIsInfReal(kn)) exact = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
+  (void)SweepClosedRange(sweep, &least, &most);
+  PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
+  PetscCheck(!exact, sweep->comm, PETSC_ERR_SUP,
+             "-modes_contact static with -contact_law constraint: which pairs are closed changes between %s %.6g and "
+             "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
+             "); give -contact_law penalty or -sweep_method full",
+             parameters[sweep->grid.parameter[0][0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least,
+             most, n_all);
+  PetscFunctionReturn(0);
+}
+
+/* Forms the matrices with all groups closed, so that their pattern holds every term, whichever point comes first */
+static PetscErrorCode StatusGroupsFormPattern(Sweep sweep)
+{
+  const SweepGrid *grid = &sweep->grid;
+  PencilMatrices   matrices;
+  PetscReal       *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  GridFill(grid, &grid->place[grid->n_places - 1], p);
+  for (PetscInt g = 1; g <= grid->n_groups; g++) p[grid->n_parameters - g] = 1;
+  PetscCall(PencilSetParameters(sweep->pencil, p));
+  PetscCall(PencilGetMatrices(sweep->pencil, &matrices));
+  PetscCall(PencilGetFrictionless(sweep->pencil, &matrices));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the pencil with the groups, and gives the grid the values of their parameters */
+static PetscErrorCode StatusGroupsSet(Sweep sweep)
+{
+  SweepGrid   *grid = &sweep->grid;
+  PetscInt    *group;
+  SlidingState state;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
+  PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
+  if (grid->n_groups) PetscCall(StatusGroupsCheck(sweep, group));
+  PetscCall(SlidingStateCreate(sweep->statuses.n_local, grid->n_groups, group, &state));
+  PetscCall(OperatorsLinearise(sweep->operators, &state, &sweep->pencil));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscCall(PetscFree(group));
+  PetscCall(PencilGetParameters(sweep->pencil, &grid->n_parameters, NULL, NULL));
+  PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));
+  for (PetscInt g = 0; g < grid->n_groups; g++)
+    grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[sweep->base_status * grid->n_groups + g];
+  PetscCall(StatusGroupsFormPattern(sweep));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SweepStatuses(Sweep sweep)
+{
+  const ContactPair *pair;
+  SweepGrid         *grid = &sweep->grid;
+  Contact            contact;
+  PetscInt           n, n_all;
+  PetscBool          affine;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
+  sweep->statuses.n_pairs = -1;
+  if (contact) {
+    PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
+    PetscCall(StatusListCreate(sweep->comm, n, &sweep->statuses));
+  }
+  if (!sweep->statics) {
+    PetscCall(OperatorsLinearise(sweep->operators, NULL, &sweep->pencil));
+    PetscFunctionReturn(0);
+  }
+  if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
+  PetscCall(StaticsIsAffine(sweep->statics, &affine));
+  PetscCheck(
+    affine, sweep->comm, PETSC_ERR_SUP,
+    "-modes_contact static: pairs that hold by friction, friction damping, -static_geometric and -static_follower "
+    "change with the sliding state from point to point; give -sweep_method full");
+  for (PetscInt k = 0; k < grid->n_places; k++)
+    PetscCall(SweepStatusSolve(sweep, &grid->place[k], &grid->place[k].status));
+  PetscCall(ChangesBracket(sweep));
+  for (PetscInt i = 0; i < sweep->n_checks; i++)
+    PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
+  if (sweep->uncertain[0]) PetscCall(SweepStatusSolve(sweep, NULL, &sweep->base_status));
+  PetscCall(StaticsRelease(sweep->statics));
+  PetscCall(StatusGroupsSet(sweep));
+  PetscFunctionReturn(0);
+}
+
+PetscInt SweepClosedAt(Sweep sweep, PetscInt point, PetscBool *jump)
+{
+  const SweepGrid  *grid  = &sweep->grid;
+  const SweepPlace *place = &grid->place[grid->at[point]];
+
+  *jump = PETSC_FALSE;
+  if (!sweep->statics) return sweep->statuses.n_pairs;
+  if (point % grid->n[0]) *jump = (PetscBool)(grid->place[grid->at[point - 1]].status != place->status);
+  return sweep->statuses.n_closed[place->status];
+}

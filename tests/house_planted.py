@@ -1,0 +1,48 @@
+"""Small houses with one violation each, in which the rules of test_house.py must find it."""
+
+# Files that break one rule each: rule, words of what it says, files
+MANY = "static void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
+BEGIN = "PetscOptionsBegin(comm, %s, title, NULL);\n  "
+MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m", "a.h", m, &m, NULL);\n}\n'
+MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
+LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
+       'OptionsGetReals(PetscOptionsObject, "-law", 1);\n}\n')
+PLANTED = (
+    ("names", "function Twice", {"src/model/a.c": "static int Twice(void)\n{\n  return 1;\n}\n",
+                               "src/modes/b.h": "int Twice(void)\n{\n  return 2;\n}\n"}),
+    ("names", "type Grid", {"src/model/a.h": "typedef struct {\n  int n;\n} Grid;\n",
+                          "src/modes/b.h": "typedef int Grid;\n"}),
+    ("names", "struct Grid", {f"src/model/{k}.h": "struct Grid {\n  int n;\n};\n" for k in "ab"}),
+    ("names", "macro EDGE", {"src/model/a.c": "#define EDGE 1\n", "src/modes/b.c": "#define EDGE 2\n"}),
+    ("names", "constant OPEN", {"src/model/a.h": "typedef enum { OPEN } One;\n",
+                              "src/modes/b.h": "typedef enum { SHUT, OPEN } Two;\n"}),
+    ("includes", "model includes modes/b.h", {"src/model/a.c": '#include "modes/b.h"\n', "src/modes/b.h": ""}),
+    ("includes", "model includes squeal/modes.h", {"src/model/a.c": "#include <squeal/modes.h>\n",
+                                                 "include/squeal/modes.h": ""}),
+    ("includes", "sweep/dense includes", {"src/sweep/dense/a.c": '#include "sweep/track/b.h"\n',
+                                        "src/sweep/track/b.h": "", "src/sweep/README.md": "dense/ track/\n"}),
+    ("includes", "sweep/basis includes", {"src/sweep/basis/a.c": '#include "sweep/b.h"\n', "src/sweep/b.h": "",
+                                        "src/sweep/README.md": "basis/\n"}),
+    ("includes", "is private", {"src/modes/a.c": '#include "model/modelimpl.h"\n', "src/model/modelimpl.h": ""}),
+    ("includes", "is no file", {"src/modes/a.c": '#include "gone.h"\n'}),
+    ("lengths", "longer than", {"scripts/a": "#!/bin/sh\n" + 350 * "\n"}), ("lengths", "longer than", {"tests/a.py": 351 * "\n"}),
+    ("lengths", "a screen", {"src/main.c": 81 * "\n"}),
+    ("lengths", "body of Long", {"src/model/a.c": "static void Long(void)\n{\n" + 81 * "  ;\n" + "}\n"}),
+    ("lengths", "Many has 7 arguments", {"src/model/a.c": MANY}),
+    ("lengths", "body of long", {"tests/a.py": "def long():\n" + 81 * "    pass\n" + "long()\n"}),
+    ("folders", "16 files", {f"src/model/{k}.h": "" for k in range(14)}),
+    ("columns", "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
+    ("columns", "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
+    ("strata", "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
+    ("strata", "MatIsSymmetric outside", {"src/model/a.c": "static void A(void)\n{\n  MatIsSymmetric(A, 0, &same);\n}\n"}),
+    ("readmes", "no README.md", {"src/solver/a.c": ""}),
+    ("readmes", "longer than", {"src/model/README.md": 26 * "\n"}),
+    ("options", "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
+    ("options", "-law is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
+    ("unused", "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
+    ("unused", "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
+    ("dead", "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",
+                             "tests/a.c": "Twice();\n"}),
+    ("dead", "Twice must be static", {"src/model/a.c": "int Twice(void)\n{\n  return 1 ? 1 : Twice();\n}\n"}),
+    ("words", "nobody's business", {"options/a.yaml": "# see " + "/".join(("", "home", "me")) + "/notes\n"}),
+)
