@@ -95,7 +95,7 @@ typedef struct {
   PetscBool mapped;          /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
   PetscInt  n_basis;                   /* vectors of a projection */
-  PetscReal scale;                     /* far below any elastic mode yet above rounding: 1e-5 sqrt(|K| / |M|), rad/s */
+  PetscReal scale, zero;               /* far below any elastic mode yet above rounding; below it is zero by rounding: rad/s */
   PetscReal edge[2];                   /* ends of the band by which modes were counted and are selected, rad/s */
   PetscReal damping; /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
   PetscInt  within;  /* damped: modes about as near to the shift as the window's corners; negative: not known */

@@ -5,25 +5,39 @@
 
    Where unknowns are without mass, as multipliers of constraints are, rounding makes large eigenvalues of any sign of the
    infinite ones, by the root of rounding at best: 1e8 times what is near the shift. So what is larger than 10 times the
-   band and the growth asked for is no mode then; of modes nearest to a target, what is larger than 100 sqrt(K / M).
+   band and the growth asked for is no mode then; of modes nearest to a target, what is larger than 100 times the unknowns'
+   own frequencies.
 */
 #include "modes/modesimpl.h"
 
-#define MODES_EDGE   1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
-#define MODES_ZERO   1e-2 /* of the scale: lower frequencies cannot be told from zero */
-#define MODES_AWAY   1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
-#define MODES_MOST   10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
-#define MODES_FINITE 1e7  /* of the scale: the same where no band is given */
+#define MODES_EDGE      1e-8 /* relative width of the band's ends, so that an eigenvalue on an end belongs to it */
+#define MODES_ROUNDINGS 50   /* of K / M: lower frequencies squared cannot be told from zero */
+#define MODES_BELOW     1e-2 /* of these: below it nothing is */
+#define MODES_AWAY      1e-7 /* relative move of an end on which MUMPS finds an eigenvalue */
+#define MODES_MOST      10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
+#define MODES_FINITE    1e7  /* of the scale: the same where no band is given */
 
-/* A frequency (rad/s) that is small beside all elastic modes, from the size of the matrices */
-static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale)
+/* A frequency (rad/s) that is small beside all elastic modes: 1e-5 of the mean of the unknowns' own, w_i^2 = K_ii / M_ii,
+   weighted by M_ii, in which a stiff spring weighs no more than the mass at it. Rounding of K makes of a zero about
+   eps x'|K| x / x'M x: where x moves all alike, eps times the mean of w_i^2. Below some of these is zero. */
+static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale, PetscReal *zero)
 {
-  PetscReal K, M;
+  PetscReal K, M, w;
+  Vec       k, m;
 
   PetscFunctionBeginUser;
-  PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &K));
-  PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &M));
-  *scale = 1e-5 * PetscSqrtReal(K / M);
+  PetscCall(MatCreateVecs(pencil->K, &k, &m));
+  PetscCall(MatGetDiagonal(pencil->K, k));
+  PetscCall(MatGetDiagonal(pencil->M, m));
+  PetscCall(VecNorm(k, NORM_1, &K));
+  PetscCall(VecNorm(m, NORM_1, &M));
+  PetscCall(VecPointwiseMult(k, k, m));
+  PetscCall(VecSqrtAbs(k));
+  PetscCall(VecNorm(k, NORM_1, &w));
+  *zero  = PetscSqrtReal(MODES_ROUNDINGS * PETSC_MACHINE_EPSILON * K / M);
+  *scale = PetscMax(1e-5 * w / M, *zero);
+  PetscCall(VecDestroy(&k));
+  PetscCall(VecDestroy(&m));
   PetscFunctionReturn(0);
 }
 
@@ -60,6 +74,23 @@ static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscR
   PetscFunctionReturn(0);
 }
 
+/* Frictionless modes below the band. Where it begins within what rounding makes of zero, rigid modes belong to it, unless
+   all that is about zero is found below its end */
+static PetscErrorCode WindowCountLow(Modes modes, Window *window)
+{
+  PetscReal zero  = window->zero;
+  PetscInt  about = 0;
+
+  PetscFunctionBeginUser;
+  window->below = 0;
+  if (window->low >= MODES_BELOW * zero)
+    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->below));
+  if (window->low >= zero) PetscFunctionReturn(0);
+  if (window->below) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &zero, &about));
+  if (!about || about != window->below) window->below = 0, window->edge[0] = 0;
+  PetscFunctionReturn(0);
+}
+
 /* Frictionless modes below the target, or in the band, whose edges move where a mode lies on them */
 static PetscErrorCode WindowCount(Modes modes, Window *window)
 {
@@ -72,10 +103,7 @@ static PetscErrorCode WindowCount(Modes modes, Window *window)
     PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &target, &window->below));
     PetscFunctionReturn(0);
   }
-  if (window->low < MODES_ZERO * window->scale)
-    window->below = 0, window->edge[0] = 0; /* rigid modes belong to the band */
-  else
-    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->below));
+  PetscCall(WindowCountLow(modes, window));
   PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &window->edge[1], &below_high));
   window->expected = below_high - window->below;
   PetscFunctionReturn(0);
@@ -102,7 +130,7 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     .beyond   = -1
   };
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  PetscCall(WindowScale(&frictionless, &window->scale));
+  PetscCall(WindowScale(&frictionless, &window->scale, &window->zero));
   PetscCall(WindowFindMassless(modes, &frictionless, window));
   if (frictionless.symmetric) PetscCall(WindowCount(modes, window));
   PetscFunctionReturn(0);
