@@ -12,7 +12,7 @@ static const struct {
   [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1  },
   [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         AT_REST                },
   [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                 },
-  [SHOWN_STATICS]   = {"-statics_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
+  [SHOWN_STATICS]   = {"-static_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
   [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    MODAL                  },
   [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
   [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF      },

@@ -35,7 +35,7 @@ SWEPT = {"contact_mu": "0.1:0.8:4", "pad_young": "1e10:6e10:4", "disc_density": 
          "contact_kn": "1e7:1e9:4:log", "press_force": "50:200:4"}
 ONLY_MODES = {"modes_contact", "modes_band", "static_geometric", "contact_kt", "contact_friction_damping", "contact_speed",
               "contact_mu_slope", "contact_force", "operators_mass", "disc_spin", "disc_spin_axis", "disc_spin_centre",
-              "loss_frequency", "pad_loss_factor", "disc_alpha", "disc_beta", "pad_alpha", "pad_beta", "beam_alpha", "beam_beta"}
+              "model_loss_frequency", "pad_loss_factor", "disc_alpha", "disc_beta", "pad_alpha", "pad_beta", "beam_alpha", "beam_beta"}
 
 
 class Scene:
@@ -84,7 +84,7 @@ class Scene:
             self.options |= {f"{part}_alpha": self.power(-1, 2)} if self.happens(0.6) else {}
             self.options |= {f"{part}_beta": self.power(-9, -6)} if self.happens(0.6) else {}
         if self.happens(0.3):
-            self.options |= {"pad_loss_factor": 0.05, "loss_frequency": 3000}
+            self.options |= {"pad_loss_factor": 0.05, "model_loss_frequency": 3000}
         if self.mu and "contact_kt" not in self.options and self.happens(0.4):
             self.options |= {"contact_friction_damping": None, "contact_speed": f"{self.draw.uniform(0.05, 5):.4g}"}
             self.options |= {} if self.static else {"contact_force": 100}

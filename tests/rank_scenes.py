@@ -6,7 +6,7 @@ from random_scenes import MASSI, ONLY_MODES, SWEPT, Scene
 
 TIME = {"modes_contact", "static_geometric", "contact_kt", "contact_friction_damping", "contact_mu_slope", "contact_force", "disc_spin",
         "disc_spin_axis", "disc_spin_centre", "contact_law", "contact_kn", "modes_band", "operators_mass", "pad_loss_factor",
-        "loss_frequency", "contact_speed"}
+        "model_loss_frequency", "contact_speed"}
 
 
 class Small(Scene):

@@ -123,7 +123,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
 .  -<part>_spin, _spin_axis, _spin_centre - steady spin of a body of revolution, rad/s, in modes
-.  -<part>_loss_factor <0>  - structural damping, exact at -loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
+.  -<part>_loss_factor <0>  - structural damping, exact at -model_loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -bush_a, -bush_b <the ground>, -bush_at x,y,z <the middle>, -bush_stiffness, _turn_stiffness, _viscosity,
    _turn_viscosity - of a bushing named `bush`: sets of its two sides, m, N/m, N m/rad, N s/m, N m s/rad

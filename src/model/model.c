@@ -32,11 +32,11 @@ static PetscErrorCode ModelReadSource(Model model, PetscBool *is_rig)
                                &model->has_formulation));
   PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
                             scene->gravity, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_frequency", "where the loss factors of the parts are exact, Hz",
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-model_loss_frequency", "where the loss factors of the parts are exact, Hz",
                            scene->loss_frequency, &scene->loss_frequency, &has_loss));
   PetscOptionsEnd();
   PetscCheck(!has_loss || (scene->loss_frequency > 0 && isfinite(scene->loss_frequency)), model->comm,
-             PETSC_ERR_USER_INPUT, "-loss_frequency %.6g must be positive and finite (Hz)",
+             PETSC_ERR_USER_INPUT, "-model_loss_frequency %.6g must be positive and finite (Hz)",
              (double)scene->loss_frequency);
   PetscCall(OptionsCheckFinite(model->comm, "model", "gravity", "m/s^2", scene->gravity));
   PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,

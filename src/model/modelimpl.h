@@ -122,7 +122,7 @@ PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
 /* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
 PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
 
-/* part.c - the loss factors as stiffness damping; errors for those without -loss_frequency, and for the reverse */
+/* part.c - the loss factors as stiffness damping; errors for those without -model_loss_frequency, and for the reverse */
 PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
 
 /* part.c - checks the materials, and finds the part of each cell */

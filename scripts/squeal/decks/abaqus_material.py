@@ -91,7 +91,7 @@ def do_damping(reader, _, card):
     material.alpha = real(card.options.get("ALPHA") or "0", card.place)
     material.beta = real(card.options.get("BETA") or "0", card.place)
     if "STRUCTURAL" in card.options:
-        said = "is a loss factor, `loss_factor` with `loss_frequency` of the part"
+        said = "is a loss factor, `loss_factor` with `-model_loss_frequency`"
         reader.deck.note(card.place, f"*DAMPING, STRUCTURAL={card.options.pop('STRUCTURAL')}: {said}")
 
 

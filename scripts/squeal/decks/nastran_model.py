@@ -93,7 +93,7 @@ def read_materials(deck, tables):
             density_of(material, table, row, density)
             words = table.words(row, 8)
             if words[7]:
-                deck.note(table.place(row), f"MAT1: GE {words[7]} is a loss factor, `loss_factor` with `loss_frequency` of the part")
+                deck.note(table.place(row), f"MAT1: GE {words[7]} is a loss factor, `loss_factor` with `-model_loss_frequency`")
     for table in named(tables, "MAT11"):
         check_rows(table, 10, 16)
         for row, values in enumerate(table.real(1, 11).tolist()):

@@ -79,6 +79,8 @@ static const struct {
   const char *name, *instead;
 } former[] = {
   {"symmetry", "leave it out for all modes of the whole mesh, or mesh one half and hold its plane by -supports"},
+  {"loss_frequency", "give -model_loss_frequency"},
+  {"statics_view", "give -static_view"},
   {"modes_groups", "leave it out: all ranks share each shift of -modes_shifts"},
 };
 

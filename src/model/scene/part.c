@@ -27,7 +27,7 @@ static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, voi
     OptionsGetReal(PetscOptionsObject, "-alpha", "Rayleigh factor of the mass, 1/s", part->alpha, &part->alpha, NULL));
   PetscCall(
     OptionsGetReal(PetscOptionsObject, "-beta", "Rayleigh factor of the stiffness, s", part->beta, &part->beta, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_factor", "loss factor at -loss_frequency, adds to beta",
+  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_factor", "loss factor at -model_loss_frequency, adds to beta",
                            part->loss, &part->loss, NULL));
   PetscCall(PartReadSpin(PetscOptionsObject, part));
   PetscFunctionReturn(0);
@@ -45,13 +45,13 @@ PetscErrorCode PartsAddLoss(Model model)
     PetscCheck(p->loss >= 0 && isfinite(p->loss), model->comm, PETSC_ERR_USER_INPUT,
                "-%s_loss_factor %.6g must be finite and not negative", p->name, (double)p->loss);
     PetscCheck(p->loss == 0 || omega > 0, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_loss_factor %.6g needs -loss_frequency, Hz: in real arithmetic it is exact at one frequency",
+               "-%s_loss_factor %.6g needs -model_loss_frequency, Hz: in real arithmetic it is exact at one frequency",
                p->name, (double)p->loss);
     if (p->loss > 0) p->beta += p->loss / omega;
     any = p->loss > 0 || any ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCheck(omega == 0 || any, model->comm, PETSC_ERR_USER_INPUT,
-             "-loss_frequency %.6g does nothing: none of the -parts has a -..._loss_factor",
+             "-model_loss_frequency %.6g does nothing: none of the -parts has a -..._loss_factor",
              (double)model->scene.loss_frequency);
   PetscFunctionReturn(0);
 }
