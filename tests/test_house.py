@@ -30,7 +30,7 @@ from house_planted import PLANTED
 
 MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES = 350, 80, 80, 6, 25, 140, 15
 
-CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "statics", "modes", "sweep")
+CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
 BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}

@@ -9,56 +9,44 @@
    their B along the diagonal of a larger one.
 */
 #include "schur.h"
+#include "basis/pencil.h"
 #include <slepcblaslapack.h>
 
-/* Factors of the n x n matrix A (overwritten), and A^-1 of m right-hand sides */
-static PetscErrorCode SpaceSolve(PetscInt size, PetscReal A[], PetscInt m, PetscReal B[])
+/* The pencil on the first n vectors; the caller destroys it */
+static PetscErrorCode SmallPencil(const FrfSmall *s, const FrfSchur *schur, DensePencil *pencil)
 {
-  PetscBLASInt n, n_right, *pivot, info;
+  const PetscInt n = schur->n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(size, &n));
-  PetscCall(PetscBLASIntCast(m, &n_right));
-  PetscCall(PetscMalloc1(size, &pivot));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n_right, A, &n, pivot, B, &n, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK gesv: info %d", (int)info);
-  PetscCall(PetscFree(pivot));
+  *pencil = (DensePencil){.n = n, .damped = schur->damped};
+  PetscCall(PetscMalloc3(n * n, &pencil->K, schur->damped ? n * n : 0, &pencil->C, n * n, &pencil->M));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscInt at = j * s->size + i;
+
+      pencil->K[j * n + i] = s->K[at] + (schur->rounded ? s->E[at] : 0);
+      pencil->M[j * n + i] = s->M[at];
+      if (schur->damped) pencil->C[j * n + i] = s->C[at];
+    }
   PetscFunctionReturn(0);
 }
 
-/* Q0 [n][n], and the right-hand sides M, with damping g Q'(g) and g^2 M, and b, one after the other [.. + 1][n] */
-static void SystemFill(const FrfSmall *s, const FrfSchur *schur, const PetscReal b[], PetscReal Q[], PetscReal R[])
-{
-  const PetscInt  n = schur->n;
-  const PetscReal g = schur->shift;
-
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscInt  at = j * s->size + i;
-      const PetscReal k = s->K[at] + (schur->rounded ? s->E[at] : 0), m = s->M[at], c = s->C ? s->C[at] : 0;
-
-      Q[j * n + i] = schur->damped ? k + g * c + g * g * m : k - g * m;
-      R[j * n + i] = schur->damped ? 2 * g * g * m + g * c : m;
-      if (schur->damped) R[(n + j) * n + i] = g * g * m;
-    }
-  for (PetscInt i = 0; i < n; i++) R[schur->length * n + i] = b[i];
-}
-
-/* S into T, and Q0^-1 b into b */
+/* S into T, and [0; Q0^-1 b], the states being [q; p] there, into b */
 static PetscErrorCode SchurForm(const FrfSmall *small, const PetscReal b[], FrfSchur *s)
 {
-  const PetscInt n = s->n, length = s->length;
-  PetscReal     *Q, *R;
+  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift;
+  PetscReal      *Q;
+  PetscBLASInt   *pivot;
+  DensePencil     pencil;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * n, &Q, n * (length + 1), &R));
-  SystemFill(small, s, b, Q, R);
-  PetscCall(SpaceSolve(n, Q, length + 1, R));
-  for (PetscInt j = 0; j < length; j++)
-    for (PetscInt i = 0; i < n; i++) s->T[j * length + i] = (s->damped ? -1 : 1) * R[j * n + i];
-  for (PetscInt j = 0; j < n && s->damped; j++) s->T[j * length + n + j] = 1;
-  PetscCall(PetscArraycpy(s->b, &R[length * n], n));
-  PetscCall(PetscFree2(Q, R));
+  PetscCall(PetscMalloc2(s->n * s->n, &Q, s->n, &pivot));
+  PetscCall(SmallPencil(small, s, &pencil));
+  PetscCall(DenseCompanion(&pencil, (PetscReal[2]){s->shift, square}, Q, pivot, s->T, NULL));
+  PetscCall(PetscArraycpy(&s->b[s->length - s->n], b, s->n));
+  PetscCall(DenseSolve(s->n, Q, pivot, PETSC_FALSE, 1, &s->b[s->length - s->n]));
+  PetscCall(DensePencilDestroy(&pencil));
+  PetscCall(PetscFree2(Q, pivot));
   PetscFunctionReturn(0);
 }
 
@@ -109,7 +97,7 @@ PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool round
   PetscCall(SchurReduce(s, Z));
   SchurTurn(s->length, Z, s->b, s->x);
   for (PetscInt p = 0; p < ends->n_outputs; p++) {
-    PetscCall(PetscArraycpy(&s->l[p * s->length], &ends->l[p * small->size], n));
+    PetscCall(PetscArraycpy(&s->l[p * s->length + s->length - n], &ends->l[p * small->size], n));
     SchurTurn(s->length, Z, &s->l[p * s->length], s->x);
   }
   PetscCall(PetscFree(Z));

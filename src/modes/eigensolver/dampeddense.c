@@ -4,7 +4,7 @@
    Ranks without unknowns: dampedlayout.c.
 */
 #include "modes/modesimpl.h"
-#include "solver/dense/pencil.h"
+#include "basis/pencil.h"
 
 #define DENSE_ALWAYS 200  /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
 #define DENSE_MOST   400 /* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */

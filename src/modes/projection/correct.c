@@ -5,7 +5,7 @@
 #include "projection.h"
 #include "base/events.h"
 #include "solver/block/orthonormal.h"
-#include "solver/residual.h"
+#include "basis/residual.h"
 
 #define CORRECT_BELOW 0.5 /* of the limit of backward errors: residuals below it are no concern */
 

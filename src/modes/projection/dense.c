@@ -1,67 +1,13 @@
 /*
-   The dense quadratic problem (lambda^2 M + lambda C + K) x = 0 of a projection, M nearly I, through A z = mu z with
-
-      A = [0 I; -M^-1 K / w^2 -M^-1 C / w],   z = [x; mu x],   lambda = w mu,
-
-   w the upper end of the window, which leaves |mu| <= 1 there. Left vectors: u^H A = mu u^H, y = M^-T conj of u's second half.
+   The modes of a projection from its dense quadratic problem, all of them about the upper end of the window, or followed from
+   what they were.
 */
 #include "projection.h"
-#include "solver/dense/pencil.h"
+#include "basis/pencil.h"
 
 #define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
 #define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
-#define POLISH_STIFF 1e4   /* |K| beside the square of the upper end */
 #define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
-
-/* Factors of M */
-typedef struct {
-  PetscReal    *LU; /* [k * k] */
-  PetscBLASInt *pivot;
-} MassFactors;
-
-static PetscErrorCode MassFactorsCreate(const Projection *p, MassFactors *mass)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(p->k * p->k, &mass->LU, p->k, &mass->pivot));
-  PetscCall(PetscArraycpy(mass->LU, p->M, p->k * p->k));
-  PetscCall(DenseFactor(p->k, mass->LU, mass->pivot, NULL));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MassFactorsDestroy(MassFactors *mass)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(mass->LU, mass->pivot));
-  PetscFunctionReturn(0);
-}
-
-/* -scale M^-1 S into the rows k .. 2 k - 1 of k columns of A, [2 k * 2 k] */
-static PetscErrorCode CompanionFillBlock(PetscInt k, const MassFactors *mass, PetscReal scale, const PetscReal S[],
-                                         PetscReal A[])
-{
-  PetscReal *B;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(k * k, &B));
-  PetscCall(PetscArraycpy(B, S, k * k));
-  PetscCall(DenseSolve(k, mass->LU, mass->pivot, PETSC_FALSE, k, B));
-  for (PetscInt j = 0; j < k; j++)
-    for (PetscInt i = 0; i < k; i++) A[2 * j * k + k + i] = -scale * B[j * k + i];
-  PetscCall(PetscFree(B));
-  PetscFunctionReturn(0);
-}
-
-/* A, column-major */
-static PetscErrorCode CompanionFill(const Projection *p, const MassFactors *mass, PetscReal w, PetscReal A[])
-{
-  const PetscInt k = p->k;
-
-  PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < k; j++) A[(k + j) * 2 * k + j] = 1;
-  PetscCall(CompanionFillBlock(k, mass, 1 / (w * w), p->K, A));
-  PetscCall(CompanionFillBlock(k, mass, 1 / w, p->C, A + 2 * k * k));
-  PetscFunctionReturn(0);
-}
 
 PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 {
@@ -135,25 +81,6 @@ static void VectorTurn(PetscInt k, PetscBool is_real, PetscComplex x[])
   for (PetscInt i = 0; i < k; i++) x[i] *= square / sqrt(length);
 }
 
-/* Copies a vector of LAPACK's real storage; left ones are conjugated, and multiplied by M^-T */
-static PetscErrorCode VectorCopy(PetscInt k, const PetscReal *re, const PetscReal *im, const MassFactors *mass,
-                                 PetscComplex x[])
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < k; i++) x[i] = CMPLX(re[i], im ? (mass ? -im[i] : im[i]) : 0);
-  if (mass) {
-    PetscReal *parts;
-
-    PetscCall(PetscMalloc1(2 * k, &parts));
-    DenseSplit(k, x, parts);
-    PetscCall(DenseSolve(k, mass->LU, mass->pivot, PETSC_TRUE, 2, parts));
-    DenseUnite(k, parts, x);
-    PetscCall(PetscFree(parts));
-  }
-  VectorTurn(k, im ? PETSC_FALSE : PETSC_TRUE, x);
-  PetscFunctionReturn(0);
-}
-
 /* Room for n modes of the present basis; left vectors that nobody asks for need no digits */
 static PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes)
 {
@@ -173,28 +100,6 @@ PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes)
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(modes->lambda, modes->vectors[0], modes->vectors[1]));
   PetscCall(PetscFree2(modes->backward[0], modes->backward[1]));
-  PetscFunctionReturn(0);
-}
-
-/* Eigenvalues (rad/s) and vectors of the companion form, those of rank 0 on all; L, R [2 k][2 k] */
-static PetscErrorCode CompanionSolve(const Projection *p, const MassFactors *mass, PetscComplex lambda[], PetscReal L[],
-                                     PetscReal R[])
-{
-  const PetscInt  n = 2 * p->k;
-  const PetscReal w = PetscMax(PetscMax(p->window->high, p->window->target), PetscSqrtReal(PetscAbsReal(p->si.shift)));
-  PetscReal      *A, *wr, *wi;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n * n, &A));
-  PetscCall(PetscMalloc2(n, &wr, n, &wi));
-  PetscCall(CompanionFill(p, mass, w, A));
-  PetscCall(DenseEigen(n, A, wr, wi, L, R));
-  for (PetscInt i = 0; i < n; i++) lambda[i] = w * CMPLX(wr[i], wi[i]);
-  PetscCallMPI(MPI_Bcast(lambda, (PetscMPIInt)(2 * n), MPIU_REAL, 0, p->modes->comm));
-  PetscCallMPI(MPI_Bcast(L, (PetscMPIInt)(n * n), MPIU_REAL, 0, p->modes->comm));
-  PetscCallMPI(MPI_Bcast(R, (PetscMPIInt)(n * n), MPIU_REAL, 0, p->modes->comm));
-  PetscCall(PetscFree2(wr, wi));
-  PetscCall(PetscFree(A));
   PetscFunctionReturn(0);
 }
 
@@ -253,60 +158,59 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
   PetscFunctionReturn(0);
 }
 
-/* Where the model is stiff beside the window, its eigenvalues have errors of that many roundings: improves them one by
-   one, where that is found */
-static PetscErrorCode ModesPolish(const Projection *p, ProjectionModes *modes)
+/* The pencil on V */
+static DensePencil DenseOf(const Projection *p)
 {
-  const PetscReal w    = PetscMax(p->window->high, p->window->target);
-  PetscReal       norm = 0;
-  ProjectionModes better;
-  PetscBool       followed;
+  return (DensePencil){.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C, .M = p->M};
+}
+
+/* All eigenvalues about the upper end of the window, those of rank 0 on all */
+static PetscErrorCode DenseSolveAll(const Projection *p, const DensePencil *dense, DenseShifted *w)
+{
+  const PetscReal high = PetscMax(p->window->high, p->window->target);
+  PetscReal      *values[] = {&w->shift, NULL, NULL};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->k * p->k; i++) norm = PetscMax(norm, PetscAbsReal(p->K[i]));
-  if (norm <= POLISH_STIFF * w * w) PetscFunctionReturn(0);
-  PetscCall(ProjectionFollow(p, modes, &better, &followed));
-  if (!followed) PetscFunctionReturn(0);
-  PetscCall(ProjectionModesDestroy(modes));
-  *modes = better;
+  PetscCall(DenseShiftedSolve(dense, PetscMax(high, PetscSqrtReal(PetscAbsReal(p->si.shift))), w));
+  values[1] = w->wr, values[2] = w->wi;
+  for (int i = 0; i < 3; i++) PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->N : 1), MPIU_REAL, 0, p->modes->comm));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
 {
-  const PetscInt k = p->k, n = 2 * k;
-  PetscComplex  *lambda;
-  PetscReal     *L, *R, d = 0;
-  PetscInt      *list, m = 0;
-  MassFactors    mass;
+  const DensePencil dense = DenseOf(p);
+  const PetscInt    k     = p->k;
+  PetscComplex     *lambda;
+  PetscReal         d = 0;
+  PetscInt         *list, m = 0;
+  DenseShifted      w;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &lambda, n * n, &L, n * n, &R, n, &list));
-  PetscCall(MassFactorsCreate(p, &mass));
-  PetscCall(CompanionSolve(p, &mass, lambda, L, R));
-  for (PetscInt i = 0; i < n; i++)
-    if (cimag(lambda[i]) >= 0 && ProjectionHas(p, lambda[i])) list[m++] = i;
+  PetscCall(DenseSolveAll(p, &dense, &w));
+  PetscCall(PetscMalloc2(w.N, &lambda, w.N, &list));
+  for (PetscInt i = 0; i < w.N; i++)
+    if (DenseShiftedLambda(&w, i, &lambda[i]) && ProjectionHas(p, lambda[i])) list[m++] = i;
   if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
   PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
-    const PetscInt  at     = list[i] * n;
-    const PetscBool paired = cimag(lambda[list[i]]) > 0 ? PETSC_TRUE : PETSC_FALSE;
-
     modes->lambda[i] = lambda[list[i]];
-    PetscCall(VectorCopy(k, &R[at], paired ? &R[at + n] : NULL, NULL, &modes->vectors[0][i * k]));
-    PetscCall(VectorCopy(k, &L[at + k], paired ? &L[at + n + k] : NULL, &mass, &modes->vectors[1][i * k]));
+    DenseShiftedRight(&w, list[i], &modes->vectors[0][i * k]);
+    PetscCall(DenseShiftedLeft(&w, list[i], &modes->vectors[1][i * k]));
+    for (int side = 0; side < 2; side++)
+      VectorTurn(k, cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE, &modes->vectors[side][i * k]);
   }
-  PetscCall(MassFactorsDestroy(&mass));
+  PetscCall(ModesShare(p->modes->comm, modes));
   modes->lambda_reach = ProjectionEdge(p, d);
-  PetscCall(ModesPolish(p, modes));
-  PetscCall(PetscFree4(lambda, L, R, list));
+  PetscCall(PetscFree2(lambda, list));
+  PetscCall(DenseShiftedDestroy(&w));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
                                 PetscBool *followed)
 {
-  const DensePencil dense = {.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C, .M = p->M};
+  const DensePencil dense = DenseOf(p);
 
   PetscFunctionBeginUser;
   PetscCall(ProjectionModesCreate(p, before->n, modes));

@@ -13,7 +13,7 @@
 */
 #include "correct.h"
 #include "base/events.h"
-#include "solver/residual.h"
+#include "basis/residual.h"
 
 #define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
 

@@ -54,13 +54,6 @@ static PetscErrorCode ComplementMatrix(const Estimate *e, const PetscReal A[], P
   PetscFunctionReturn(0);
 }
 
-/* Q(h) [n * n] of the whole basis */
-static void PencilAt(const DensePencil *pencil, PetscReal h, PetscReal Q[])
-{
-  for (PetscInt i = 0; i < pencil->n * pencil->n; i++)
-    Q[i] = pencil->K[i] + h * h * pencil->M[i] + (pencil->damped ? h * pencil->C[i] : 0);
-}
-
 /* T and T' from Q(h) */
 static PetscErrorCode ComplementVectors(Estimate *e, const PetscReal Q[])
 {
@@ -98,7 +91,7 @@ PetscErrorCode EstimateComplement(Estimate *e, PetscReal h)
   PetscCall(PetscMalloc3(z * z, &own->K, z * z, &own->C, z * z, &own->M));
   PetscCall(PetscMalloc2(v * z, &e->right, v * z, &e->left));
   PetscCall(PetscMalloc1(n * n, &Q));
-  PencilAt(&e->pencil, h, Q);
+  DensePencilAt(&e->pencil, h, h * h, Q);
   PetscCall(ComplementVectors(e, Q));
   PetscCall(ComplementMatrix(e, e->pencil.M, own->M));
   if (own->damped) PetscCall(ComplementMatrix(e, e->pencil.C, own->C));

@@ -1,6 +1,6 @@
 /*
    The eigenvalues of a dense problem that belong to a window, rigid ones once. What is solved, and what rounding does to it,
-   is described in solver/dense/companion.c.
+   is described in basis/companion.c.
 */
 #include "eigen.h"
 #include "base/events.h"

@@ -1,7 +1,7 @@
 /* Private to sweep/: the pencil of one point as a linear problem A z = s B z (see standard.c) */
 #pragma once
 
-#include "solver/dense/pencil.h"
+#include "basis/pencil.h"
 
 /* The leading n unknowns of the pencil; damped may be set where the pencil of another point is */
 typedef struct {

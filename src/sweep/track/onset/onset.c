@@ -15,7 +15,7 @@
    The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
    Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
    one with the largest product with those of the nearer end of the bracket. The mode of a damped system is followed by
-   Newton's method (dense/follow.c), the plane by inverse iteration; all modes are solved for only where what that finds
+   Newton's method (basis/follow.c), the plane by inverse iteration; all modes are solved for only where what that finds
    is not the same one for certain.
 
    Where two modes change places between neighbouring values, g jumps from one to the other, and the bracket shrinks to the jump: a

@@ -32,61 +32,56 @@ static PetscErrorCode DenseShiftedCreate(const DensePencil *pencil, PetscReal sh
   PetscFunctionReturn(0);
 }
 
-/* P = Q(shift) */
-static void FormP(DenseShifted *w)
+void DensePencilAt(const DensePencil *q, PetscReal linear, PetscReal square, PetscReal P[])
 {
-  const DensePencil *q = w->pencil;
-
-  for (PetscInt i = 0; i < w->n * w->n; i++) w->P[i] = q->K[i] + w->shift * (w->shift * q->M[i] + q->C[i]);
+  for (PetscInt i = 0; i < q->n * q->n; i++) P[i] = q->K[i] + (q->damped ? linear * q->C[i] : 0) + square * q->M[i];
 }
 
 /* Symmetric: M x = theta P x; definite is false where P is not */
 static PetscErrorCode SolveSymmetric(DenseShifted *w, PetscBool *definite)
 {
   PetscFunctionBeginUser;
-  FormP(w);
+  DensePencilAt(w->pencil, w->shift, w->shift * w->shift, w->P);
   PetscCall(PetscArraycpy(w->R, w->pencil->M, w->n * w->n));
   PetscCall(PetscArrayzero(w->wi, w->n));
   PetscCall(DenseSymmetricEigen(w->n, w->R, w->P, w->wr, definite));
   PetscFunctionReturn(0);
 }
 
-/* Companion matrix of theta^2 + theta P^-1 (2 s^2 M + s C) + P^-1 s^2 M, [2 n * 2 n] */
-static PetscErrorCode FormCompanion(DenseShifted *w)
+PetscErrorCode DenseCompanion(const DensePencil *q, const PetscReal s[2], PetscReal P[], PetscBLASInt pivot[], PetscReal B[],
+                              PetscBool *singular)
 {
-  const DensePencil *q = w->pencil;
-  const PetscInt     n = w->n, N = w->N;
-  const PetscReal    s = w->shift;
-  PetscReal         *row; /* lower half, [2 n][n] */
+  const PetscInt n = q->n, N = q->damped ? 2 * n : n;
+  PetscReal     *row; /* lower half, [N][n] */
 
   PetscFunctionBeginUser;
+  DensePencilAt(q, s[0], s[1], P);
+  PetscCall(DenseFactor(n, P, pivot, singular));
+  if (singular && *singular) PetscFunctionReturn(0);
+  if (!q->damped) {
+    PetscCall(PetscArraycpy(B, q->M, n * n));
+    PetscCall(DenseSolve(n, P, pivot, PETSC_FALSE, n, B));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMalloc1(n * N, &row));
   for (PetscInt i = 0; i < n * n; i++) {
-    row[i]         = -s * s * q->M[i];
-    row[n * n + i] = -s * (2 * s * q->M[i] + q->C[i]);
+    row[i]         = -s[1] * q->M[i];
+    row[n * n + i] = -(2 * s[1] * q->M[i] + s[0] * q->C[i]);
   }
-  PetscCall(DenseSolve(n, w->P, w->pivot, PETSC_FALSE, N, row));
-  PetscCall(PetscArrayzero(w->B, N * N));
-  for (PetscInt i = 0; i < n; i++) w->B[(n + i) * N + i] = 1;
-  for (PetscInt j = 0; j < N; j++) PetscCall(PetscArraycpy(w->B + j * N + n, row + j * n, n));
+  PetscCall(DenseSolve(n, P, pivot, PETSC_FALSE, N, row));
+  PetscCall(PetscArrayzero(B, N * N));
+  for (PetscInt i = 0; i < n; i++) B[(n + i) * N + i] = 1;
+  for (PetscInt j = 0; j < N; j++) PetscCall(PetscArraycpy(B + j * N + n, row + j * n, n));
   PetscCall(PetscFree(row));
   PetscFunctionReturn(0);
 }
 
-/* General: LU of P, then the standard problem */
+/* General: the standard problem */
 static PetscErrorCode SolveGeneral(DenseShifted *w, PetscBool *singular)
 {
   PetscFunctionBeginUser;
-  FormP(w);
-  PetscCall(DenseFactor(w->n, w->P, w->pivot, singular));
-  if (*singular) PetscFunctionReturn(0);
-  if (w->pencil->damped) {
-    PetscCall(FormCompanion(w));
-  } else {
-    PetscCall(PetscArraycpy(w->B, w->pencil->M, w->n * w->n));
-    PetscCall(DenseSolve(w->n, w->P, w->pivot, PETSC_FALSE, w->n, w->B));
-  }
-  PetscCall(DenseEigen(w->N, w->B, w->wr, w->wi, w->L, w->R));
+  PetscCall(DenseCompanion(w->pencil, (PetscReal[2]){w->shift, w->shift * w->shift}, w->P, w->pivot, w->B, singular));
+  if (!*singular) PetscCall(DenseEigen(w->N, w->B, w->wr, w->wi, w->L, w->R));
   PetscFunctionReturn(0);
 }
 

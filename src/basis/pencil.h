@@ -1,21 +1,28 @@
-/* Private to modes/, sweep/: the dense quadratic problem of one point */
+/* Private to modes/, sweep/, frf/: the dense quadratic problem of one point */
 #pragma once
 
-#include "dense.h"
+#include "solver/dense/dense.h"
 
 /* Q(lambda) = lambda^2 M + lambda C + K, [n * n] each */
 typedef struct {
   PetscInt   n;
   PetscBool  damped;    /* C is not zero */
   PetscBool  symmetric; /* all terms, and no damping */
-  PetscReal *K, *C, *M;
+  PetscReal *K, *C, *M; /* C is not read without damping */
 } DensePencil;
 
 /* Q(lambda) on the unknowns first .. first + n - 1, [n * n] */
 void DensePencilEvaluate(const DensePencil *pencil, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[]);
 PetscErrorCode DensePencilDestroy(DensePencil *pencil);
 
-/* companion.c - all eigenvalues of a dense problem, by shift and invert about a real shift, rad/s */
+/* companion.c - P = K + linear C + square M, [n * n] */
+void DensePencilAt(const DensePencil *pencil, PetscReal linear, PetscReal square, PetscReal P[]);
+/* The factors of P = K + s[0] C + s[1] M in [n * n], and the matrix of theta in B: P^-1 M [n * n], or with damping
+   [0 I; -P^-1 s[1] M, -P^-1 (2 s[1] M + s[0] C)], [2 n * 2 n]; singular (may be NULL: then an error) = P is */
+PetscErrorCode DenseCompanion(const DensePencil *pencil, const PetscReal s[2], PetscReal P[], PetscBLASInt pivot[],
+                              PetscReal B[], PetscBool *singular);
+
+/* All eigenvalues of a dense problem, by shift and invert about a real shift, rad/s */
 typedef struct {
   const DensePencil *pencil;
   PetscInt           n, N; /* sizes of Q and of the standard problem, N = 2 n with damping */
