@@ -85,7 +85,7 @@ check_blas()
 }
 
 # The kernels of OpenBLAS for wide registers, in quotes: the list of the program
-wide_kernels() { sed -n 's/^static const char \*const wide\[\] = {\(.*\)};$/\1/p' "$root/src/base/blas.c"; }
+wide_kernels() { sed -n 's/^static const char \*const wide\[\] = {\(.*\)};$/\1/p' "$root/src/base/algebra/blas.c"; }
 
 # choose_kernels BLAS: OpenBLAS has old kernels, two to three times slower, for a processor newer than itself. Exports
 # OPENBLAS_CORETYPE for what this one can do, as `squeal -squeal_view` advises; what is set already stays

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.gmsh import read_mesh
+from squeal.mesh.gmsh import read_mesh
 
 import numpy as np
 from forked import run_well

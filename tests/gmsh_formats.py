@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.gmsh import run_gmsh
+from squeal.mesh.gmsh import run_gmsh
 
 SCRIPT = """SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 0.05, 0.06, 0.01};

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.gmsh import make_mesh
+from squeal.mesh.gmsh import make_mesh
 
 
 if __name__ == "__main__":

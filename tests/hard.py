@@ -21,7 +21,7 @@ import scipy.linalg
 import scipy.sparse
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.petsc_matrix import write_matrix
+from squeal.mesh.petsc_matrix import write_matrix
 
 K0, D = 4096, 16
 

@@ -77,7 +77,7 @@ from served import own_words, served_program
 
 SOURCE = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(SOURCE / "scripts"))
-from squeal.launched import end
+from squeal.run.launched import end
 
 FINAL_SUFFIXES = {".csv", ".h5", ".xmf", ".bin", ".info"}
 SKIPPED = 77

@@ -18,7 +18,7 @@ from math import factorial, pi
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.gmsh import TET10, TRI6, make_mesh, read_mesh
+from squeal.mesh.gmsh import TET10, TRI6, make_mesh, read_mesh
 
 import numpy as np
 

@@ -9,7 +9,7 @@ in turned axes:
           with CalculiX
   ties    two boxes whose meshes do not match
   friction  a disc and a pad in sliding contact, of hex20, where modes flutter: complex eigenvalues, see
-          scripts/squeal/disc_pad.py
+          scripts/squeal/mesh/disc_pad.py
 
 Breaks when shape functions, the order of the nodes of a file, engineering constants or their axes differ from what
 others take them for, or when friction acts with another force or along another direction. CalculiX prints 7 digits of
@@ -27,12 +27,12 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.calculix import run_calculix
-from squeal.disc_pad import Mesh, calculix_cards, squeal_words
+from squeal.export.calculix import run_calculix
+from squeal.mesh.disc_pad import Mesh, calculix_cards, squeal_words
 from squeal.export.inp import deck_cards
 from squeal.export.options import Options
 from squeal.export.scene_deck import scene_deck
-from squeal.sweep_runs import distances, eigenvalues
+from squeal.sweep.runs import distances, eigenvalues
 from squeal.tables import read_table
 
 import numpy as np

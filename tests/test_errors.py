@@ -13,7 +13,7 @@ except ImportError as error:
     sys.exit(77)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.sweep_errors import effectivity, one_sweep
+from squeal.sweep.errors import effectivity, one_sweep
 
 # a modulus with damping, a linked density, loads about the sliding state; 1, 6 and 26 with stiff contacts
 SEEDS, EVERY = (7, 8, 11, 1, 6, 26), 4

@@ -195,7 +195,7 @@ def check_matrices(top):
     import scipy.io
     import scipy.linalg
     sys.path.insert(0, str(SOURCE / "scripts"))
-    from squeal.exact import sparse
+    from squeal.modes.exact import sparse
     made = run(EXPORT, "matrices", top / "matrices", "-o", top / "mm").split()
     check(sorted(Path(name).name for name in made) == ["F.mtx", "H.mtx", "K.mtx", "M.mtx"], "matrices: F, H, K, M")
     read = {name: scipy.io.mmread(top / f"mm/{name}.mtx") for name in "KMHF"}

@@ -29,11 +29,11 @@ import scipy.sparse.linalg
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from forked import run_command
-from squeal.calculix import eigenvalues
-from squeal.disc_pad import Mesh, squeal_words
-from squeal.petsc_matrix import read_matrix, read_vector
+from squeal.export.calculix import eigenvalues
+from squeal.mesh.disc_pad import Mesh, squeal_words
+from squeal.mesh.petsc_matrix import read_matrix, read_vector
 from squeal.provenance import Provenance
-from squeal.sweep_runs import distances
+from squeal.sweep.runs import distances
 
 SAME, CALCULIX = 1e-9, 1e-5
 MATERIALS = {"isotropic": "young: 2e11, poisson: 0.3",

@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.calculix import run_calculix
+from squeal.export.calculix import run_calculix
 from squeal.decks.convert import convert
 
 import decks

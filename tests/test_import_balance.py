@@ -10,8 +10,9 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks import balance, convert as conversion, integrals
-from squeal.decks.elements import SHAPES
+from squeal.decks import balance, convert as conversion
+from squeal.decks.mesh import integrals
+from squeal.decks.mesh.elements import SHAPES
 from squeal.tables import BadInput
 
 import decks_abaqus

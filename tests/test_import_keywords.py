@@ -13,8 +13,9 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks import ansys_model, nastran
-from squeal.decks.abaqus import CARDS as ABAQUS
+from squeal.decks.ansys import model as ansys_model
+from squeal.decks.nastran import read as nastran
+from squeal.decks.abaqus.read import CARDS as ABAQUS
 from squeal.decks.convert import convert, read_deck
 from squeal.decks.names import RESERVED
 from squeal.decks.units import SYSTEMS
@@ -267,7 +268,7 @@ def page():
 
 def names():
     """Names of parts and contacts that squeal refuses, since its own or its libraries' options begin with them."""
-    source = Path(__file__).resolve().parents[1] / "src/base"
+    source = Path(__file__).resolve().parents[1] / "src/base/options"
     library = re.search(r"library_prefixes\[\] = \{(.*?)NULL", (source / "unknown.c").read_text(), re.S)[1]
     own = re.search(r"own\[\] = \{(.*?)\};", (source / "options.c").read_text(), re.S)[1]
     refused = {*re.findall(r'"(\w+)_"', library), *re.findall(r'"(\w+)"', own)}

@@ -12,9 +12,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.decks.convert import convert, read_deck
 from squeal.decks.deck import Block, Deck, Place
-from squeal.decks.elements import EDGES, SHAPES, signed_volumes
-from squeal.decks.faces import nodes_by_kind
-from squeal.decks.orientation import set_orientation
+from squeal.decks.mesh.elements import EDGES, SHAPES, signed_volumes
+from squeal.decks.mesh.faces import nodes_by_kind
+from squeal.decks.mesh.orientation import set_orientation
 from squeal.tables import BadInput
 
 import decks

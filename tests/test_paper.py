@@ -24,7 +24,7 @@ from test_report_browser import Test, check_window
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
-from squeal.provenance import Provenance  # noqa: E402
+from squeal.provenance import Provenance # noqa: E402
 N_RUNS = len(re.findall(r"^    (?:Planned|in_time)\(", (SOURCE / "scripts/squeal/paper/plan.py").read_text(), re.M))
 SECTIONS = ["table1", *(f"fig{i}" for i in range(3, 12)), "kn", "cost"]
 BELIEVED = 300  # s that anything may take

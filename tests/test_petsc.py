@@ -28,7 +28,7 @@ RUNS = {
 VIEWS = {
     "modes": {"operators": "unknowns", "modes": "mode"},
     "sweep": {"operators": "unknowns", "sweep": "points"},
-    "static": {"model": "part", "contact": "pairs", "statics": "equilibrium"},
+    "static": {"model": "part", "contact": "pairs", "static": "equilibrium"},
     "transient": {"model": "part", "dynamics": "step"},
 }
 EVENTS = {

@@ -25,7 +25,7 @@ import numpy as np
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
-from squeal.gmsh import read_any
+from squeal.mesh.gmsh import read_any
 from squeal.mesh_error.limits import limit_of
 from squeal.mesh_error.subdivide import subdivide, write_mesh
 from squeal.tables import optional, read_table

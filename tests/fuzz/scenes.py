@@ -12,7 +12,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path += [str(TESTS), str(TESTS.parent / "scripts")]
 import mesh as meshes  # noqa: E402
 import served  # noqa: E402
-from squeal.gmsh import read_mesh  # noqa: E402
+from squeal.mesh.gmsh import read_mesh # noqa: E402
 
 BODIES = """
 parts: base,block

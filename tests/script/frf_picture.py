@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy
 from drawing import drawn, fails, require
 from matplotlib.colors import to_rgb
-from squeal import frf_tables  # found by drawing
+from squeal.response import frf_tables # found by drawing
 from squeal.picture import BLUE, GREEN, GREY, VERMILION
 
 

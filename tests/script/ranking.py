@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which unstable mode wins: intervals and chances of scripts/squeal/ranking.py against closed forms of the binomial
+"""Which unstable mode wins: intervals and chances of scripts/squeal/ranking/indices.py against closed forms of the binomial
 distribution, widths and meeting times against made-up lines, and scripts/study/ranking with a stand-in for the program
 that writes two made-up brakes, in one of which the faster mode wins, in the other the slower one. Exit status: 0, or 1.
 """
@@ -16,8 +16,8 @@ from pathlib import Path
 
 from drawing import SCRIPTS, require
 
-from squeal import ranking
-from squeal.ranking_scenes import nearest, width
+from squeal.ranking import indices as ranking
+from squeal.ranking.scenes import nearest, width
 
 TESTS = Path(__file__).resolve().parent
 # Writes the tables of a brake with two unstable modes; that with damping of all parts is won by the slower one

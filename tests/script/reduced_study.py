@@ -13,9 +13,9 @@ import numpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[2] / "scripts")]
 import made_up_transient
-from squeal.reduced_cycles import demands_of
-from squeal.reduced_spread import Window, beside, lost, window_of
-from squeal.transient_history import Run
+from squeal.reduced.cycles import demands_of
+from squeal.reduced.spread import Window, beside, lost, window_of
+from squeal.transient.history import Run
 
 FREQUENCY = made_up_transient.FREQUENCY
 

@@ -12,7 +12,7 @@ import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 from squeal.paper.claims import stable_claims
-from squeal.transient_cycle import Vibration, vibration_quantities
+from squeal.transient.cycle import Vibration, vibration_quantities
 
 
 def vibration(length, envelope):

@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 import numpy
 from drawing import SCRIPTS, drawn, fails, require, script
-from squeal import STOPPED, identify  # found by drawing
-from squeal.frf_tables import Responses
+from squeal import STOPPED
+from squeal.response import identify # found by drawing
+from squeal.response.frf_tables import Responses
 from squeal.tables import run, whole
 
 STEP, BLOW, MOMENTUM = 1.6e-5, 1.205e-3, -2e-6  # s, s, N s

@@ -27,11 +27,11 @@ SOURCE = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "tests")]
 from check import Failure, require
 from forked import run_script
-from squeal.exact_modes import worst
-from squeal.exact import refined
-from squeal.petsc_matrix import write_matrix
-from squeal.speed_error import Point, draw, sentence, write_points
-from squeal.struck_body import Struck
+from squeal.modes.exact_modes import worst
+from squeal.modes.exact import refined
+from squeal.mesh.petsc_matrix import write_matrix
+from squeal.modes.speed_error import Point, draw, sentence, write_points
+from squeal.transient.struck_body import Struck
 
 POINTS = [Point("fast", "a", 1e-3, 1.0, 2.0), Point("fast", "b", 1e-6, 3.0, 6.0), Point("exact", "c", 1e-9, 4.0, 8.0),
           Point("dear", "d", 1e-4, 9.0, 18.0)]

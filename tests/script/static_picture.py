@@ -10,7 +10,8 @@ import numpy
 from drawing import drawn, fails, require
 from made_up_static import FORCE, MU, SIDE, State, write_rows
 from matplotlib.colors import to_rgb
-from squeal import provenance, static_pairs  # found by drawing
+from squeal import provenance
+from squeal.static import pairs as static_pairs # found by drawing
 from squeal.picture import BLUE, GREEN
 from squeal.report import words
 

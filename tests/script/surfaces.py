@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Surfaces of all types of cells that scripts/squeal/cells.py knows, with VTK's own places of their nodes: the volume
+"""Surfaces of all types of cells that scripts/squeal/mesh/cells.py knows, with VTK's own places of their nodes: the volume
 that the faces enclose, by Gauss' theorem, hence every face once and seen from outside, with the middle nodes moved
 outward too; and two cells on top of each other, whose common face is inside. Breaks when a node stands in the wrong
 place of a table, or a face is turned."""
@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.cells import CELLS, boundary_faces, triangles_of
+from squeal.mesh.cells import CELLS, boundary_faces, triangles_of
 
 import numpy
 

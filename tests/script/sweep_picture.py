@@ -12,7 +12,7 @@ from drawing import drawn, fails, require
 from made_up_sweep import FIRST, LAST, PAIRS, POINTS, onsets, write_sweep
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.text import Annotation, Text
-from squeal import sweep_lines, sweep_map, sweep_tables  # found by drawing
+from squeal.sweep import lines as sweep_lines, map as sweep_map, tables as sweep_tables # found by drawing
 from squeal.picture import VERMILION
 
 VALUES = numpy.linspace(FIRST, LAST, POINTS)

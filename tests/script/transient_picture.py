@@ -12,8 +12,8 @@ from drawing import fails, points_of, require, script
 from made_up_transient import (DIAMETERS, FREQUENCY, HARMONICS, LEVEL, PAIRS, Transient, write_snapshots,
                                write_table)
 
-from squeal import signal, spectrum  # found by drawing
-from squeal.transient_history import snapshot_times
+from squeal.transient import signal, spectrum # found by drawing
+from squeal.transient.history import snapshot_times
 
 PICTURES = ("forces", "acceleration", "psd", "growth")
 TIME = 0.003 + 5e-6 * numpy.arange(4000)

@@ -19,7 +19,7 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "scripts"), str(TOP / "tests")]
 from convergence import Judge
 from random_brakes import Contact, miss, read
-from squeal.gmsh import read_mesh
+from squeal.mesh.gmsh import read_mesh
 
 LAWS, BALANCE = 1e-10, 1e-9  # of the largest force of a pair, of that of the piston
 STIFF, HOLDS = 1e4, 0.15  # N/mm^3, mu: fist_brake.yaml

@@ -10,8 +10,8 @@ from pathlib import Path
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
-from squeal.provenance import Provenance  # noqa: E402
-from squeal.report.words import contact_words  # noqa: E402
+from squeal.provenance import Provenance # noqa: E402
+from squeal.report.words import contact_words # noqa: E402
 
 WORDS = "friction coefficient 0.5 at rest, 0.3 in fast sliding, decay speed 0.05 m/s"
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.signal import fit_modes  # noqa: E402
+from squeal.transient.signal import fit_modes # noqa: E402
 
 
 def eigenvalue(folder, mode):

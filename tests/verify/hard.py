@@ -60,7 +60,7 @@ def eigenvalues(results, exact, top):
 
 def matrices(results, saved):
     import scipy.linalg
-    from squeal.exact import Pencil
+    from squeal.modes.exact import Pencil
     pencil, table = Pencil(saved, 0), rows(Path(results) / "modes.csv")
     count = numpy.sqrt(abs(scipy.linalg.eigh(pencil.k.toarray(), pencil.m.toarray(), eigvals_only=True))) / (2 * math.pi)
     found = numpy.array([row["freq_hz"] for row in table])

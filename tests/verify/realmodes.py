@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.exact import sparse
+from squeal.modes.exact import sparse
 
 
 def projected(folder, mu, n, symmetrised):

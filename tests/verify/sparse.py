@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.exact import sparse
+from squeal.modes.exact import sparse
 
 BESIDE = 1.02  # the shift beside the frequency, squared
 COUNT = 6

@@ -2,7 +2,7 @@
 """Compares modes.csv with table 1 of the seed paper (linear column, pad of 25.1 GPa, mu = 0) and prints both.
 
 Each of the 22 modes must exist under its label, each mode of ours serves once, the root mean square of the relative
-errors is at most 1.0 % and none exceeds 2.5 %. The paper's numbers and our labels stand in scripts/squeal/table1.py.
+errors is at most 1.0 % and none exceeds 2.5 %. The paper's numbers and our labels stand in scripts/squeal/modes/table1.py.
 Exit status: 0, or 1.
 """
 
@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from squeal.table1 import beside, read_modes, rms
+from squeal.modes.table1 import beside, read_modes, rms
 
 RMS, WORST = 0.010, 0.025
 

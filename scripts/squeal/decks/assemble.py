@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy
 
 from .deck import Material, Section, firsts_of
-from .faces import surface_nodes
+from .mesh.faces import surface_nodes
 from .holders import add_contacts, add_loads, add_springs, add_supports, add_ties
 from .names import Names
 

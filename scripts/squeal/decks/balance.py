@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy
 
-from .faces import keys_of
-from .integrals import areas, volumes
+from .mesh.faces import keys_of
+from .mesh.integrals import areas, volumes
 
 SAME = 1e-9  # relative difference of sums over straight elements
 SHOWN = 6  # parts in the table

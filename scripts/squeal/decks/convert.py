@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy
 
 from ..tables import BadInput, printable
-from .abaqus import read_abaqus
-from .ansys import read_ansys
+from .abaqus.read import read_abaqus
+from .ansys.read import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
-from .gmsh_file import write_mesh
-from .meshes import MED, read_meshes
-from .nastran import read_nastran
-from .orientation import set_orientation
+from .mesh.gmsh_file import write_mesh
+from .mesh.meshes import MED, read_meshes
+from .nastran.read import read_nastran
+from .mesh.orientation import set_orientation
 from .scene_file import remarks, scene_lines, write_scene
 from .units import guess, named
 from .written import of_scene

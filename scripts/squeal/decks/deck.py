@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy
 
 from ..tables import BadInput
-from .elements import SHAPES
+from .mesh.elements import SHAPES
 
 NOT_NEEDED = "not needed here"  # how notes of what is no part of a scene end
 

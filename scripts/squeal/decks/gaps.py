@@ -2,7 +2,7 @@
 
 import numpy
 
-from .faces import nodes_by_kind, surface_nodes
+from .mesh.faces import nodes_by_kind, surface_nodes
 
 NEAREST = 16  # triangles whose middles are nearest to a node, among which its foot is looked for
 UPRIGHT = 1e-2  # sine of the angle to the normal above which a foot is beyond an edge of the master

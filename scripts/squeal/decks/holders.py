@@ -2,7 +2,7 @@
 
 import numpy
 
-from .faces import surface_nodes
+from .mesh.faces import surface_nodes
 from .gaps import gaps
 
 TOUCH = 1e-6  # of the slave's size: nodes that are nearer touch

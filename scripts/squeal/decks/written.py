@@ -5,7 +5,7 @@ import yaml
 
 from ..tables import BadInput
 from .balance import Model, cells_of_faces
-from .elements import FACE_GMSH, SHAPES
+from .mesh.elements import FACE_GMSH, SHAPES
 
 VOLUMES = {shape.gmsh: shape for shape in SHAPES.values()}
 FACES = {number: n for n, number in FACE_GMSH.items()}

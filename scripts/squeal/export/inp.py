@@ -3,7 +3,7 @@ CalculiX holds 20 characters."""
 
 import numpy
 
-from ..calculix import lines_of, node_cards
+from .calculix import lines_of, node_cards
 
 EVERYTHING = "ALL_PARTS"  # set of all elements, on which gravity acts
 STICK = 0.1  # slope of sticking over the stiffness of a contact, which CalculiX needs with friction

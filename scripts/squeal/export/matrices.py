@@ -3,7 +3,7 @@ F; 17 digits, hence the same numbers. Reference: R. Boisvert, R. Pozo, K. Reming
 
 import numpy
 
-from ..petsc_matrix import read_matrix, read_vector
+from ..mesh.petsc_matrix import read_matrix, read_vector
 from ..tables import BadInput, whole
 
 MEANINGS = {"K": "stiffness, N/m", "M": "mass, kg", "C": "damping, N s/m", "H": "friction part per unit mu, N/m", "F": "loads, N"}

@@ -6,9 +6,9 @@ import math
 import numpy
 
 from ..decks.deck import Axes, Block, Contact, Deck, Load, Material, Place, Section, Spring, Support, Tie
-from ..decks.elements import EDGES, SHAPES
-from ..decks.faces import faces_by_three, nodes_by_kind
-from ..gmsh import DIMENSION, read_any
+from ..decks.mesh.elements import EDGES, SHAPES
+from ..decks.mesh.faces import faces_by_three, nodes_by_kind
+from ..mesh.gmsh import DIMENSION, read_any
 from ..tables import BadInput
 from .shares import face_shares, set_shares
 

@@ -12,7 +12,7 @@ integration points of the faces, squeal at the nodes: eigenvalues are the same w
 
 import numpy
 
-from ..decks.faces import nodes_by_kind, surface_nodes
+from ..decks.mesh.faces import nodes_by_kind, surface_nodes
 from ..tables import BadInput
 from .inp import frequency_cards, held_cards, model_cards, pair_cards, real
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy
 
-from ..bodies import opened, sound
-from ..cells import read_cells
+from ..mesh.bodies import opened, sound
+from ..mesh.cells import read_cells
 from ..tables import BadInput, header, read_table
-from ..transient_history import snapshots
+from ..transient.history import snapshots
 
 VERSION = 1, 0  # of VTKHDF, which squeal writes
 MODE = re.compile(r"mode_(\d+)_(\w+)")

@@ -9,10 +9,10 @@ from collections import Counter
 
 import numpy
 
-from ..decks import nastran_systems
+from ..decks.nastran import systems as nastran_systems
 from ..decks.deck import Place
-from ..decks.nastran import read_tables
-from ..decks.nastran_cards import named
+from ..decks.nastran.read import read_tables
+from ..decks.nastran.cards import named
 from ..tables import BadInput
 from .entries import labelled
 

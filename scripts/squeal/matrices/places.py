@@ -4,9 +4,9 @@ import csv
 import math
 import re
 
-from ..decks import nastran_mesh, nastran_systems
+from ..decks.nastran import mesh as nastran_mesh, systems as nastran_systems
 from ..decks.deck import Deck
-from ..decks.nastran import read_tables
+from ..decks.nastran.read import read_tables
 from ..tables import BadInput
 from .text import real, read_lines, whole
 

@@ -5,7 +5,7 @@ import re
 import numpy
 import scipy.sparse
 
-from ..petsc_matrix import write_matrix
+from ..mesh.petsc_matrix import write_matrix
 from ..tables import BadInput, printable, whole
 
 HELD = 1e36  # what Abaqus adds to the diagonal of an unknown that is held

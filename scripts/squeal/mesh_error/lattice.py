@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from ..decks.elements import GMSH_EDGES
+from ..decks.mesh.elements import GMSH_EDGES
 
 CORNERS = {
     "point": numpy.zeros((1, 0), int), "line": numpy.array([[0], [1]]), "tri": numpy.array([[0, 0], [1, 0], [0, 1]]),

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy
 
-from ..gmsh import read_any
-from ..program import measured_run
+from ..mesh.gmsh import read_any
+from ..run.program import measured_run
 from ..tables import BadInput, read_table
 from .subdivide import subdivide, write_mesh
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ..program import measured_run
+from ..run.program import measured_run
 from ..provenance import Provenance
 from ..tables import BadInput, flag, printable, quoted, read_table
 from .limits import UNKNOWN, limit_of

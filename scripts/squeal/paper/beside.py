@@ -2,7 +2,7 @@
 
 import math
 
-from ..kept_runs import LOG
+from ..run.kept_runs import LOG
 from ..report.charts import Axis, Chart, Panel
 from ..report.films import diameters_figure
 from ..report.folders import Folder, Options
@@ -11,10 +11,10 @@ from ..report.origin import cost_of
 from ..report.page import Opening, write_page
 from ..report.sweeps import line_figure
 from ..report.transients import Record, force_figures, growth_figure, signal_figure, spectrum_figure
-from ..sweep_tables import Study
-from ..table1 import RESOLUTION, TABLE
+from ..sweep.tables import Study
+from ..modes.table1 import RESOLUTION, TABLE
 from ..tables import BadInput, flag, read_table
-from ..transient_history import snapshots
+from ..transient.history import snapshots
 from . import claims
 from .plan import FIGURES, chosen_runs
 from .shapes import mode_shape, moving_shape, peak_shape

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy
 
-from ..kept_runs import LOG
+from ..run.kept_runs import LOG
 from ..report.markup import figures, fixed, signed
-from ..table1 import TABLE, beside, groups, read_modes, read_peaks, rms
+from ..modes.table1 import TABLE, beside, groups, read_modes, read_peaks, rms
 from ..tables import BadInput, read_table
 
 FAMILIES = {"3500 Hz": (3000, 4300), "5000 Hz": (4600, 5700)}  # Hz about the paper's two instabilities

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..program import scene
+from ..run.program import scene
 
 FIGURES = {"table1": "Table 1", "fig3": "Figure 3", "fig4": "Figure 4", "fig5": "Figure 5", "fig6": "Figure 6",
            "fig7": "Figure 7", "fig8": "Figure 8", "fig9": "Figure 9", "fig10": "Figure 10", "fig11": "Figure 11",

@@ -7,12 +7,12 @@ import math
 import matplotlib.pyplot as plt
 import numpy
 
-from ..bodies import Scene, opened
+from ..mesh.bodies import Scene, opened
 from ..report.markup import tag
-from ..spectrum import circle_content
+from ..transient.spectrum import circle_content
 from ..tables import read_table
-from ..transient_history import snapshots
-from ..transient_shape import draw_face, face_of, read_shapes
+from ..transient.history import snapshots
+from ..transient.shape import draw_face, face_of, read_shapes
 
 SIZE, DPI = 3.4, 110  # inches, dots per inch
 

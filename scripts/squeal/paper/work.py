@@ -10,8 +10,8 @@ import subprocess
 import sys
 import time
 
-from ..kept_runs import KeptRun
-from ..program import ROOT
+from ..run.kept_runs import KeptRun
+from ..run.program import ROOT
 
 PERIOD = 10.0  # s between two lines where there is no terminal
 GRACE = 10.0  # s that a run has to end itself

@@ -3,9 +3,9 @@ long they follow these."""
 
 import numpy
 
-from ..transient_amplitudes import Amplitudes
-from ..transient_history import open_table
-from ..transient_lines import MS
+from ..transient.amplitudes import Amplitudes
+from ..transient.history import open_table
+from ..transient.lines import MS
 from .charts import Axis, Chart, Panel
 from .markup import Column, figure, figures, fixed, join, legend, signed, table
 

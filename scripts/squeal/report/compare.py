@@ -1,6 +1,6 @@
 """Several folders side by side: what each says, the options in which they differ, eigenvalues of all modes together."""
 
-from ..program import called
+from ..run.program import called
 from ..tables import BadInput
 from .charts import Axis, Chart, Panel
 from .markup import Column, figure, fixed, legend, missing, section, signed, table, tag

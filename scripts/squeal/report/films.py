@@ -2,10 +2,10 @@
 
 import numpy
 
-from ..bodies import read_states
+from ..mesh.bodies import read_states
 from ..tables import BadInput
-from ..transient_history import snapshots
-from ..transient_shape import MOST, read_shapes
+from ..transient.history import snapshots
+from ..transient.shape import MOST, read_shapes
 from .charts import Axis, Chart, Panel
 from .markup import count, figure, figures, missing, tag
 from .shapes import FULL, Bodies, Shape, data_script, packed, viewer

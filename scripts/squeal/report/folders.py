@@ -4,7 +4,7 @@ import shlex
 from pathlib import Path
 from typing import NamedTuple
 
-from ..program import called
+from ..run.program import called
 from ..provenance import Provenance
 from ..tables import BadInput
 from .markup import missing

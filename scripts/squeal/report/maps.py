@@ -4,7 +4,7 @@ import numpy
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
-from ..sweep_map import GROWTH, Grid, edges
+from ..sweep.map import GROWTH, Grid, edges
 from .charts import Axis, Chart, Panel
 from .markup import figure, figures, legend, scale, tag
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ..bodies import Scene, opened
+from ..mesh.bodies import Scene, opened
 from ..tables import BadInput, flag, header, optional, read_table
 from .causes import causes
 from .charts import Axis, Chart, Panel

@@ -3,7 +3,7 @@ them."""
 
 import numpy
 
-from ..frf_tables import Responses
+from ..response.frf_tables import Responses
 from ..tables import BadInput, regular
 from .charts import Axis, Chart, Panel
 from .markup import Column, Part, count, figure, figures, fixed, legend, missing, section, table, tag

@@ -7,7 +7,7 @@ import json
 
 import numpy
 
-from ..bodies import Skin
+from ..mesh.bodies import Skin
 from ..picture import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from .markup import Markup, tag
 

@@ -6,9 +6,9 @@ import re
 import numpy
 from matplotlib.colors import to_hex
 
-from ..bodies import read_states
-from ..static_map import COLOURS, EMPTY
-from ..static_pairs import MM, SAME, grid_cells, profile, read_surfaces, triangles
+from ..mesh.bodies import read_states
+from ..static.map import COLOURS, EMPTY
+from ..static.pairs import MM, SAME, grid_cells, profile, read_surfaces, triangles
 from ..tables import BadInput, read_table
 from .charts import Axis, Chart, Panel
 from .markup import (Column, Markup, Part, count, figure, figures, join, legend, missing, scale, section, table,

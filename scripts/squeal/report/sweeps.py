@@ -3,8 +3,8 @@ verified, sensitivities and robustness."""
 
 import numpy
 
-from ..sweep_lines import MARKERS, QUIET, branches_of, jump_places, onset_points, through_onsets
-from ..sweep_tables import Study
+from ..sweep.lines import MARKERS, QUIET, branches_of, jump_places, onset_points, through_onsets
+from ..sweep.tables import Study
 from ..tables import header, optional, read_table
 from .charts import Axis, Chart, Panel
 from .maps import map_figures

@@ -7,11 +7,11 @@ import io
 import numpy
 from matplotlib import colormaps, image
 
-from ..spectrum import spectrogram
-from ..transient_cycle import Vibration, contact_quantities, detached_share, vibration_quantities
-from ..transient_cycle import figures as with_error
-from ..transient_history import Run
-from ..transient_lines import FAINTEST, HARMONICS, KHZ, MS, beside, decibels
+from ..transient.spectrum import spectrogram
+from ..transient.cycle import Vibration, contact_quantities, detached_share, vibration_quantities
+from ..transient.cycle import figures as with_error
+from ..transient.history import Run
+from ..transient.lines import FAINTEST, HARMONICS, KHZ, MS, beside, decibels
 from .amplitudes import amplitude_pieces
 from .charts import Axis, Chart, Panel
 from .films import film_figures

@@ -6,11 +6,11 @@ import math
 
 import matplotlib.pyplot as plt
 
-from ..cycle_branch import COLUMNS as CYCLES
-from ..cycle_branch import Branch, draw_branch
-from ..sweep_tables import FONTS
+from ..transient.cycle_branch import COLUMNS as CYCLES
+from ..transient.cycle_branch import Branch, draw_branch
+from ..sweep.tables import FONTS
 from ..tables import BadInput, read_table
-from ..vibration_map import VIBRATES, WAYS, Table, draw_table
+from ..transient.vibration_map import VIBRATES, WAYS, Table, draw_table
 from .markup import Column, Part, count, figure, figures, missing, section, table, tag
 
 DPI = 130

@@ -1,0 +1,271 @@
+"""Abaqus: holders, contact and steps."""
+
+import numpy
+
+from .material import first_row, numbers, other_rows
+from .mesh import SPRINGS
+from .sets import reader_nodes, surface_of
+from .words import choice, label
+from ..deck import NOT_NEEDED, Contact, Support, Tie, Turning
+from ..springs import ground_springs
+from ..text import real, whole
+
+HELD = {"ENCASTRE": (0, 1, 2), "PINNED": (0, 1, 2), "XSYMM": (0,), "YSYMM": (1,), "ZSYMM": (2,), "XASYMM": (1, 2),
+        "YASYMM": (0, 2), "ZASYMM": (0, 1)}
+
+
+def direction(word, place, keyword, reader):
+    """0, 1, 2 of a degree of freedom; others, which solids do not have, are listed."""
+    dof = whole(word, place, "a degree of freedom")
+    if 1 <= dof <= 3:
+        return dof - 1
+    reader.deck.note(place, f"*{keyword}: degree of freedom {dof}, which solids do not have")
+    return None
+
+
+def is_turned(reader, nodes, place, keyword):
+    """Whether *TRANSFORM has given nodes other axes; then the line is listed."""
+    if any(numpy.isin(nodes, turned).any() for turned, _ in reader.turned.values()):
+        reader.deck.note(place, f"*{keyword}: in the axes of *TRANSFORM, not taken")
+        return True
+    return False
+
+
+def do_boundary(reader, scope, card):
+    kind = choice(card.options.get("TYPE", "DISPLACEMENT"), "DISPLACEMENT", "VELOCITY", "ACCELERATION")
+    from_elsewhere = [word for word in ("SUBMODEL", "USER", "MASS FLOW") if word in card.options]
+    if kind != "DISPLACEMENT" or from_elsewhere:
+        reader.deck.note(card.place, f"*BOUNDARY, {from_elsewhere[0] if from_elsewhere else f'TYPE={kind}'}: not understood")
+        return
+    if card.choose("OP", "MOD", "NEW", "MOD") == "NEW":
+        reader.deck.note(card.place, "*BOUNDARY, OP=NEW: supports of earlier steps act no longer; see which you want")
+        reader.supports = [row for row in reader.supports if row[0] == reader.steps]
+    for place, fields in card.rows():
+        nodes = reader_nodes(reader, scope, fields[0], place)
+        word = fields[1].upper() if len(fields) > 1 else ""
+        values = {d: 0.0 for d in HELD[word]} if word in HELD else boundary_values(reader, place, fields)
+        if values != {0: 0.0, 1: 0.0, 2: 0.0} and is_turned(reader, nodes, place, card.keyword):
+            continue
+        name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
+        if values and len(nodes):
+            reader.supports.append((reader.steps, Support(nodes, values, name, place)))
+
+
+def boundary_values(reader, place, fields):
+    """Direction -> displacement of a line: first and last degree of freedom, and the value."""
+    if not 2 <= len(fields) <= 4:
+        raise place.wrong(f"*BOUNDARY: {len(fields)} fields, expected 2 to 4")
+    first = whole(fields[1], place, "a degree of freedom")
+    last = whole(fields[2], place, "a degree of freedom") if len(fields) > 2 and fields[2] else first
+    value = real(fields[3], place) if len(fields) > 3 and fields[3] else 0.0
+    if not 0 <= first <= last <= 31:
+        raise place.wrong(f"*BOUNDARY: degrees of freedom {first} to {last}")
+    if first < 1 or (last > 3 and not (first <= 3 and last <= 6)):
+        reader.deck.note(place, f"*BOUNDARY: degrees of freedom {first} to {last}, those beyond 1 to 3 solids do not have")
+    return {dof - 1: value for dof in range(max(first, 1), min(last, 3) + 1)}
+
+
+def finish_supports(reader):
+    """Supports of the deck: of a node and direction the last line counts, whichever set named it."""
+    deck, last, kept = reader.deck, numpy.full((reader.deck.n_nodes, 3), numpy.nan), []
+    for _, support in reversed(reader.supports):
+        left = {}
+        for d, value in support.values.items():
+            there = last[support.nodes, d]
+            left[d] = numpy.isnan(there) | (there == value)
+            last[support.nodes[left[d]], d] = value
+        if all(free.all() for free in left.values()):
+            kept.append(support)
+            continue
+        kept += [Support(support.nodes[free], {d: support.values[d]}, "", support.place) for d, free in left.items() if free.any()]
+    deck.supports += reversed(kept)
+
+
+def set_name(reader, scope, word):
+    """The name of a set in the deck."""
+    inner, name = reader.split(label(word), scope)
+    return inner.full(name)
+
+
+def do_spring(reader, scope, card):
+    """Degrees of freedom, then the stiffness; done when all supports are known."""
+    rows = [row for _, row in numbers(card)]
+    if "NONLINEAR" in card.options:
+        reader.deck.note(card.place, "*SPRING, NONLINEAR: not understood")
+        return
+    lines = [text.split(b"\n") for text, _ in card.pieces]
+    blank = bool(lines and not lines[0][0].strip())
+    dofs, values = ([], rows) if blank or len(rows) < 2 else (rows[0], rows[1:])
+    if not values or not values[0]:
+        raise card.place.wrong("*SPRING has no stiffness")
+    if values[0][0] < 0:
+        raise card.place.wrong(f"*SPRING: stiffness {values[0][0]:g} must not be negative")
+    reader.spring_cards.append((scope, card, dofs, values[0][0]))
+
+
+def do_tie(reader, scope, card):
+    other = [word for word in ("CYCLIC SYMMETRY", "MULTISTAGE", "FLUID PERIODIC") if word in card.options]
+    if other:
+        card.options.pop(other[0])
+        reader.deck.note(card.place, f"*TIE, {other[0]}: not read, and no glue; the sector is a body of its own")
+        return
+    for place, fields in card.rows():
+        slave, master = surface_pair(reader, scope, place, fields)
+        name = card.options.get("NAME", "tie").strip('"')
+        reader.deck.ties.append(Tie(name, slave, master, place, f"*TIE {name}", tie_distance(card)))
+
+
+def tie_distance(card):
+    """POSITION TOLERANCE, 0 where it is not given."""
+    text = card.options.get("POSITION TOLERANCE", "0")
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < float("inf"):
+        raise card.place.wrong(f"*TIE: POSITION TOLERANCE={text[:30]} must be a number, 0 or more")
+    return value
+
+
+def surface_pair(reader, scope, place, fields):
+    """Names of two surfaces in the deck."""
+    if len(fields) < 2:
+        raise place.wrong("two surfaces are needed: slave, master")
+    return [surface_of(reader, scope, word, place) for word in fields[:2]]
+
+
+def do_interaction(reader, _, card):
+    reader.interaction = card.need("NAME")
+    reader.interactions.setdefault(reader.interaction, {"place": card.place})
+
+
+def do_friction(reader, _, card):
+    if "ROUGH" in card.options:
+        raise card.place.wrong("*FRICTION, ROUGH: squeal has no contact without slip; give mu")
+    row, rest = first_row(card, 1)
+    values = reader.interactions.get(reader.interaction)
+    if values is None:
+        raise card.place.wrong("*FRICTION outside of a *SURFACE INTERACTION")
+    if row[0] < 0:
+        raise card.place.wrong(f"friction coefficient {row[0]:g} must not be negative")
+    if "mu" in values:
+        reader.deck.note(values["friction"], f"*FRICTION {values['mu']:g}: not taken, another one follows on line {card.place.line}")
+    values["mu"], values["friction"] = row[0], card.place
+    if {"SLIP TOLERANCE", "ELASTIC SLIP"} & set(card.options):
+        reader.deck.differ(card.place, "*FRICTION: slip that Abaqus allows a pair that sticks; Coulomb's law of squeal allows none")
+    if any(row[1:]):
+        reader.deck.note(card.place, "*FRICTION: only the first number, mu, is taken")
+    other_rows(reader, card, rest)
+
+
+def do_behavior(reader, _, card):
+    kind = choice(card.options.get("PRESSURE-OVERCLOSURE", "HARD"), "HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TIED",
+                  "SCALE FACTOR", "USER DEFINED")
+    values = reader.interactions.get(reader.interaction)
+    if values is None:
+        raise card.place.wrong("*SURFACE BEHAVIOR outside of a *SURFACE INTERACTION")
+    if kind == "LINEAR":
+        values["stiffness"] = first_row(card, 1)[0][0]
+        if not values["stiffness"] > 0:
+            raise card.place.wrong("*SURFACE BEHAVIOR: the stiffness must be positive")
+    elif kind == "TIED":
+        values["tied"] = True
+    elif kind != "HARD":
+        reader.deck.note(card.place, f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={kind}: not understood, contact is exact")
+
+
+def do_change_friction(reader, _, card):
+    reader.interaction = card.need("INTERACTION")
+    if reader.interaction not in reader.interactions:
+        raise card.place.wrong(f"there is no *SURFACE INTERACTION {reader.interaction}")
+
+
+def do_pair(reader, scope, card):
+    interaction = card.need("INTERACTION")
+    for place, fields in card.rows():
+        reader.pairs.append((Contact(interaction, *surface_pair(reader, scope, place, fields), place), interaction, "TIED" in card.options))
+
+
+def do_motion(reader, scope, card):
+    """Nodes that turn: a set, rad per time, two points of the axis, by the right-hand rule from the first to the second."""
+    if "ROTATION" not in card.options or choice(card.options.get("TYPE", "VELOCITY"), "VELOCITY", "DISPLACEMENT") != "VELOCITY":
+        reader.deck.note(card.place, "*MOTION: only ROTATION with TYPE=VELOCITY is understood")
+        return
+    for place, fields in card.rows():
+        if len(fields) != 8:
+            raise place.wrong(f"*MOTION: {len(fields)} fields, expected a set, a velocity and two points")
+        nodes = reader_nodes(reader, scope, fields[0], place)
+        values = numpy.array([real(word or "0", place) for word in fields[1:]])
+        axis = values[4:7] - values[1:4]
+        if not numpy.linalg.norm(axis) > 0:
+            raise place.wrong("*MOTION: the two points of the axis are the same")
+        reader.deck.turnings.append(Turning(nodes, values[0] * axis / numpy.linalg.norm(axis), values[1:4], place))
+
+
+def do_step(reader, _, card):
+    reader.steps += 1
+    if reader.steps == 2:
+        reader.deck.note(card.place, "*STEP: the scene has the supports and loads of all steps, of the same node and "
+                                     "direction the last one; see which you want")
+    if "NLGEOM" in card.options and card.choose("NLGEOM", "YES", "YES", "NO") == "YES":
+        reader.deck.differ(card.place, "*STEP, NLGEOM: motion of squeal is small; -static_geometric and -static_follower give "
+                                       "modes the stiffness of the preload")
+
+
+def do_static(reader, _, card):
+    reader.preload = card.place
+
+
+def do_frequency(reader, _, card):
+    rows = numbers(card)
+    row = (rows[0][1] if rows else []) + [0, 0, 0]
+    reader.deck.modes, reader.deck.preload = (row[0], row[1], row[2], card.place), reader.preload
+
+
+def do_complex(reader, _, card):
+    if card.choose("FRICTION DAMPING", "NO", "YES", "NO") == "YES":
+        reader.damping = card.place
+    elif reader.deck.modes:
+        reader.deck.note(card.place, f"*COMPLEX FREQUENCY: modes of squeal are complex, {NOT_NEEDED}")
+    if not reader.deck.modes:
+        do_frequency(reader, _, card)
+
+
+def finish_steps(reader):
+    """Whether modes are about the sliding state, as after a *STATIC that presses; where they are not, that is listed."""
+    deck = reader.deck
+    pressed = deck.loads or deck.gravity or any(any(support.values.values()) for support in deck.supports)
+    if not (deck.contacts and pressed):
+        deck.preload = None
+    if reader.preload and not deck.preload:
+        deck.note(reader.preload, f"*STATIC: {'without contact or load before the modes' if deck.modes else 'an analysis'}, {NOT_NEEDED}")
+    if not reader.damping:
+        return
+    if not deck.preload:
+        deck.note(reader.damping, "*COMPLEX FREQUENCY, FRICTION DAMPING: without a *STATIC that presses a contact there is none")
+        return
+    for contact in deck.contacts:
+        contact.damping = reader.damping
+
+
+def finish(reader):
+    """Supports, contact of all pairs, springs."""
+    finish_supports(reader)
+    for contact, interaction, tied in reader.pairs:
+        values = reader.interactions.get(interaction)
+        if values is None:
+            raise contact.place.wrong(f"there is no *SURFACE INTERACTION {interaction}")
+        if tied or values.get("tied"):
+            reader.deck.ties.append(Tie(contact.name, contact.slave, contact.master, contact.place,
+                                        f"*CONTACT PAIR {contact.slave}, {contact.master}, tied"))
+            continue
+        contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
+        reader.deck.contacts.append(contact)
+    ground_springs(reader, SPRINGS)
+    finish_steps(reader)
+
+
+CARDS = {"BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
+         "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
+         "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
+         "FREQUENCY": do_frequency, "COMPLEX FREQUENCY": do_complex}

@@ -1,0 +1,1 @@
+"""Elements, faces and mesh files of decks."""

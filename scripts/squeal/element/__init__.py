@@ -1,0 +1,1 @@
+"""Meshes of one body and its modes by every element."""

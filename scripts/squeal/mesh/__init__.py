@@ -1,0 +1,1 @@
+"""Meshes, surfaces of bodies, matrices of PETSc."""

@@ -1,0 +1,1 @@
+"""Modes: exact eigenvalues, names of shapes, speed against error."""

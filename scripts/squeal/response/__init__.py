@@ -1,0 +1,1 @@
+"""Frequency responses, measured in time or computed."""

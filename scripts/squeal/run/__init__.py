@@ -1,0 +1,1 @@
+"""Programs that are run: squeal, launchers; runs that are kept or timed."""

@@ -1,0 +1,1 @@
+"""The sliding state: pairs, pictures, runs."""

@@ -1,0 +1,1 @@
+"""Studies over many scenes, runs or decks."""

@@ -1,0 +1,1 @@
+"""Tables, pictures, errors and costs of sweeps."""

@@ -1,0 +1,1 @@
+"""Transients: tables, spectra, pictures, films and studies."""
