@@ -71,7 +71,7 @@ typedef struct {
   FrictionLaw *friction; /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
-/* A state at t_n */
+/* A state at t_n; its numbers stand one behind another, eta first, y last */
 typedef struct {
   PetscReal  time;       /* s */
   PetscReal *eta, *rate; /* [m] coordinates, m sqrt(kg), and rates */
@@ -109,7 +109,8 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to);
 PetscErrorCode ReducedModelDestroy(ReducedModel *model);
 
 /*@ ReducedStateCreate, ReducedStateCopy, ReducedStateDestroy - a state of zeros; from one into another; frees it. Not
-    collective. @*/
+    collective. ReducedStateSize - how many numbers eta to y are. @*/
+PetscInt       ReducedStateSize(const ReducedModel *model);
 PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state);
 PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *from, ReducedState *to);
 PetscErrorCode ReducedStateDestroy(ReducedState *state);

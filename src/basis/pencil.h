@@ -1,7 +1,7 @@
 /* Private to modes/, sweep/, frf/: the dense quadratic problem of one point */
 #pragma once
 
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 
 /* Q(lambda) = lambda^2 M + lambda C + K, [n * n] each */
 typedef struct {

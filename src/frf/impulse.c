@@ -10,7 +10,7 @@
    X (Y^T C X)^-1 Y^T f, and the eigenvalues that bring them there are modes of their own.
 */
 #include "frfimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define MOST_PHASE 4e12 /* omega t, rad: rounding of omega turns a larger one by 1e-3 and more */
 #define DECAYED    -37  /* sigma t: what is left is below rounding */
@@ -123,23 +123,14 @@ static PetscErrorCode RigidModesHeld(const RigidModes *rigid, const PencilParts 
 }
 
 /* Solves with the n x n matrix A (overwritten) in place */
-static PetscErrorCode RigidModesSolve(MPI_Comm comm, PetscInt size, PetscReal A[], PetscReal b[])
+static PetscErrorCode RigidModesSolve(MPI_Comm comm, PetscInt n, PetscReal A[], PetscReal b[])
 {
-  const PetscReal tolerance = HELD;
-  PetscBLASInt    n, n_work, one = 1, rank, info;
-  PetscReal      *singular_value, *work;
+  PetscInt rank;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(size, &n));
-  PetscCall(PetscBLASIntCast(10 * size, &n_work));
-  PetscCall(PetscMalloc2(size, &singular_value, 10 * size, &work));
-  PetscCallBLAS("LAPACKgelss",
-                LAPACKgelss_(&n, &n, &one, A, &n, b, &n, singular_value, &tolerance, &rank, work, &n_work, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss: info %d", (int)info);
+  PetscCall(DenseLeast(n, n, A, b, HELD, &rank));
   PetscCheck(rank == n, comm, PETSC_ERR_USER_INPUT,
-             "-frf_times: damping holds some of the %" PetscInt_FMT " rigid modes and others not; hold all, or none",
-             size);
-  PetscCall(PetscFree2(singular_value, work));
+             "-frf_times: damping holds some of the %" PetscInt_FMT " rigid modes and others not; hold all, or none", n);
   PetscFunctionReturn(0);
 }
 

@@ -33,17 +33,9 @@ PetscErrorCode MapJournalOpen(Map map, Results results)
 /* A state, behind what is there or back */
 static PetscErrorCode KeptStateMove(const ReducedModel *model, ReducedState *s, JournalPack *pack)
 {
-  const size_t m = sizeof(PetscReal) * (size_t)model->m, N = sizeof(PetscReal) * (size_t)model->n_ports;
-  const size_t n = (size_t)model->n_pairs;
-
   PetscFunctionBeginUser;
-  PetscCall(JournalPackMove(pack, s->eta, m));
-  PetscCall(JournalPackMove(pack, s->rate, m));
-  PetscCall(JournalPackMove(pack, s->p, N));
-  PetscCall(JournalPackMove(pack, s->last, N));
-  PetscCall(JournalPackMove(pack, s->q, 3 * n * sizeof(PetscReal)));
-  PetscCall(JournalPackMove(pack, s->y, 3 * n * sizeof(PetscReal)));
-  PetscCall(JournalPackMove(pack, s->status, n * sizeof(*s->status)));
+  PetscCall(JournalPackMove(pack, s->eta, sizeof(PetscReal) * (size_t)ReducedStateSize(model)));
+  PetscCall(JournalPackMove(pack, s->status, sizeof(*s->status) * (size_t)model->n_pairs));
   PetscFunctionReturn(0);
 }
 

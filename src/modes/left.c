@@ -11,7 +11,7 @@
    |x_i| |y_i| depends on it: they are made orthogonal in M before, x_i^H M x_j = 0, the basis for which it is least.
 */
 #include "complexvec.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define LEFT_MATCH 1e-5  /* left and right eigenvalues farther apart than this, relative, are different ones */
 #define LEFT_EQUAL 1e-11 /* right eigenvalues no farther apart, relative, are one: any combination is an eigenvector */
@@ -95,34 +95,26 @@ PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, Pe
   PetscFunctionReturn(0);
 }
 
-/* Solves G A = I for the complex m x m matrix G (row-major) through its real form [Re -Im; Im Re] of order 2 m */
+/* Inverse of the complex m x m matrix G, both by rows; I where G is defective */
 static PetscErrorCode ComplexInverse(PetscInt m, const PetscComplex G[], PetscComplex inverse[])
 {
-  const PetscInt n2 = 2 * m;
-  PetscReal     *a, *b, size_G = 0, size_inv = 0;
-  PetscBLASInt   n, *pivots, info;
+  PetscReal     size[2] = {0, 0};
+  PetscComplex *factors;
+  PetscBLASInt *pivot;
+  PetscBool     singular;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n2, &n));
-  PetscCall(PetscCalloc3(n2 * n2, &a, n2 * n2, &b, n2, &pivots));
-  for (PetscInt i = 0; i < m; i++) {
-    for (PetscInt j = 0; j < m; j++) {
-      a[i + j * n2]           = creal(G[i * m + j]);
-      a[i + m + (j + m) * n2] = creal(G[i * m + j]);
-      a[i + m + j * n2]       = cimag(G[i * m + j]);
-      a[i + (j + m) * n2]     = -cimag(G[i * m + j]);
-    }
-    b[i + i * n2] = 1;
-  }
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, a, &n, pivots, b, &n, &info));
+  PetscCall(PetscMalloc2(m * m, &factors, m, &pivot));
+  PetscCall(PetscArraycpy(factors, G, m * m));
+  for (PetscInt i = 0; i < m * m; i++) inverse[i] = i % (m + 1) == 0;
+  PetscCall(DenseComplexFactor(m, factors, pivot, &singular));
+  if (!singular) PetscCall(DenseComplexSolve(m, factors, pivot, PETSC_FALSE, m, inverse));
   for (PetscInt i = 0; i < m * m; i++) {
-    inverse[i] = CMPLX(b[i / m + (i % m) * n2], b[i / m + m + (i % m) * n2]);
-    size_G     = PetscMax(size_G, cabs(G[i]));
-    size_inv   = PetscMax(size_inv, cabs(inverse[i]));
+    size[0] = PetscMax(size[0], cabs(G[i]));
+    size[1] = PetscMax(size[1], cabs(inverse[i]));
   }
-  for (PetscInt i = 0; i < m * m && (info || !(size_G * size_inv < 1e12)); i++)
-    inverse[i] = i % (m + 1) == 0; /* defective: leave as is */
-  PetscCall(PetscFree3(a, b, pivots));
+  for (PetscInt i = 0; i < m * m && !(size[0] * size[1] < 1e12); i++) inverse[i] = i % (m + 1) == 0;
+  PetscCall(PetscFree2(factors, pivot));
   PetscFunctionReturn(0);
 }
 

@@ -256,6 +256,7 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   modes->counter = (ShiftInvert){.progress = &modes->progress, .halves = !modes->keep};
+  modes->null    = (ShiftInvert){.factored = PETSC_FALSE};
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, window));
@@ -275,6 +276,7 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   if (window->rigid) PetscCall(TwinsDrop(modes, window));
   if (window->rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
   if (window->rigid) PetscCall(TwinsTrim(modes, window));
+  PetscCall(ShiftInvertDestroy(&modes->null));
   PetscCall(WindowDescribe(modes, window));
   PetscCall(SavedByDamping(modes, &pencil, window));
   PetscFunctionReturn(0);

@@ -70,6 +70,7 @@ struct _p_Modes {
   char        solver[96];  /* type of the undamped eigensolver, its block and factors */
   ShiftInvert factor;      /* of the solution where keep is set */
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
+  ShiftInvert null;        /* far below all elastic modes, for the null space of K */
   ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */
   PetscInt       block[2];      /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
@@ -228,10 +229,11 @@ PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
    where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
-/* n vectors x of the null space of K, or of K', M-orthonormal, by a factorisation far below all elastic modes; error [n] is
-   |K x| / (|K| |x|) */
-PETSC_INTERN PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
-                                        Vec x[], PetscReal error[]);
+/* n vectors x of the null space of K, or of K', M-orthonormal, by modes->null, which NullFactor makes where it is not there;
+   error [n] is |K x| / (|K| |x|) */
+PETSC_INTERN PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Window *window);
+PETSC_INTERN PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[],
+                                        PetscReal error[]);
 
 /* rigid/decays.c - decays of rigid motions without the rounding of K. Collective */
 PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);

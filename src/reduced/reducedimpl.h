@@ -7,7 +7,7 @@
 #include "contact/compliance/compliance.h"
 #include "dynamics/history/history.h"
 #include "dynamics/run/run.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "solver/factor/shiftinvert.h"
 
 #define REDUCED_RTOL 1e-12 /* of the contact laws */

@@ -4,7 +4,7 @@
    only.
 */
 #include "line.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 
 PetscErrorCode LineCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {

@@ -11,6 +11,7 @@ from ..run.program import ROOT, scene
 from .table_difference import difference, of_map, of_table, read
 
 SAME = 1e-9  # of the scale of a column
+BUILDS = 1e-12  # the same between two builds on one rank
 NUDGE = 2e-15  # relative change of a number of the scene, some roundings
 SHARE = 0.1  # of the difference between ranks, which a nudge on one rank must make where rounding grows
 ROWS = 1 / 3  # of the rows of a map that ranks change, which nudges must change
@@ -78,6 +79,7 @@ class Gallery:
 
     def __init__(self, args):
         self.program, self.folder, self.seconds, self.quick = args.program, args.output.resolve(), args.seconds, args.quick
+        self.before = args.before
         self.ranks = [int(word) for word in args.ranks.split(",")]
         self.preload = ["-x", f"LD_PRELOAD={args.collective.resolve()}"] if args.collective else []
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -98,11 +100,11 @@ class Gallery:
         short = run.quick if self.quick and run.quick else run.short
         return [*scene(*run.files.split()), *self.mesh(run), *run.words.split(), *short.split(), "-output_fields", 0]
 
-    def made(self, name, run, ranks, more=()):
+    def made(self, name, run, ranks, more=(), program=None):
         """The folder of a run and s of the clock; what happened in place of the folder where it did not end well."""
-        out = self.folder / f"{name.replace(' ', '-')}-{ranks}{'-nudged' if more else ''}"
-        command = [ROOT / "scripts/mpirun", "-n", ranks, *(self.preload if ranks > 1 else []), self.program, *self.words(run), *more,
-                   "-output_dir", out]
+        out = self.folder / f"{name.replace(' ', '-')}-{ranks}{'-nudged' if more else '-before' if program else ''}"
+        command = [ROOT / "scripts/mpirun", "-n", ranks, *(self.preload if ranks > 1 else []), program or self.program, *self.words(run),
+                   *more, "-output_dir", out]
         begun = time.monotonic()
         with subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                               text=True) as process:
@@ -156,8 +158,21 @@ class Gallery:
         since = "" if math.isnan(found.since) else f", from {found.since:g} s"
         return found.value, f"{ranks}: {found.value:.1e}" + (f" ({found.where}{since})" if found.value > SAME else "")
 
+    def compare_builds(self, name):
+        """Prints the line of a scene that two builds computed on one rank; whether they agree."""
+        (one, seconds), (other, _) = (self.made(name, RUNS[name], 1, program=program) for program in (None, self.before))
+        if isinstance(one, str) or isinstance(other, str):
+            print(f"{name:24} {one}; before: {other}", flush=True)
+            return False
+        found = difference(one, other, BUILDS)
+        passed = found.value <= BUILDS
+        print(f"{name:24} {found.value:.1e} {'same' if passed else f'DIFFERS ({found.where})'} ({seconds:.1f} s)", flush=True)
+        return passed
+
     def compare(self, name):
         """Prints the line of a scene; whether it is as asked for."""
+        if self.before:
+            return self.compare_builds(name)
         run = RUNS[name]
         first, seconds = self.made(name, run, 1)
         if isinstance(first, str):

@@ -74,28 +74,16 @@ static PetscErrorCode TwinBranch(MapMarch w, const ReducedState *from, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* y := x + c (y - x) */
-static void TwinGoFar(PetscInt n, const PetscReal x[], PetscReal c, PetscReal y[])
-{
-  for (PetscInt i = 0; i < n; i++) y[i] = x[i] + c * (y[i] - x[i]);
-}
-
 /* Twin k > 0 is c times as far from the point as its first twin was: -1, 2, -2, 3, ... */
 static PetscErrorCode TwinFollow(MapMarch w, PetscInt k)
 {
   const ReducedModel *model = &w->bodies->model;
-  const PetscReal     c     = (PetscReal)(k % 2 ? -(k + 1) / 2 : k / 2 + 1);
-  const ReducedState *x     = &w->start;
-  ReducedState       *y     = &w->twin[k];
+  const PetscReal     c     = (PetscReal)(k % 2 ? -(k + 1) / 2 : k / 2 + 1), *x = w->start.eta;
+  PetscReal          *y = w->twin[k].eta;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedStateCopy(model, &w->next, y));
-  TwinGoFar(model->m, x->eta, c, y->eta);
-  TwinGoFar(model->m, x->rate, c, y->rate);
-  TwinGoFar(model->n_ports, x->p, c, y->p);
-  TwinGoFar(model->n_ports, x->last, c, y->last);
-  TwinGoFar(3 * model->n_pairs, x->q, c, y->q);
-  TwinGoFar(3 * model->n_pairs, x->y, c, y->y);
+  PetscCall(ReducedStateCopy(model, &w->next, &w->twin[k]));
+  for (PetscInt i = 0; i < ReducedStateSize(model); i++) y[i] = x[i] + c * (y[i] - x[i]);
   PetscFunctionReturn(0);
 }
 

@@ -14,7 +14,7 @@
    and none exceeds the sum of the two others.
 */
 #include "model/modelimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
 #define MAX_OPTION       256
@@ -22,13 +22,10 @@
 PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9])
 {
   static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-  PetscReal        work[32];
-  PetscBLASInt     n = 3, size = 32, info;
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 9; i++) axes[i] = inertia[at[i]];
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, axes, &n, principal, work, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(DenseSymmetricEigen(3, axes, NULL, principal, NULL));
   PetscFunctionReturn(0);
 }
 

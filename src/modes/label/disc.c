@@ -3,6 +3,7 @@
    equations by BLAS.
 */
 #include "disc.h"
+#include "base/algebra/dense.h"
 #include "base/algebra/vec3.h"
 #include <petscblaslapack.h>
 
@@ -34,14 +35,12 @@ static PetscErrorCode DiscMoments(MPI_Comm comm, PetscInt n, const PetscReal x[]
 /* Axis = principal direction whose second moment differs from the other two; these must agree within 5 % */
 static PetscErrorCode DiscFindAxis(const PetscReal inertia[9], PetscReal axis[3], PetscBool *found)
 {
-  PetscReal    a[9], values[3], work[32];
-  PetscBLASInt n = 3, n_work = 32, info;
-  int          k;
+  PetscReal a[9], values[3];
+  int       k;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(a, inertia, 9));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, a, &n, values, work, &n_work, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(DenseSymmetricEigen(3, a, NULL, values, NULL));
   k      = values[1] - values[0] > values[2] - values[1] ? 0 : 2;
   *found = PetscAbsReal(values[1] - values[2 - k]) < 0.05 * values[2] ? PETSC_TRUE : PETSC_FALSE;
   for (int d = 0; d < 3; d++) axis[d] = a[3 * k + d];

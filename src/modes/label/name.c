@@ -2,7 +2,7 @@
    Reading of a disc's fitted shape (disc.c): nodal diameters, nodal circles, and the antinode at the contact.
 */
 #include "disc.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define SAMPLES 41    /* radii at which the profile is read */
 #define ANGLES  360   /* angles at which the rim is read */
@@ -47,13 +47,11 @@ static PetscReal ProfileMoments(const Disc *disc, PetscInt mode, int m, PetscRea
 /* Sign changes of the principal profile; values below a twentieth of the largest count as zero */
 static PetscErrorCode NodalCircles(const Disc *disc, PetscInt mode, int m, const PetscReal moments[16], int *n)
 {
-  PetscReal    a[16], values[4], work[64], profile[SAMPLES], v[4], largest = 0, last = 0;
-  PetscBLASInt four = 4, n_work = 64, info;
+  PetscReal a[16], values[4], profile[SAMPLES], v[4], largest = 0, last = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(a, moments, 16));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &four, a, &four, values, work, &n_work, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(DenseSymmetricEigen(4, a, NULL, values, NULL));
   for (int s = 0; s < SAMPLES; s++) {
     DiscProfile(disc, mode, m, SampleRadius(disc, s), v);
     profile[s] = 0;

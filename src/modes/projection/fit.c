@@ -12,7 +12,7 @@
    no eigenvalue comes into the window from beyond.
 */
 #include "projection.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
 #define BEYOND_BLOCK 8

@@ -8,7 +8,7 @@
 */
 #include "projection.h"
 #include "base/events.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
 #define START_SAME 1e-9 /* relative difference of eigenvalues that come from one kappa */

@@ -44,19 +44,17 @@ static PetscErrorCode DecayIsNull(Mat K, Vec y, Vec work[], PetscBool *null)
   PetscFunctionReturn(0);
 }
 
-/* The left null vectors among n */
-static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, PetscReal scale, PetscInt n, Decays *d)
+/* The left null vectors */
+static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, const Window *window, Decays *d)
 {
-  PetscReal  *error;
-  PetscBool   null;
-  ShiftInvert si;
+  PetscReal *error;
+  PetscBool  null;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &error));
-  PetscCall(ShiftInvertCreate(pencil, -PetscSqr(10 * scale), PETSC_FALSE, &modes->progress, &si));
-  PetscCall(NullIterate(pencil, &si, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, n, d->y, error));
-  PetscCall(ShiftInvertDestroy(&si));
-  for (PetscInt j = 0; j < n; j++) {
+  PetscCall(PetscMalloc1(window->rigid, &error));
+  PetscCall(NullFactor(modes, pencil, window));
+  PetscCall(NullIterate(modes, pencil, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, window->rigid, d->y, error));
+  for (PetscInt j = 0; j < window->rigid; j++) {
     PetscCall(DecayIsNull(pencil->K, d->y[j], d->work, &null));
     if (null) PetscCall(VecSwap(d->y[j], d->y[d->n++]));
   }
@@ -161,7 +159,7 @@ PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, cons
   if (!n || !damped->C || !window->rigid || window->mapped) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(damped->K, &d.work[0], &d.work[1]));
   PetscCall(VecDuplicateVecs(d.work[0], window->rigid, &d.y));
-  PetscCall(DecaysFindNull(modes, &undamped, window->scale, window->rigid, &d));
+  PetscCall(DecaysFindNull(modes, &undamped, window, &d));
   for (PetscInt i = 0; i < s->n && d.n; i++)
     if (DecayIs(s, i, window->scale)) PetscCall(DecayCorrect(modes, &d, i));
   PetscCall(DecaysSort(modes));

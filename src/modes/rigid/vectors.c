@@ -11,7 +11,7 @@
    for each vector of the null space, first of all.
 */
 #include "modes/modesimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define NULL_GOOD     1e-10 /* backward error of an eigensolver's vector that needs nothing */
 #define NULL_APART    1e-2  /* least eigenvalue of the Gram matrix of vectors that need nothing */
@@ -53,8 +53,15 @@ static PetscErrorCode NullMeasure(Mat K, PetscBool transposed, PetscInt n, Vec x
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, PetscBool transposed, PetscInt n,
-                                  Vec x[], PetscReal error[])
+PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Window *window)
+{
+  PetscFunctionBeginUser;
+  if (modes->null.ksp) PetscFunctionReturn(0);
+  PetscCall(ShiftInvertCreate(pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &modes->null));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[], PetscReal error[])
 {
   PetscReal   worst = PETSC_MAX_REAL;
   PetscRandom random;
@@ -62,13 +69,13 @@ PetscErrorCode NullIterate(const PencilMatrices *pencil, const ShiftInvert *si, 
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(x[0], &work));
-  PetscCall(PetscRandomCreate(si->comm, &random));
+  PetscCall(PetscRandomCreate(modes->comm, &random));
   for (PetscInt j = 0; j < n; j++) PetscCall(VecSetRandom(x[j], random));
   PetscCall(PetscRandomDestroy(&random));
   for (int step = 0; step < NULL_MAX_STEP && worst > NULL_ENOUGH; step++) {
     for (PetscInt j = 0; j < n; j++) {
       PetscCall(transposed ? MatMultTranspose(pencil->M, x[j], work) : MatMult(pencil->M, x[j], work));
-      PetscCall(ShiftInvertSolve(si, transposed, work, x[j]));
+      PetscCall(ShiftInvertSolve(&modes->null, transposed, work, x[j]));
       PetscCall(NullOrthonormalise(pencil->M, j, x, work));
     }
     PetscCall(NullMeasure(pencil->K, transposed, n, x, work, error));
@@ -104,16 +111,13 @@ static PetscErrorCode NullPut(Modes modes, PetscBool left, Vec x[], Spectrum *s)
 /* Least eigenvalue of the Gram matrix of the rigid modes' vectors, M-norm one each, n of them */
 static PetscErrorCode NullApart(Modes modes, const Spectrum *s, PetscInt n, PetscReal *least)
 {
-  PetscBLASInt size, n_work, info;
-  PetscReal   *gram, *w, *work;
-  PetscInt     k = 0;
-  Mat          M;
-  Vec         *x, Mx;
+  PetscReal *gram, *w;
+  PetscInt   k = 0;
+  Mat        M;
+  Vec       *x, Mx;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscBLASIntCast(4 * n, &n_work));
-  PetscCall(PetscMalloc4(n, &x, n * n, &gram, n, &w, 4 * n, &work));
+  PetscCall(PetscMalloc3(n, &x, n * n, &gram, n, &w));
   PetscCall(PencilGetMass(modes->pencil, &M));
   PetscCall(MatCreateVecs(M, &Mx, NULL));
   for (PetscInt i = 0; i < modes->n; i++)
@@ -122,11 +126,10 @@ static PetscErrorCode NullApart(Modes modes, const Spectrum *s, PetscInt n, Pets
     PetscCall(MatMult(M, x[j], Mx));
     PetscCall(VecMDot(Mx, n, x, &gram[j * n]));
   }
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "U", &size, gram, &size, w, work, &n_work, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
+  PetscCall(DenseSymmetricEigen(n, gram, NULL, w, NULL));
   *least = w[0];
   PetscCall(VecDestroy(&Mx));
-  PetscCall(PetscFree4(x, gram, w, work));
+  PetscCall(PetscFree3(x, gram, w));
   PetscFunctionReturn(0);
 }
 
@@ -176,7 +179,7 @@ static PetscErrorCode NullList(Modes modes, PetscInt n)
 }
 
 /* How many of n vectors are of the null space of K, and of K' where there are left ones: motions that nothing resists */
-static PetscErrorCode NullCount(Modes modes, const PencilMatrices *pencil, const ShiftInvert *si, PetscInt n, PetscInt *count)
+static PetscErrorCode NullCount(Modes modes, const PencilMatrices *pencil, PetscInt n, PetscInt *count)
 {
   PetscReal *error;
   Vec        like, *x;
@@ -189,7 +192,7 @@ static PetscErrorCode NullCount(Modes modes, const PencilMatrices *pencil, const
   for (int left = 0; left < (modes->left_spectrum.n ? 2 : 1); left++) {
     PetscInt found = 0;
 
-    PetscCall(NullIterate(pencil, si, left ? PETSC_TRUE : PETSC_FALSE, n, x, error));
+    PetscCall(NullIterate(modes, pencil, left ? PETSC_TRUE : PETSC_FALSE, n, x, error));
     for (PetscInt j = 0; j < n; j++) found += error[j] < NULL_GOOD;
     *count = PetscMin(*count, found);
   }
@@ -205,7 +208,6 @@ PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, cons
   PetscInt             n, found = 0;
   PetscBool            good;
   PetscReal           *error;
-  ShiftInvert          si;
   Vec                  like, *x;
 
   PetscFunctionBeginUser;
@@ -215,18 +217,17 @@ PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, cons
     PetscCall(NullList(modes, n));
     PetscFunctionReturn(0);
   }
-  PetscCall(ShiftInvertCreate(&pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &si));
-  if (n < window->rigid) PetscCall(NullCount(modes, &pencil, &si, window->rigid, &found));
+  PetscCall(NullFactor(modes, &pencil, window));
+  if (n < window->rigid) PetscCall(NullCount(modes, &pencil, window->rigid, &found));
   n = PetscMax(n, found);
   PetscCall(NullList(modes, n));
   PetscCall(MatCreateVecs(pencil.K, &like, NULL));
   PetscCall(VecDuplicateVecs(like, n, &x));
   PetscCall(PetscMalloc1(n, &error));
-  if (modes->left_spectrum.n) PetscCall(NullIterate(&pencil, &si, PETSC_TRUE, n, x, error));
+  if (modes->left_spectrum.n) PetscCall(NullIterate(modes, &pencil, PETSC_TRUE, n, x, error));
   if (modes->left_spectrum.n) PetscCall(NullPut(modes, PETSC_TRUE, x, &modes->left_spectrum));
-  PetscCall(NullIterate(&pencil, &si, PETSC_FALSE, n, x, error));
+  PetscCall(NullIterate(modes, &pencil, PETSC_FALSE, n, x, error));
   PetscCall(NullPut(modes, PETSC_FALSE, x, &modes->right));
-  PetscCall(ShiftInvertDestroy(&si));
   for (PetscInt i = 0, j = 0; i < modes->n; i++)
     if (modes->mode[i].rigid) modes->mode[i].backward_error = error[j++];
   for (PetscInt j = 0; j < n; j++)

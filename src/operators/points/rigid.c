@@ -9,7 +9,7 @@
 */
 #include "dependents.h"
 #include "base/gather.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define RIGID_TIE 1e-9 /* rows as long as another one but for rounding */
 
@@ -95,14 +95,11 @@ static PetscErrorCode RigidChoose(PetscInt n, const PetscReal phi[], PetscInt ke
 /* T' from (P Phi)' T' = Phi' */
 static PetscErrorCode RigidSolve(PetscInt n, const PetscInt kept[6], PetscReal phi[])
 {
-  PetscBLASInt six = 6, columns, info, pivot[6];
-  PetscReal    A[36];
+  PetscReal A[36];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &columns));
   for (int k = 0; k < 6; k++) PetscCall(PetscArraycpy(&A[6 * k], &phi[6 * kept[k]], 6));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&six, &columns, A, &six, pivot, phi, &six, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  PetscCall(DenseSolveWith(6, A, n, phi, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -35,13 +35,21 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscFunctionReturn(0);
 }
 
+PetscInt ReducedStateSize(const ReducedModel *model)
+{
+  return 2 * model->m + 2 * model->n_ports + 6 * model->n_pairs;
+}
+
 PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
 {
   PetscFunctionBeginUser;
   *state = (ReducedState){.time = 0};
-  PetscCall(PetscCalloc4(model->m, &state->eta, model->m, &state->rate, model->n_ports, &state->p, model->n_ports,
-                         &state->last));
-  PetscCall(PetscCalloc3(3 * model->n_pairs, &state->q, 3 * model->n_pairs, &state->y, model->n_pairs, &state->status));
+  PetscCall(PetscCalloc2(ReducedStateSize(model), &state->eta, model->n_pairs, &state->status));
+  state->rate = state->eta + model->m;
+  state->p    = state->rate + model->m;
+  state->last = state->p + model->n_ports;
+  state->q    = state->last + model->n_ports;
+  state->y    = state->q + 3 * model->n_pairs;
   PetscFunctionReturn(0);
 }
 
@@ -49,12 +57,7 @@ PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *f
 {
   PetscFunctionBeginUser;
   to->time = from->time;
-  PetscCall(PetscArraycpy(to->eta, from->eta, model->m));
-  PetscCall(PetscArraycpy(to->rate, from->rate, model->m));
-  PetscCall(PetscArraycpy(to->p, from->p, model->n_ports));
-  PetscCall(PetscArraycpy(to->last, from->last, model->n_ports));
-  PetscCall(PetscArraycpy(to->q, from->q, 3 * model->n_pairs));
-  PetscCall(PetscArraycpy(to->y, from->y, 3 * model->n_pairs));
+  PetscCall(PetscArraycpy(to->eta, from->eta, ReducedStateSize(model)));
   PetscCall(PetscArraycpy(to->status, from->status, model->n_pairs));
   PetscFunctionReturn(0);
 }
@@ -62,8 +65,7 @@ PetscErrorCode ReducedStateCopy(const ReducedModel *model, const ReducedState *f
 PetscErrorCode ReducedStateDestroy(ReducedState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(state->eta, state->rate, state->p, state->last));
-  PetscCall(PetscFree3(state->q, state->y, state->status));
+  PetscCall(PetscFree2(state->eta, state->status));
   PetscFunctionReturn(0);
 }
 

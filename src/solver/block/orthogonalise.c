@@ -17,7 +17,7 @@
    Rounding in G, epsilon times W' M W, is as much beside one in the new block as its largest entry beside S S D. Where that is
    little enough for those who know V' M V, a pass is the last one. A loose V is projected on by C' = (V'MV)^-1 V' M W.
 */
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "orthonormal.h"
 #include "panel.h"
 

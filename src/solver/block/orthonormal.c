@@ -7,7 +7,7 @@
    twice it is orthonormal to rounding.
 */
 #include "orthonormal.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define REORTHOGONALISE   1e-9  /* a direction smaller than this beside its block is rounding */
 #define COMPRESS_ROUNDING 1e-13 /* the same of squares */
@@ -46,16 +46,8 @@ static PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
 
 PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[])
 {
-  PetscBLASInt n, work_size, info;
-  PetscScalar *work;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(size, &n));
-  PetscCall(PetscBLASIntCast(66 * size + 64, &work_size)); /* blocks of 64 columns */
-  PetscCall(PetscMalloc1(work_size, &work));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &n, G, &n, w, work, &work_size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK syev: info %d", (int)info);
-  PetscCall(PetscFree(work));
+  PetscCall(DenseSymmetricEigen(size, G, NULL, w, NULL));
   PetscCallMPI(MPI_Bcast(G, (PetscMPIInt)(size * size), MPIU_SCALAR, 0, comm));
   PetscCallMPI(MPI_Bcast(w, (PetscMPIInt)size, MPIU_REAL, 0, comm));
   PetscFunctionReturn(0);

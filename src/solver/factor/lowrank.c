@@ -9,7 +9,7 @@
    solves. In friction p is the number of closed pairs, L their slip times k_n mu, R their gap.
 */
 #include "lowrank.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "solver/block/panel.h"
 
 #define LOWRANK_BLOCK 32 /* right-hand sides at once, at most and at least */

@@ -1,6 +1,6 @@
 /* Shooting with dense matrices: see shooting.h */
 #include "shooting.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 
 #define SHOOTING_FALL     0.9 /* of the residual that a shortened step must reach */
 #define SHOOTING_LOST     3.0 /* residual beyond which no cycle is near */

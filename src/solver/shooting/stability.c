@@ -1,6 +1,6 @@
 /* Floquet multipliers of a cycle (shooting.h): that of the phase, told by its vector, and the largest of the others */
 #include "shooting.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include <math.h>
 
 #define SHOOTING_FAR  0.5 /* from 1: no steps of a cycle move the multiplier of the phase so far */

@@ -4,7 +4,7 @@
    no pair resists it, and what follows others (ties, points that are joined rigidly) does so. The norm is that of diag(A).
 */
 #include "statics/staticsimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define RIGID_MAX_BODIES 64
 #define RIGID_DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
@@ -172,9 +172,7 @@ static PetscErrorCode RigidAddParted(Operators operators, Mat A, PetscInt n, con
 static PetscErrorCode RigidEnergies(Operators operators, Mat A, PetscInt n, const Vec motion[], PetscReal energy[],
                                     PetscReal vectors[])
 {
-  PetscBLASInt N, size, info;
-  PetscReal   *work;
-  Vec          image;
+  Vec image;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(motion[0], &image));
@@ -184,12 +182,7 @@ static PetscErrorCode RigidEnergies(Operators operators, Mat A, PetscInt n, cons
   }
   PetscCall(VecDestroy(&image));
   PetscCall(RigidAddParted(operators, A, n, motion, vectors));
-  PetscCall(PetscBLASIntCast(n, &N));
-  PetscCall(PetscBLASIntCast(4 * n, &size));
-  PetscCall(PetscMalloc1(4 * n, &work));
-  PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "U", &N, vectors, &N, energy, work, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: info %d", (int)info);
-  PetscCall(PetscFree(work));
+  PetscCall(DenseSymmetricEigen(n, vectors, NULL, energy, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -15,7 +15,7 @@
 */
 #include "statics/staticsimpl.h"
 #include "base/gather.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define PIVOT_LEAST 1e-11 /* of the largest entry of a column: a smaller one is rounding */
 #define PIVOT_TIES  1e-12 /* of the largest ratio: closer ones are equal */
@@ -185,19 +185,21 @@ PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscRe
   const PairRows *rows = c->rows;
   PivotLaw       *law;
   PivotTableau    tableau;
-  PetscBLASInt    n, columns = 1, info, *pivot;
+  const PetscInt  n = c->rows->n_all;
+  PetscBLASInt   *pivot;
+  PetscBool       singular;
   PetscReal      *A, *B, *q;
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
-  PetscCall(PetscBLASIntCast(rows->n_all, &n));
   PetscCall(PivotGather(rows, friction, &law));
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &q));
   PetscCall(PetscMalloc3(n * n, &A, n * n, &B, n, &pivot));
   PivotSystem(c, n, law, A, B, q);
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &n, B, &n, pivot, A, &n, &info));
-  if (!info) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &columns, B, &n, pivot, q, &n, &info));
-  if (!info) {
+  PetscCall(DenseFactor(n, B, pivot, &singular));
+  if (!singular) {
+    PetscCall(DenseSolve(n, B, pivot, PETSC_FALSE, n, A));
+    PetscCall(DenseSolve(n, B, pivot, PETSC_FALSE, 1, q));
     PetscCall(PivotTableauCreate(PivotKeepNormal(n, law, A, q), A, q, &tableau));
     *found = PivotComplement(&tableau);
     if (*found) PivotStatus(&tableau, rows, law, status);

@@ -10,7 +10,7 @@
 */
 #include "statics/staticsimpl.h"
 #include "base/gather.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define SMALL_PIVOT      1e-13 /* smallest pivot beside the largest */
 #define SMALL_REDUNDANT  1e-12 /* singular value beside the largest that is none */
@@ -38,14 +38,13 @@ static void SmallAddColumn(const Compliance *c, PetscReal friction, PetscInt n, 
 /* Factors A in place and solves; whether it is singular, and the sign of the determinant */
 static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
-  PetscReal    least = PETSC_MAX_REAL, largest = 0;
-  PetscBLASInt N, one                          = 1, info, *pivot;
+  PetscReal     least = PETSC_MAX_REAL, largest = 0;
+  PetscBool     singular;
+  PetscBLASInt *pivot;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &N));
   PetscCall(PetscMalloc1(n, &pivot));
-  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&N, &N, A, &N, pivot, &info));
-  PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrf: info %d", (int)info);
+  PetscCall(DenseFactor(n, A, pivot, &singular));
   *reversed = PETSC_FALSE;
   for (PetscInt i = 0; i < n; i++) {
     least   = PetscMin(least, PetscAbsReal(A[i * n + i]));
@@ -53,7 +52,7 @@ static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
     if ((A[i * n + i] < 0) != (pivot[i] != i + 1)) *reversed = (PetscBool) !*reversed;
   }
   *outcome = least > SMALL_PIVOT * largest ? SMALL_GOOD : SMALL_SINGULAR;
-  if (*outcome == SMALL_GOOD) PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &N, &one, A, &N, pivot, z, &N, &info));
+  if (*outcome == SMALL_GOOD) PetscCall(DenseSolve(n, A, pivot, PETSC_FALSE, 1, z));
   PetscCall(PetscFree(pivot));
   PetscFunctionReturn(0);
 }
@@ -62,24 +61,19 @@ static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], Smal
    shares are not unique then. Overwrites A. */
 static PetscErrorCode SmallSolveLeast(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome)
 {
-  const PetscReal rcond = SMALL_REDUNDANT;
-  PetscReal       left = 0, whole = 0, *copy, *rhs, *singular, *work;
-  PetscBLASInt    N, one          = 1, rank, size, info;
+  PetscReal left = 0, whole = 0, *copy, *rest;
+  PetscInt  rank;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &N));
-  PetscCall(PetscBLASIntCast(10 * n, &size));
-  PetscCall(PetscMalloc4(n * n, &copy, n, &rhs, n, &singular, size, &work));
+  PetscCall(PetscMalloc2(n * n, &copy, n, &rest));
   PetscCall(PetscArraycpy(copy, A, n * n));
-  PetscCall(PetscArraycpy(rhs, z, n));
-  PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&N, &N, &one, A, &N, z, &N, singular, &rcond, &rank, work, &size, &info));
-  for (PetscInt j = 0; j < n; j++) {
-    whole += PetscSqr(rhs[j]);
-    for (PetscInt i = 0; i < n; i++) singular[i] = (j ? singular[i] : -rhs[i]) + copy[j * n + i] * z[j];
-  }
-  for (PetscInt i = 0; i < n; i++) left += PetscSqr(singular[i]);
-  *outcome = !info && left <= PetscSqr(SMALL_CONSISTENT) * whole ? SMALL_GOOD : SMALL_SINGULAR;
-  PetscCall(PetscFree4(copy, rhs, singular, work));
+  for (PetscInt i = 0; i < n; i++) rest[i] = -z[i], whole += PetscSqr(z[i]);
+  PetscCall(DenseLeast(n, n, A, z, SMALL_REDUNDANT, &rank));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) rest[i] += copy[j * n + i] * z[j];
+  for (PetscInt i = 0; i < n; i++) left += PetscSqr(rest[i]);
+  *outcome = rank >= 0 && left <= PetscSqr(SMALL_CONSISTENT) * whole ? SMALL_GOOD : SMALL_SINGULAR;
+  PetscCall(PetscFree2(copy, rest));
   PetscFunctionReturn(0);
 }
 

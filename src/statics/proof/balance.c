@@ -7,7 +7,7 @@
    cones, each made when it is the one that helps most.
 */
 #include "statics/staticsimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 #define BALANCE_MOST   1000  /* edges tried */
 #define BALANCE_ENOUGH 1e-14 /* what is left on an edge, beside both */
@@ -74,23 +74,11 @@ static PetscReal BalanceBest(const RigidPairs *k, PetscReal friction, const Pets
 /* target = what forces of any sign, least |push - sum|, are on the edges in use */
 static PetscErrorCode EdgeSetFit(EdgeSet *e, const PetscReal push[])
 {
-  const PetscReal rcond = BALANCE_RCOND;
-  PetscReal      *singular, *work;
-  PetscBLASInt    m, n, one = 1, most, rank, size, info;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(e->m, &m));
-  PetscCall(PetscBLASIntCast(e->n, &n));
-  PetscCall(PetscBLASIntCast(e->m + 1, &most));
-  PetscCall(PetscBLASIntCast(10 * (e->m + 1), &size));
-  PetscCall(PetscMalloc2(e->m + 1, &singular, size, &work));
   PetscCall(PetscArraycpy(e->matrix, e->edge, e->m * e->n));
   PetscCall(PetscArraycpy(e->rhs, push, e->m));
-  PetscCallBLAS("LAPACKgelss",
-                LAPACKgelss_(&m, &n, &one, e->matrix, &m, e->rhs, &most, singular, &rcond, &rank, work, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss: info %d", (int)info);
+  PetscCall(DenseLeast(e->m, e->n, e->matrix, e->rhs, BALANCE_RCOND, NULL));
   PetscCall(PetscArraycpy(e->target, e->rhs, e->n));
-  PetscCall(PetscFree2(singular, work));
   PetscFunctionReturn(0);
 }
 

@@ -4,10 +4,11 @@
    way along t where the turn is none.
 */
 #include "statics/staticsimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 #include <math.h>
 
-#define NO_TURN 1e-3 /* way of the turn beside that of the middle */
+#define NO_TURN   1e-3  /* way of the turn beside that of the middle */
+#define FIT_RCOND 1e-10 /* of motions that a body's unknowns do not tell apart */
 
 /* A body: its middle, half its size, and its motion */
 typedef struct {
@@ -58,9 +59,7 @@ static PetscErrorCode BodyMeasure(Model model, const PetscInt body[], PetscInt b
 static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt body[], PetscInt b, Vec r, BodyMotion *m)
 {
   const PetscScalar *value;
-  const PetscReal    rcond   = 1e-10;
-  PetscReal          sum[42] = {0}, singular[6], work[64];
-  PetscBLASInt       six = 6, one = 1, size = 64, rank, info;
+  PetscReal          sum[42] = {0};
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(r, &value));
@@ -80,9 +79,7 @@ static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt bo
   }
   PetscCall(VecRestoreArrayRead(r, &value));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 42, MPIU_REAL, MPI_SUM, comm));
-  PetscCallBLAS("LAPACKgelss",
-                LAPACKgelss_(&six, &six, &one, sum, &six, &sum[36], &six, singular, &rcond, &rank, work, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss: info %d", (int)info);
+  PetscCall(DenseLeast(6, 6, sum, &sum[36], FIT_RCOND, NULL));
   for (int d = 0; d < 3; d++) {
     m->t[d] = sum[36 + d];
     m->w[d] = sum[39 + d] / m->size;

@@ -7,7 +7,7 @@
    ones.
 */
 #include "reduced.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 
 void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
 {

@@ -8,7 +8,7 @@
    defective pair eigenvalues move as square roots, and the derivative is not finite.
 */
 #include "reduced.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 
 /* The derivative of lambda by the coefficient of term t */
 static PetscErrorCode TermDerivative(const Reduced *reduced, PetscInt t, const ReducedModes *modes, PetscInt i,

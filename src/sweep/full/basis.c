@@ -3,7 +3,7 @@
    before, and the pencil between the vectors of this basis.
 */
 #include "follow.h"
-#include "solver/dense/dense.h"
+#include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
 #define FOLLOW_DROP  1e-8 /* directions of the basis that are left out beside the longest vector */

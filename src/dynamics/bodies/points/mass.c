@@ -10,7 +10,7 @@
    differences exactly, what the kinetic energy 1/2 q'W q of the points loses.
 */
 #include "dynamics/bodies/bodiesimpl.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 /* W of a point */
 void PointInertia(const Joint *joint, PetscReal W[36])
@@ -133,11 +133,9 @@ static PetscErrorCode PointsGetReaction(Bodies b, const PetscInt heavy[], const 
 {
   const PetscInt n = 6 * b->n_heavy;
   PetscReal     *A;
-  PetscBLASInt   size, info, *pivot;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(n, &size));
-  PetscCall(PetscMalloc2(n * n, &A, n, &pivot));
+  PetscCall(PetscMalloc1(n * n, &A));
   for (PetscInt p = 0; p < b->n_heavy; p++) {
     PetscReal W[36];
 
@@ -151,9 +149,8 @@ static PetscErrorCode PointsGetReaction(Bodies b, const PetscInt heavy[], const 
         X[k * n + 6 * p + i] = k / 6 == p ? W[6 * i + k % 6] : 0;
       }
   }
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&size, &size, A, &size, pivot, X, &size, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
-  PetscCall(PetscFree2(A, pivot));
+  PetscCall(DenseSolveWith(n, A, n, X, NULL));
+  PetscCall(PetscFree(A));
   PetscFunctionReturn(0);
 }
 

@@ -11,7 +11,7 @@
 */
 #include "dynamics/bodies/bodiesimpl.h"
 #include "base/algebra/vec3.h"
-#include <petscblaslapack.h>
+#include "base/algebra/dense.h"
 
 /* Component i % 3 of node i / 3 for the six motions */
 static void RigidRow(Bodies b, const BodyJoint *joint, PetscInt i, PetscReal row[6])
@@ -59,12 +59,9 @@ static void RigidPut(Bodies b, const BodyJoint *joint, PetscBool weighted, const
 /* The inverse of a symmetric matrix [6][6] */
 static PetscErrorCode RigidInvert(PetscReal A[36], PetscReal inverse[36])
 {
-  PetscBLASInt six = 6, info, pivot[6];
-
   PetscFunctionBeginUser;
   for (int i = 0; i < 36; i++) inverse[i] = i % 7 == 0;
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&six, &six, A, &six, pivot, inverse, &six, &info));
-  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv: info %d", (int)info);
+  PetscCall(DenseSolveWith(6, A, 6, inverse, NULL));
   PetscFunctionReturn(0);
 }
 

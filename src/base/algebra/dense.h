@@ -1,4 +1,4 @@
-/* Private to modes/, sweep/: small dense problems by LAPACK. Matrices are column-major, [n * n] unless stated. */
+/* Small dense problems by LAPACK, alike on every rank that calls. Matrices are column-major, [n * n] unless stated. */
 #pragma once
 
 #include <petscsys.h>
@@ -12,6 +12,12 @@ PetscErrorCode DenseChoose(PetscInt n, PetscReal A[], PetscReal tolerance, Petsc
 /* B := op(A)^-1 B from the factors, B [m][n] */
 PetscErrorCode DenseSolve(PetscInt n, const PetscReal LU[], const PetscBLASInt pivot[], PetscBool transposed,
                           PetscInt m, PetscReal B[]);
+/* B := A^-1 B, B [m][n]; A overwritten. singular as above: then B is no solution */
+PetscErrorCode DenseSolveWith(PetscInt n, PetscReal A[], PetscInt m, PetscReal B[], PetscBool *singular);
+/* The least x of those with the least |A x - b|, in place of b; A [columns][rows] is overwritten, b has room for both. Singular
+   values below rcond of the largest are none; rank = how many are left, -1 where LAPACK does not
+   converge, which is an error without it */
+PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond, PetscInt *rank);
 /* The same for complex matrices */
 PetscErrorCode DenseComplexFactor(PetscInt n, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular);
 PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,

@@ -1,8 +1,8 @@
 /*
-   Small dense problems by LAPACK: getrf, getrs, geev, syev, sygv, ggev, pstrf. PETSc with real scalars declares the real
+   Small dense problems by LAPACK: getrf, getrs, gelss, geev, syev, sygv, ggev, pstrf. PETSc with real scalars declares the real
    routines only, and not pstrf; the others are declared here.
 */
-#include "dense.h"
+#include "base/algebra/dense.h"
 #include <petscblaslapack.h>
 
 #define LAPACKzgetrf_ PETSCBLASCOMPLEX(getrf, GETRF)
@@ -71,6 +71,40 @@ PetscErrorCode DenseSolve(PetscInt size, const PetscReal LU[], const PetscBLASIn
   PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_(transposed ? "T" : "N", &n, &nrhs, (PetscReal *)LU, &n,
                                             (PetscBLASInt *)pivot, B, &n, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK getrs: info %d", (int)info);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseSolveWith(PetscInt size, PetscReal A[], PetscInt m, PetscReal B[], PetscBool *singular)
+{
+  PetscBLASInt *pivot;
+  PetscBool     none = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(size, &pivot));
+  PetscCall(DenseFactor(size, A, pivot, singular ? &none : NULL));
+  if (!none) PetscCall(DenseSolve(size, A, pivot, PETSC_FALSE, m, B));
+  if (singular) *singular = none;
+  PetscCall(PetscFree(pivot));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond, PetscInt *rank)
+{
+  const PetscInt     most = PetscMax(1, PetscMax(rows, columns));
+  const PetscBLASInt one  = 1;
+  PetscBLASInt       m, n, ldb, found, work_size, info;
+  PetscReal         *singular, *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(rows, &m));
+  PetscCall(PetscBLASIntCast(columns, &n));
+  PetscCall(PetscBLASIntCast(most, &ldb));
+  PetscCall(PetscBLASIntCast(10 * most, &work_size));
+  PetscCall(PetscMalloc2(most, &singular, 10 * most, &work));
+  PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&m, &n, &one, A, &m, b, &ldb, singular, &rcond, &found, work, &work_size, &info));
+  PetscCheck(info >= 0 && (!info || rank), PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss: info %d", (int)info);
+  if (rank) *rank = info ? -1 : found;
+  PetscCall(PetscFree2(singular, work));
   PetscFunctionReturn(0);
 }
 
