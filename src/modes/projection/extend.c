@@ -15,6 +15,7 @@
 #define EXTEND_LATER                                                                                                   \
   10 /* times what may remain: directions of M Z and R Z shorter than this are left to the next round */
 #define EXTEND_DROP   0.1 /* of what may remain: directions of corrections that make less are left out */
+#define EXTEND_FINER  0.01 /* times that, where all are */
 #define EXTEND_LEVELS 2   /* of corrections: of the residuals, and of what these leave */
 
 /* Residuals sigma B of one side */
@@ -215,6 +216,7 @@ PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const
 {
   Corrections     corrections = {.n = 0};
   SideOfExtension side[2]     = {{.left = PETSC_FALSE}, {.left = PETSC_TRUE}};
+  const PetscInt  before      = p->k;
   PetscInt        n;
   BV              all;
 
@@ -228,7 +230,8 @@ PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const
   }
   for (int i = 0; i < 2; i++) PetscCall(SideDestroy(&side[i]));
   PetscCall(CorrectionsJoin(p, &corrections, &all, &n));
-  if (n) PetscCall(ProjectionAdd(p, EXTEND_DROP / corrections.longest, all));
+  if (n) PetscCall(ProjectionAdd(p, p->finer * EXTEND_DROP / corrections.longest, all));
+  if (n && p->k == before) p->finer *= EXTEND_FINER;
   PetscCall(BVDestroy(&all));
   if (n_columns) *n_columns = n;
   PetscFunctionReturn(0);

@@ -218,6 +218,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
   p->limit[1] = PROJECT_LEFT;
+  p->finer    = 1;
   PetscCall(AddModal(p, modal));
   window->beyond = 0;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));

@@ -25,6 +25,7 @@ typedef struct {
   PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
+  PetscReal             finer;       /* times the drop of corrections: less than 1 once all of them were dropped */
   BV                    V;
   BV                    pairs[2]; /* left V, right V where there is `spread` */
   PetscInt              k, room;  /* columns of V; for how many there is to be room at least */
