@@ -88,34 +88,6 @@ static PetscErrorCode DynamicsCreateState(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DynamicsFitEnd(Dynamics d, PetscReal *dt, PetscReal *end)
-{
-  TSExactFinalTimeOption match;
-  PetscReal              begin, time;
-  PetscInt               most;
-
-  PetscFunctionBeginUser;
-  PetscCall(TSGetExactFinalTime(d->ts, &match));
-  PetscCheck(match != TS_EXACTFINALTIME_INTERPOLATE, d->comm, PETSC_ERR_USER_INPUT,
-             "-ts_exact_final_time interpolate is not offered: stepover or matchstep");
-  PetscCall(TSGetTime(d->ts, &begin));
-  PetscCall(TSGetMaxTime(d->ts, &time));
-  PetscCall(TSGetMaxSteps(d->ts, &most));
-  PetscCheck(begin == 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_init_time %.6g must be 0: ramps and motions begin there",
-             (double)begin);
-  PetscCheck(time < PETSC_MAX_REAL || most < PETSC_MAX_INT, d->comm, PETSC_ERR_USER_INPUT,
-             "-ts_max_time must be given: how long to integrate (s); or -ts_max_steps");
-  PetscCheck(time > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_time %.6g must be a positive time (s)", (double)time);
-  PetscCheck(most > 0, d->comm, PETSC_ERR_USER_INPUT, "-ts_max_steps %" PetscInt_FMT " must be positive", most);
-  PetscCheck(d->dt_asked <= time, d->comm, PETSC_ERR_USER_INPUT,
-             "-ts_dt %.6g s is longer than the run: take at most -ts_max_time %.6g", (double)d->dt_asked, (double)time);
-  *dt = PetscMin(*dt, time);
-  if (match == TS_EXACTFINALTIME_MATCHSTEP && time < PETSC_MAX_REAL)
-    *dt = time / PetscCeilReal(time / *dt * (1 - 1e-12));
-  *end = most < PETSC_MAX_INT ? PetscMin(time, *dt * (PetscReal)most) : time;
-  PetscFunctionReturn(0);
-}
-
 /* The largest number of six digits up to x: without the digits of an iteration, in which ranks and processors differ */
 static PetscReal SixDigits(PetscReal x)
 {

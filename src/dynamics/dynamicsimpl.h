@@ -78,7 +78,7 @@ struct _p_Dynamics {
 /* quantities.c - rows of the options */
 extern const QuantityTable dynamics_quantities;
 
-/* dynamics.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there. Errors:
+/* run/run.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there. Errors:
    PETSC_ERR_USER_INPUT for an end that is none, and for a -ts_dt beyond it. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsFitEnd(Dynamics dynamics, PetscReal *dt, PetscReal *end);
 

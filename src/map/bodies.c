@@ -4,6 +4,9 @@
 */
 #include "mapimpl.h"
 
+#define MAP_BATCH  8     /* times the lines that ranks need at once, of which bodies are reduced before any is run */
+#define MAP_MEMORY 2.5e8 /* bytes for their bodies on each rank */
+
 /* What is kept of a reduced run */
 static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
 {
@@ -93,5 +96,21 @@ PetscErrorCode MapBodiesDestroy(MapBodies *b)
   PetscCall(PetscFree(b->friction));
   PetscCall(PetscFree(b->interface));
   PetscCall(PetscFree(b->hits));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch)
+{
+  const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1;
+  PetscMPIInt    size;
+  PetscInt       least;
+
+  PetscFunctionBeginUser;
+  *batch = n_lines;
+  if (!map->lines_differ) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_size(map->comm, &size));
+  least  = (size + n_jobs - 1) / n_jobs;
+  *batch = PetscMin(MAP_BATCH * least, (PetscInt)(MAP_MEMORY / ((PetscReal)n_bodies * map->bytes)));
+  *batch = PetscMin(n_lines, PetscMax(least, *batch));
   PetscFunctionReturn(0);
 }

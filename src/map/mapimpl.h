@@ -198,7 +198,7 @@ PETSC_INTERN PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm);
 PETSC_INTERN PetscErrorCode MapShareNext(MapShare *share, PetscInt *k);
 PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
 
-/* map.c - lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as their bodies are
+/* bodies.c - lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as their bodies are
    small. A line has n_jobs for the ranks, and n_bodies */
 PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch);
 
@@ -210,7 +210,7 @@ PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint ro
 PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
-/* point/chain.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
+/* point/march.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
 PETSC_INTERN PetscErrorCode MapMarchTry(MapMarch march, MapPoint *row);
 
 /* point/judge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no mode of the

@@ -118,6 +118,21 @@ static PetscErrorCode GroundedAddChecksum(Model model, const char kind[], const 
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode JointAddChecksum(Model model, const Joint *j, Checksum c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumSetPart(c, "%s %s", j->is_point ? "point" : "bushing", j->name));
+  for (int k = 0; k < 2; k++)
+    if (j->set[k][0]) PetscCall(ModelAddSetChecksum(model, j->set[k], PETSC_FALSE, c));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){j->has_at, j->rigid}));
+  if (j->has_at) PetscCall(ChecksumAddReals(c, 3, j->at)); /* else a sum over ranks, whose rounding is no difference */
+  PetscCall(ChecksumAddReals(c, 6, j->stiffness));
+  PetscCall(ChecksumAddReals(c, 6, j->viscosity));
+  PetscCall(ChecksumAddReals(c, 1, &j->mass));
+  PetscCall(ChecksumAddReals(c, 6, j->inertia));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum c)
 {
   const ModelScene *s = &model->scene;

@@ -147,30 +147,10 @@ PetscErrorCode ModelGetDM(Model model, DM *dm)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh)
-{
-  PetscFunctionBeginUser;
-  *mesh = &model->mesh;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelGetScene(Model model, const ModelScene **scene)
 {
   PetscFunctionBeginUser;
   *scene = &model->scene;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[])
-{
-  const Mesh *mesh = &model->mesh;
-
-  PetscFunctionBeginUser;
-  *element = mesh->element[c];
-  for (PetscInt i = 0; i < mesh->element[c]->n_nodes; i++) {
-    nodes[i] = mesh->cell_node[mesh->cell_first[c] + i];
-    for (int d = 0; d < 3; d++) x[3 * i + d] = mesh->x[3 * nodes[i] + d];
-  }
   PetscFunctionReturn(0);
 }
 

@@ -51,6 +51,9 @@ struct _p_Model {
 PETSC_INTERN PetscErrorCode PartsCheckUnits(Model model);
 PETSC_INTERN PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer);
 
+/* unit.c - what the units of a part probably are where they do not fit together; NULL where they do */
+PETSC_INTERN const char *PartDoubt(const Part *part, const PartExtent *extent);
+
 /* rig.c - dimensions and counts of the rig; errors for impossible ones */
 PETSC_INTERN PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig);
 
@@ -98,14 +101,13 @@ PETSC_INTERN PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const Mod
                                        const PetscReal at[3], ModelMean *mean);
 PETSC_INTERN PetscErrorCode MeanDestroy(ModelMean *mean);
 
-/* joint.c - eigenvalues, ascending, and -vectors [3][3] of a symmetric matrix xx, yy, zz, xy, xz, yz */
+/* mean.c - eigenvalues, ascending, and -vectors [3][3] of a symmetric matrix xx, yy, zz, xy, xz, yz */
 PETSC_INTERN PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9]);
 /* joint.c - the motions of all bushings and points, frees these; the point that -`load`_point names; a line about one */
 PETSC_INTERN PetscErrorCode JointsSetUp(Model model);
 PETSC_INTERN PetscErrorCode JointsDestroy(PetscInt n, Joint joint[]);
 PETSC_INTERN PetscErrorCode JointFindPoint(Model model, const char load[], const char name[], PetscInt *index);
 PETSC_INTERN PetscErrorCode JointView(Model model, const Joint *joint, PetscViewer viewer);
-PETSC_INTERN PetscErrorCode JointAddChecksum(Model model, const Joint *joint, Checksum checksum);
 
 /* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
    not belong together, for axes that are none, and for a stiffness that is not positive definite */

@@ -8,9 +8,6 @@
 #include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
-#define MODES_NEAR          1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
-#define MODES_NEAR_SINGULAR 1e-5 /* the same where infinite eigenvalues are to be told from finite ones */
-
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
@@ -101,91 +98,6 @@ PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2])
   PetscFunctionReturn(0);
 }
 
-/* Right or left spectrum by the solver that fits the pencil */
-static PetscErrorCode SpectrumSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
-                                    PetscBool transposed, Spectrum *spectrum)
-{
-  PetscFunctionBeginUser;
-  if (pencil->C)
-    PetscCall(DampedSolve(modes, pencil, window, si, transposed, spectrum));
-  else
-    PetscCall(UndampedSolve(modes, pencil, window, si, transposed, spectrum));
-  PetscFunctionReturn(0);
-}
-
-/* Left vectors of a symmetric pencil are the right ones */
-static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SpectrumCreate(from->n, to));
-  for (PetscInt i = 0; i < from->n; i++)
-    PetscCall(SpectrumAdd(to, from->sigma[i], from->omega[i], from->xr[i], from->xi[i]));
-  PetscFunctionReturn(0);
-}
-
-/* Whether an eigenvalue kappa = -lambda^2 is so near to the shift that rounding of its inverse spoils the others */
-static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal shift)
-{
-  PetscReal nearest  = PETSC_MAX_REAL,
-            farthest = window->singular && !window->count ? UndampedRadius(window, shift, s) : 0;
-
-  for (PetscInt i = 0; i < s->n; i++) {
-    const PetscReal distance = SpectrumDistance(s, i, shift);
-
-    nearest  = PetscMin(nearest, distance);
-    farthest = PetscMax(farthest, distance);
-  }
-  return nearest < (window->singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE
-                                                                                                      : PETSC_FALSE;
-}
-
-PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
-  for (int attempt = 1; attempt < 4 && !pencil->C && ShiftSpoils(window, &modes->right, si->shift); attempt++) {
-    const PetscReal shift = si->shift * (1 + 1e-3 * attempt);
-
-    PetscCall(SpectrumDestroy(&modes->right));
-    PetscCall(ShiftInvertMove(pencil, shift, si));
-    PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_FALSE, &modes->right));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* A second attempt asks for more eigenvalues */
-PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si)
-{
-  const PetscBool proven   = pencil->symmetric && !pencil->C ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool       complete = PETSC_TRUE;
-
-  PetscFunctionBeginUser;
-  window->proven = proven;
-  for (int attempt = 0; attempt < 3; attempt++) {
-    PetscCall(ModesSolveRight(modes, pencil, window, si));
-    if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
-    PetscCall(WindowSelect(window, &modes->right));
-    if (proven) {
-      PetscCall(WindowProve(modes, window, &modes->right, &complete));
-      if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
-    } else if (modes->left) {
-      PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
-      PetscCall(LeftMatch(modes, window, &window->worst, &complete));
-    }
-    if (!pencil->C && window->finite >= 0 && WindowLacks(window, &modes->right)) complete = PETSC_FALSE;
-    if (complete && !proven && !pencil->C && CopiesDoubtful(modes, window, &modes->right)) complete = PETSC_FALSE;
-    if (complete) break;
-    CopiesMakeRoom(modes, window, &modes->right);
-    window->extra += 10 + modes->right.n / 2;
-    PetscCall(SpectrumDestroy(&modes->right));
-    PetscCall(SpectrumDestroy(&modes->left_spectrum));
-  }
-  PetscCheck(complete, modes->comm, PETSC_ERR_NOT_CONVERGED,
-             "modes are missing after three attempts (%s); %s -modes_band or tighten -eps_tol",
-             proven ? "inertia count" : "left and right differ", window->count ? "give" : "narrow");
-  PetscFunctionReturn(0);
-}
-
 /* Forgets the last solution */
 static PetscErrorCode ModesReset(Modes modes)
 {
@@ -200,18 +112,6 @@ static PetscErrorCode ModesReset(Modes modes)
   modes->n        = 0;
   modes->block[0] = 0;
   modes->dense    = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ReleaseKind release,
-                           ShiftInvert *si)
-{
-  PetscFunctionBeginUser;
-  *si            = modes->counter;
-  si->release    = release;
-  si->owner      = modes->pencil;
-  modes->counter = (ShiftInvert){.progress = &modes->progress};
-  PetscCall(ShiftInvertMove(pencil, shift, si));
   PetscFunctionReturn(0);
 }
 
@@ -312,18 +212,6 @@ PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode)
   PetscFunctionBeginUser;
   *n    = modes->n;
   *mode = modes->mode;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(i >= 0 && i < modes->n, modes->comm, PETSC_ERR_ARG_OUTOFRANGE, "mode %" PetscInt_FMT " of %" PetscInt_FMT,
-             i, modes->n);
-  if (xr) *xr = modes->right.xr[i];
-  if (xi) *xi = modes->right.xi[i];
-  if (yr) *yr = modes->left_spectrum.n ? modes->left_spectrum.xr[i] : NULL;
-  if (yi) *yi = modes->left_spectrum.n ? modes->left_spectrum.xi[i] : NULL;
   PetscFunctionReturn(0);
 }
 

@@ -115,7 +115,7 @@ PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 /* quantities.c - rows of the options */
 extern const QuantityTable modes_quantities;
 
-/* modes.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
+/* solve.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
    their analysis serves */
 PETSC_INTERN PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ReleaseKind release,
                                         ShiftInvert *si);
@@ -172,7 +172,7 @@ PETSC_INTERN PetscReal DampedRadius(const Window *window, PetscReal shift, const
 PETSC_INTERN PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense);
 PETSC_INTERN PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *pencil, const Window *window,
                                              PetscReal shift, PetscBool transposed, Spectrum *spectrum);
-/* modes.c - right spectrum by the solver that fits the pencil; a shift that happens to be an eigenvalue is moved */
+/* solve.c - right spectrum by the solver that fits the pencil; a shift that happens to be an eigenvalue is moved */
 PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window,
                                             ShiftInvert *si);
 /* project.c - right and left spectra of a damped pencil in the window by projection on undamped modes; done = false where
@@ -184,13 +184,14 @@ PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);
 PETSC_INTERN PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
+PETSC_INTERN PetscInt  DampedFirst(const Window *window);
 
 /* copies.c - whether as many equal eigenvalues of the spectrum were found as a block of the eigensolver has vectors, and no count
    says that these are all; makes the next blocks larger, also where it is known that eigenvalues are missing */
 PETSC_INTERN PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum *spectrum);
 PETSC_INTERN void      CopiesMakeRoom(Modes modes, const Window *window, const Spectrum *spectrum);
 
-/* modes.c - right and left spectra of a window that agree, with a factorisation about its shift */
+/* solve.c - right and left spectra of a window that agree, with a factorisation about its shift */
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
                                              ShiftInvert *si);
 /* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last one */

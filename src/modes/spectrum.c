@@ -169,3 +169,28 @@ PetscErrorCode SpectrumDestroy(Spectrum *s)
   s->capacity = 0;
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *yr, Vec *yi)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(i >= 0 && i < modes->n, modes->comm, PETSC_ERR_ARG_OUTOFRANGE, "mode %" PetscInt_FMT " of %" PetscInt_FMT,
+             i, modes->n);
+  if (xr) *xr = modes->right.xr[i];
+  if (xi) *xi = modes->right.xi[i];
+  if (yr) *yr = modes->left_spectrum.n ? modes->left_spectrum.xr[i] : NULL;
+  if (yi) *yi = modes->left_spectrum.n ? modes->left_spectrum.xi[i] : NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SolverSeed(BV bv, unsigned long seed)
+{
+  PetscMPIInt rank;
+  PetscRandom random;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetRandomContext(bv, &random));
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)bv), &rank));
+  PetscCall(PetscRandomSetSeed(random, seed + (unsigned long)rank));
+  PetscCall(PetscRandomSeed(random));
+  PetscFunctionReturn(0);
+}

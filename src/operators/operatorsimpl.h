@@ -86,7 +86,7 @@ static inline const PetscReal *OperatorsPoint(Operators operators, const PetscRe
 /* frictionfactor.c - the friction coefficient of largest absolute value at p, 0 without any */
 PETSC_INTERN PetscReal OperatorsLargestMu(Operators operators, const PetscReal p[]);
 
-/* assemble.c - parameters and terms of the bodies, springs and dashpots */
+/* components.c - parameters and terms of the bodies, springs and dashpots */
 PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
 
 /* Values along or about x, y, z of something that has a matrix for each choice of them */
@@ -99,7 +99,7 @@ typedef struct {
   const void *of;
 } Components;
 
-/* assemble.c - parameters and terms of them: one where all that are not zero are equal, else one for each with _x, _y, _z
+/* components.c - parameters and terms of them: one where all that are not zero are equal, else one for each with _x, _y, _z
    appended; index = the parameter of each, or -1 */
 PETSC_INTERN PetscErrorCode OperatorsAddComponents(Operators operators, const Components *components,
                                                    PetscInt index[3]);

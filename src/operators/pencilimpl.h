@@ -85,10 +85,9 @@ PETSC_INTERN PetscErrorCode PencilCreateNullSpaces(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilProjectTerms(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
 
-/* matrixfile.c - raises an error for a file that does not hold a real matrix of finite numbers, alike on all ranks; and
-   for a mass matrix whose symmetric part has negative eigenvalues beyond rounding. Singular: some are zero to rounding, beside
-   those of unknowns without any mass */
-PETSC_INTERN PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[]);
+/* matrixfile.c - opens a file of PETSc's; an error where a mass matrix has negative eigenvalues of its symmetric part beyond
+   rounding. Singular: some are zero to rounding, beside those of unknowns without any mass */
+PETSC_INTERN PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer);
 PETSC_INTERN PetscErrorCode MassCheck(Mat M, PetscBool *singular);
 /* matrixterm.c - the same of the mass at the present point, where it depends on parameters, which may be of any sign */
 PETSC_INTERN PetscErrorCode PencilCheckMass(Pencil pencil, Mat M);

@@ -209,7 +209,7 @@ PETSC_INTERN PetscErrorCode ReducedChooseCutoff(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedSetStep(ReducedRun reduced, PetscReal dt);
 PETSC_INTERN PetscErrorCode ReducedChoose(ReducedRun reduced);
 
-/* reduced.c - model and room for states and steps, from cut-off, step and run; frees these */
+/* bodies/reduce.c - model and room for states and steps, from cut-off, step and run; frees these */
 PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
 

@@ -100,25 +100,6 @@ PetscErrorCode StaticsSetUp(Statics s, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
-{
-  const OperatorsParameter *parameters;
-  const char               *between = " at ";
-  PetscInt                  n;
-  char                      one[192];
-
-  PetscFunctionBeginUser;
-  text[0] = 0;
-  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
-  for (PetscInt i = 0; i < s->n_parameters; i++) {
-    if (s->p[i] == parameters[i].value) continue;
-    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
-    PetscCall(PetscStrlcat(text, one, size));
-    between = ", ";
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Nothing moves without loads on what can move, unless bodies interfere */
 static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
 {

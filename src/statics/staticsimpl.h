@@ -157,7 +157,7 @@ struct _p_Statics {
 extern const QuantityTable statics_quantities;
 /* statics.c - pairs, rows and room for results, once; the point of what follows, NULL for the values of the scene */
 PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics, const PetscReal p[]);
-/* statics.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */
+/* state.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */
 PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t size);
 /* rows.c - pairs and rows, normal ones only for pressing without friction; friction coefficients and stiffnesses of the
    interfaces at p */
@@ -231,7 +231,7 @@ PETSC_INTERN PetscErrorCode ActiveIsReversed(Active *active, PetscReal friction,
 /* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
 PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
 
-/* continuation.c - whether many iterations are worth their time */
+/* activeset.c - whether many iterations are worth their time */
 PETSC_INTERN PetscBool ActiveIsFew(const Active *active);
 
 /* soften.c - the same by continuation in a regularisation of friction, from the present l and w */

@@ -12,15 +12,6 @@
 #define INSIDE 1e-9 /* natural coordinates: on an edge */
 #define STEPS  64   /* facets of one walk */
 
-void ContactNodes(const ContactShape *shape, PetscInt f, PetscReal x[][3])
-{
-  const ContactFacet *facet = &shape->surface->facet[f];
-
-  for (int i = 0; i < facet->n; i++)
-    for (int d = 0; d < 3; d++)
-      x[i][d] = facet->x[i][d] + (shape->node ? shape->u[3 * shape->node[facet->node[i]] + d] : 0);
-}
-
 /* How far natural coordinates are beyond edges where the surface ends */
 static PetscReal BeyondBorder(const ContactFacet *f, const PetscReal natural[2])
 {

@@ -196,3 +196,12 @@ void ContactFootNearest(const ContactSurface *s, const PetscReal x[3], ContactFo
     }
   }
 }
+
+void ContactNodes(const ContactShape *shape, PetscInt f, PetscReal x[][3])
+{
+  const ContactFacet *facet = &shape->surface->facet[f];
+
+  for (int i = 0; i < facet->n; i++)
+    for (int d = 0; d < 3; d++)
+      x[i][d] = facet->x[i][d] + (shape->node ? shape->u[3 * shape->node[facet->node[i]] + d] : 0);
+}

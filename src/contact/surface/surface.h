@@ -116,7 +116,7 @@ PETSC_INTERN PetscErrorCode ContactFacetsNear(const ContactShape *shape, const C
 /* search.c - the nearest point of the surface at rest */
 PETSC_INTERN void ContactFootNearest(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot);
 
-/* foot.c - nodes of a facet as it lies, m */
+/* search.c - nodes of a facet as it lies, m */
 PETSC_INTERN void ContactNodes(const ContactShape *shape, PetscInt f, PetscReal x[][3]);
 /* foot.c - walks across edges to the facet that x faces, from foot->facet; facet -1 where the way leaves the live
    facets or the surface, or does not end */

@@ -188,7 +188,7 @@ static inline PetscInt JointAt(const Layout *l, const BodyJoint *joint, PetscInt
   return l->at[v] + i % 3 * l->step[v];
 }
 
-/* points/mass.c - 1/2 q'W q of the mass and inertia of a point, J */
+/* points/inertia.c - 1/2 q'W q of the mass and inertia of a point, J */
 PETSC_INTERN PetscReal PointKinetic(const Joint *point, const PetscReal q[6]);
 /* W, mass and inertia of a point */
 PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);

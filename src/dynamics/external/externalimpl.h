@@ -71,10 +71,10 @@ struct _p_External {
   PetscReal *drives; /* power of the drives in the step before, on v_{n-1/2} + v_{n+1/2}, W */
 };
 
-/* external.c - makes the memory as long as what is there needs; new numbers are 0 */
+/* layout.c - makes the memory as long as what is there needs; new numbers are 0 */
 PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);
 
-/* external.c - local nodes (from 0) of a set that have cells, those that this rank owns first; the caller frees them.
+/* layout.c - local nodes (from 0) of a set that have cells, those that this rank owns first; the caller frees them.
    Collective. */
 PETSC_INTERN PetscErrorCode ExternalFindVertices(External external, const char set[], PetscInt *n, PetscInt *n_owned,
                                                  PetscInt **vertex);

@@ -54,7 +54,7 @@ struct _p_History {
 /* quantities.c - rows of the options */
 extern const QuantityTable history_quantities;
 
-/* history.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local node i at t_n; zero for
+/* motion.c - Cartesian displacement (m), velocity (m/s) and acceleration (m/s^2) of local node i at t_n; zero for
    a node without cells */
 PETSC_INTERN void HistoryMotion(const Layout *layout, const HistoryState *state, PetscInt i, PetscReal u[3],
                                 PetscReal v[3], PetscReal a[3]);

@@ -14,20 +14,9 @@
    and none exceeds the sum of the two others.
 */
 #include "model/modelimpl.h"
-#include "base/algebra/dense.h"
 
 #define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
 #define MAX_OPTION       256
-
-PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9])
-{
-  static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-
-  PetscFunctionBeginUser;
-  for (int i = 0; i < 9; i++) axes[i] = inertia[at[i]];
-  PetscCall(DenseSymmetricEigen(3, axes, NULL, principal, NULL));
-  PetscFunctionReturn(0);
-}
 
 /* Reads three values that must not be negative; whether one of them is not zero */
 static PetscErrorCode JointReadThree(OptionsItems PetscOptionsObject, const char option[], const char help[],
@@ -304,20 +293,5 @@ PetscErrorCode JointView(Model model, const Joint *j, PetscViewer viewer)
   PetscCall(JointViewThree(model, "viscosity", j->viscosity, "N s/m", viewer));
   PetscCall(JointViewThree(model, "turn viscosity", &j->viscosity[3], "N m s/rad", viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode JointAddChecksum(Model model, const Joint *j, Checksum c)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ChecksumSetPart(c, "%s %s", j->is_point ? "point" : "bushing", j->name));
-  for (int k = 0; k < 2; k++)
-    if (j->set[k][0]) PetscCall(ModelAddSetChecksum(model, j->set[k], PETSC_FALSE, c));
-  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){j->has_at, j->rigid}));
-  if (j->has_at) PetscCall(ChecksumAddReals(c, 3, j->at)); /* else a sum over ranks, whose rounding is no difference */
-  PetscCall(ChecksumAddReals(c, 6, j->stiffness));
-  PetscCall(ChecksumAddReals(c, 6, j->viscosity));
-  PetscCall(ChecksumAddReals(c, 1, &j->mass));
-  PetscCall(ChecksumAddReals(c, 6, j->inertia));
   PetscFunctionReturn(0);
 }

@@ -9,6 +9,7 @@
    on q act on the nodes as B'f, whose resultants in x_0 are f exactly.
 */
 #include "model/modelimpl.h"
+#include "base/algebra/dense.h"
 #include "base/algebra/vec3.h"
 
 #define MEAN_FLAT  1e-10 /* of the largest moment of A: below it nothing tells the rotation */
@@ -192,4 +193,14 @@ void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscRea
   for (PetscInt i = 0; i < mean->n; i++)
     for (int d = 0; d < 3; d++)
       for (int j = 0; j < 6; j++) nodal[3 * mean->vertex[i] + d] += mean->b[18 * i + 6 * d + j] * force[j];
+}
+
+PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9])
+{
+  static const int at[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 9; i++) axes[i] = inertia[at[i]];
+  PetscCall(DenseSymmetricEigen(3, axes, NULL, principal, NULL));
+  PetscFunctionReturn(0);
 }

@@ -131,3 +131,14 @@ PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *matrices, con
   for (int i = 0; i < 3; i++) PetscCall(PetscFree(*dense[i]));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode DampedHasEmpty(Mat K, PetscBool *empty)
+{
+  PetscInt least;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetLocalSize(K, &least, NULL));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)K)));
+  *empty = least ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}

@@ -6,17 +6,6 @@
 */
 #include "modes/modesimpl.h"
 
-PetscErrorCode DampedHasEmpty(Mat K, PetscBool *empty)
-{
-  PetscInt least;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetLocalSize(K, &least, NULL));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)K)));
-  *empty = least ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 /* K, C and M in even shares of the rows */
 static PetscErrorCode PencilSpread(const PencilMatrices *pencil, PencilMatrices *even)
 {

@@ -17,35 +17,6 @@
 #define UNDAMPED_CLEAN    1e4 /* the same up to which vectors keep half their digits, of which rounding takes the square */
 #define UNDAMPED_AWAY     100 /* farther below zero, times, where what is asked for is not nearer than that */
 
-/* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an
-   eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 of the unknowns' own below leaves 1e-8
-   of these at worst. In a band it lies amid kappa, so that few modes outside are as near as those inside; where
-   the band begins at low frequencies, which there lose digits, at 0.3: on the default brake 0.25, 0.3, 0.35 take 288, 280, 272
-   solves, and right and left eigenvalues agree to 7e-11, 3e-11, 9e-11, with LU to 3e-11, 4e-11, 1e-9. */
-PetscReal UndampedShift(const Window *window)
-{
-  const PetscReal low = window->low * window->low, high = window->high * window->high;
-  const PetscReal below = -PetscSqr((window->singular ? 100 : 10) * window->scale);
-
-  if (window->count) return window->target > 10 * window->scale ? window->target * window->target : below;
-  return low + PetscMin(0.5, 0.3 + 1.2 * low / high) * (high - low);
-}
-
-/* Radius about the shift, in the plane of kappa = -lambda^2, that the converged eigenvalues must exceed. Band: the
-   farthest corner sigma + i omega of the window. Target t: all |lambda - i t| <= d lie within |kappa - t^2| <= 2 t d
-   + d^2. */
-PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
-{
-  const PetscReal low = window->low, high = window->high, s = window->growth, t = window->target;
-  PetscReal       d;
-
-  if (!window->count)
-    return PetscMax(hypot(high * high - s * s - shift, 2 * s * high), hypot(low * low - s * s - shift, 2 * s * low));
-  if (found->n < window->count) return PETSC_MAX_REAL;
-  d = WindowNearest(window, found);
-  return 2 * t * d + d * d + PetscAbsReal(shift - t * t);
-}
-
 /* Where unknowns are without mass: takes out what rounding made of infinite eigenvalues */
 static PetscErrorCode UndampedDropInfinite(const Window *window, PetscReal shift, Spectrum *s)
 {
@@ -91,19 +62,6 @@ static PetscErrorCode UndampedCollect(EPS eps, PetscReal shift, PetscInt n, cons
   if (s->reach > UndampedRadius(window, shift, s) || s->reach == PETSC_MAX_REAL) *covered = PETSC_TRUE;
   PetscCall(UndampedDropInfinite(window, shift, s));
   PetscCall(SpectrumSort(s));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SolverSeed(BV bv, unsigned long seed)
-{
-  PetscMPIInt rank;
-  PetscRandom random;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetRandomContext(bv, &random));
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)bv), &rank));
-  PetscCall(PetscRandomSetSeed(random, seed + (unsigned long)rank));
-  PetscCall(PetscRandomSeed(random));
   PetscFunctionReturn(0);
 }
 

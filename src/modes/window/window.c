@@ -218,43 +218,6 @@ PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
   PetscFunctionReturn(0);
 }
 
-static PetscReal WindowDistance(const Window *window, const Spectrum *s, PetscInt i)
-{
-  return PetscSqrtReal(PetscSqr(s->omega[i] - window->target) + PetscSqr(s->sigma[i]));
-}
-
-/* Distance of the count-th nearest eigenvalue to the target */
-PetscReal WindowNearest(const Window *window, const Spectrum *found)
-{
-  PetscReal distance = 0;
-
-  for (PetscInt i = 0; i < found->n; i++) {
-    PetscInt nearer = 0;
-
-    for (PetscInt j = 0; j < found->n; j++)
-      nearer += WindowDistance(window, found, j) < WindowDistance(window, found, i);
-    if (nearer < window->count) distance = PetscMax(distance, WindowDistance(window, found, i));
-  }
-  return distance;
-}
-
-/* The eigenvalue farthest from the target; of a double one the last, so that the order of frequency decides */
-PetscInt WindowFarthest(const Window *window, const Spectrum *s)
-{
-  PetscInt farthest = 0;
-
-  for (PetscInt i = 1; i < s->n; i++)
-    if (WindowDistance(window, s, i) >= WindowDistance(window, s, farthest)) farthest = i;
-  return farthest;
-}
-
-PetscBool WindowLacks(const Window *window, const Spectrum *s)
-{
-  const PetscInt wanted = window->finite < 0 ? window->count : PetscMin(window->count, window->finite);
-
-  return window->singular && window->count && s->n < wanted ? PETSC_TRUE : PETSC_FALSE;
-}
-
 PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 {
   PetscInt first = 0, n;

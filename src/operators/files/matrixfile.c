@@ -138,7 +138,8 @@ static PetscErrorCode MatrixFileRead(const char file[], MatrixFile *f)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[])
+/* An error, alike on all ranks, for a file that does not hold a real matrix of finite numbers */
+static PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const char file[])
 {
   MatrixFile  f = {.stream = NULL};
   PetscMPIInt rank;
@@ -245,5 +246,52 @@ PetscErrorCode MassCheck(Mat M, PetscBool *singular)
              " negative eigenvalues: it must be positive definite, or have no mass along some directions",
              bad);
   PetscCall(MatDestroy(&S));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_values, const PetscReal values[], Mat *A)
+{
+  const PetscInt n = (PetscInt)(PetscSqrtReal((PetscReal)n_values) + 0.5);
+  PetscInt       first, last;
+
+  PetscFunctionBeginUser;
+  PetscCheck(n * n == n_values, comm, PETSC_ERR_USER_INPUT,
+             "%s has %" PetscInt_FMT " values, which is no square number", option, n_values);
+  for (PetscInt i = 0; i < n_values; i++)
+    PetscCheck(PetscAbsReal(values[i]) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
+               "%s value %.6g must be of at most %g", option, (double)values[i], MATRIX_LARGEST);
+  PetscCall(MatCreateAIJ(comm, PETSC_DECIDE, PETSC_DECIDE, n, n, n, NULL, n, NULL, A));
+  PetscCall(MatGetOwnershipRange(*A, &first, &last));
+  for (PetscInt i = first; i < last; i++)
+    for (PetscInt j = 0; j < n; j++) PetscCall(MatSetValue(*A, i, j, values[i * n + j], INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* Opens a binary file of PETSc, which by itself would read NAME.info beside it as an options file, and write one */
+PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerCreate(comm, viewer));
+  PetscCall(PetscViewerSetType(*viewer, PETSCVIEWERBINARY));
+  PetscCall(PetscViewerBinarySetSkipInfo(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerBinarySetSkipOptions(*viewer, PETSC_TRUE));
+  PetscCall(PetscViewerFileSetMode(*viewer, mode));
+  PetscCall(PetscViewerFileSetName(*viewer, file));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char file[], Mat *A)
+{
+  PetscViewer viewer;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixFileCheck(comm, option, file));
+  PetscCall(MatrixViewerOpen(comm, file, FILE_MODE_READ, &viewer));
+  PetscCall(MatCreate(comm, A));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatLoad(*A, viewer));
+  PetscCall(PetscViewerDestroy(&viewer));
   PetscFunctionReturn(0);
 }

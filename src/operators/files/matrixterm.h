@@ -38,7 +38,7 @@ PETSC_INTERN PetscErrorCode MatrixTermsDestroy(Operators operators);
 PETSC_INTERN PetscErrorCode MatrixTermsSetFromOptions(Operators operators);
 PETSC_INTERN PetscErrorCode MatrixTermsAddParameters(Operators operators);
 
-/* file.c - a matrix from a list of all its entries, or from a file, that `option` gives */
+/* matrixfile.c - a matrix from a list of all its entries, or from a file, that `option` gives */
 PETSC_INTERN PetscErrorCode MatrixReadDense(MPI_Comm comm, const char option[], PetscInt n_values,
                                             const PetscReal values[], Mat *A);
 PETSC_INTERN PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char file[], Mat *A);

@@ -13,7 +13,7 @@ typedef struct {
   Mat        D;
 } Dependents;
 
-/* dependents.c - an unknown, of any rank, belongs to list `by`; it follows others, those that are held (-1) left out */
+/* follow.c - an unknown, of any rank, belongs to list `by`; it follows others, those that are held (-1) left out */
 PETSC_INTERN PetscErrorCode DependentsClaim(Dependents *d, PetscInt unknown, PetscInt by);
 PETSC_INTERN PetscErrorCode DependentsFollow(Dependents *d, PetscInt unknown, PetscInt n, const PetscInt column[],
                                              const PetscReal value[]);

@@ -6,6 +6,7 @@
 #include "statics/staticsimpl.h"
 
 #define ACTIVE_ROUNDING 1e-13
+#define FEW             1000 /* rows up to which single changes with friction, and small steps of it, are worth the time */
 #define SLIPPING        1e-12 /* residual of Coulomb's law at convergence, relative */
 #define EXACT           1e-13 /* of GMRES */
 #define ROUGH           1e-6  /* of GMRES while statuses still change */
@@ -310,4 +311,9 @@ PetscErrorCode ActiveCorrect(Active *a, const PetscReal rhs[])
   }
   PetscCall(PetscFree2(l, w));
   PetscFunctionReturn(0);
+}
+
+PetscBool ActiveIsFew(const Active *a)
+{
+  return a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -14,7 +14,6 @@
 
 #define MIN_STEP   (1.0 / 1024)
 #define LARGE_STEP (1.0 / 16)
-#define FEW        1000 /* rows up to which single changes with friction, and small steps of it, are worth the time */
 
 /* All pairs closed, without slip */
 static PetscErrorCode Restart(Active *a)
@@ -24,11 +23,6 @@ static PetscErrorCode Restart(Active *a)
   PetscCall(PetscArrayzero(a->l, a->rows->n));
   PetscCall(PetscArrayzero(a->w, a->rows->n));
   PetscFunctionReturn(0);
-}
-
-PetscBool ActiveIsFew(const Active *a)
-{
-  return a->rows->n_all <= FEW ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Statuses by pivoting where laws are linear and the problem dense, confirmed by the iteration; else by changing fewer */

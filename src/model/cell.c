@@ -1,0 +1,24 @@
+/*
+   The mesh as tables, and one of its cells: element, nodes, places of the nodes (m).
+*/
+#include "modelimpl.h"
+
+PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh)
+{
+  PetscFunctionBeginUser;
+  *mesh = &model->mesh;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[])
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  *element = mesh->element[c];
+  for (PetscInt i = 0; i < mesh->element[c]->n_nodes; i++) {
+    nodes[i] = mesh->cell_node[mesh->cell_first[c] + i];
+    for (int d = 0; d < 3; d++) x[3 * i + d] = mesh->x[3 * nodes[i] + d];
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,60 @@
+/*
+   The bodies at a point p of the parameters, without contact: a vector of their unknowns, the material of a part, and K (N/m), M (kg),
+   C (N s/m) as sums of terms.
+*/
+#include "operators/operatorsimpl.h"
+
+PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
+{
+  const Mesh *mesh;
+
+  PetscFunctionBeginUser;
+  if (operators->model) {
+    PetscCall(ModelGetMesh(operators->model, &mesh));
+    PetscCall(VecCreate(operators->comm, u));
+    PetscCall(VecSetSizes(*u, mesh->n_own, mesh->n_unknowns));
+    PetscCall(VecSetType(*u, VECSTANDARD));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(MatCreateVecs(operators->terms.term[0].A, u, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
+                                    OperatorsMaterial *material)
+{
+  const PetscReal *value = &OperatorsPoint(operators, p)[N_PART_PARAMETERS * part];
+
+  PetscFunctionBeginUser;
+  material->young   = value[PART_YOUNG];
+  material->density = value[PART_DENSITY];
+  material->alpha   = value[PART_ALPHA];
+  material->beta    = value[PART_BETA];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat *K, Mat *M, Mat *C)
+{
+  static const TermsSumKind kinds[N_BODIES_SUMS] = {
+    [BODIES_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},
+    [BODIES_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC, 1},
+    [BODIES_C] = {OPERATORS_DAMPING,   TERMS_SYMMETRIC, 1},
+  };
+  Mat *const wanted[N_BODIES_SUMS] = {K, M, C};
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_BODIES_SUMS; i++) {
+    if (!wanted[i]) continue;
+    PetscCall(TermsSumForm(&operators->terms, &kinds[i], OperatorsPoint(operators, p), &operators->sum[i]));
+    *wanted[i] = operators->sum[i].A;
+    if (*wanted[i]) PetscCall(MatSetOption(*wanted[i], MAT_SYMMETRIC, operators->symmetric));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsReleaseBodies(Operators operators)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < N_BODIES_SUMS; i++) PetscCall(TermsSumDestroy(&operators->sum[i]));
+  PetscFunctionReturn(0);
+}
