@@ -7,6 +7,14 @@ MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m
 MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
 LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
        'OptionsGetReals(PetscOptionsObject, "-law", 1);\n}\n')
+LOOP = "void %s(void)\n{\n  %s();\n}\n"
+
+
+def loop(n):
+    """Files of a circle of two in one folder, number n."""
+    return {f"src/model/a{n}.c": LOOP % (f"A{n}", f"B{n}"), f"src/model/b{n}.c": LOOP % (f"B{n}", f"A{n}")}
+
+
 PLANTED = (
     ("names", "function Twice", {"src/model/a.c": "static int Twice(void)\n{\n  return 1;\n}\n",
                                "src/modes/b.h": "int Twice(void)\n{\n  return 2;\n}\n"}),
@@ -31,6 +39,9 @@ PLANTED = (
     ("lengths", "Many has 7 arguments", {"src/model/a.c": MANY}),
     ("lengths", "body of long", {"tests/a.py": "def long():\n" + 81 * "    pass\n" + "long()\n"}),
     ("folders", "16 files", {f"src/model/{k}.h": "" for k in range(14)}),
+    ("circles", "across model, modes", {"src/model/a.c": LOOP % ("A", "B"), "src/modes/b.c": LOOP % ("B", "A")}),
+    ("circles", "7 circles", {name: text for n in range(6) for name, text in loop(n).items()} |
+     {"src/modes/a.c": LOOP % ("A", "B"), "src/modes/b.c": LOOP % ("B", "A")}),
     ("columns", "141 columns", {"src/model/a.c": "/*" + 137 * "a" + "*/\n"}),
     ("columns", "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
     ("strata", "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),

@@ -7,6 +7,7 @@
   lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function above 80, no
              function of C with more than six arguments
   folders    no folder of src has more than 15 files
+  circles    at most 6 circles of files that call each other, none across rooms
   columns    no line of C, Python or the shell beyond 140 columns
   strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
@@ -26,9 +27,11 @@ import tempfile
 from pathlib import Path
 
 from house import Script, Source
+from house_circles import circles_of
 from house_planted import PLANTED
 
-MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES = 350, 80, 80, 6, 25, 140, 15
+MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES, MOST_CIRCLES = \
+    350, 80, 80, 6, 25, 140, 15, 6
 
 CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
@@ -163,6 +166,17 @@ def folders(house):
             yield house.say(folder, 1, f"{n_files} files, more than {MOST_FILES}")
 
 
+def circles(house):
+    """Files that call each other in a loop: too many loops, or one across rooms."""
+    found = circles_of(house.c)
+    for circle in found:
+        rooms = sorted({str(room(path)) for path in circle})
+        if len(rooms) > 1:
+            yield house.say(circle[0], 1, f"a circle of {', '.join(path.name for path in circle)} across {', '.join(rooms)}")
+    if len(found) > MOST_CIRCLES:
+        yield house.say(found[-1][0], 1, f"{len(found)} circles of files, more than {MOST_CIRCLES}")
+
+
 def columns(house):
     """What is too wide."""
     for path in house.code:
@@ -272,7 +286,7 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, folders, columns, strata, readmes, options, unused, dead, words)
+RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, unused, dead, words)
 
 def plant(files):
     """What each rule finds in a small house with these files: name of the rule -> violations."""
