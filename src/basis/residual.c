@@ -89,8 +89,8 @@ static PetscErrorCode ResidualMultiplyTransposed(Mat A, Mat X, Mat Y)
   PetscFunctionReturn(0);
 }
 
-/* Y[i] = A[i] X, or A[i]' X, of those that are there, by rows of all that have them */
-static PetscErrorCode ResidualMultiply(const Mat A[3], PetscBool transposed, Mat X, const Mat Y[3])
+/* Y[i] = A[i] X, or A[i]' X of those of which `transposed` says so, by rows of all that have them */
+static PetscErrorCode ResidualMultiply(const Mat A[3], const PetscBool transposed[3], Mat X, const Mat Y[3])
 {
   Mat      from[3], to[3];
   PetscInt n = 0;
@@ -100,7 +100,7 @@ static PetscErrorCode ResidualMultiply(const Mat A[3], PetscBool transposed, Mat
     PetscBool symmetric = PETSC_TRUE;
 
     if (!A[i]) continue;
-    if (transposed) PetscCall(ResidualIsSymmetric(A[i], &symmetric));
+    if (transposed[i]) PetscCall(ResidualIsSymmetric(A[i], &symmetric));
     if (symmetric)
       from[n] = A[i], to[n++] = Y[i];
     else
@@ -127,12 +127,11 @@ static PetscErrorCode ResidualAddFriction(const PencilMatrices *pencil, const Re
 /* The residuals of a part */
 static PetscErrorCode ResidualMakePart(const PencilMatrices *pencil, PetscBool transposed, const ResidualPart *p)
 {
-  const PetscBool pairs = transposed && pencil->K_even ? PETSC_TRUE : PETSC_FALSE;
-  const Mat       A[3] = {pairs ? NULL : pencil->K, pencil->C, pencil->M}, Y[3] = {p->R, p->AX[0], p->AX[1]};
+  const PetscBool pairs = pencil->K_even && (transposed || pencil->K == pencil->K_even) ? PETSC_TRUE : PETSC_FALSE;
+  const Mat       A[3] = {pairs ? pencil->K_even : pencil->K, pencil->C, pencil->M}, Y[3] = {p->R, p->AX[0], p->AX[1]};
 
   PetscFunctionBeginUser;
-  if (pairs) PetscCall(BlockMultiply(pencil->K_even, p->X, p->R));
-  PetscCall(ResidualMultiply(A, transposed, p->X, Y));
+  PetscCall(ResidualMultiply(A, (PetscBool[3]){pairs ? PETSC_FALSE : transposed, transposed, transposed}, p->X, Y));
   if (pairs) PetscCall(ResidualAddFriction(pencil, p));
   if (pencil->C) PetscCall(ResidualScale(p, 1, p->AX[0]));
   PetscCall(ResidualScale(p, 2, p->AX[1]));

@@ -15,6 +15,7 @@ PETSC_INTERN PetscErrorCode ComplexColumnsCreate(PetscInt capacity, ComplexColum
 PETSC_INTERN void           ComplexColumnsAdd(ComplexColumns *columns, PetscComplex lambda, PetscBool is_real);
 PETSC_INTERN PetscErrorCode ComplexColumnsDestroy(ComplexColumns *columns);
 
-/* R = Q(lambda) X, or Q(lambda)' X, of dense X and R with these columns. Collective. */
+/* R = Q(lambda) X, or Q(lambda)' X, of dense X and R with these columns. Where K is K_even, right' left is put to it, which makes
+   K' of it. Collective. */
 PETSC_INTERN PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed,
                                          const ComplexColumns *columns, Mat X, Mat R);

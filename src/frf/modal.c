@@ -4,6 +4,7 @@
 */
 #include "frf/space/krylov.h"
 #include "frf/space/schur.h"
+#include "solver/block/orthonormal.h"
 
 #define N_LOOKS 33 /* frequencies that are looked at while the space grows */
 
@@ -82,11 +83,11 @@ static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
 
   PetscFunctionBeginUser;
   ends->n_outputs = frf->n_outputs;
-  PetscCall(FrfSpaceCreateBlock(&s->space, frf->n_outputs + 1, &block));
+  PetscCall(BlockCreate(s->space.space.V, frf->n_outputs + 1, &block));
   PetscCall(BVInsertVec(block, 0, s->b));
   for (PetscInt p = 0; p < frf->n_outputs; p++) PetscCall(BVInsertVec(block, p + 1, s->l[p]));
   PetscCall(FrfSpaceCoordinates(&s->space, block, &ends->b));
-  ends->l = ends->b + s->space.small.size;
+  ends->l = ends->b + s->space.size;
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
@@ -175,7 +176,7 @@ static PetscErrorCode SuperpositionReduce(Frf frf, const Superposition *s, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(EndsCreate(frf, s, &ends));
-  PetscCall(FrfSchurCreate(&s->space.small, s->space.small.n, rounded, s->shift, &ends, schur));
+  PetscCall(FrfSchurCreate(&s->space, rounded, s->shift, &ends, schur));
   PetscCall(PetscFree(ends.b));
   PetscFunctionReturn(0);
 }
@@ -237,7 +238,7 @@ PetscErrorCode FrfSolveModal(Frf frf)
   PetscCall(FrfCheckPoles(frf));
   PetscCall(SuperpositionCreate(frf, &s));
   PetscCall(SuperpositionGrow(frf, &s));
-  frf->n_vectors = s.space.small.n;
+  frf->n_vectors = s.space.space.n;
   PetscCall(SuperpositionDestroy(frf, &s));
   PetscCall(FrfResiduesCreate(frf, &residues));
   PetscCall(FrfFindPeaks(frf, &residues));

@@ -150,9 +150,9 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscCall(SweepFileName(sweep->n_files, name));
   PetscCall(JournalPackMove(&pack, &h, sizeof(h)));
   PetscCall(BasisRecordsMove(sweep, &h, &pack));
-  PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
+  PetscCall(BVGetSizes(basis->space.V, &n_local, NULL, NULL));
   PetscCall(PetscMalloc1((h.n - h.first) * n_local, &values));
-  PetscCall(SweepVectorsMove(basis->vectors, h.first, h.n, PETSC_FALSE, values));
+  PetscCall(SweepVectorsMove(basis->space.V, h.first, h.n, PETSC_FALSE, values));
   item[0] = (JournalItem){"samples", pack.n, pack.word};
   item[1] = (JournalItem){"vectors", (h.n - h.first) * n_local, values};
   PetscCall(JournalKeep(&sweep->journal, name, 2, item, &kept));
@@ -173,7 +173,7 @@ static PetscErrorCode HeaderFits(Sweep sweep, const BasisHeader *h, PetscInt n_v
   PetscInt     n_local;
 
   PetscFunctionBeginUser;
-  PetscCall(BVGetSizes(basis->vectors, &n_local, NULL, NULL));
+  PetscCall(BVGetSizes(basis->space.V, &n_local, NULL, NULL));
   if (h->first != basis->reduced.n || h->n < h->first || h->n_used < 1 || h->n_used > h->n) *fits = PETSC_FALSE;
   if (h->n_samples < 1 || h->n_samples > sweep->greedy.max_samples) *fits = PETSC_FALSE;
   if (h->n_blocks < basis->n_blocks || h->n_blocks > BASIS_MAX_BLOCKS) *fits = PETSC_FALSE;
@@ -190,8 +190,8 @@ static PetscErrorCode BasisTakeUp(Sweep sweep, const BasisHeader *h, JournalPack
   PetscFunctionBeginUser;
   PetscCall(BasisRecordsMove(sweep, h, pack));
   PetscCheck(pack->good, sweep->comm, PETSC_ERR_PLIB, "a kept sample ends too early");
-  PetscCall(BVResize(basis->vectors, h->n, PETSC_TRUE));
-  PetscCall(SweepVectorsMove(basis->vectors, h->first, h->n, PETSC_TRUE, values));
+  PetscCall(BVResize(basis->space.V, h->n, PETSC_TRUE));
+  PetscCall(SweepVectorsMove(basis->space.V, h->first, h->n, PETSC_TRUE, values));
   PetscCall(BasisRebuild(basis, h->n_blocks));
   PetscCall(BasisUse(basis, h->n_used));
   sweep->greedy.n_samples = h->n_samples;

@@ -1,8 +1,8 @@
 /*
-   Unit test of sweep/basis/entryrows: X' A Y over the rows in which A has entries, on one and on several ranks, against
+   Unit test of basis/entryrows: X' A Y over the rows in which A has entries, on one and on several ranks, against
    the products of SLEPc's BV with the whole matrix.
 */
-#include "sweep/basis/entryrows.h"
+#include "basis/entryrows.h"
 #include "check.h"
 
 #define N_ROWS  120

@@ -4,6 +4,7 @@
    are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
 */
 #include "krylov.h"
+#include "solver/block/orthonormal.h"
 
 #define STATE_DEPENDENT 1e-9 /* a state of length one that is nearer than this to those before is one of them */
 
@@ -12,7 +13,7 @@ PetscErrorCode FrfKrylovCreate(FrfSpace *space, const ShiftInvert *factor, Petsc
 {
   PetscFunctionBeginUser;
   *chain        = (FrfKrylov){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
-  chain->length = (space->pencil.C ? 2 : 1) * space->small.size;
+  chain->length = (space->pencil.C ? 2 : 1) * space->size;
   PetscCall(PetscCalloc1(capacity * chain->length, &chain->state));
   PetscFunctionReturn(0);
 }
@@ -58,7 +59,7 @@ static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
    coordinates of the two parts, x[1] NULL for a real vector */
 static PetscErrorCode StateAddMode(FrfKrylov *chain, PetscComplex lambda, const PetscReal *x[2])
 {
-  const PetscInt     size = chain->space->small.size, two = chain->length > size;
+  const PetscInt     size = chain->space->size, two = chain->length > size;
   const PetscComplex t = chain->factor.shift / (lambda - chain->factor.shift);
   PetscReal         *a;
 
@@ -83,7 +84,7 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, Pe
   Vec x[4], q;
 
   PetscFunctionBeginUser;
-  PetscCall(FrfSpaceCreateBlock(chain->space, 2 * n, block));
+  PetscCall(BlockCreate(chain->space->space.V, 2 * n, block));
   column[0] = 0;
   for (PetscInt i = 0; i < n; i++) {
     const int first = chain->transposed ? 2 : 0;
@@ -103,7 +104,7 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, Pe
 
 PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
 {
-  const PetscInt size = chain->space->small.size;
+  const PetscInt size = chain->space->size;
   const Mode    *mode;
   PetscInt       n, *column;
   PetscReal     *x;
@@ -128,11 +129,13 @@ PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
   PetscFunctionReturn(0);
 }
 
-/* Y = A X, or A' X */
-static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, Mat A, BV Y)
+/* Y = A X, or A' X, of C or M */
+static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, int which, BV Y)
 {
+  const SubspaceTerm *term = &chain->space->space.term[which];
+
   PetscFunctionBeginUser;
-  PetscCall(chain->transposed ? BVMatMultTranspose(X, A, Y) : BVMatMult(X, A, Y));
+  PetscCall(BlockMultiplyVectors(chain->transposed ? term->transposed : term->A, X, Y));
   PetscFunctionReturn(0);
 }
 
@@ -157,7 +160,7 @@ static PetscErrorCode KrylovSolve(const FrfKrylov *chain, BV R, PetscInt first, 
 /* The states [c; old] of n answers with coordinates c[n][size]; old is that of the states that they came from */
 static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c[])
 {
-  const PetscInt size = chain->space->small.size, from = chain->last;
+  const PetscInt size = chain->space->size, from = chain->last;
   PetscReal     *a;
 
   PetscFunctionBeginUser;
@@ -181,16 +184,16 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
 {
   const PencilMatrices *m    = &chain->space->pencil;
   const PetscReal       g    = chain->factor.shift;
-  const PetscInt        size = chain->space->small.size;
+  const PetscInt        size = chain->space->size;
   PetscReal            *both;
   BV                    P, T;
 
   PetscFunctionBeginUser;
-  PetscCall(FrfSpaceCreateBlock(chain->space, n, &P));
+  PetscCall(BlockCreate(chain->space->space.V, n, &P));
   PetscCall(FrfSpaceLift(chain->space, n, chain->length, states, P));
   if (m->C) {
-    PetscCall(FrfSpaceCreateBlock(chain->space, n, &T));
-    PetscCall(BlockApply(chain, P, m->C, T));
+    PetscCall(BlockCreate(chain->space->space.V, n, &T));
+    PetscCall(BlockApply(chain, P, SUBSPACE_C, T));
     PetscCall(PetscMalloc1(n * size, &both));
     for (PetscInt j = 0; j < n; j++)
       for (PetscInt i = 0; i < size; i++)
@@ -198,7 +201,7 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
     PetscCall(FrfSpaceLift(chain->space, n, size, both, P));
     PetscCall(PetscFree(both));
   }
-  PetscCall(BlockApply(chain, P, m->M, R));
+  PetscCall(BlockApply(chain, P, SUBSPACE_M, R));
   if (m->C) {
     PetscCall(BVScale(R, -g * g));
     PetscCall(BVMult(R, -g, 1, T, NULL));
@@ -212,7 +215,7 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
 static PetscErrorCode KrylovCreateSides(const FrfKrylov *chain, PetscInt n, BV *R)
 {
   PetscFunctionBeginUser;
-  PetscCall(FrfSpaceCreateBlock(chain->space, n, R));
+  PetscCall(BlockCreate(chain->space->space.V, n, R));
   for (PetscInt j = 0; j < n && !chain->begun; j++) PetscCall(BVInsertVec(*R, j, chain->b[j]));
   if (chain->begun) PetscCall(KrylovResidual(chain, n, &chain->state[chain->last * chain->length], *R));
   PetscFunctionReturn(0);
@@ -227,7 +230,7 @@ PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) n[k] = chain[k]->begun ? chain[k]->n - chain[k]->last : chain[k]->n_b;
   if (n[0] + n[1] == 0) PetscFunctionReturn(0);
-  PetscCall(FrfSpaceCreateBlock(space, n[0] + n[1], &block));
+  PetscCall(BlockCreate(space->space.V, n[0] + n[1], &block));
   for (int k = 0; k < 2; k++) {
     if (!n[k]) continue;
     PetscCall(KrylovCreateSides(chain[k], n[k], &R));
@@ -237,7 +240,7 @@ PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
   PetscCall(BVSetActiveColumns(block, 0, n[0] + n[1]));
   PetscCall(FrfSpaceAdd(space, block));
   PetscCall(FrfSpaceCoordinates(space, block, &c));
-  for (int k = 0; k < 2; k++) PetscCall(KrylovTake(chain[k], n[k], c + k * n[0] * space->small.size));
+  for (int k = 0; k < 2; k++) PetscCall(KrylovTake(chain[k], n[k], c + k * n[0] * space->size));
   PetscCall(PetscFree(c));
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);

@@ -2,51 +2,31 @@
    The small response. With S = Z T Z', T quasi-triangular (LAPACK gees), Q^-1 b is the solution of
 
       undamped   (T - 1/d) y = -(1/d) Z' Q0^-1 b,          d = omega^2 - shift,            one column
-      damped     (T - w) y   = -w Z' [Q0^-1 b; 0],         w = shift / (i omega - shift),  complex,
+      damped     (T - w) y   = -w Z' [0; Q0^-1 b],         w = shift / (i omega - shift),  complex,
 
    the latter in real arithmetic T Y - Y B = R for the two columns of Y = [re y, im y] with B = [re w, im w; -im w, re
    w]: both are what LAPACK's trsyl solves, at the cost of a product with T. Several frequencies are solved together, with
    their B along the diagonal of a larger one.
 */
 #include "schur.h"
-#include "basis/pencil.h"
 #include <slepcblaslapack.h>
 
-/* The pencil on the first n vectors; the caller destroys it */
-static PetscErrorCode SmallPencil(const FrfSmall *s, const FrfSchur *schur, DensePencil *pencil)
-{
-  const PetscInt n = schur->n;
-
-  PetscFunctionBeginUser;
-  *pencil = (DensePencil){.n = n, .damped = schur->damped};
-  PetscCall(PetscMalloc3(n * n, &pencil->K, schur->damped ? n * n : 0, &pencil->C, n * n, &pencil->M));
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscInt at = j * s->size + i;
-
-      pencil->K[j * n + i] = s->K[at] + (schur->rounded ? s->E[at] : 0);
-      pencil->M[j * n + i] = s->M[at];
-      if (schur->damped) pencil->C[j * n + i] = s->C[at];
-    }
-  PetscFunctionReturn(0);
-}
-
 /* S into T, and [0; Q0^-1 b], the states being [q; p] there, into b */
-static PetscErrorCode SchurForm(const FrfSmall *small, const PetscReal b[], FrfSchur *s)
+static PetscErrorCode SchurForm(const FrfSpace *space, PetscBool rounded, const PetscReal b[], FrfSchur *s)
 {
-  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift;
-  PetscReal      *Q;
+  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift, *E = space->space.term[FRF_E].small;
+  DensePencil     pencil = SubspacePencil(&space->space);
+  PetscReal      *Q, *K;
   PetscBLASInt   *pivot;
-  DensePencil     pencil;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->n * s->n, &Q, s->n, &pivot));
-  PetscCall(SmallPencil(small, s, &pencil));
+  PetscCall(PetscMalloc3(s->n * s->n, &Q, s->n * s->n, &K, s->n, &pivot));
+  for (PetscInt i = 0; i < s->n * s->n; i++) K[i] = pencil.K[i] + (rounded ? E[i] : 0);
+  pencil.K = K;
   PetscCall(DenseCompanion(&pencil, (PetscReal[2]){s->shift, square}, Q, pivot, s->T, NULL));
   PetscCall(PetscArraycpy(&s->b[s->length - s->n], b, s->n));
   PetscCall(DenseSolve(s->n, Q, pivot, PETSC_FALSE, 1, &s->b[s->length - s->n]));
-  PetscCall(DensePencilDestroy(&pencil));
-  PetscCall(PetscFree2(Q, pivot));
+  PetscCall(PetscFree3(Q, K, pivot));
   PetscFunctionReturn(0);
 }
 
@@ -77,27 +57,26 @@ static PetscErrorCode SchurReduce(FrfSchur *s, PetscReal Z[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool rounded, PetscReal shift,
-                              const FrfEnds *ends, FrfSchur *s)
+PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends, FrfSchur *s)
 {
-  PetscReal *Z;
+  const PetscInt n = space->space.n;
+  PetscReal     *Z;
 
   PetscFunctionBeginUser;
   *s        = (FrfSchur){.n         = n,
-                         .rounded   = rounded,
                          .shift     = shift,
                          .n_outputs = ends->n_outputs,
-                         .damped    = small->C ? PETSC_TRUE : PETSC_FALSE};
+                         .damped    = space->pencil.C ? PETSC_TRUE : PETSC_FALSE};
   s->length = s->damped ? 2 * n : n;
   PetscCall(PetscCalloc1(s->length * s->length, &s->T));
   PetscCall(PetscCalloc4(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * FRF_BATCH * s->length, &s->x,
                          4 * FRF_BATCH * FRF_BATCH, &s->B));
   PetscCall(PetscMalloc1(s->length * s->length, &Z));
-  PetscCall(SchurForm(small, ends->b, s));
+  PetscCall(SchurForm(space, rounded, ends->b, s));
   PetscCall(SchurReduce(s, Z));
   SchurTurn(s->length, Z, s->b, s->x);
   for (PetscInt p = 0; p < ends->n_outputs; p++) {
-    PetscCall(PetscArraycpy(&s->l[p * s->length + s->length - n], &ends->l[p * small->size], n));
+    PetscCall(PetscArraycpy(&s->l[p * s->length + s->length - n], &ends->l[p * space->size], n));
     SchurTurn(s->length, Z, &s->l[p * s->length], s->x);
   }
   PetscCall(PetscFree(Z));

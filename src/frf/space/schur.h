@@ -5,14 +5,15 @@
 
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
-/* S of krylov.h on the first n vectors of the space, as Z T Z' with T quasi-triangular, and the force and outputs there */
+/* S of krylov.h on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and outputs there. Its states are
+   [q; p] here, as in basis/companion.c. */
 typedef struct {
   PetscInt   n, length, n_outputs;
-  PetscBool  damped, rounded;
+  PetscBool  damped;
   PetscReal  shift;
   PetscReal *T; /* [length][length] column-major */
-  PetscReal *b; /* [length] Z' [Q0^-1 b; 0] */
-  PetscReal *l; /* [n_outputs][length] Z' [l; 0] */
+  PetscReal *b; /* [length] Z' [0; Q0^-1 b] */
+  PetscReal *l; /* [n_outputs][length] Z' [0; l] */
   PetscReal *B; /* [2 FRF_BATCH][2 FRF_BATCH] work: w of each frequency on the diagonal */
   PetscReal *x; /* [2 FRF_BATCH][length] work */
 } FrfSchur;
@@ -23,9 +24,9 @@ typedef struct {
   PetscReal *b, *l;
 } FrfEnds;
 
-/* Of the first n vectors; rounded: with K + E in place of K */
-PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSmall *small, PetscInt n, PetscBool rounded, PetscReal shift,
-                                           const FrfEnds *ends, FrfSchur *schur);
+/* rounded: with K + E in place of K */
+PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends,
+                                           FrfSchur *schur);
 /* H at n <= FRF_BATCH frequencies omega (rad/s): re[n][n_outputs], im[n][n_outputs]; *pole is the index of one that is a pole to
    rounding, or -1 */
 PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscInt n, const PetscReal omega[], PetscReal re[],

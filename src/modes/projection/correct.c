@@ -77,9 +77,12 @@ static PetscErrorCode SideKeep(BV residuals, PetscReal tolerance[])
 static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, ProjectionModes *modes, BV *residuals,
                                     PetscReal **tolerance)
 {
-  const PencilMatrices side = {.K = left ? p->transposed[0] : p->pencil->K,
-                               .C = left ? p->transposed[1] : p->pencil->C,
-                               .M = left ? p->transposed[2] : p->pencil->M};
+  const PencilMatrices side = {.K      = ProjectionMatrix(p, SUBSPACE_K, left),
+                               .C      = ProjectionMatrix(p, SUBSPACE_C, left),
+                               .M      = ProjectionMatrix(p, SUBSPACE_M, left),
+                               .K_even = p->pencil->K_even,
+                               .left   = p->pencil->left,
+                               .right  = p->pencil->right};
   ComplexColumns       columns;
   PetscReal           *coordinates, *norms[2];
   BV                   vectors;
@@ -90,13 +93,12 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
   *tolerance = NULL;
   PetscCall(SideCollect(modes, left, p->limit[left], &columns, &coordinates));
   if (columns.m) {
-    PetscCall(BlockCreate(p->V, columns.n_columns, &vectors));
-    PetscCall(BlockCreate(p->V, columns.n_columns, residuals));
-    PetscCall(BlockLift(p->V, p->k, columns.n_columns, coordinates, vectors));
+    PetscCall(BlockCreate(p->space.V, columns.n_columns, &vectors));
+    PetscCall(BlockCreate(p->space.V, columns.n_columns, residuals));
+    PetscCall(BlockLift(p->space.V, p->space.n, columns.n_columns, coordinates, vectors));
     PetscCall(BVGetMat(vectors, &X));
     PetscCall(BVGetMat(*residuals, &R));
     PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, X, R));
-    if (left) PetscCall(ProjectionAddFriction(p, X, R));
     PetscCall(PetscMalloc1(columns.n_columns, tolerance));
     PetscCall(PetscMalloc2(columns.n_columns, &norms[0], columns.n_columns, &norms[1]));
     PetscCall(MatGetColumnNorms(X, NORM_2, norms[0]));
@@ -141,8 +143,8 @@ PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes,
 
   PetscFunctionBeginUser;
   PetscCall(SideCollect(modes, left, -1, &c, &coordinates));
-  PetscCall(BlockCreate(p->V, PetscMax(1, c.n_columns), &vectors)); /* the window may hold no mode */
-  if (c.n_columns) PetscCall(BlockLift(p->V, p->k, c.n_columns, coordinates, vectors));
+  PetscCall(BlockCreate(p->space.V, PetscMax(1, c.n_columns), &vectors)); /* the window may hold no mode */
+  if (c.n_columns) PetscCall(BlockLift(p->space.V, p->space.n, c.n_columns, coordinates, vectors));
   PetscCall(SpectrumCreate(modes->n, s));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscInt at = c.column[i], two = c.column[i + 1] - at == 2;

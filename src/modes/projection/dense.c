@@ -3,7 +3,6 @@
    what they were.
 */
 #include "projection.h"
-#include "basis/pencil.h"
 
 #define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
 #define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
@@ -85,8 +84,8 @@ static void VectorTurn(PetscInt k, PetscBool is_real, PetscComplex x[])
 static PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes)
 {
   PetscFunctionBeginUser;
-  *modes = (ProjectionModes){.n = n, .size = p->k};
-  PetscCall(PetscMalloc3(n, &modes->lambda, n * p->k, &modes->vectors[0], n * p->k, &modes->vectors[1]));
+  *modes = (ProjectionModes){.n = n, .size = p->space.n};
+  PetscCall(PetscMalloc3(n, &modes->lambda, n * p->space.n, &modes->vectors[0], n * p->space.n, &modes->vectors[1]));
   PetscCall(PetscMalloc2(n, &modes->backward[0], n, &modes->backward[1]));
   for (PetscInt i = 0; i < n; i++) {
     modes->backward[0][i] = INFINITY;
@@ -141,9 +140,9 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
   *found           = PETSC_TRUE;
   modes->lambda[i] = was;
   for (int side = 0; side < 2; side++) {
-    PetscComplex *x = &modes->vectors[side][i * p->k];
+    PetscComplex *x = &modes->vectors[side][i * p->space.n];
 
-    PetscCall(PetscArrayzero(x, p->k));
+    PetscCall(PetscArrayzero(x, p->space.n));
     PetscCall(PetscArraycpy(x, &before->vectors[side][i * before->size], before->size));
     if (before->backward[side][i] <= p->limit[side]) modes->backward[side][i] = before->backward[side][i];
   }
@@ -151,17 +150,11 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
       (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
     PetscFunctionReturn(0);
   PetscCall(
-    DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->k], &modes->vectors[1][i * p->k], found));
+    DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->space.n], &modes->vectors[1][i * p->space.n], found));
   if (is_real) modes->lambda[i] = creal(modes->lambda[i]);
   if (!(cabs(modes->lambda[i] - was) <= FOLLOW_FAR * cabs(was))) *found = PETSC_FALSE;
-  for (int side = 0; side < 2; side++) VectorTurn(p->k, is_real, &modes->vectors[side][i * p->k]);
+  for (int side = 0; side < 2; side++) VectorTurn(p->space.n, is_real, &modes->vectors[side][i * p->space.n]);
   PetscFunctionReturn(0);
-}
-
-/* The pencil on V */
-static DensePencil DenseOf(const Projection *p)
-{
-  return (DensePencil){.n = p->k, .damped = PETSC_TRUE, .K = p->K, .C = p->C, .M = p->M};
 }
 
 /* All eigenvalues about the upper end of the window, those of rank 0 on all */
@@ -179,8 +172,8 @@ static PetscErrorCode DenseSolveAll(const Projection *p, const DensePencil *dens
 
 PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
 {
-  const DensePencil dense = DenseOf(p);
-  const PetscInt    k     = p->k;
+  const DensePencil dense = SubspacePencil(&p->space);
+  const PetscInt    k     = p->space.n;
   PetscComplex     *lambda;
   PetscReal         d = 0;
   PetscInt         *list, m = 0;
@@ -210,7 +203,7 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
 PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
                                 PetscBool *followed)
 {
-  const DensePencil dense = DenseOf(p);
+  const DensePencil dense = SubspacePencil(&p->space);
 
   PetscFunctionBeginUser;
   PetscCall(ProjectionModesCreate(p, before->n, modes));

@@ -71,7 +71,7 @@ static PetscErrorCode SidesSolveBoth(Projection *p, SideOfExtension side[2])
   Mat            X;
 
   PetscFunctionBeginUser;
-  PetscCall(BVGetSizes(p->V, &n_local, NULL, NULL));
+  PetscCall(BVGetSizes(p->space.V, &n_local, NULL, NULL));
   PetscCall(MatCreateDense(p->modes->comm, n_local, PETSC_DECIDE, PETSC_DETERMINE, n[0] + n[1], NULL, &X));
   for (int i = 0; i < 2; i++) PetscCall(ColumnsCopy(side[i].B, i ? n[0] : 0, PETSC_FALSE, X));
   PetscCall(ShiftInvertApplyBoth(&p->si, n[0], X));
@@ -85,7 +85,7 @@ static PetscErrorCode SidesSolve(Projection *p, SideOfExtension side[2])
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++)
-    if (side[i].n) PetscCall(BlockCreate(p->V, side[i].n, &side[i].Z));
+    if (side[i].n) PetscCall(BlockCreate(p->space.V, side[i].n, &side[i].Z));
   if (side[0].n && side[1].n && p->si.update) {
     PetscCall(SidesSolveBoth(p, side));
     PetscFunctionReturn(0);
@@ -114,7 +114,7 @@ static PetscErrorCode CorrectionsScale(BV block, const PetscReal sigma[], PetscR
 /* M Z and (C - (alpha + beta s) M) Z - beta B = R Z side by side in a block of twice as many columns */
 static PetscErrorCode RemainFill(const Projection *p, PetscBool left, BV B, BV Z, BV remain)
 {
-  const Mat       A[2]  = {left ? p->transposed[2] : p->pencil->M, left ? p->transposed[1] : p->pencil->C};
+  const Mat       A[2]  = {ProjectionMatrix(p, SUBSPACE_M, left), ProjectionMatrix(p, SUBSPACE_C, left)};
   const PetscReal drift = p->alpha + p->beta * p->si.shift;
   PetscInt        n;
 
@@ -144,7 +144,7 @@ static PetscErrorCode SideRemain(const Projection *p, const SideOfExtension *sid
   PetscReal      *tolerance;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockCreate(p->V, 2 * n, &next->B));
+  PetscCall(BlockCreate(p->space.V, 2 * n, &next->B));
   PetscCall(RemainFill(p, side->left, side->B, side->Z, next->B));
   PetscCall(PetscMalloc1(2 * n, &tolerance));
   PetscCall(PetscMalloc1(2 * n, &next->sigma));
@@ -202,7 +202,7 @@ static PetscErrorCode CorrectionsJoin(const Projection *p, Corrections *c, BV *a
     PetscCall(BVGetActiveColumns(c->block[i], NULL, &m[i]));
     *n += m[i];
   }
-  PetscCall(BlockCreate(p->V, PetscMax(1, *n), all));
+  PetscCall(BlockCreate(p->space.V, PetscMax(1, *n), all));
   for (PetscInt i = 0, at = 0; i < c->n; at += m[i++]) {
     PetscCall(BVSetActiveColumns(*all, at, at + m[i]));
     PetscCall(BVCopy(c->block[i], *all));
@@ -216,7 +216,7 @@ PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const
 {
   Corrections     corrections = {.n = 0};
   SideOfExtension side[2]     = {{.left = PETSC_FALSE}, {.left = PETSC_TRUE}};
-  const PetscInt  before      = p->k;
+  const PetscInt  before      = p->space.n;
   PetscInt        n;
   BV              all;
 
@@ -230,8 +230,8 @@ PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const
   }
   for (int i = 0; i < 2; i++) PetscCall(SideDestroy(&side[i]));
   PetscCall(CorrectionsJoin(p, &corrections, &all, &n));
-  if (n) PetscCall(ProjectionAdd(p, p->finer * EXTEND_DROP / corrections.longest, all));
-  if (n && p->k == before) p->finer *= EXTEND_FINER;
+  if (n) PetscCall(SubspaceAdd(&p->space, p->finer * EXTEND_DROP / corrections.longest, all, NULL));
+  if (n && p->space.n == before) p->finer *= EXTEND_FINER;
   PetscCall(BVDestroy(&all));
   if (n_columns) *n_columns = n;
   PetscFunctionReturn(0);

@@ -119,12 +119,12 @@ static PetscErrorCode BeyondCreate(const Projection *p, BeyondSpace *s)
 
   PetscFunctionBeginUser;
   *s = (BeyondSpace){.n = 0};
-  PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &s->U));
-  PetscCall(BlockCreate(p->V, BEYOND_BLOCK * BEYOND_STEPS, &s->images));
-  PetscCall(BVGetSizes(p->V, NULL, NULL, &has));
-  if (has < p->k + BEYOND_BLOCK * BEYOND_STEPS)
-    PetscCall(BVResize(p->V, p->k + BEYOND_BLOCK * BEYOND_STEPS, PETSC_TRUE));
-  PetscCall(BlockCreate(p->V, BEYOND_BLOCK, &s->block));
+  PetscCall(BlockCreate(p->space.V, BEYOND_BLOCK * BEYOND_STEPS, &s->U));
+  PetscCall(BlockCreate(p->space.V, BEYOND_BLOCK * BEYOND_STEPS, &s->images));
+  PetscCall(BVGetSizes(p->space.V, NULL, NULL, &has));
+  if (has < p->space.n + BEYOND_BLOCK * BEYOND_STEPS)
+    PetscCall(BVResize(p->space.V, p->space.n + BEYOND_BLOCK * BEYOND_STEPS, PETSC_TRUE));
+  PetscCall(BlockCreate(p->space.V, BEYOND_BLOCK, &s->block));
   PetscCall(SolverSeed(s->block, 1984));
   for (PetscInt j = 0; j < BEYOND_BLOCK; j++) PetscCall(BVSetRandomColumn(s->block, j));
   PetscFunctionReturn(0);
@@ -135,7 +135,7 @@ static PetscErrorCode BeyondDestroy(const Projection *p, BeyondSpace *s)
   BV *const all[] = {&s->U, &s->images, &s->block};
 
   PetscFunctionBeginUser;
-  PetscCall(BVSetActiveColumns(p->V, 0, p->k));
+  PetscCall(BVSetActiveColumns(p->space.V, 0, p->space.n));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(all); i++) PetscCall(BVDestroy(all[i]));
   PetscFunctionReturn(0);
 }
@@ -147,14 +147,14 @@ static PetscErrorCode BeyondStep(const Projection *p, BeyondSpace *s, PetscBool 
   BV       image;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockOrthonormalise(p->V, p->k + s->n, p->pencil->M, 0, s->block));
+  PetscCall(BlockOrthonormalise(p->space.V, p->space.n + s->n, p->pencil->M, 0, s->block));
   PetscCall(BVGetActiveColumns(s->block, NULL, &m));
   *grows = m ? PETSC_TRUE : PETSC_FALSE;
   if (!m) PetscFunctionReturn(0);
-  PetscCall(BlockCreate(p->V, m, &image));
+  PetscCall(BlockCreate(p->space.V, m, &image));
   PetscCall(BeyondApply(p, s->block, image));
-  PetscCall(BVSetActiveColumns(p->V, p->k + s->n, p->k + s->n + m));
-  PetscCall(BVCopy(s->block, p->V));
+  PetscCall(BVSetActiveColumns(p->space.V, p->space.n + s->n, p->space.n + s->n + m));
+  PetscCall(BVCopy(s->block, p->space.V));
   PetscCall(BVSetActiveColumns(s->U, s->n, s->n + m));
   PetscCall(BVCopy(s->block, s->U));
   PetscCall(BVSetActiveColumns(s->images, s->n, s->n + m));

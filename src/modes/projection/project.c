@@ -26,6 +26,7 @@
 #define PROJECT_ROUNDING 10   /* times these, where corrections add nothing to the basis any more */
 #define PROJECT_ROOM     2.5  /* columns of the basis beside undamped vectors */
 #define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
+#define PROJECT_LOOSE    1e-3 /* V'MV - I may be as large as this: the dense pencil has it */
 
 static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
 static const char why_guard[]  = "damping moves modes by more than the guard";
@@ -114,7 +115,7 @@ static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *foun
 
   PetscFunctionBeginUser;
   WorstErrors(found, worst);
-  PetscCall(PetscInfo(p->V,
+  PetscCall(PetscInfo(p->space.V,
                       "%" PetscInt_FMT " modes on %" PetscInt_FMT
                       " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
                       " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
@@ -200,9 +201,9 @@ static PetscErrorCode AddModal(Projection *p, ModalBlock modal[2])
   PetscFunctionBeginUser;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ModalBlocksReduce(p, &modes->right, &modes->left_spectrum, modal));
   PetscCall(SpectraDestroy(modes));
-  p->room = (PetscInt)(PROJECT_ROOM * (modal[0].n + modal[1].n));
+  p->space.room = (PetscInt)(PROJECT_ROOM * (modal[0].n + modal[1].n));
   for (int side = 0; side < 2 && modal[side].n; side++) {
-    PetscCall(ProjectionAdd(p, PROJECT_DISTINCT, modal[side].x));
+    PetscCall(SubspaceAdd(&p->space, PROJECT_DISTINCT, modal[side].x, NULL));
     PetscCall(BVDestroy(&modal[side].x));
   }
   PetscFunctionReturn(0);
@@ -259,6 +260,19 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   PetscFunctionReturn(0);
 }
 
+/* The empty basis */
+static PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window, Projection *p)
+{
+  const Mat matrix[3] = {pencil->K, pencil->C, pencil->M};
+
+  PetscFunctionBeginUser;
+  *p = (Projection){.modes = modes, .pencil = pencil, .window = window};
+  PetscCall(SubspaceCreate(pencil->M, pencil->M, PROJECT_LOOSE, &p->space));
+  PetscCall(SubspaceAddPencil(&p->space, pencil));
+  for (int i = 0; i < 3; i++) PetscCall(MatNorm(matrix[i], NORM_FROBENIUS, &p->norms[i]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done)
 {
   PencilMatrices undamped = *pencil;
@@ -276,7 +290,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
     if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);
     if (attempt && !complete) CopiesMakeRoom(modes, window, &modes->right);
     PetscCall(SpectraDestroy(modes));
-    PetscCall(ProjectionForget(&p));
+    PetscCall(SubspaceTruncate(&p.space, 0));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
     why = complete ? NULL : why_differ;
     if (complete) PetscCall(AddDamping(&p, window, &why));
@@ -286,6 +300,7 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   if (why) PetscCall(SpectraDestroy(modes));
   window->guard = PETSC_FALSE;
   if (why) window->extra = 6, window->rigid = 0;
-  PetscCall(ProjectionDestroy(&p));
+  PetscCall(SubspaceDestroy(&p.space));
+  PetscCall(ShiftInvertDestroy(&p.si));
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "modes/complexvec.h"
+#include "basis/subspace.h"
 
 #define PROJECTION_KEEP 1e-3 /* of the residual of a mode: less of it is left to the next round */
 
@@ -13,12 +14,10 @@ typedef struct {
   PetscReal *tolerance; /* what may remain of the columns of Cx, once they are what damping leaves of residuals */
 } ModalBlock;
 
-/* One real basis V for right and left vectors, orthonormal in M but for little, which V'MV tells, and the dense model on it */
+/* The basis with K, C and M on it, and what decides about it */
 typedef struct {
   Modes                 modes;
   const PencilMatrices *pencil;
-  Mat                   transposed[3]; /* K', C', M' where these differ from K, C, M; else references to them */
-  Mat                   spread;        /* right' where K = K_even + left' right; transposed[0] is K_even then */
   const Window         *window;
   ShiftInvert           si;          /* of P = K - s M */
   PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
@@ -26,10 +25,7 @@ typedef struct {
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
   PetscReal             finer;       /* times the drop of corrections: less than 1 once all of them were dropped */
-  BV                    V;
-  BV                    pairs[2]; /* left V, right V where there is `spread` */
-  PetscInt              k, room;  /* columns of V; for how many there is to be room at least */
-  PetscReal            *K, *C, *M; /* V'KV, V'CV, V'MV [k * k], column-major */
+  Subspace              space;
 } Projection;
 
 /* Eigenvalues of the dense model that belong to the window, omega >= 0, with right and left vectors x' x = y' y = 1,
@@ -48,17 +44,13 @@ static inline PetscComplex ProjectionKappa(const Projection *p, PetscComplex lam
   return -(lambda * lambda + p->alpha * lambda) / (1 + p->beta * lambda);
 }
 
-/* projection/space.c - the basis and its model */
-PETSC_INTERN PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil, const Window *window,
-                                             Projection *p);
-/* Y += right' left X, what friction adds to transposed[0] X; nothing where that is K' */
-PETSC_INTERN PetscErrorCode ProjectionAddFriction(const Projection *p, Mat X, Mat Y);
-/* Takes in what the block (overwritten) holds beyond V, leaving out directions shorter than drop beside its longest
-   column */
-PETSC_INTERN PetscErrorCode ProjectionAdd(Projection *p, PetscReal drop, BV block);
-/* Empties the basis */
-PETSC_INTERN PetscErrorCode ProjectionForget(Projection *p);
-PETSC_INTERN PetscErrorCode ProjectionDestroy(Projection *p);
+/* K, C or M, or what is transposed; K without the friction of pairs then, where these are apart */
+static inline Mat ProjectionMatrix(const Projection *p, int which, PetscBool transposed)
+{
+  const Mat matrix[] = {p->pencil->K, p->pencil->C, p->pencil->M};
+
+  return transposed ? p->space.term[which].transposed : matrix[which];
+}
 
 /* projection/start.c - blocks of both spectra, without C' x and M' x of left ones as yet; of conjugate pairs of kappa one vector is
    enough */

@@ -35,7 +35,7 @@ static PetscErrorCode ModalFill(const Projection *p, const Spectrum *s, ModalBlo
     if (!IsTwin(s, i)) b->n += s->xi[i] ? 2 : 1;
   if (!b->n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(b->n, &b->mode));
-  PetscCall(BlockCreate(p->V, b->n, &b->x));
+  PetscCall(BlockCreate(p->space.V, b->n, &b->x));
   for (PetscInt i = 0; i < s->n; i++)
     for (int part = 0; part < (s->xi[i] ? 2 : 1) && !IsTwin(s, i); part++) {
       PetscCall(BVInsertVec(b->x, n, part ? s->xi[i] : s->xr[i]));
@@ -47,12 +47,12 @@ static PetscErrorCode ModalFill(const Projection *p, const Spectrum *s, ModalBlo
 /* C x and M x, or C' x and M' x */
 static PetscErrorCode ModalMultiply(const Projection *p, PetscBool left, ModalBlock *b)
 {
-  const Mat A[2] = {left ? p->transposed[1] : p->pencil->C, left ? p->transposed[2] : p->pencil->M};
+  const Mat A[2] = {ProjectionMatrix(p, SUBSPACE_C, left), ProjectionMatrix(p, SUBSPACE_M, left)};
   Mat       x, y[2];
 
   PetscFunctionBeginUser;
-  PetscCall(BlockCreate(p->V, b->n, &b->Cx));
-  PetscCall(BlockCreate(p->V, b->n, &b->Mx));
+  PetscCall(BlockCreate(p->space.V, b->n, &b->Cx));
+  PetscCall(BlockCreate(p->space.V, b->n, &b->Mx));
   PetscCall(BVGetMat(b->x, &x));
   PetscCall(BVGetMat(b->Cx, &y[0]));
   PetscCall(BVGetMat(b->Mx, &y[1]));

@@ -157,27 +157,6 @@ PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV block, PetscInt first, PetscReal **reduced)
-{
-  PetscInt n;
-  Mat      H, At;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(V, NULL, &n));
-  PetscCall(BlockGrow(first, n, reduced));
-  PetscCall(BlockProducts(V, A, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
-  if (!symmetric) {
-    PetscCall(MatDestroy(&H));
-    PetscCall(MatCreateTranspose(A, &At));
-    PetscCall(BlockProducts(V, At, block, &H));
-    PetscCall(MatDestroy(&At));
-  }
-  PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
-  PetscCall(MatDestroy(&H));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block)
 {
   Mat C;

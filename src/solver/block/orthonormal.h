@@ -21,9 +21,6 @@ PETSC_INTERN PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block);
    squares: left singular vectors of B diag(1 / tolerance), whose singular values, ascending, are in sigma[columns of B]; those
    below one are left out. Collective; alike on all ranks. */
 PETSC_INTERN PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[]);
-/* V' A V, so far of the first columns of V, extended by those of the block, the last ones among V's active columns */
-PETSC_INTERN PetscErrorCode BlockExtend(BV V, Mat A, PetscBool symmetric, BV block, PetscInt first,
-                                        PetscReal **reduced);
 /* block = V coordinates, coordinates [m][size] of the first columns of V, which become its active ones */
 PETSC_INTERN PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
 

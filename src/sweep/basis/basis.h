@@ -4,7 +4,7 @@
 #include "sweep/dense/reduced.h"
 #include "base/process/progress.h"
 #include <squeal/modes.h>
-#include "entryrows.h"
+#include "basis/subspace.h"
 
 /* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
    model (those added become part of it by BasisUse()), the others estimate its error. */
@@ -13,10 +13,9 @@
 typedef struct {
   MPI_Comm   comm;
   Pencil     pencil;
-  BV         vectors;
   Mat        M;
-  Reduced    reduced;
-  EntryRows *rows;                                  /* [n_terms] of the terms' matrices; not made until asked for */
+  Subspace   space;
+  Reduced    reduced; /* of its terms */
   PetscInt   n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
 } Basis;
 
