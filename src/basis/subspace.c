@@ -103,21 +103,6 @@ PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
   PetscFunctionReturn(0);
 }
 
-/* The room is a quarter more than what is needed where that is more: a longer basis is a copy of it */
-PetscErrorCode SubspaceAppend(PetscInt first, PetscInt room, BV block, BV V)
-{
-  PetscInt n, has;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(block, NULL, &n));
-  PetscCall(BVGetSizes(V, NULL, NULL, &has));
-  if (first + n > has) PetscCall(BVResize(V, PetscMax(room, first + n + (first ? (first + n) / 4 : 0)), PETSC_TRUE));
-  PetscCall(BVSetActiveColumns(V, first, first + n));
-  PetscCall(BVCopy(block, V));
-  PetscCall(BVSetActiveColumns(V, 0, first + n));
-  PetscFunctionReturn(0);
-}
-
 /* The block by what it holds beyond V, orthonormal */
 static PetscErrorCode SubspaceOrthonormalise(Subspace *s, PetscReal drop, BV block)
 {

@@ -14,6 +14,21 @@
 #define TERM_WIDTH 32  /* columns that are multiplied at once */
 #define TERM_MOST  192 /* images of them at most */
 
+/* The room is a quarter more than what is needed where that is more: a longer basis is a copy of it */
+PetscErrorCode SubspaceAppend(PetscInt first, PetscInt room, BV block, BV V)
+{
+  PetscInt n, has;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(block, NULL, &n));
+  PetscCall(BVGetSizes(V, NULL, NULL, &has));
+  if (first + n > has) PetscCall(BVResize(V, PetscMax(room, first + n + (first ? (first + n) / 4 : 0)), PETSC_TRUE));
+  PetscCall(BVSetActiveColumns(V, first, first + n));
+  PetscCall(BVCopy(block, V));
+  PetscCall(BVSetActiveColumns(V, 0, first + n));
+  PetscFunctionReturn(0);
+}
+
 /* The matrices that products with W are needed of, each once: A of term t is columns[t], A' is rows[t]; -1 for none */
 typedef struct {
   PetscInt m, *columns, *rows;
