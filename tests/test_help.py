@@ -28,7 +28,7 @@ TYPOS = {
 # An option of each room that -help must show, with its default
 SHOWN = {"analysis": "modes", "model_mesh": "", "rig_disc_elements": "21,100,3", "part_young": "", "support_fix": "xyz",
          "spring_stiffness": "", "contact_law": "penalty", "motion_ramp": "0", "modes_band": "0,0", "sweep_rtol": "1e-06",
-         "static_rows": "0", "dynamics_start": "rest", "projector_rtol": "1e-10", "output_dir": "results",
+         "static_rows": "0", "dynamics_start": "rest", "output_dir": "results",
          "squeal_view": "FALSE", "modes_view": "", "probes": "", "ts_central_b": "0.5"}
 
 

@@ -70,12 +70,11 @@ typedef struct {
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
 
 /*@
-   ContactProjectorSetFromOptions - reads how the masters move, and the tolerance. Collective.
+   ContactProjectorSetFromOptions - reads how the masters move, and the most sweeps. Collective.
 
    Options Database Keys:
 +  -contact_kinematics <prescribed|turning> - see above
 .  -contact_ramp <0>, -contact_ramp_shape <smooth|linear>, -contact_delay <0> - of the sliding velocity, s
-.  -projector_rtol <1e-10> - natural map residual, relative to the largest impulse of the step before and of this one
 -  -projector_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
 @*/
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector projector);

@@ -11,6 +11,9 @@
    with dv/dx = t (l - v + free). At a kink, where statuses change, the tangent turns as the sign of this determinant
    says, which stays along a path. From time to time t = 0 is tried from where the path is. It ends after PATH_STEPS
    steps, PATH_WORK, or with a step that is too short.
+
+   Runs that need it: `steep` of tests/cases/transient_reduced.toml (mu 2.2, which ends at 3.2e-5 s without), and scenes of
+   tests/unit/test_contact_compliance.c.
 */
 #include "complianceimpl.h"
 

@@ -291,7 +291,7 @@ static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before
     for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &c->change, scale);
     c->sweeps++;
     if (last > 0) p->rate = PetscMin(1, c->change / last);
-    if (!(c->change * p->rate > PetscSqr(0.5 * (p->rtol * *scale + c->noise)))) break;
+    if (!(c->change * p->rate > PetscSqr(0.5 * (PROJECTOR_RTOL * *scale + c->noise)))) break;
   }
 }
 
@@ -307,7 +307,7 @@ void PairsSolve(ContactProjector p, ProjectorConvergence *c)
     if (n > 0) PairsSweep(p, n, before, &scale, c);
     residual = PairsCheck(p, &n, &c->worst);
     c->checks++;
-    c->residual  = residual == 0 ? 0 : residual / (scale + c->noise / p->rtol);
-    c->converged = residual <= p->rtol * scale + c->noise ? PETSC_TRUE : PETSC_FALSE; /* not where it is no number */
+    c->residual  = residual == 0 ? 0 : residual / (scale + c->noise / PROJECTOR_RTOL);
+    c->converged = residual <= PROJECTOR_RTOL * scale + c->noise ? PETSC_TRUE : PETSC_FALSE; /* not where it is no number */
   } while (!c->converged && c->sweeps < p->max_it && !PetscIsNanReal(residual));
 }

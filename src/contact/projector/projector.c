@@ -14,7 +14,6 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
   PetscCall(PetscCalloc1(1, projector));
   (*projector)->contact      = contact;
   (*projector)->n_interfaces = contact->n_interfaces;
-  (*projector)->rtol         = 1e-10;
   (*projector)->max_it       = 1000;
   PetscFunctionReturn(0);
 }
@@ -23,13 +22,9 @@ PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 {
   PetscFunctionBeginUser;
   PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-projector_rtol",
-                           "natural map residual, relative to the largest impulse", p->rtol, &p->rtol, NULL));
   PetscCall(
     OptionsGetInt(PetscOptionsObject, "-projector_max_it", "sweeps of Gauss-Seidel", p->max_it, &p->max_it, NULL));
   PetscOptionsEnd();
-  PetscCheck(p->rtol > 0 && p->rtol < 1, p->contact->comm, PETSC_ERR_USER_INPUT,
-             "-projector_rtol %.6g must lie between 0 and 1", (double)p->rtol);
   PetscCheck(p->max_it > 0, p->contact->comm, PETSC_ERR_USER_INPUT,
              "-projector_max_it %" PetscInt_FMT " must be positive", p->max_it);
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
@@ -187,10 +182,10 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
              "velocities at the contact surfaces are no numbers at %.6g s", (double)step->time);
   PetscCheck(
     head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
-    "contact forces at %.6g s: residual %.6g after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "
-    "raise -projector_max_it %" PetscInt_FMT " or -projector_rtol %.6g",
-    (double)step->time, (double)head[HEAD_RESIDUAL], (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
-    (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it, (double)p->rtol);
+    "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "
+    "raise -projector_max_it %" PetscInt_FMT,
+    (double)step->time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
+    (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
   PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }

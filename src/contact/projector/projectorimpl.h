@@ -37,7 +37,8 @@ typedef struct {
   PetscInt              n_seen, *seen; /* nodes of it that are active */
 } ProjectorMaster;
 
-#define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
+#define PROJECTOR_RTOL 1e-10 /* natural map residual, relative to the largest impulse of the step before and of this one */
+#define PROJECTOR_PAST 3     /* steps of which forces are kept, for the guess of the next */
 
 /* A slave node and the point of the master that it faces */
 typedef struct {
@@ -114,7 +115,6 @@ typedef struct {
 struct _p_ContactProjector {
   Contact        contact;
   PetscInt       n_interfaces;
-  PetscReal      rtol;
   PetscInt       max_it;
   ContactSliding sliding[CONTACT_MAX];
   ProjectorShare share;

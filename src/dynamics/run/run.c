@@ -9,7 +9,7 @@
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
   static const char idle[] =
-    "-ts_central_b -dynamics_step_fraction -dynamics_step_force -dynamics_kernel -projector_max_it -projector_rtol";
+    "-ts_central_b -dynamics_step_fraction -dynamics_step_force -dynamics_kernel -projector_max_it";
   char why[160];
 
   PetscFunctionBeginUser;
