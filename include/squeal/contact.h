@@ -75,6 +75,8 @@ typedef struct {
   char       *name, *slave, *master; /* surfaces */
   ContactLaw  law;
   FrictionLaw friction;   /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
+  char       kn_text[128]; /* -contact_kn as it is given */
+  PetscBool  has_kn, has_kt;
   PetscReal  kn;          /* stiffness per pair, N/m, or per area, N/m^3 */
   PetscBool  per_area;    /* which of the two: that of a pair is then kn times the area of its slave */
   PetscReal  kt;          /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
@@ -98,6 +100,7 @@ typedef struct {
 typedef struct {
   char     *name, *slave, *master; /* a set of nodes; a surface */
   PetscReal distance;           /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
+  PetscBool has_distance;
   PetscBool free;               /* these stay free, else they are an error */
   PetscInt  n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
   PetscInt  n_beyond;           /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */

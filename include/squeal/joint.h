@@ -25,6 +25,7 @@ typedef struct {
   PetscReal stiffness[6]; /* N/m; N m/rad */
   PetscReal viscosity[6]; /* N s/m; N m s/rad */
   PetscReal mass;         /* kg */
+  PetscInt  n_inertia;    /* values given */
   PetscReal inertia[6];   /* xx, yy, zz, xy, xz, yz about the place, where the mass is, kg m^2 */
   ModelMean mean;         /* q of the point, or q_a - q_b; after ModelSetUp() */
 } Joint;

@@ -6,6 +6,17 @@
 #include <petscsys.h>
 #include <squeal/elasticity.h>
 
+/* Axes that a material may be given by: those that are its own, of a cylinder its axis, and a point of that */
+enum { AXIS_1, AXIS_2, AXIS_3, AXIS_CYLINDER, AXIS_CENTRE, N_AXES };
+
+/* Elasticity as it is given */
+typedef struct {
+  PetscInt  n_young, n_poisson, n_shear;
+  PetscReal young[3], poisson[3], shear[3]; /* Pa; -; Pa */
+  PetscReal axis[N_AXES][3];                /* directions; m */
+  PetscBool given[N_AXES];
+} ElasticityAsked;
+
 /* Elasticity of a part that is not isotropic, in axes 1, 2, 3 of its own */
 typedef struct {
   PetscInt             n;         /* Young's moduli given: 0 isotropic, 2 transversely isotropic about axis 3, 3 */
@@ -18,7 +29,7 @@ typedef struct {
 
 /* Steady spin of a body of revolution in the fixed frame */
 typedef struct {
-  PetscBool given;
+  PetscBool given, has_axis, has_centre;
   PetscReal rate;               /* rad/s, positive by the right-hand rule about the axis */
   PetscReal axis[3], centre[3]; /* unit vector; a point of the axis, m */
   PetscReal radius;             /* of gyration about the axis, m; set up with the mesh */
@@ -34,6 +45,7 @@ typedef struct {
   PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
   PetscReal  beta;    /* Rayleigh factor of the stiffness, s, loss included */
   PetscReal  loss;    /* loss factor at the scene's loss_frequency, part of beta */
+  ElasticityAsked asked;
   Anisotropy anisotropy;
   Spin       spin;
 } Part;

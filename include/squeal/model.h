@@ -24,6 +24,8 @@ typedef enum { SPREAD_EACH, SPREAD_TOTAL, SPREAD_AREA } Spread;
    area of a surface (N/m^3, N s/m^3) */
 typedef struct {
   char       *name, *set;
+  PetscReal   asked[SPREAD_AREA + 1][3]; /* as it is given, by its spread: one of them */
+  PetscBool   given[SPREAD_AREA + 1];
   PetscReal   value[3];
   Spread      spread;
   const char *quantity, *unit; /* "stiffness_total", "N/m" and so on */
@@ -32,8 +34,8 @@ typedef struct {
 /* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
    surface, Pa, into the body; or a force and a moment on a point */
 typedef struct {
-  char     *name, *set; /* set is empty for a point */
-  PetscBool is_pressure, on_point;
+  char     *name, *set, *on; /* set is empty for a point, `on` names it */
+  PetscBool is_pressure, on_point, has_force, has_moment;
   PetscInt  point;              /* index of the point */
   PetscReal moment[3];          /* on it, N m */
   PetscReal pressure, force[3]; /* Pa; N, of a pressure its resultant after ModelSetUp() */
@@ -43,6 +45,7 @@ typedef struct {
 /* A place of a body that histories record: the nearest node of the part */
 typedef struct {
   char     *name, *part; /* part is empty for any */
+  PetscBool has_at;
   PetscReal at[3];       /* place asked for, m */
   PetscReal x[3];        /* that of the node, m */
   PetscInt  vertex;      /* local node from 0 on the rank that records it, -1 on all others */
@@ -53,8 +56,10 @@ typedef struct {
   char     *name, *part;
   PetscReal radius, tolerance; /* m; how far a node may be from its place */
   PetscInt  n;                 /* nodes */
+  char      face[8];           /* as it is given, such as z+ */
   int       axis, side;        /* 0, 1, 2 for x, y, z; 1 or -1: the side of the part on which it lies */
   PetscBool has_centre;        /* given, else the middle of the part */
+  PetscBool has_tolerance;
   PetscReal centre[3];         /* m */
   Probe    *probe;             /* [n], named `name`_000 and so on; after ModelSetUp() */
 } Circle;
@@ -78,6 +83,7 @@ typedef struct {
 /* Essential condition: the flagged directions are fixed at every node of the set */
 typedef struct {
   char     *name, *set;
+  char      word[16]; /* as they are given, such as xz */
   PetscBool fix[3];
 } Support;
 
@@ -85,7 +91,8 @@ typedef struct {
 typedef struct {
   char     *name, *set;
   PetscReal displacement[3];
-  PetscBool direction[3];
+  PetscBool has_word, direction[3];
+  char      word[16]; /* these as they are given, such as xz */
 } PrescribedMotion;
 
 /* What the options name */

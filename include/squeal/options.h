@@ -34,20 +34,6 @@ PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char he
     own: it is no identifier, or other options begin with it or with what stands before its first underscore. Collective. @*/
 PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[]);
 
-/* A list of the scene, and how one of its records is read */
-typedef struct {
-  const char *option, *help; /* as of OptionsGetNames() */
-  const char *title;         /* heads the options of a record in -help, before its name */
-  size_t      size;          /* of a record, which begins with char *name */
-  /* reads the options that the name is the prefix of, and checks them; owner is that of OptionsReadList() */
-  PetscErrorCode (*read)(OptionsItems PetscOptionsObject, void *owner, void *record);
-} OptionsList;
-
-/*@ OptionsReadList - reads the names of a list into n new records, zero but for their names, and then the options of
-    each. records is the address of the pointer to them; the caller frees it and the names. Collective. Errors: as
-    OptionsGetNames(), and those of read(). @*/
-PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records);
-
 /*@
    OptionsDropUnlisted - a list on the command line, or in a later options file, stands in place of one in a file. What
    files say of a name that is then in no list is taken out, with a warning; it is an error where the command line says it.
@@ -79,10 +65,17 @@ PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]
 PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                                PetscReal values[], PetscBool *set);
 
-/*@ OptionsGetSomeReals - reads an array of one, two or three values; on return n of them, 0 where the option is not given.
-    initial is its default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more. @*/
-PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                                   const char initial[], PetscReal values[3], PetscInt *n);
+/* Room for a list of numbers: one of the two, the other is NULL */
+typedef struct {
+  PetscInt   most;
+  PetscReal *reals;
+  PetscInt  *ints;
+} OptionsRoom;
+
+/*@ OptionsGetSome - reads a list of numbers; on return n of them, 0 where the option is not given, which changes none. initial is the
+    default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more than there is room for. @*/
+PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[], const char initial[],
+                              const OptionsRoom *room, PetscInt *n);
 
 /*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
@@ -140,15 +133,6 @@ PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option
    Errors: PETSC_ERR_USER_INPUT for a viewer that is no text.
 @*/
 PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer);
-
-/*@ OptionsGetSet - reads the required "-set" of a name, a set of the mesh, between PetscOptionsBegin() and
-    PetscOptionsEnd(). Collective. The caller frees it. Errors: PETSC_ERR_USER_INPUT when it is not given. @*/
-PetscErrorCode OptionsGetSet(OptionsItems PetscOptionsObject, char **set);
-
-/*@ OptionsCheckFinite - raises an error for a value of -`name`_`option` that is infinite or no number; unit for the
-    message. Collective. @*/
-PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char option[], const char unit[],
-                                  const PetscReal value[3]);
 
 /*@
    OptionsWithValue - names the options that give a value, or a list that holds it, for messages. Not collective.

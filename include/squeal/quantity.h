@@ -15,9 +15,12 @@ typedef enum {
   QUANTITY_REALS, /* PetscReal [n], all of them */
   QUANTITY_LIST,  /* PetscReal [n], one at least and n at most */
   QUANTITY_INTS,  /* PetscInt [n], likewise */
+  QUANTITY_MANY,  /* PetscReal *, which the owner frees, of one to .most */
   QUANTITY_BOOL,  /* PetscBool */
   QUANTITY_WORD,  /* one of .words, as int: an enumeration or PetscBool */
   QUANTITY_TEXT,  /* char [n] */
+  QUANTITY_NAME,  /* char *, which the owner frees */
+  QUANTITY_NAMES, /* char *[n], likewise; all of them or none */
   QUANTITY_PATH,  /* char [PETSC_MAX_PATH_LEN], relative to its options file */
 } QuantityKind;
 
@@ -26,8 +29,8 @@ typedef struct {
   const char        *help; /* one sentence, without the unit */
   const char        *unit; /* e.g. "Hz"; NULL for what has none */
   QuantityKind       kind;
-  PetscReal          initial; /* default of a number, a logical or a word; arrays are zero */
-  const char        *text;    /* default of a text; NULL: empty */
+  PetscReal          initial; /* default of a number, a logical, a word, or the first of a list */
+  const char        *text;    /* default of a text, of a list for its help; NULL: empty */
   size_t             at;      /* offset in the owner's struct */
   size_t             size;  /* in bytes */
   size_t             given; /* offset of a PetscBool: whether it is given; 0 for none */
@@ -36,7 +39,8 @@ typedef struct {
   PetscReal          least, most;  /* of a number; most 0 where there is no upper limit */
   PetscBool          bounded;      /* least and most are limits */
   PetscBool          open;         /* the limits themselves are refused */
-  const char        *why;          /* of the limits, for their message; or NULL */
+  const char        *why;          /* of the limits, or what is to be given, for messages; or NULL */
+  PetscBool          required;     /* an error where it is not given; of a name, else with .given */
   const char *(*idle)(const void *owner); /* NULL where it is read, else why not; NULL: always read */
   PetscBool restart;                      /* another value is another run: a restart must not go on */
 } Quantity;
@@ -69,14 +73,27 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
    Input/Output Parameter:
 .  owner - the struct that the rows' offsets are of; unchanged where an option is not given
 
-   Errors: PETSC_ERR_USER_INPUT for a value that is none, or beyond the row's limits, and for an option of the command line
-   whose row is idle in this owner. Files may give such options.
+   Errors: PETSC_ERR_USER_INPUT for a value that is none, not finite, or beyond the row's limits, for one that is required and
+   not given, and for an option of the command line whose row is idle in this owner. Files may give such options.
 @*/
 PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
 
 /*@ QuantitiesReadOf - the same of a thing that has a name, which stands before that of each option: -pad_mu of `pad`. NULL for
     none. Collective. @*/
 PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner);
+
+/* A list of the scene, each name of which is the prefix of the options of a record */
+typedef struct {
+  const char          *option, *help; /* as of OptionsGetNames() */
+  size_t               size;          /* of a record, which begins with char *name */
+  const QuantityTable *table;
+  PetscErrorCode (*check)(MPI_Comm comm, void *owner, void *record); /* what no row says; NULL for nothing */
+} QuantityList;
+
+/*@ QuantitiesReadList - reads the names of a list into n new records, which begin as QuantitiesInit() says, and then the
+    options of each. records is the address of the pointer to them; the caller frees it and the names. Collective.
+    Errors: those of OptionsGetNames(), QuantitiesRead() and check(). @*/
+PetscErrorCode QuantitiesReadList(MPI_Comm comm, const QuantityList *list, void *owner, PetscInt *n, void *records);
 
 /*@ QuantitiesAddChecksum - adds the values of the rows that decide a restart, in their order, to the
     part of the checksum that is set. Not collective. @*/

@@ -3,7 +3,6 @@
 */
 #include "contactimpl.h"
 #include "base/events.h"
-#include <squeal/options.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,111 +17,38 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
   PetscFunctionReturn(0);
 }
 
-/* Reads the stiffness: a number, or the word `identify` */
-static PetscErrorCode StiffnessRead(OptionsItems PetscOptionsObject, ContactInterface *c)
+/* The normal stiffness: a number, or the word `identify` */
+static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
 {
-  char      text[128] = "", unit[256], *end;
-  PetscBool set, per_area;
-  PetscReal value = 0;
+  char unit[256], *end;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-kn_per_area",
-                           "instead: normal stiffness per area of the slave, N/m^3 (penalty)", value, &value,
-                           &per_area));
-  PetscCall(PetscOptionsString("-kn", "normal stiffness per pair, N/m (penalty), or: identify", "contact.h", "0", text,
-                               sizeof(text), &set));
-  PetscCheck(!set || !per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn and -%s_kn_per_area are given; give one of them", c->name, c->name);
-  c->per_area = per_area;
-  if (per_area) c->kn = value;
-  if (!set) PetscFunctionReturn(0);
-  c->identify = !strcmp(text, "identify") ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(ValueExplainUnit(text, unit, sizeof(unit)));
-  PetscCheck(!unit[0], PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s_kn: %s has a unit: %s", c->name, text, unit);
-  c->kn       = c->identify ? 1 : strtod(text, &end);
-  PetscCheck(c->identify || (end != text && !*end), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn '%s' must be a positive number (N/m) or the word identify", c->name, text);
-  PetscFunctionReturn(0);
-}
-
-/* Reads the stiffness along the surface of pairs that stick */
-static PetscErrorCode HoldRead(OptionsItems PetscOptionsObject, ContactInterface *c)
-{
-  PetscBool set;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-kt",
-                           "modes, holding by friction: stiffness along the surface of a pair that sticks, N/m", c->kt,
-                           &c->kt, &set));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-kt_per_area", "instead: that per area of the slave, N/m^3", c->kt,
-                           &c->kt, &c->kt_per_area));
-  PetscCheck(!set || !c->kt_per_area, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
-  PetscCheck((!set && !c->kt_per_area) || (c->kt > 0 && !PetscIsInfReal(c->kt)), PetscOptionsObject->comm,
-             PETSC_ERR_USER_INPUT, "-%s_kt%s %.6g must be positive (N/m%s)", c->name, c->kt_per_area ? "_per_area" : "",
-             (double)c->kt, c->kt_per_area ? "^3" : "");
-  PetscFunctionReturn(0);
-}
-
-/* Raises an error for what is no finite number */
-static PetscErrorCode InterfaceCheckFinite(MPI_Comm comm, const ContactInterface *c)
-{
-  static const char *const option[]   = {"speed", "force", "tolerance", "overhang"};
-  static const char *const unit[]     = {"m/s", "N", "m", "m"};
-  const PetscReal          value[][3] = {{c->speed}, {c->force}, {c->tolerance}, {c->overhang}};
-
-  PetscFunctionBeginUser;
-  for (int i = 0; i < 4; i++) PetscCall(OptionsCheckFinite(comm, c->name, option[i], unit[i], value[i]));
-  PetscCall(OptionsCheckFinite(comm, c->name, "slip", "a direction", c->slip));
-  PetscCall(OptionsCheckFinite(comm, c->name, "rotation", "rad/s", c->rotation));
-  PetscCall(OptionsCheckFinite(comm, c->name, "centre", "m", c->centre));
+  PetscCheck(!c->has_kn || !c->per_area, comm, PETSC_ERR_USER_INPUT, "-%s_kn and -%s_kn_per_area are given; give one of them",
+             c->name, c->name);
+  if (!c->has_kn) PetscFunctionReturn(0);
+  c->identify = !strcmp(c->kn_text, "identify") ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ValueExplainUnit(c->kn_text, unit, sizeof(unit)));
+  PetscCheck(!unit[0], comm, PETSC_ERR_USER_INPUT, "-%s_kn: %s has a unit: %s", c->name, c->kn_text, unit);
+  c->kn = c->identify ? 1 : strtod(c->kn_text, &end);
+  PetscCheck(c->identify || (end != c->kn_text && !*end), comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn '%s' must be a positive number (N/m) or the word identify", c->name, c->kn_text);
   PetscFunctionReturn(0);
 }
 
 /* Parameters of one interface, whose name is set */
 static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
 {
-  static const char *const laws[]      = {"penalty", "constraint"};
-  char                    *surfaces[3] = {NULL, NULL, NULL}, prefix[128], title[160];
-  PetscInt                 n = 3, law = CONTACT_PENALTY;
-  PetscBool                set;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s", c->name));
-  PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: named surfaces (required)", &n, surfaces, &set));
-  PetscCall(PetscOptionsEList("-law", "k_n per pair, or the exact constraint", "contact.h", laws, 2, laws[0], &law, NULL));
-  PetscCall(StiffnessRead(PetscOptionsObject, c));
-  PetscCall(HoldRead(PetscOptionsObject, c));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-tolerance",
-                           "largest distance of a slave node from the master along the normal, m", c->tolerance,
-                           &c->tolerance, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-overhang",
-                           "slave nodes farther beyond the master's border have no pair, m; 0: 1 % of a facet",
-                           c->overhang, &c->overhang, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-force", "total normal force in the sliding state, N", c->force,
-                           &c->force, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-speed", "sliding speed, m/s", c->speed, &c->speed, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-friction_damping",
-                           "damping mu N/v across the slip, mu' N along it", &c->damping));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-slip", "direction of the slave's velocity relative to the master", 3,
-                            c->slip, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-rotation", "or: angular velocity of the master, rad/s", 3,
-                            c->rotation, NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-centre", "a point of its axis, m", 3, c->centre, NULL));
-  PetscOptionsEnd();
+  PetscCall(QuantitiesInit(&contact_quantities, c));
+  PetscCall(QuantitiesReadOf(comm, c->name, &contact_quantities, c));
+  PetscCall(StiffnessParse(comm, c));
+  PetscCheck(!c->has_kt || !c->kt_per_area, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
   c->friction.speed = c->speed;
   PetscCheck(!FrictionNeedsSpeed(&c->friction) || c->speed > 0 || Vec3Length(c->rotation) > 0 || Vec3Length(c->slip) == 0, comm,
              PETSC_ERR_USER_INPUT, "contact %s: friction depends on the sliding speed: give a positive -%s_speed (m/s) with -%s_slip",
              c->name, c->name, c->name);
-  PetscCall(InterfaceCheckFinite(comm, c));
-  PetscCheck(!set || n == 2, comm, PETSC_ERR_USER_INPUT,
-             "-%s_surfaces has %" PetscInt_FMT " names; give two: slave,master", c->name, n);
-  c->law    = (ContactLaw)law;
-  c->slave  = surfaces[0];
-  c->master = surfaces[1];
   PetscFunctionReturn(0);
 }
 
@@ -142,17 +68,9 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscCheck(c->kt == 0 || !c->damping, comm, PETSC_ERR_USER_INPUT,
              "-%s_friction_damping does nothing where the contact holds by friction (-%s_kt%s); leave one out", c->name,
              c->name, c->kt_per_area ? "_per_area" : "");
-  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be positive (m)", c->name,
-             (double)c->tolerance);
-  PetscCheck(c->overhang >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_overhang %.6g must not be negative (m)", c->name,
-             (double)c->overhang);
-  PetscCheck(c->force >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_force %.6g must not be negative (N)", c->name,
-             (double)c->force);
   PetscCheck(!c->damping || c->speed > 0 || c->rotation[0] != 0 || c->rotation[1] != 0 || c->rotation[2] != 0, comm,
              PETSC_ERR_USER_INPUT, "-%s_friction_damping needs a positive -%s_speed (m/s) or a -%s_rotation", c->name,
              c->name, c->name);
-  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
-             (double)c->speed);
   PetscCall(FrictionWarnLarge(comm, c->name, &c->friction));
   PetscFunctionReturn(0);
 }
@@ -182,15 +100,14 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   for (PetscInt i = 0; i < n; i++) {
     ContactInterface *c = &contact->interfaces[i];
 
-    c->name      = names[i];
-    c->tolerance = 1e-5;
+    c->name = names[i];
     PetscCall(InterfaceSetFromOptions(contact->comm, c));
     if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
     if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
   }
   contact->n_interfaces = n;
   PetscCall(PetscFree(names));
-  PetscCall(OptionsReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
+  PetscCall(QuantitiesReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
   PetscFunctionReturn(0);
 }
 

@@ -3,7 +3,7 @@
 
 #include "judge.h"
 #include "contact/surface/surface.h"
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 
 #define CONTACT_MAX 16 /* interfaces of one scene */
 
@@ -30,8 +30,10 @@ PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, P
 PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
                                               ContactPair pair[], PetscReal *lost);
 
-/* tie.c - the list of ties. Collective. */
-extern const OptionsList    ties_list;
+/* quantities.c - options of an interface, and the list of ties; tie.c - what their rows do not say */
+extern const QuantityTable  contact_quantities;
+extern const QuantityList   ties_list;
+PETSC_INTERN PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);
 /* tie.c - adds surfaces and distances; in words. Collective. */
 PETSC_INTERN PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum checksum);

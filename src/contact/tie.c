@@ -25,38 +25,16 @@
 #define TIE_SHARE   0.05 /* of the size of a facet: the largest distance where none is given */
 #define TIE_TOUCHES 1e-9 /* of that size: rounding of the places, no gap */
 
-static PetscErrorCode TieRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record)
 {
-  static const char *const far[]       = {"error", "free"};
-  const MPI_Comm           comm        = PetscOptionsObject->comm;
-  ContactTie              *tie         = record;
-  char                    *surfaces[3] = {NULL, NULL, NULL};
-  PetscInt                 n = 3, left = 0;
-  PetscBool                given;
+  const ContactTie *tie = record;
 
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(OptionsGetItems(PetscOptionsObject, "-surfaces", "slave,master: a set whose nodes follow, and a surface (required)",
-                            &n, surfaces, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-distance",
-                           "largest distance of a node of the slave from its foot, m; default 5 % of the facet's size",
-                           tie->distance, &tie->distance, &given));
-  PetscCall(PetscOptionsEList("-far", "nodes farther off are an error, or stay free", "contact.h", far, 2, far[0],
-                              &left, NULL));
-  PetscCheck(n == 2 && surfaces[0] && surfaces[1], comm, PETSC_ERR_USER_INPUT,
-             "-%s_surfaces must be given, two names: slave,master", tie->name);
-  PetscCheck(strcmp(surfaces[0], surfaces[1]), comm, PETSC_ERR_USER_INPUT,
-             "-%s_surfaces names %s twice: a tie joins two surfaces", tie->name, surfaces[0]);
-  PetscCheck(!given || (tie->distance > 0 && isfinite(tie->distance)), comm, PETSC_ERR_USER_INPUT,
-             "-%s_distance %.6g must be finite and positive (m)", tie->name, (double)tie->distance);
-  tie->slave  = surfaces[0];
-  tie->master = surfaces[1];
-  tie->free   = left == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(strcmp(tie->slave, tie->master), comm, PETSC_ERR_USER_INPUT,
+             "-%s_surfaces names %s twice: a tie joins two surfaces", tie->name, tie->slave);
   PetscFunctionReturn(0);
 }
-
-const OptionsList ties_list = {"-ties", "surfaces glued to others, each the prefix of its -surfaces", "Tie",
-                               sizeof(ContactTie), TieRead};
 
 /* What fails over all ranks: the farthest node and where it is; a direction that a support holds of the slave alone */
 typedef struct {

@@ -9,67 +9,45 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, model));
   (*model)->comm = comm;
-  PetscCall(PetscStrncpy((*model)->formulation, "incompatible", sizeof((*model)->formulation)));
+  PetscCall(QuantitiesInit(&model_quantities, *model));
   PetscFunctionReturn(0);
 }
 
-/* Where the mesh comes from (is_rig = the built-in rig, not a file), its elements, and what concerns all parts */
-static PetscErrorCode ModelReadSource(Model model, PetscBool *is_rig)
+/* Where the mesh comes from, its elements, and what concerns all parts */
+static PetscErrorCode ModelReadSource(Model model)
 {
-  static const char *const sources[] = {"rig", "file"};
-  ModelScene *const        scene     = &model->scene;
-  PetscInt                 source    = 0;
-  PetscBool                given, has_mesh, has_loss;
-
   PetscFunctionBeginUser;
-  PetscOptionsBegin(model->comm, NULL, "Model", NULL);
-  PetscCall(PetscOptionsEList("-model_source", "mesh: the built-in disc-pad-beam rig, or a file", "model.h", sources, 2,
-                              sources[0], &source, &given));
-  PetscCall(OptionsGetPath(PetscOptionsObject, "-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names",
-                           model->file, &has_mesh));
-  PetscCall(PetscOptionsString("-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", "model.h",
-                               model->formulation, model->formulation, sizeof(model->formulation),
-                               &model->has_formulation));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-model_gravity", "acceleration of gravity in x,y,z, m/s^2", 3,
-                            scene->gravity, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-model_loss_frequency", "where the loss factors of the parts are exact, Hz",
-                           scene->loss_frequency, &scene->loss_frequency, &has_loss));
-  PetscOptionsEnd();
-  PetscCheck(!has_loss || (scene->loss_frequency > 0 && isfinite(scene->loss_frequency)), model->comm,
-             PETSC_ERR_USER_INPUT, "-model_loss_frequency %.6g must be positive and finite (Hz)",
-             (double)scene->loss_frequency);
-  PetscCall(OptionsCheckFinite(model->comm, "model", "gravity", "m/s^2", scene->gravity));
-  PetscCheck(!given || source == 1 || !has_mesh, model->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(QuantitiesRead(model->comm, &model_quantities, model));
+  PetscCheck(!model->has_loss || model->scene.loss_frequency > 0, model->comm, PETSC_ERR_USER_INPUT,
+             "-model_loss_frequency %.6g must be positive and finite (Hz)", (double)model->scene.loss_frequency);
+  PetscCheck(!model->given || model->from_file || !model->has_file, model->comm, PETSC_ERR_USER_INPUT,
              "-model_mesh %s does nothing with -model_source rig; choose -model_source file", model->file);
-  if (has_mesh) source = 1;
-  model->given = given || has_mesh ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscStrncpy(model->source, sources[source], sizeof(model->source)));
-  *is_rig = source == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (model->has_file) model->from_file = model->given = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelSetFromOptions(Model model)
 {
   ModelScene *const scene = &model->scene;
-  PetscBool         is_rig, given;
+  PetscBool         given;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelReadSource(model, &is_rig));
-  if (is_rig) PetscCall(RigSetFromOptions(model->comm, &model->rig));
-  if (!is_rig) PetscCall(OptionsDropOf(model->comm, "rig", "the mesh comes from a file, not from the built-in rig"));
+  PetscCall(ModelReadSource(model));
+  if (!model->from_file) PetscCall(RigSetFromOptions(model->comm, &model->rig));
+  if (model->from_file) PetscCall(OptionsDropOf(model->comm, "rig", "the mesh comes from a file, not from the built-in rig"));
   PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
-  if (!given && is_rig) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
-  PetscCall(OptionsReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
+  if (!given && !model->from_file) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
+  PetscCall(QuantitiesReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
   PetscCall(PartsAddLoss(model));
-  PetscCall(OptionsReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
-  PetscCall(OptionsReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
-  PetscCall(OptionsReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));
-  PetscCall(OptionsReadList(model->comm, &joints_list, model, &scene->n_joints, &scene->joints));
-  PetscCall(OptionsReadList(model->comm, &points_list, model, &scene->n_points, &scene->points));
-  PetscCall(OptionsReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
-  PetscCall(OptionsReadList(model->comm, &motions_list, model, &scene->n_motions, &scene->motions));
-  PetscCall(OptionsReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
-  PetscCall(OptionsReadList(model->comm, &circles_list, model, &scene->n_circles, &scene->circles));
+  PetscCall(QuantitiesReadList(model->comm, &supports_list, model, &scene->n_supports, &scene->supports));
+  PetscCall(QuantitiesReadList(model->comm, &springs_list, model, &scene->n_springs, &scene->springs));
+  PetscCall(QuantitiesReadList(model->comm, &dashpots_list, model, &scene->n_dashpots, &scene->dashpots));
+  PetscCall(QuantitiesReadList(model->comm, &joints_list, model, &scene->n_joints, &scene->joints));
+  PetscCall(QuantitiesReadList(model->comm, &points_list, model, &scene->n_points, &scene->points));
+  PetscCall(QuantitiesReadList(model->comm, &loads_list, model, &scene->n_loads, &scene->loads));
+  PetscCall(QuantitiesReadList(model->comm, &motions_list, model, &scene->n_motions, &scene->motions));
+  PetscCall(QuantitiesReadList(model->comm, &probes_list, model, &scene->n_probes, &scene->probes));
+  PetscCall(QuantitiesReadList(model->comm, &circles_list, model, &scene->n_circles, &scene->circles));
   PetscFunctionReturn(0);
 }
 
@@ -113,13 +91,13 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionBeginUser;
   PetscCall(ModelCheckGiven(model));
   PetscCall(PartsCheck(model));
-  if (!strcmp(model->source, "rig"))
+  if (!model->from_file)
     PetscCall(RigGenerate(model->comm, &model->rig, &model->dm));
   else
     PetscCall(ImportGmsh(model->comm, model->file, &model->dm));
   PetscCall(MeshTabulate(model));
   PetscCall(MeshCheck(model));
-  if (!strcmp(model->source, "rig")) PetscCall(RigSave(model));
+  if (!model->from_file) PetscCall(RigSave(model));
   PetscCall(SpinsCheck(model));
   PetscCall(PartitionMesh(model));
   PetscCall(MeshLayOut(model));
@@ -181,7 +159,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscCall(MeshDescribe(model, sizeof(words), words));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d rank%s; %s\n",
-                                   !strcmp(model->source, "rig") ? "built-in rig" : model->file, n_cells,
+                                   !model->from_file ? "built-in rig" : model->file, n_cells,
                                    model->mesh.n_unknowns, size, size == 1 ? "" : "s", words));
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++) PetscCall(SupportView(&model->scene.supports[i], viewer));
@@ -231,7 +209,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_joints, sizeof(*s->joints), 3, s->joints));
   PetscCall(JointsDestroy(s->n_points, s->points));
   PetscCall(RecordsDestroy(s->n_points, sizeof(*s->points), 3, s->points));
-  PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 2, s->loads));
+  PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 3, s->loads));
   PetscCall(RecordsDestroy(s->n_motions, sizeof(*s->motions), 2, s->motions));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
   PetscCall(CirclesDestroy(m));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <squeal/model.h>
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 
 #define MODEL_MAX_NAMES 64 /* names in one list of the scene */
 
@@ -32,7 +32,8 @@ struct _p_Model {
   MPI_Comm comm;
   /* set by options */
   PetscBool  given; /* the scene names a mesh */
-  char       source[8], file[PETSC_MAX_PATH_LEN], formulation[32];
+  PetscBool  from_file, has_file, has_loss; /* the mesh comes from a file, not from the rig; what is given */
+  char       file[PETSC_MAX_PATH_LEN], formulation[32];
   PetscBool  has_formulation; /* -model_element is given */
   Rig        rig;
   ModelScene scene;
@@ -82,10 +83,24 @@ PETSC_INTERN PetscErrorCode MeshReset(Model model);
 PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, const PetscInt vertex[],
                                             unsigned *corners);
 
-/* The lists of the scene, whose files read their records: part.c, support.c, grounded.c, load.c, motion.c,
+/* The lists of the scene, whose records have files of their own: part.c, support.c, grounded.c, load.c, motion.c,
    probe.c, circle.c, joint.c */
-PETSC_INTERN const OptionsList parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
-  probes_list, circles_list, joints_list, points_list;
+PETSC_INTERN const QuantityTable model_quantities, spring_quantities, dashpot_quantities;
+PETSC_INTERN const QuantityList  parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list, probes_list,
+  circles_list, joints_list, points_list;
+#define SET_WANTED "a named set of the mesh"
+
+/* The same files - what the rows of a record do not say; owner is the model */
+PETSC_INTERN PetscErrorCode PartCheck(MPI_Comm comm, void *owner, void *part);
+PETSC_INTERN PetscErrorCode SupportCheck(MPI_Comm comm, void *owner, void *support);
+PETSC_INTERN PetscErrorCode SpringCheck(MPI_Comm comm, void *owner, void *grounded);
+PETSC_INTERN PetscErrorCode DashpotCheck(MPI_Comm comm, void *owner, void *grounded);
+PETSC_INTERN PetscErrorCode JointCheck(MPI_Comm comm, void *owner, void *joint);
+PETSC_INTERN PetscErrorCode PointCheck(MPI_Comm comm, void *owner, void *joint);
+PETSC_INTERN PetscErrorCode LoadCheck(MPI_Comm comm, void *owner, void *load);
+PETSC_INTERN PetscErrorCode MotionCheck(MPI_Comm comm, void *owner, void *motion);
+PETSC_INTERN PetscErrorCode ProbeCheck(MPI_Comm comm, void *owner, void *probe);
+PETSC_INTERN PetscErrorCode CircleCheck(MPI_Comm comm, void *owner, void *circle);
 
 /* A set whose mean motion is asked for, where it was asked for, and the sign that it counts with */
 typedef struct {
@@ -111,13 +126,13 @@ PETSC_INTERN PetscErrorCode JointView(Model model, const Joint *joint, PetscView
 
 /* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
    not belong together, for axes that are none, and for a stiffness that is not positive definite */
-PETSC_INTERN PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part);
+PETSC_INTERN PetscErrorCode PartSetElasticity(MPI_Comm comm, Part *part);
 PETSC_INTERN PetscErrorCode AnisotropyView(Model model, const Anisotropy *a, PetscViewer viewer);
 
 /* spin.c - steady spin of a part; errors for one without axis, for a part that is no body of revolution, for a material
    that does not turn into itself, and for parts that share nodes but do not spin alike. SpinsCheck() tells which parts
    share nodes; before the mesh is distributed, collective */
-PETSC_INTERN PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part);
+PETSC_INTERN PetscErrorCode PartCheckSpin(MPI_Comm comm, Part *part);
 PETSC_INTERN PetscErrorCode SpinsCheck(Model model);
 PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
 

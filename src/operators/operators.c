@@ -31,9 +31,7 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
 
   PetscFunctionBeginUser;
   PetscCall(MatrixTermsSetFromOptions(operators));
-  PetscOptionsBegin(operators->comm, NULL, "Matrices", NULL);
-  PetscCall(OperatorsLoadFromOptions(operators, PetscOptionsObject));
-  PetscOptionsEnd();
+  PetscCall(OperatorsLoadFromOptions(operators));
   PetscCall(QuantitiesRead(operators->comm, &operators_quantities, operators));
   PetscCall(OperatorsHaveMatrices(operators, &have));
   PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,

@@ -46,7 +46,7 @@ struct _p_Operators {
   /* set by options */
   char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
   int        save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
-  PetscReal *dense[N_OPERATORS];   /* [OPERATORS_MAX_DENSE] entries of -operators_dense_k and the like, by rows */
+  PetscReal *dense[N_OPERATORS];   /* [n_dense] entries of -operators_dense_k and the like, by rows */
   PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
   PetscBool  lump, omit;
   OperatorsFactors factors;
@@ -75,7 +75,7 @@ struct _p_Operators {
 };
 
 /* quantities.c - rows of the options; of loaded matrices alone */
-extern const QuantityTable operators_quantities, operators_loaded;
+extern const QuantityTable operators_quantities, operators_loaded, operators_matrices, operators_term;
 
 /* The point that NULL stands for */
 static inline const PetscReal *OperatorsPoint(Operators operators, const PetscReal p[])
@@ -144,5 +144,5 @@ PETSC_INTERN PetscReal      FrictionNodeShare(const InterfaceParameters *interfa
 PETSC_INTERN PetscErrorCode OperatorsDestroyContactParameters(Operators operators);
 
 /* file.c - matrices from files and options, and to files */
-PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators, OptionsItems PetscOptionsObject);
+PETSC_INTERN PetscErrorCode OperatorsLoadFromOptions(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsLoad(Operators operators);

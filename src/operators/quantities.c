@@ -1,5 +1,5 @@
-/* Options of the operators; matrices and their terms are read beside them */
-#include "operatorsimpl.h"
+/* Options of the operators, of matrices without a mesh, and of their terms */
+#include "operators/files/matrixterm.h"
 
 #define OPERATORS_OPTION(member) QUANTITY_AT(struct _p_Operators, member)
 
@@ -21,5 +21,37 @@ static const Quantity loaded[] = {
   {"-contact_mu", "friction coefficient of K + mu H", NULL, QUANTITY_REAL, OPERATORS_OPTION(loaded_mu)},
 };
 
+/* Of one matrix: the file, or all entries */
+#define MATRIX(letter, meaning, i) \
+  {"-operators_load_" letter, "PETSc binary file of the " meaning, NULL, QUANTITY_PATH, OPERATORS_OPTION(load[i])}, \
+  {"-operators_dense_" letter, "small dense matrix of the " meaning ", rows one after another", NULL, QUANTITY_MANY, \
+   OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .most = OPERATORS_MAX_DENSE}
+
+static const Quantity matrices[] = {
+  MATRIX("k", "stiffness, N/m", OPERATOR_K),
+  MATRIX("m", "mass, kg", OPERATOR_M),
+  MATRIX("c", "damping, N s/m", OPERATOR_C),
+  MATRIX("h", "friction part per unit mu, N/m", OPERATOR_H),
+};
+
+#define TERM(member) QUANTITY_AT(MatrixTerm, member)
+
+static const char *const kinds[]      = {"stiffness", "damping", "mass", NULL}; /* of OperatorsTermKind */
+static const char *const symmetries[] = {[MATRIX_ANY] = "any", [MATRIX_EVEN] = "symmetric", [MATRIX_SKEW] = "skew", NULL};
+
+static const Quantity term[] = {
+  {"-file", "PETSc binary file of the matrix", NULL, QUANTITY_PATH, TERM(file)},
+  {"-dense", "or all entries of a small matrix, rows one after another", NULL, QUANTITY_MANY, TERM(dense),
+   .count = offsetof(MatrixTerm, n_dense), .most = OPERATORS_MAX_DENSE},
+  {"-kind", "what it is part of (required)", NULL, QUANTITY_WORD, TERM(kind), .initial = 3, .words = kinds},
+  {"-symmetry", "what it must be, else the run stops", NULL, QUANTITY_WORD, TERM(symmetry), .words = symmetries},
+  {"-scale", "a number that it is multiplied with", NULL, QUANTITY_REAL, TERM(scale), .initial = 1},
+  {"-parameter", "numbers that it is proportional to, options of their own, e.g. speed", NULL, QUANTITY_TEXT, TERM(parameters),
+   .given = offsetof(MatrixTerm, has_parameters)},
+  {"-power", "power of each of them, e.g. 2 or -1", NULL, QUANTITY_INTS, TERM(power), .count = offsetof(MatrixTerm, n_powers), .text = "1"},
+};
+
 const QuantityTable operators_quantities = {"Operators", "operators.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
 const QuantityTable operators_loaded     = {"Friction of loaded matrices", "operators.h", 1, loaded};
+const QuantityTable operators_matrices   = {"Matrices", "operators.h", PETSC_STATIC_ARRAY_LENGTH(matrices), matrices};
+const QuantityTable operators_term       = {"Matrix", "operators.h", PETSC_STATIC_ARRAY_LENGTH(term), term};

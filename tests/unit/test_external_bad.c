@@ -15,18 +15,18 @@
 
 /* Options, and what the error begins with */
 static const char *const bad[][2] = {
-  {PULL "-pull_ramp -1",               "-pull_ramp -1 must be a time of at least 0 (s)"            },
+  {PULL "-pull_ramp -1",               "-pull_ramp -1 must not be negative (s)"                     },
   {"-head_velocity 1",                 "-head_velocity has 1 values; give 3"                       },
   {"-head_velocity inf,0,0",           "-head_velocity value inf must be a finite number"          },
   {LIFT "-lift_set hat",               "-lift_set: the mesh has no set named 'hat'; it names: "    },
   {LIFT "-lift_ramp 0",                "-lift_ramp 0 must be given and positive (s)"               },
-  {LIFT "-lift_delay -2",              "-lift_delay -2 must be a time of at least 0 (s)"           },
+  {LIFT "-lift_delay -2",              "-lift_delay -2 must not be negative (s)"                    },
   {LIFT "-lift_set foot_bottom",       "-lift_set foot_bottom is held by supports in all"          },
   {LIFT MORE "-more_directions xz",    "-more_set head_edge has nodes that another of the -motions"},
   {"-impulses hit -hit_impulse 1,0,0", "-hit_at must be given: the place x,y,z (m)"                },
-  {HIT "-hit_at 0,0,inf",              "-hit_at value inf must be a finite number (m)"             },
+  {HIT "-hit_at 0,0,inf",              "-hit_at value inf must be a finite number"                 },
   {"-impulses hit -hit_at 0,0,1",      "-hit_impulse must be given: three values (N s), zeros for" },
-  {HIT "-hit_time -1",                 "-hit_time -1 must be a time of at least 0 (s)"             },
+  {HIT "-hit_time -1",                 "-hit_time -1 must not be negative (s)"                      },
   {HIT "-hit_part neck",               "-hit_part neck is none of the -parts: foot, head"          },
   {HIT "-hit_at 0,0,0",                "-hit_impulse does nothing: the node at 0, 0, 0 m is held"  },
   {HIT LIFT,                           "-hit_impulse does nothing: the node at 0, 0, 1 m is held"  },

@@ -1,10 +1,10 @@
 /*
-   Unit test of base/ramp.h and of the options of a ramp.
+   Unit test of quantity/ramp.h and of the options of a ramp.
 
    References: the definitions, their values at places where they are rational, central differences of the integral.
 */
 #include "check.h"
-#include "base/ramp.h"
+#include "quantity/ramp.h"
 
 /* Breaks when: a ramp begins or ends elsewhere, is not 0 before and 1 after, or a shape is another curve */
 static int TestValues(void)
@@ -64,9 +64,7 @@ static PetscErrorCode Read(const char options[], Ramp *ramp, char words[160])
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscOptionsInsertString(NULL, options));
-  PetscOptionsBegin(PETSC_COMM_WORLD, "press_", "a load", NULL);
-  PetscCall(RampSetFromOptions(PetscOptionsObject, ramp));
-  PetscOptionsEnd();
+  PetscCall(RampSetFromOptions(PETSC_COMM_WORLD, "a load", "press", ramp));
   PetscCall(RampDescribe(ramp, 160, words));
   PetscFunctionReturn(0);
 }

@@ -129,12 +129,13 @@ static PetscErrorCode ValueCheckFinite(const char name[], const char value[])
 PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[])
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
-  char        name[MAX_WORD], value[MAX_WORD];
+  const char *value;
+  char        name[MAX_WORD];
   PetscBool   set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetString(PetscOptionsObject->options, prefix, option, value, sizeof(value), &set));
-  if (!set) PetscFunctionReturn(0);
+  PetscCall(PetscOptionsFindPair(PetscOptionsObject->options, prefix, option, &value, &set));
+  if (!set || !value) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", prefix, option + 1));
   PetscCall(ValueCheckFinite(name, value));
   PetscFunctionReturn(0);

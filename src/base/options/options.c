@@ -127,27 +127,6 @@ PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char n
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsReadList(MPI_Comm comm, const OptionsList *list, void *owner, PetscInt *n, void *records)
-{
-  char   **names, *record, prefix[MAX_NAME], title[MAX_NAME];
-  PetscInt count; /* *n, which stays 0 where the names are refused */
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(comm, list->option, list->help, &count, &names));
-  PetscCall(PetscCalloc((size_t)count * list->size, &record));
-  *(void **)records = record, *n = count;
-  for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
-  for (PetscInt i = 0; i < *n; i++, record += list->size) {
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", names[i]));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "%s %s", list->title, names[i]));
-    PetscOptionsBegin(comm, prefix, title, NULL);
-    PetscCall(list->read(PetscOptionsObject, owner, record));
-    PetscOptionsEnd();
-  }
-  PetscCall(PetscFree(names));
-  PetscFunctionReturn(0);
-}
-
 /* Whether an option without its dash, which begins with a name and _, is of another name of a list, which is longer */
 static PetscErrorCode OptionIsOfLonger(const char option[], size_t length, PetscBool *longer)
 {

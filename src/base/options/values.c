@@ -1,5 +1,5 @@
 /*
-   Values between PetscOptionsBegin() and PetscOptionsEnd(): arrays of a given length, sets, viewers; and finite numbers.
+   Values between PetscOptionsBegin() and PetscOptionsEnd(): arrays of a given length, viewers.
 */
 #include <squeal/options.h>
 #include <string.h>
@@ -131,24 +131,30 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetSomeReals(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                                   const char initial[], PetscReal values[3], PetscInt *n)
+PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[], const char initial[],
+                              const OptionsRoom *room, PetscInt *n)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
   char        now[MAX_TEXT];
-  PetscInt    count = MAX_REALS;
-  PetscReal   all[MAX_REALS];
+  PetscInt    count = room->most + 1, *integer; /* PETSc leaves out what is beyond */
+  PetscReal  *real;
   PetscBool   given;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_FALSE));
-  PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, all, &count, &given));
+  PetscCall(OptionsCheckWords(PetscOptionsObject, option, room->ints ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(PetscMalloc2(count, &real, count, &integer));
+  if (room->ints)
+    PetscCall(PetscOptionsGetIntArray(PetscOptionsObject->options, prefix, option, integer, &count, &given));
+  else
+    PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, real, &count, &given));
   *n = given ? count : 0;
-  PetscCheck(*n <= 3, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s%s has %" PetscInt_FMT " values; give at most 3", prefix, option + 1, *n);
-  PetscCall(PetscArraycpy(values, all, *n));
-  PetscCall(ArrayPrint(*n, values, NULL, now));
-  if (*n == 1) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)values[0])); /* as PETSc shows one number */
+  PetscCheck(*n <= room->most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s%s has more than %" PetscInt_FMT " values",
+             prefix, option + 1, room->most);
+  if (room->ints) PetscCall(PetscArraycpy(room->ints, integer, *n));
+  if (room->reals) PetscCall(PetscArraycpy(room->reals, real, *n));
+  PetscCall(PetscFree2(real, integer));
+  PetscCall(ArrayPrint(*n, room->reals, room->ints, now));
+  if (*n == 1 && room->reals) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)room->reals[0])); /* as PETSc shows one number */
   PetscCall(OptionsShow(PetscOptionsObject, option, help, *n ? now : initial, initial));
   PetscFunctionReturn(0);
 }
@@ -250,28 +256,5 @@ PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char h
   PetscCall(PetscObjectTypeCompare((PetscObject)*viewer, PETSCVIEWERASCII, &ascii));
   PetscCheck(ascii, comm, PETSC_ERR_USER_INPUT, "%s shows text: give ascii, or ascii:FILE, or ascii:FILE::append",
              option);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsGetSet(OptionsItems PetscOptionsObject, char **set)
-{
-  char name[256] = "";
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-set", "named surface, curve, point or volume of the mesh (required)", "options.h",
-                               name, name, sizeof(name), NULL));
-  PetscCheck(name[0], PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%sset must be given: a named set of the mesh",
-             PetscOptionsObject->prefix);
-  PetscCall(PetscStrallocpy(name, set));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsCheckFinite(MPI_Comm comm, const char name[], const char option[], const char unit[],
-                                  const PetscReal value[3])
-{
-  PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++)
-    PetscCheck(!PetscIsInfOrNanReal(value[d]), comm, PETSC_ERR_USER_INPUT,
-               "-%s_%s value %.6g must be a finite number (%s)", name, option, (double)value[d], unit);
   PetscFunctionReturn(0);
 }

@@ -98,11 +98,8 @@ static PetscErrorCode KindRead(MPI_Comm comm, const char name[], FrictionLaw *la
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < kind->n; j++) row[j] = kind->parameter[j].row;
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Friction of contact %s, law %s", name, kind->name));
+  PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
   PetscCall(QuantitiesReadOf(comm, name, &(QuantityTable){title, "frictionlaw.h", kind->n, row}, law));
-  for (PetscInt j = 0; j < kind->n; j++)
-    PetscCall(OptionsCheckFinite(comm, name, row[j].name + 1, row[j].unit ? row[j].unit : "without unit",
-                                 (const PetscReal[3]){law->parameter[j]}));
   PetscFunctionReturn(0);
 }
 
@@ -145,18 +142,15 @@ static PetscErrorCode LawCheck(MPI_Comm comm, const char name[], const FrictionL
 
 PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law)
 {
-  const char *word[N_KINDS + 1];
-  char        prefix[128], title[160];
-  PetscInt    chosen = 0;
+  const char         *word[N_KINDS + 1] = {NULL};
+  int                 chosen            = 0;
+  const Quantity      row   = {"-friction_law", "how friction depends on the slip speed", NULL, QUANTITY_WORD,
+                               .size = sizeof(chosen), .words = word};
+  const QuantityTable table = {"Friction of contact", "frictionlaw.h", 1, &row};
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Friction of contact %s", name));
-  PetscOptionsBegin(comm, prefix, title, NULL);
-  PetscCall(PetscOptionsEList("-friction_law", "how friction depends on the slip speed", "frictionlaw.h", word, N_KINDS,
-                              word[0], &chosen, NULL));
-  PetscOptionsEnd();
+  PetscCall(QuantitiesReadOf(comm, name, &table, &chosen));
   for (PetscInt k = 0; k < N_KINDS; k++) {
     FrictionLaw read = {.kind = k};
 

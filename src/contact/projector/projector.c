@@ -14,19 +14,14 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
   PetscCall(PetscCalloc1(1, projector));
   (*projector)->contact      = contact;
   (*projector)->n_interfaces = contact->n_interfaces;
-  (*projector)->max_it       = 1000;
+  PetscCall(QuantitiesInit(&projector_quantities, *projector));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  PetscOptionsBegin(p->contact->comm, NULL, "Contact forces in dynamics", NULL);
-  PetscCall(
-    OptionsGetInt(PetscOptionsObject, "-projector_max_it", "sweeps of Gauss-Seidel", p->max_it, &p->max_it, NULL));
-  PetscOptionsEnd();
-  PetscCheck(p->max_it > 0, p->contact->comm, PETSC_ERR_USER_INPUT,
-             "-projector_max_it %" PetscInt_FMT " must be positive", p->max_it);
+  PetscCall(QuantitiesRead(p->contact->comm, &projector_quantities, p));
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
   PetscFunctionReturn(0);
 }
@@ -42,8 +37,6 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);
   PetscCall(FrictionCheckNotNegative(comm, c->name, &c->friction));
-  PetscCheck(c->speed >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_speed %.6g must not be negative (m/s)", c->name,
-             (double)c->speed);
   PetscFunctionReturn(0);
 }
 

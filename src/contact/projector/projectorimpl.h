@@ -10,7 +10,7 @@
 #include <squeal/projector.h>
 #include "contact/contactimpl.h"
 #include "kernels/contact/cone.h"
-#include "base/ramp.h"
+#include "quantity/ramp.h"
 
 /* Sliding of the master of one interface */
 typedef struct {
@@ -21,6 +21,9 @@ typedef struct {
   PetscReal speed;   /* of the master about it, rad/s, or of the slave along it, m/s */
   Ramp      ramp;
 } ContactSliding;
+
+/* quantities.c - options of the projector; whether a master moves */
+extern const QuantityTable projector_quantities, sliding_quantities;
 
 /* Place of a master that moves: a point x of the ground is at x + d(x) in its frame, d(x) = D (x - centre) - shift, D =
    R' - I. D and shift are exactly 0 at rest, and D e = 0 for the axis e, so that no rounding enters a gap along it. */

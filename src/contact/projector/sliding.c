@@ -10,7 +10,6 @@
 */
 #include "projectorimpl.h"
 #include "base/algebra/vec3.h"
-#include <squeal/options.h>
 
 /* Axis and speed from the parameters of the interface */
 static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
@@ -26,20 +25,11 @@ static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
 
 PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, ContactSliding *sliding)
 {
-  static const char *const kinds[] = {"prescribed", "turning"};
-  const ContactInterface  *c       = &contact->interfaces[i];
-  PetscInt                 kind    = 0;
-  char                     prefix[128], title[160];
+  const ContactInterface *c = &contact->interfaces[i];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", c->name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "Contact %s in dynamics", c->name));
-  PetscOptionsBegin(contact->comm, prefix, title, NULL);
-  PetscCall(PetscOptionsEList("-kinematics", "add the sliding velocity, or move the master", "projector.h", kinds, 2,
-                              kinds[0], &kind, NULL));
-  PetscCall(RampSetFromOptions(PetscOptionsObject, &sliding->ramp));
-  PetscOptionsEnd();
-  sliding->turning = kind == 1 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(QuantitiesReadOf(contact->comm, c->name, &sliding_quantities, sliding));
+  PetscCall(RampSetFromOptions(contact->comm, "Ramp of contact", c->name, &sliding->ramp));
   SlidingSetAxis(c, sliding);
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
 
 #include "external.h"
 #include "forcepattern.h"
-#include "base/ramp.h"
+#include "quantity/ramp.h"
 
 /* A load of the model: F(t) = r(t) F */
 typedef struct {
@@ -31,6 +31,7 @@ typedef struct {
 /* Momentum J given to a node at a time */
 typedef struct {
   char        *name, *part; /* part is empty for any */
+  PetscBool    has_at, has_impulse;
   PetscReal    at[3], x[3]; /* place asked for and that of the node, m */
   PetscReal    impulse[3];  /* J, N s */
   PetscReal    time;        /* s */
@@ -70,6 +71,11 @@ struct _p_External {
   PetscReal *begun;  /* 1 when a step has been made */
   PetscReal *drives; /* power of the drives in the step before, on v_{n-1/2} + v_{n+1/2}, W */
 };
+
+/* quantities.c - velocity of a part, [3]; impulses, and what their rows do not say of one of an External */
+PETSC_INTERN const QuantityTable start_velocity;
+PETSC_INTERN const QuantityList  impulses_list;
+PETSC_INTERN PetscErrorCode      ImpulseCheck(MPI_Comm comm, void *external, void *impulse);
 
 /* layout.c - makes the memory as long as what is there needs; new numbers are 0 */
 PETSC_INTERN PetscErrorCode ExternalLayMemory(External external);

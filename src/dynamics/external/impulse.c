@@ -4,42 +4,15 @@
    takes over.
 */
 #include "externalimpl.h"
-#include <squeal/options.h>
 
-/* Raises an error for an impulse that is not complete */
-static PetscErrorCode ImpulseCheck(External external, const Impulse *hit, PetscBool placed, PetscBool strong)
+PetscErrorCode ImpulseCheck(MPI_Comm comm, void *external, void *impulse)
 {
-  const MPI_Comm comm = external->comm;
+  const Impulse *hit = impulse;
   PetscInt       part;
 
   PetscFunctionBeginUser;
-  PetscCheck(placed, comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", hit->name);
-  PetscCall(OptionsCheckFinite(comm, hit->name, "at", "m", hit->at));
-  PetscCall(OptionsCheckFinite(comm, hit->name, "impulse", "N s", hit->impulse));
-  PetscCheck(strong, comm, PETSC_ERR_USER_INPUT, "-%s_impulse must be given: three values (N s), zeros for none",
-             hit->name);
-  PetscCheck(hit->time >= 0 && !PetscIsInfOrNanReal(hit->time), comm, PETSC_ERR_USER_INPUT,
-             "-%s_time %.6g must be a time of at least 0 (s)", hit->name, (double)hit->time);
-  PetscCall(ModelFindPart(external->model, hit->name, hit->part, &part));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ImpulseRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  Impulse  *hit       = record;
-  char      part[256] = "";
-  PetscBool placed, strong;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z whose nearest node is hit, m (required)", 3,
-                            hit->at, &placed));
-  PetscCall(
-    PetscOptionsString("-part", "body of the node; any without it", "dynamics.h", part, part, sizeof(part), NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-impulse", "momentum in x,y,z, N s (required); zeros for none", 3,
-                            hit->impulse, &strong));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-time", "when, s", hit->time, &hit->time, NULL));
-  PetscCall(PetscStrallocpy(part, &hit->part));
-  PetscCall(ImpulseCheck(owner, hit, placed, strong));
+  (void)comm;
+  PetscCall(ModelFindPart(((External)external)->model, hit->name, hit->part, &part));
   PetscFunctionReturn(0);
 }
 
@@ -72,11 +45,8 @@ static PetscErrorCode ImpulsesOmitZero(External external)
 
 PetscErrorCode ImpulsesSetFromOptions(External external)
 {
-  static const OptionsList list = {"-impulses", "at nodes, each the prefix of its -at and -impulse", "Impulse",
-                                   sizeof(Impulse), ImpulseRead};
-
   PetscFunctionBeginUser;
-  PetscCall(OptionsReadList(external->comm, &list, external, &external->n_impulses, &external->impulses));
+  PetscCall(QuantitiesReadList(external->comm, &impulses_list, external, &external->n_impulses, &external->impulses));
   PetscCall(ImpulsesOmitZero(external));
   PetscFunctionReturn(0);
 }

@@ -7,7 +7,6 @@
 PetscErrorCode TimedLoadsSetFromOptions(External external)
 {
   const ModelScene *scene;
-  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(external->model, &scene));
@@ -17,11 +16,7 @@ PetscErrorCode TimedLoadsSetFromOptions(External external)
     TimedLoad *load = &external->loads[i];
 
     PetscCall(PetscStrallocpy(scene->loads[i].name, &load->name));
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", load->name));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Load %s in time", load->name));
-    PetscOptionsBegin(external->comm, prefix, title, NULL);
-    PetscCall(RampSetFromOptions(PetscOptionsObject, &load->ramp));
-    PetscOptionsEnd();
+    PetscCall(RampSetFromOptions(external->comm, "Ramp of load", load->name, &load->ramp));
   }
   PetscFunctionReturn(0);
 }

@@ -19,7 +19,6 @@
 PetscErrorCode MotionsSetFromOptions(External external)
 {
   const ModelScene *scene;
-  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(external->model, &scene));
@@ -29,11 +28,7 @@ PetscErrorCode MotionsSetFromOptions(External external)
     Drive *motion = &external->motions[i];
 
     motion->prescribed = &scene->motions[i];
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", motion->prescribed->name));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Motion %s in time", motion->prescribed->name));
-    PetscOptionsBegin(external->comm, prefix, title, NULL);
-    PetscCall(RampSetFromOptions(PetscOptionsObject, &motion->ramp));
-    PetscOptionsEnd();
+    PetscCall(RampSetFromOptions(external->comm, "Ramp of motion", motion->prescribed->name, &motion->ramp));
   }
   PetscFunctionReturn(0);
 }

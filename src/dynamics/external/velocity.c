@@ -3,27 +3,17 @@
    that are held or prescribed.
 */
 #include "externalimpl.h"
-#include <squeal/options.h>
 
 PetscErrorCode VelocitySetFromOptions(External external)
 {
   const ModelScene *scene;
-  char              prefix[128], title[160];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(external->model, &scene));
   external->n_parts = scene->n_parts;
   PetscCall(PetscCalloc1(3 * external->n_parts, &external->velocity));
-  for (PetscInt i = 0; i < external->n_parts; i++) {
-    PetscReal *v = &external->velocity[3 * i];
-
-    PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", scene->parts[i].name));
-    PetscCall(PetscSNPrintf(title, sizeof(title), "Start of part %s", scene->parts[i].name));
-    PetscOptionsBegin(external->comm, prefix, title, NULL);
-    PetscCall(OptionsGetReals(PetscOptionsObject, "-velocity", "at the start in x,y,z, m/s", 3, v, NULL));
-    PetscOptionsEnd();
-    PetscCall(OptionsCheckFinite(external->comm, scene->parts[i].name, "velocity", "m/s", v));
-  }
+  for (PetscInt i = 0; i < external->n_parts; i++)
+    PetscCall(QuantitiesReadOf(external->comm, scene->parts[i].name, &start_velocity, &external->velocity[3 * i]));
   PetscFunctionReturn(0);
 }
 

@@ -18,9 +18,6 @@
 
 #define PARALLEL 1e-6 /* sine of the angle below which two directions are the same */
 
-/* Axes that are given, as bits */
-enum { AXIS_1 = 1, AXIS_2 = 2, AXIS_3 = 4, AXIS_CYLINDER = 8, AXIS_CENTRE = 16, N_AXES = 5 };
-
 static const char *const axis_option[N_AXES] = {"axis_1", "axis_2", "axis_3", "cylinder_axis", "cylinder_centre"};
 
 /* Raises an error for another number of values than the number of moduli asks for */
@@ -44,18 +41,19 @@ static PetscErrorCode ConstantsCheckCounts(MPI_Comm comm, const char name[], Pet
 }
 
 /* Raises an error for axes that the material does not have, or lacks */
-static PetscErrorCode AxesCheckGiven(MPI_Comm comm, const char name[], PetscInt n_young, int given)
+static PetscErrorCode AxesCheckGiven(MPI_Comm comm, const char name[], PetscInt n_young, const PetscBool given[N_AXES])
 {
-  int first = 0;
+  int first = 0, bits = 0;
 
   PetscFunctionBeginUser;
-  while (first < N_AXES - 1 && !(given & 1 << first)) first++;
-  PetscCheck(n_young >= 2 || !given, comm, PETSC_ERR_USER_INPUT,
+  while (first < N_AXES - 1 && !given[first]) first++;
+  for (int k = 0; k < N_AXES; k++) bits |= given[k] ? 1 << k : 0;
+  PetscCheck(n_young >= 2 || !bits, comm, PETSC_ERR_USER_INPUT,
              "-%s_%s does nothing with one value of -%s_young: the material is isotropic", name, axis_option[first],
              name);
-  PetscCheck(n_young != 2 || given == AXIS_3, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(n_young != 2 || bits == 1 << AXIS_3, comm, PETSC_ERR_USER_INPUT,
              "-%s_young with two values needs -%s_axis_3, across the isotropic plane, and no other axis", name, name);
-  PetscCheck(n_young != 3 || given == (AXIS_1 | AXIS_2) || given == (AXIS_CYLINDER | AXIS_CENTRE), comm,
+  PetscCheck(n_young != 3 || bits == (1 << AXIS_1 | 1 << AXIS_2) || bits == (1 << AXIS_CYLINDER | 1 << AXIS_CENTRE), comm,
              PETSC_ERR_USER_INPUT,
              "-%s_young with three values needs either -%s_axis_1 and -%s_axis_2, or -%s_cylinder_axis and "
              "-%s_cylinder_centre, and no other axis",
@@ -93,16 +91,16 @@ static void AxesComplete(Anisotropy *a)
   Vec3Cross(a->axis[2], a->axis[0], a->axis[1]);
 }
 
-static PetscErrorCode AxesSet(MPI_Comm comm, const char name[], PetscReal given[N_AXES][3], Anisotropy *a)
+static PetscErrorCode AxesSet(MPI_Comm comm, const char name[], const PetscReal given[N_AXES][3], Anisotropy *a)
 {
   PetscFunctionBeginUser;
   if (a->n == 2 || a->cylinder) {
-    const int which = a->cylinder ? 3 : 2;
+    const int which = a->cylinder ? AXIS_CYLINDER : AXIS_3;
 
     PetscCall(PetscArraycpy(a->axis[2], given[which], 3));
     PetscCall(AxisNormalise(comm, name, which, a->axis[2]));
     AxesComplete(a);
-    PetscCall(PetscArraycpy(a->centre, given[4], 3));
+    PetscCall(PetscArraycpy(a->centre, given[AXIS_CENTRE], 3));
     PetscFunctionReturn(0);
   }
   for (int k = 0; k < 2; k++) {
@@ -169,44 +167,21 @@ static void ConstantsComplete(PetscInt n, const PetscReal young[3], const PetscR
   if (n == 2) e->shear[0] = young[0] / (2 * (1 + poisson[0]));
 }
 
-PetscErrorCode PartReadElasticity(OptionsItems PetscOptionsObject, Part *part)
+PetscErrorCode PartSetElasticity(MPI_Comm comm, Part *part)
 {
-  static const char *const help[N_AXES] = {"direction 1 of the material, x,y,z", "direction 2, made orthogonal to 1",
-                                           "direction across the isotropic plane of two -young",
-                                           "instead: 1 radial, 2 circumferential, 3 along this axis",
-                                           "a point of that axis, m"};
-  const MPI_Comm           comm         = PetscOptionsObject->comm;
-  Anisotropy              *a            = &part->anisotropy;
-  int                      given        = 0;
-  PetscInt                 n_young, n_poisson, n_shear;
-  PetscReal                young[3] = {0}, poisson[3] = {0.3}, shear[3] = {0}, axis[N_AXES][3] = {{0}};
+  const ElasticityAsked *asked = &part->asked;
+  Anisotropy            *a     = &part->anisotropy;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-young",
-                                "Young's modulus, Pa (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "",
-                                young, &n_young));
-  PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-poisson",
-                                "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", "0.3", poisson,
-                                &n_poisson));
-  PetscCall(OptionsGetSomeReals(PetscOptionsObject, "-shear", "of two or three -young: G_pz; G_12,G_13,G_23, Pa", "",
-                                shear, &n_shear));
-  for (int k = 0; k < N_AXES; k++) {
-    PetscBool set;
-    char      option[32];
-
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", axis_option[k]));
-    PetscCall(OptionsGetReals(PetscOptionsObject, option, help[k], 3, axis[k], &set));
-    if (set) given |= 1 << k;
-  }
-  part->young   = young[0];
-  part->poisson = poisson[0];
-  PetscCall(ConstantsCheckCounts(comm, part->name, n_young, n_poisson, n_shear));
-  PetscCall(AxesCheckGiven(comm, part->name, n_young, given));
-  if (n_young < 2) PetscFunctionReturn(0);
-  a->n        = n_young;
-  a->cylinder = given & AXIS_CYLINDER ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(AxesSet(comm, part->name, axis, a));
-  ConstantsComplete(n_young, young, poisson, shear, &a->constants);
+  part->young   = asked->young[0];
+  part->poisson = asked->poisson[0];
+  PetscCall(ConstantsCheckCounts(comm, part->name, asked->n_young, asked->n_poisson, asked->n_shear));
+  PetscCall(AxesCheckGiven(comm, part->name, asked->n_young, asked->given));
+  if (asked->n_young < 2) PetscFunctionReturn(0);
+  a->n        = asked->n_young;
+  a->cylinder = asked->given[AXIS_CYLINDER];
+  PetscCall(AxesSet(comm, part->name, asked->axis, a));
+  ConstantsComplete(a->n, asked->young, asked->poisson, asked->shear, &a->constants);
   PetscCall(ConstantsCheckDefinite(comm, part->name, a->n, &a->constants));
   OrthotropicStiffness(&a->constants, a->C);
   PetscFunctionReturn(0);

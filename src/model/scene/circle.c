@@ -11,64 +11,35 @@
 
 #define MOST_NODES   1000
 #define NEAR         0.05 /* of the radius: default of -tolerance */
-#define CHOOSE_PLACE "the middle of the part"
 
 /* The axis of words such as z+ */
-static PetscErrorCode CircleSetFace(Model model, const char face[], Circle *circle)
+static PetscErrorCode CircleSetFace(MPI_Comm comm, Circle *c)
 {
-  const char *axis = face[0] ? strchr("xyz", face[0]) : NULL;
+  const char *axis = c->face[0] ? strchr("xyz", c->face[0]) : NULL;
 
   PetscFunctionBeginUser;
-  PetscCheck(axis && (face[1] == '+' || face[1] == '-') && !face[2], model->comm, PETSC_ERR_USER_INPUT,
-             "-%s_face '%s' must be x+, x-, y+, y-, z+ or z-: the side of the body on which the circle lies",
-             circle->name, face);
-  circle->axis = (int)(axis - "xyz");
-  circle->side = face[1] == '+' ? 1 : -1;
+  PetscCheck(axis && (c->face[1] == '+' || c->face[1] == '-') && !c->face[2], comm, PETSC_ERR_USER_INPUT,
+             "-%s_face '%s' must be x+, x-, y+, y-, z+ or z-: the side of the body on which the circle lies", c->name, c->face);
+  c->axis = (int)(axis - "xyz");
+  c->side = c->face[1] == '+' ? 1 : -1;
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for a circle that is none */
-static PetscErrorCode CircleCheck(Model model, const Circle *c)
+PetscErrorCode CircleCheck(MPI_Comm comm, void *owner, void *record)
 {
+  Circle *c = record;
+
   PetscFunctionBeginUser;
-  PetscCheck(c->radius > 0 && !PetscIsInfOrNanReal(c->radius), model->comm, PETSC_ERR_USER_INPUT,
-             "-%s_radius %.6g must be given: a positive length (m)", c->name, (double)c->radius);
-  PetscCheck(c->n >= 3 && c->n <= MOST_NODES, model->comm, PETSC_ERR_USER_INPUT,
+  (void)owner;
+  PetscCall(CircleSetFace(comm, c));
+  if (!c->has_tolerance) c->tolerance = NEAR * c->radius;
+  PetscCheck(c->radius > 0, comm, PETSC_ERR_USER_INPUT, "-%s_radius %.6g must be given: a positive length (m)", c->name, (double)c->radius);
+  PetscCheck(c->n >= 3 && c->n <= MOST_NODES, comm, PETSC_ERR_USER_INPUT,
              "-%s_count %" PetscInt_FMT " must be given: nodes of the circle, 3 to %d", c->name, c->n, MOST_NODES);
-  PetscCheck(c->tolerance > 0 && !PetscIsInfOrNanReal(c->tolerance), model->comm, PETSC_ERR_USER_INPUT,
-             "-%s_tolerance %.6g must be a positive length (m)", c->name, (double)c->tolerance);
-  PetscCall(OptionsCheckFinite(model->comm, c->name, "centre", "m", c->centre));
+  PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be a positive length (m)", c->name,
+             (double)c->tolerance);
   PetscFunctionReturn(0);
 }
-
-static PetscErrorCode CircleRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  const Model model     = owner;
-  Circle     *circle    = record;
-  char        part[256] = "disc", face[8] = "z+";
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-radius", "m (required)", 0, &circle->radius, NULL));
-  PetscCall(OptionsGetInt(PetscOptionsObject, "-count", "nodes at equal angles (required)", 0, &circle->n, NULL));
-  PetscCall(PetscOptionsString("-part", "body that has them", "model.h", part, part, sizeof(part), NULL));
-  PetscCall(PetscOptionsString("-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", "model.h",
-                               face, face, sizeof(face), NULL));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-centre", "x,y,z, m; default " CHOOSE_PLACE, 3, circle->centre,
-                            &circle->has_centre));
-  circle->tolerance = NEAR * circle->radius;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-tolerance",
-                           "most distance of a node from its place, m; default a twentieth of the radius",
-                           circle->tolerance, &circle->tolerance, NULL));
-  PetscCall(PetscStrallocpy(part, &circle->part));
-  PetscCall(CircleSetFace(model, face, circle));
-  PetscCall(CircleCheck(model, circle));
-  PetscFunctionReturn(0);
-}
-
-const OptionsList circles_list = {"-circles",
-                                  "circles of nodes that histories and responses record, each the prefix of its "
-                                  "-radius and -count",
-                                  "Circle", sizeof(Circle), CircleRead};
 
 /* Distance from the circle's axis, m */
 static PetscReal CircleRadius(const Circle *c, const PetscReal x[3])

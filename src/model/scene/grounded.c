@@ -4,86 +4,47 @@
    mesh is as stiff as a coarse one.
 */
 #include "model/modelimpl.h"
-#include <squeal/options.h>
+#include "base/algebra/vec3.h"
 
-/* What a value may be called, its unit and help, by Spread */
-typedef struct {
-  const char *option, *unit, *help;
-} GroundedName;
-
-static const GroundedName spring_names[] = {
-  [SPREAD_EACH]  = {"stiffness",          "N/m",   "stiffness in x,y,z at every node, N/m"            },
-  [SPREAD_TOTAL] = {"stiffness_total",    "N/m",   "instead: stiffness in x,y,z of the whole set, N/m"},
-  [SPREAD_AREA]  = {"stiffness_per_area", "N/m^3", "instead: stiffness in x,y,z per area, N/m^3"      }
-};
-static const GroundedName dashpot_names[] = {
-  [SPREAD_EACH]  = {"viscosity",          "N s/m",   "viscosity in x,y,z at every node, N s/m"            },
-  [SPREAD_TOTAL] = {"viscosity_total",    "N s/m",   "instead: viscosity in x,y,z of the whole set, N s/m"},
-  [SPREAD_AREA]  = {"viscosity_per_area", "N s/m^3", "instead: viscosity in x,y,z per area, N s/m^3"      }
-};
-
-/* Raises an error for values that are all zero, negative or not finite */
-static PetscErrorCode GroundedCheck(MPI_Comm comm, const Grounded *g)
+/* Which of the three values is given, and its row; raises an error for none, two, and zeros alone */
+static PetscErrorCode GroundedSet(MPI_Comm comm, const QuantityTable *table, Grounded *g)
 {
-  PetscFunctionBeginUser;
-  PetscCheck(g->value[0] != 0 || g->value[1] != 0 || g->value[2] != 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_%s must be given: three values, not all zero", g->name, g->quantity);
-  for (int d = 0; d < 3; d++)
-    PetscCheck(g->value[d] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s value %.6g must not be negative", g->name,
-               g->quantity, (double)g->value[d]);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode GroundedRead(OptionsItems PetscOptionsObject, const GroundedName names[], Grounded *g)
-{
-  const MPI_Comm comm  = PetscOptionsObject->comm;
-  PetscInt       found = -1;
+  const Quantity *row   = &table->row[1]; /* behind -set */
+  PetscInt        found = -1;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetSet(PetscOptionsObject, &g->set));
-  for (int s = SPREAD_EACH; s <= SPREAD_AREA; s++) {
-    char      option[64];
-    PetscReal value[3] = {0, 0, 0};
-    PetscBool given;
-
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", names[s].option));
-    PetscCall(OptionsGetReals(PetscOptionsObject, option, names[s].help, 3, value, &given));
-    PetscCheck(!given || found < 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s and -%s_%s are given; give one of them",
-               g->name, names[found < 0 ? 0 : found].option, g->name, names[s].option);
-    if (!given) continue;
-    found = s;
-    PetscCall(PetscArraycpy(g->value, value, 3));
+  for (PetscInt s = SPREAD_EACH; s <= SPREAD_AREA; s++) {
+    PetscCheck(!g->given[s] || found < 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s and -%s_%s are given; give one of them", g->name,
+               row[PetscMax(found, 0)].name + 1, g->name, row[s].name + 1);
+    if (g->given[s]) found = s;
   }
-  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_%s, -%s_%s or -%s_%s must be given: three values, not all zero", g->name, names[SPREAD_EACH].option,
-             g->name, names[SPREAD_TOTAL].option, g->name, names[SPREAD_AREA].option);
+  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s, -%s_%s or -%s_%s must be given: three values, not all zero",
+             g->name, row[SPREAD_EACH].name + 1, g->name, row[SPREAD_TOTAL].name + 1, g->name,
+             row[SPREAD_AREA].name + 1);
   g->spread   = (Spread)found;
-  g->quantity = names[g->spread].option;
-  g->unit     = names[g->spread].unit;
-  PetscCall(GroundedCheck(comm, g));
+  g->quantity = row[found].name + 1;
+  g->unit     = row[found].unit;
+  PetscCall(PetscArraycpy(g->value, g->asked[found], 3));
+  PetscCheck(Vec3Dot(g->value, g->value) > 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s must be given: three values, not all zero",
+             g->name, g->quantity);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SpringRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode SpringCheck(MPI_Comm comm, void *owner, void *record)
 {
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(GroundedRead(PetscOptionsObject, spring_names, record));
+  PetscCall(GroundedSet(comm, &spring_quantities, record));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DashpotRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode DashpotCheck(MPI_Comm comm, void *owner, void *record)
 {
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(GroundedRead(PetscOptionsObject, dashpot_names, record));
+  PetscCall(GroundedSet(comm, &dashpot_quantities, record));
   PetscFunctionReturn(0);
 }
-
-const OptionsList springs_list  = {"-springs", "each the prefix of its -set and value", "Grounded spring",
-                                   sizeof(Grounded), SpringRead};
-const OptionsList dashpots_list = {"-dashpots", "each the prefix of its -set and value", "Grounded dashpot",
-                                   sizeof(Grounded), DashpotRead};
 
 PetscErrorCode GroundedSetUp(Model model)
 {

@@ -18,35 +18,6 @@
 #define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
 #define MAX_OPTION       256
 
-/* Reads three values that must not be negative; whether one of them is not zero */
-static PetscErrorCode JointReadThree(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                                     const char name[], PetscReal value[3])
-{
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetReals(PetscOptionsObject, option, help, 3, value, NULL));
-  for (int d = 0; d < 3; d++)
-    PetscCheck(value[d] >= 0 && isfinite(value[d]), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-               "-%s_%s value %.6g must be finite and not negative", name, option + 1, (double)value[d]);
-  PetscFunctionReturn(0);
-}
-
-/* What resists the motions, and where they are taken */
-static PetscErrorCode JointReadHolders(OptionsItems PetscOptionsObject, Joint *joint)
-{
-  PetscFunctionBeginUser;
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-at", "place of its motions, m; default the middle", 3, joint->at,
-                            &joint->has_at));
-  PetscCall(OptionsCheckFinite(PetscOptionsObject->comm, joint->name, "at", "m", joint->at));
-  PetscCall(JointReadThree(PetscOptionsObject, "-stiffness", "stiffness in x,y,z, N/m", joint->name, joint->stiffness));
-  PetscCall(JointReadThree(PetscOptionsObject, "-turn_stiffness", "stiffness about x,y,z, N m/rad", joint->name,
-                           &joint->stiffness[3]));
-  PetscCall(
-    JointReadThree(PetscOptionsObject, "-viscosity", "viscosity in x,y,z, N s/m", joint->name, joint->viscosity));
-  PetscCall(JointReadThree(PetscOptionsObject, "-turn_viscosity", "viscosity about x,y,z, N m s/rad", joint->name,
-                           &joint->viscosity[3]));
-  PetscFunctionReturn(0);
-}
-
 /* Whether there is anything but zeros */
 static PetscBool JointIsGiven(PetscInt n, const PetscReal value[])
 {
@@ -55,28 +26,12 @@ static PetscBool JointIsGiven(PetscInt n, const PetscReal value[])
   return PETSC_FALSE;
 }
 
-/* One side of a bushing; empty where it is not given */
-static PetscErrorCode JointReadSide(OptionsItems PetscOptionsObject, const char option[], const char help[], char **set)
+PetscErrorCode JointCheck(MPI_Comm comm, void *owner, void *record)
 {
-  char name[256] = "";
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString(option, help, "model.h", name, name, sizeof(name), NULL));
-  PetscCall(PetscStrallocpy(name, set));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode JointRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  const MPI_Comm comm  = PetscOptionsObject->comm;
-  Joint         *joint = record;
+  const Joint *joint = record;
 
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(JointReadSide(PetscOptionsObject, "-a", "named set of one side (required)", &joint->set[0]));
-  PetscCall(JointReadSide(PetscOptionsObject, "-b", "named set of the other side; default the ground", &joint->set[1]));
-  PetscCall(JointReadHolders(PetscOptionsObject, joint));
-  PetscCheck(joint->set[0][0], comm, PETSC_ERR_USER_INPUT, "-%s_a must be given: a named set of the mesh", joint->name);
   PetscCheck(strcmp(joint->set[0], joint->set[1]), comm, PETSC_ERR_USER_INPUT,
              "-%s_a and -%s_b both name %s: a bushing joins two sets, or one and the ground", joint->name, joint->name,
              joint->set[0]);
@@ -86,26 +41,18 @@ static PetscErrorCode JointRead(OptionsItems PetscOptionsObject, void *owner, vo
   PetscFunctionReturn(0);
 }
 
-/* Mass, and inertia of three or six values */
-static PetscErrorCode PointReadMass(OptionsItems PetscOptionsObject, Joint *joint)
+PetscErrorCode PointCheck(MPI_Comm comm, void *owner, void *record)
 {
-  const MPI_Comm comm = PetscOptionsObject->comm;
-  PetscReal      principal[3], axes[9], *J = joint->inertia;
-  PetscInt       n = 6;
-  PetscBool      given;
+  Joint          *joint = record;
+  const PetscInt  n     = joint->n_inertia;
+  PetscReal       principal[3], axes[9], *J = joint->inertia;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-mass", "mass, kg", joint->mass, &joint->mass, NULL));
-  PetscCall(OptionsCheckWords(PetscOptionsObject, "-inertia", PETSC_FALSE));
-  PetscCall(PetscOptionsRealArray("-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz, kg m^2",
-                                  "model.h", J, &n, &given));
-  PetscCheck(joint->mass >= 0 && isfinite(joint->mass), comm, PETSC_ERR_USER_INPUT,
-             "-%s_mass %.6g must be finite and not negative (kg)", joint->name, (double)joint->mass);
-  PetscCheck(!given || n == 3 || n == 6, comm, PETSC_ERR_USER_INPUT,
+  (void)owner;
+  joint->is_point = PETSC_TRUE;
+  if (!joint->set[1]) PetscCall(PetscStrallocpy("", &joint->set[1]));
+  PetscCheck(!n || n == 3 || n == 6, comm, PETSC_ERR_USER_INPUT,
              "-%s_inertia has %" PetscInt_FMT " values; give xx,yy,zz or xx,yy,zz,xy,xz,yz (kg m^2)", joint->name, n);
-  for (int i = 0; i < 6; i++)
-    PetscCheck(isfinite(J[i]), comm, PETSC_ERR_USER_INPUT, "-%s_inertia value %.6g must be finite", joint->name,
-               (double)J[i]);
   PetscCall(InertiaPrincipal(J, principal, axes));
   PetscCheck(principal[0] >= -INERTIA_ROUNDING * PetscAbsReal(principal[2]), comm, PETSC_ERR_USER_INPUT,
              "-%s_inertia: no body has the principal moments %.6g, %.6g, %.6g kg m^2, since one is negative",
@@ -116,30 +63,6 @@ static PetscErrorCode PointReadMass(OptionsItems PetscOptionsObject, Joint *join
              joint->name, (double)principal[0], (double)principal[1], (double)principal[2]);
   PetscFunctionReturn(0);
 }
-
-static PetscErrorCode PointRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  static const char *const joins[] = {"mean", "rigid"};
-  Joint                   *joint   = record;
-  PetscInt                 join    = 0;
-
-  PetscFunctionBeginUser;
-  (void)owner;
-  joint->is_point = PETSC_TRUE;
-  PetscCall(OptionsGetSet(PetscOptionsObject, &joint->set[0]));
-  PetscCall(PetscStrallocpy("", &joint->set[1]));
-  PetscCall(PetscOptionsEList("-join", "the set moves freely, the point with it in the mean; or as one rigid body",
-                              "model.h", joins, 2, joins[0], &join, NULL));
-  joint->rigid = join == 1 ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(JointReadHolders(PetscOptionsObject, joint));
-  PetscCall(PointReadMass(PetscOptionsObject, joint));
-  PetscFunctionReturn(0);
-}
-
-const OptionsList joints_list = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", "Bushing",
-                                 sizeof(Joint), JointRead};
-const OptionsList points_list = {"-points", "points joined to sets, each the prefix of its -set and -mass", "Point",
-                                 sizeof(Joint), PointRead};
 
 /* The option that asks for its rotations, empty for none, and whether anything acts on it at all */
 static PetscErrorCode JointAsked(Model model, const Joint *joint, char turns[MAX_OPTION], PetscBool *any)

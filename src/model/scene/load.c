@@ -13,64 +13,39 @@
 #include <squeal/options.h>
 
 /* The set of a load, or its point with the moment on it */
-static PetscErrorCode LoadReadPlace(OptionsItems PetscOptionsObject, Model model, Load *load)
+static PetscErrorCode LoadCheckPlace(MPI_Comm comm, Model model, Load *load)
 {
-  const MPI_Comm comm     = PetscOptionsObject->comm;
-  char           set[256] = "", point[256] = "";
-  PetscBool      has_moment;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-set", "named surface, curve, point or volume of the mesh (required) unless on a point",
-                               "model.h", "", set, sizeof(set), NULL));
-  PetscCall(PetscOptionsString("-point", "instead of a set: one of the -points", "model.h", point, point, sizeof(point),
-                               &load->on_point));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-moment", "on a point: moment about x,y,z, N m", 3, load->moment,
-                            &has_moment));
-  PetscCall(PetscStrallocpy(set, &load->set));
-  PetscCheck(!set[0] || !load->on_point, comm, PETSC_ERR_USER_INPUT,
+  load->on_point = load->on[0] ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(!load->set[0] || !load->on_point, comm, PETSC_ERR_USER_INPUT,
              "-%s_set and -%s_point are given; give one of them", load->name, load->name);
-  PetscCheck(set[0] || load->on_point, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(load->set[0] || load->on_point, comm, PETSC_ERR_USER_INPUT,
              "-%s_set must be given: a named set of the mesh; or -%s_point, one of the -points", load->name,
              load->name);
-  PetscCheck(!has_moment || load->on_point, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!load->has_moment || load->on_point, comm, PETSC_ERR_USER_INPUT,
              "-%s_moment does nothing without -%s_point, one of the -points", load->name, load->name);
-  PetscCall(OptionsCheckFinite(comm, load->name, "moment", "N m", load->moment));
-  if (load->on_point) PetscCall(JointFindPoint(model, load->name, point, &load->point));
+  if (load->on_point) PetscCall(JointFindPoint(model, load->name, load->on, &load->point));
   PetscFunctionReturn(0);
 }
 
-/* Place and force or pressure of one load */
-static PetscErrorCode LoadRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode LoadCheck(MPI_Comm comm, void *owner, void *record)
 {
-  const MPI_Comm comm = PetscOptionsObject->comm;
-  Load          *load = record;
-  PetscReal      sum  = 0;
-  PetscBool      has_force;
+  Load     *load = record;
+  PetscReal sum  = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LoadReadPlace(PetscOptionsObject, owner, load));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-force", "total force in x,y,z, N", 3, load->force, &has_force));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-pressure",
-                           "instead of a force: pressure on a surface, into the body, Pa", load->pressure,
-                           &load->pressure, &load->is_pressure));
-  PetscCheck(!has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
+  PetscCall(LoadCheckPlace(comm, owner, load));
+  PetscCheck(!load->has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
   PetscCheck(!load->is_pressure || !load->on_point, comm, PETSC_ERR_USER_INPUT,
              "-%s_pressure acts on a surface, -%s_set, and not on -%s_point", load->name, load->name, load->name);
-  if (load->is_pressure) {
-    PetscCheck(load->pressure != 0 && isfinite(load->pressure), comm, PETSC_ERR_USER_INPUT,
-               "-%s_pressure %.6g must be finite and not zero (Pa)", load->name, (double)load->pressure);
-    PetscFunctionReturn(0);
-  }
-  PetscCall(OptionsCheckFinite(comm, load->name, "force", "N", load->force));
+  PetscCheck(!load->is_pressure || load->pressure != 0, comm, PETSC_ERR_USER_INPUT, "-%s_pressure %.6g must be finite and not zero (Pa)",
+             load->name, (double)load->pressure);
   for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]) + PetscAbsReal(load->moment[d]);
-  PetscCheck(sum > 0, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(sum > 0 || load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force must be given: three values, not all zero (N); or -%s_pressure (Pa)", load->name, load->name);
   PetscFunctionReturn(0);
 }
-
-const OptionsList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", "Load",
-                                sizeof(Load), LoadRead};
 
 /* Adds -p int N_v n dA of the faces on this rank to f[3 v], and their area (m^2) to *area */
 static PetscErrorCode PressureAdd(Model model, const Load *load, PetscScalar f[], PetscReal *area)

@@ -16,11 +16,15 @@ static void MotionWord(const PetscBool direction[3], char word[4])
 }
 
 /* Directions from a word, and by default those in which something moves */
-static PetscErrorCode MotionSetDirections(MPI_Comm comm, PrescribedMotion *motion, const char word[], PetscBool set)
+PetscErrorCode MotionCheck(MPI_Comm comm, void *owner, void *record)
 {
+  PrescribedMotion *motion = record;
+  const char *const word   = motion->word;
+  const PetscBool   set    = motion->has_word;
   const PetscReal *x = motion->displacement;
 
   PetscFunctionBeginUser;
+  (void)owner;
   PetscCheck(!set || (word[0] && strspn(word, "xyz") == strlen(word)), comm, PETSC_ERR_USER_INPUT,
              "-%s_directions '%s' must be some of the letters x, y, z", motion->name, word);
   PetscCheck(set || x[0] != 0 || x[1] != 0 || x[2] != 0, comm, PETSC_ERR_USER_INPUT,
@@ -33,28 +37,6 @@ static PetscErrorCode MotionSetDirections(MPI_Comm comm, PrescribedMotion *motio
   }
   PetscFunctionReturn(0);
 }
-
-static PetscErrorCode MotionRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  const MPI_Comm    comm     = PetscOptionsObject->comm;
-  PrescribedMotion *motion   = record;
-  char              word[16] = "";
-  PetscBool         given;
-
-  PetscFunctionBeginUser;
-  (void)owner;
-  PetscCall(OptionsGetSet(PetscOptionsObject, &motion->set));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-displacement", "in x,y,z, m", 3, motion->displacement, NULL));
-  PetscCall(PetscOptionsString("-directions",
-                               "that are prescribed: some of x, y, z; by default those of the displacement", "model.h",
-                               word, word, sizeof(word), &given));
-  PetscCall(OptionsCheckFinite(comm, motion->name, "displacement", "m", motion->displacement));
-  PetscCall(MotionSetDirections(comm, motion, word, given));
-  PetscFunctionReturn(0);
-}
-
-const OptionsList motions_list = {"-motions", "prescribed displacements, each the prefix of its -set", "Motion",
-                                  sizeof(PrescribedMotion), MotionRead};
 
 PetscErrorCode ModelCheckMotion(Model model, const PrescribedMotion *motion, PetscInt n_held, PetscInt n_twice)
 {

@@ -8,28 +8,18 @@
 #include "base/process/fault.h"
 #include <squeal/options.h>
 
-/* Material of one part; nothing has a default that could pass unnoticed except Rayleigh factors of zero */
-static PetscErrorCode PartRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode PartCheck(MPI_Comm comm, void *owner, void *record)
 {
-  Part     *part         = record;
-  char      volume[1024] = "";
-  PetscBool given;
+  Part *part = record;
 
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(PetscOptionsString("-volume", "volume of the mesh that it is; default the part's own name", "model.h", volume,
-                               volume, sizeof(volume), &given));
-  PetscCall(PetscStrallocpy(given ? volume : part->name, &part->volume));
-  PetscCall(PartReadElasticity(PetscOptionsObject, part));
-  PetscCall(
-    OptionsGetReal(PetscOptionsObject, "-density", "density, kg/m^3 (required)", part->density, &part->density, NULL));
-  PetscCall(
-    OptionsGetReal(PetscOptionsObject, "-alpha", "Rayleigh factor of the mass, 1/s", part->alpha, &part->alpha, NULL));
-  PetscCall(
-    OptionsGetReal(PetscOptionsObject, "-beta", "Rayleigh factor of the stiffness, s", part->beta, &part->beta, NULL));
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-loss_factor", "loss factor at -model_loss_frequency, adds to beta",
-                           part->loss, &part->loss, NULL));
-  PetscCall(PartReadSpin(PetscOptionsObject, part));
+  if (!part->volume[0]) {
+    PetscCall(PetscFree(part->volume));
+    PetscCall(PetscStrallocpy(part->name, &part->volume));
+  }
+  PetscCall(PartSetElasticity(comm, part));
+  PetscCall(PartCheckSpin(comm, part));
   PetscFunctionReturn(0);
 }
 
@@ -42,8 +32,6 @@ PetscErrorCode PartsAddLoss(Model model)
   for (PetscInt i = 0; i < model->scene.n_parts; i++) {
     Part *p = &model->scene.parts[i];
 
-    PetscCheck(p->loss >= 0 && isfinite(p->loss), model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_loss_factor %.6g must be finite and not negative", p->name, (double)p->loss);
     PetscCheck(p->loss == 0 || omega > 0, model->comm, PETSC_ERR_USER_INPUT,
                "-%s_loss_factor %.6g needs -model_loss_frequency, Hz: in real arithmetic it is exact at one frequency",
                p->name, (double)p->loss);
@@ -55,9 +43,6 @@ PetscErrorCode PartsAddLoss(Model model)
              (double)model->scene.loss_frequency);
   PetscFunctionReturn(0);
 }
-
-const OptionsList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", "Part",
-                                sizeof(Part), PartRead};
 
 PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], PetscInt *index)
 {
@@ -90,9 +75,6 @@ PetscErrorCode PartsCheck(Model model)
                "-%s_density %.6g must be given and positive (kg/m^3)", p->name, (double)p->density);
     PetscCheck(p->anisotropy.n || (p->poisson > -1 && p->poisson < 0.5), model->comm, PETSC_ERR_USER_INPUT,
                "-%s_poisson %.6g must lie between -1 and 0.5, ends excluded", p->name, (double)p->poisson);
-    PetscCheck(p->alpha >= 0 && p->beta >= 0, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_alpha %.6g and -%s_beta %.6g must not be negative", p->name, (double)p->alpha, p->name,
-               (double)p->beta);
   }
   PetscFunctionReturn(0);
 }

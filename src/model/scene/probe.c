@@ -19,31 +19,17 @@ typedef struct {
   PetscInt  part, number, rank, vertex;
 } Candidate;
 
-/* Place and part of one probe */
-static PetscErrorCode ProbeRead(OptionsItems PetscOptionsObject, void *owner, void *record)
+PetscErrorCode ProbeCheck(MPI_Comm comm, void *owner, void *record)
 {
-  const Model model     = owner;
-  Probe      *probe     = record;
-  char        part[256] = "";
-  PetscInt    index;
-  PetscBool   given;
+  Probe   *probe = record;
+  PetscInt index;
 
   PetscFunctionBeginUser;
+  (void)comm;
   probe->vertex = -1;
-  PetscCall(
-    OptionsGetReals(PetscOptionsObject, "-at", "place x,y,z, m: the nearest node (required)", 3, probe->at, &given));
-  PetscCall(
-    PetscOptionsString("-part", "part that has the node; default any", "model.h", part, part, sizeof(part), NULL));
-  PetscCall(PetscStrallocpy(part, &probe->part));
-  PetscCheck(given, model->comm, PETSC_ERR_USER_INPUT, "-%s_at must be given: the place x,y,z (m)", probe->name);
-  PetscCall(OptionsCheckFinite(model->comm, probe->name, "at", "m", probe->at));
-  PetscCall(ModelFindPart(model, probe->name, probe->part, &index));
+  PetscCall(ModelFindPart(owner, probe->name, probe->part, &index));
   PetscFunctionReturn(0);
 }
-
-const OptionsList probes_list = {"-probes",
-                                 "places that histories and responses record, each the prefix of its -at and -part",
-                                 "Probe", sizeof(Probe), ProbeRead};
 
 static int CandidateCompare(const void *a, const void *b)
 {

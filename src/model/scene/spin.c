@@ -21,27 +21,16 @@
 #define SMOOTH 0.25 /* of the velocity: room for bolt holes, and for 13 facets around */
 #define ALONG  1e-8 /* sine of the angle below which two directions are the same */
 
-PetscErrorCode PartReadSpin(OptionsItems PetscOptionsObject, Part *part)
+PetscErrorCode PartCheckSpin(MPI_Comm comm, Part *part)
 {
-  const MPI_Comm comm = PetscOptionsObject->comm;
-  Spin          *s    = &part->spin;
-  PetscBool      has_axis, has_centre, named;
+  Spin *s = &part->spin;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-spin",
-                           "rad/s about -spin_axis, in modes: gyroscopic and centrifugal terms", s->rate, &s->rate,
-                           &s->given));
-  PetscCall(PetscOptionsHasName(PetscOptionsObject->options, PetscOptionsObject->prefix, "-spin", &named));
-  PetscCheck(!named || s->given, comm, PETSC_ERR_USER_INPUT, "-%s_spin has no value; give one, or leave the option out",
-             part->name);
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_axis", "x,y,z, about which a positive spin is right-handed", 3,
-                            s->axis, &has_axis));
-  PetscCall(OptionsGetReals(PetscOptionsObject, "-spin_centre", "a point of that axis, m", 3, s->centre, &has_centre));
-  PetscCheck(!s->given || (has_axis && has_centre), comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!s->given || (s->has_axis && s->has_centre), comm, PETSC_ERR_USER_INPUT,
              "-%s_spin %.6g needs -%s_spin_axis x,y,z and -%s_spin_centre x,y,z", part->name, (double)s->rate,
              part->name, part->name);
-  PetscCheck(s->given || !(has_axis || has_centre), comm, PETSC_ERR_USER_INPUT,
-             "-%s_spin_%s does nothing without -%s_spin", part->name, has_axis ? "axis" : "centre", part->name);
+  PetscCheck(s->given || !(s->has_axis || s->has_centre), comm, PETSC_ERR_USER_INPUT,
+             "-%s_spin_%s does nothing without -%s_spin", part->name, s->has_axis ? "axis" : "centre", part->name);
   PetscCheck(!s->given || Vec3Normalise(s->axis) > 0, comm, PETSC_ERR_USER_INPUT, "-%s_spin_axis 0,0,0 is no direction",
              part->name);
   PetscFunctionReturn(0);

@@ -11,30 +11,13 @@
 #include <unistd.h>
 
 static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
-static const char *const meanings[N_OPERATORS] = {"stiffness, N/m", "mass, kg", "damping, N s/m",
-                                                  "friction part per unit mu, N/m"};
-
-PetscErrorCode OperatorsLoadFromOptions(Operators o, OptionsItems PetscOptionsObject)
+PetscErrorCode OperatorsLoadFromOptions(Operators o)
 {
-  char name[64], help[160];
-
   PetscFunctionBeginUser;
-  for (int i = 0; i < N_OPERATORS; i++) {
-    PetscBool set;
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_load_%s", letters[i]));
-    PetscCall(PetscSNPrintf(help, sizeof(help), "PETSc binary file of the %s", meanings[i]));
-    PetscCall(OptionsGetPath(PetscOptionsObject, name, help, o->load[i], NULL));
-    PetscCall(PetscSNPrintf(name, sizeof(name), "-operators_dense_%s", letters[i]));
-    PetscCall(PetscSNPrintf(help, sizeof(help), "small dense matrix of the %s, rows one after another", meanings[i]));
-    PetscCall(PetscCalloc1(OPERATORS_MAX_DENSE, &o->dense[i]));
-    o->n_dense[i] = OPERATORS_MAX_DENSE;
-    PetscCall(OptionsCheckWords(PetscOptionsObject, name, PETSC_FALSE));
-    PetscCall(PetscOptionsRealArray(name, help, "operators.h", o->dense[i], &o->n_dense[i], &set));
-    if (!set) o->n_dense[i] = 0;
-    PetscCheck(!set || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
+  PetscCall(QuantitiesRead(o->comm, &operators_matrices, o));
+  for (int i = 0; i < N_OPERATORS; i++)
+    PetscCheck(!o->n_dense[i] || !o->load[i][0], o->comm, PETSC_ERR_USER_INPUT,
                "-operators_load_%s and -operators_dense_%s exclude each other", letters[i], letters[i]);
-  }
   PetscFunctionReturn(0);
 }
 

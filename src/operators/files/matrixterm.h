@@ -19,7 +19,9 @@ typedef struct _p_MatrixTerm {
   PetscReal         scale;
   PetscInt          n; /* factors */
   char             *parameter[OPERATORS_MAX_FACTORS];
-  PetscInt          power[OPERATORS_MAX_FACTORS];
+  PetscInt          n_powers, power[8]; /* given; one of each factor */
+  char              parameters[512];    /* as they are given */
+  PetscBool         has_parameters;
   /* read by MatrixTermsAdd() */
   Mat       A;
   PetscBool even; /* A is symmetric */

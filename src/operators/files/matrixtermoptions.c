@@ -16,85 +16,36 @@
 
 #define MAX_POWER 8 /* of one parameter: beyond, products overflow */
 
-/* The entries that are given inline */
-static PetscErrorCode MatrixTermReadDense(OptionsItems PetscOptionsObject, MatrixTerm *term)
+/* Factors of the coefficient: how many, their names and powers */
+static PetscErrorCode MatrixTermSetFactors(MPI_Comm comm, void *owner, void *record)
 {
-  PetscReal *value;
-  PetscInt   n = OPERATORS_MAX_DENSE;
-  PetscBool  set;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n, &value));
-  PetscCall(OptionsCheckWords(PetscOptionsObject, "-dense", PETSC_FALSE));
-  PetscCall(PetscOptionsRealArray("-dense", "or all entries of a small matrix, rows one after another", "operators.h",
-                                  value, &n, &set));
-  if (set) {
-    PetscCall(PetscMalloc1(n, &term->dense));
-    PetscCall(PetscArraycpy(term->dense, value, n));
-    term->n_dense = n;
-  }
-  PetscCall(PetscFree(value));
-  PetscFunctionReturn(0);
-}
-
-/* Factors of the coefficient */
-static PetscErrorCode MatrixTermReadFactors(OptionsItems PetscOptionsObject, MatrixTerm *term)
-{
-  const MPI_Comm comm      = PetscOptionsObject->comm;
-  char           text[512] = "", option[256], **words;
-  PetscInt       power[8] = {1, 1, 1, 1, 1, 1, 1, 1}, n_powers = 8;
-  int            n = 0;
-  PetscBool      set, powers = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString("-parameter", "numbers that it is proportional to, options of their own, e.g. speed",
-                               "operators.h", text, text, sizeof(text), &set));
-  PetscCall(OptionsCheckWords(PetscOptionsObject, "-power", PETSC_TRUE));
-  PetscCall(
-    PetscOptionsIntArray("-power", "power of each of them, e.g. 2 or -1", "operators.h", power, &n_powers, &powers));
-  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameter", term->name));
-  if (set) PetscCall(ValuesSplit(comm, option, text, ',', &n, &words));
-  PetscCheck(n <= OPERATORS_MAX_FACTORS, comm, PETSC_ERR_USER_INPUT, "%s names %d parameters; at most %d", option, n,
-             OPERATORS_MAX_FACTORS);
-  PetscCheck(!powers || n > 0, comm, PETSC_ERR_USER_INPUT, "-%s_power does nothing without %s, e.g. %s speed",
-             term->name, option, option);
-  PetscCheck(!powers || n_powers == n, comm, PETSC_ERR_USER_INPUT,
-             "-%s_power has %" PetscInt_FMT " values, %s names %d: give a power of each", term->name, n_powers, option,
-             n);
-  for (term->n = 0; term->n < n; term->n++) {
-    const PetscInt i = term->n;
-
-    PetscCall(OptionsCheckName(comm, option, words[i]));
-    PetscCheck(power[i] != 0 && PetscAbsInt(power[i]) <= MAX_POWER, comm, PETSC_ERR_USER_INPUT,
-               "-%s_power %" PetscInt_FMT " must be an integer from -%d to %d that is not zero", term->name, power[i],
-               MAX_POWER, MAX_POWER);
-    PetscCall(PetscStrallocpy(words[i], &term->parameter[i]));
-    term->power[i] = power[i];
-  }
-  if (set) PetscCall(PetscStrToArrayDestroy(n, words));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode MatrixTermRead(OptionsItems PetscOptionsObject, void *owner, void *record)
-{
-  static const char *const kinds[]      = {"stiffness", "damping", "mass"}; /* of OperatorsTermKind */
-  static const char *const symmetries[] = {"any", "symmetric", "skew"};
-  MatrixTerm              *term         = record;
-  PetscInt                 kind = 3, symmetry = MATRIX_ANY;
+  MatrixTerm *term     = record;
+  const PetscInt n_powers = term->n_powers;
+  char        option[256], **words;
+  int         n = 0;
 
   PetscFunctionBeginUser;
   (void)owner;
-  PetscCall(OptionsGetPath(PetscOptionsObject, "-file", "PETSc binary file of the matrix", term->file, NULL));
-  PetscCall(MatrixTermReadDense(PetscOptionsObject, term));
-  PetscCall(PetscOptionsEList("-kind", "what it is part of (required)", "operators.h", kinds, 3, "", &kind, NULL));
-  PetscCall(PetscOptionsEList("-symmetry", "what it must be, else the run stops", "operators.h", symmetries, 3,
-                              symmetries[0], &symmetry, NULL));
-  term->scale = 1;
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-scale", "a number that it is multiplied with", term->scale,
-                           &term->scale, NULL));
-  PetscCall(MatrixTermReadFactors(PetscOptionsObject, term));
-  term->kind     = (OperatorsTermKind)kind;
-  term->symmetry = (MatrixSymmetry)symmetry;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameter", term->name));
+  if (term->has_parameters) PetscCall(ValuesSplit(comm, option, term->parameters, ',', &n, &words));
+  PetscCheck(n <= OPERATORS_MAX_FACTORS, comm, PETSC_ERR_USER_INPUT, "%s names %d parameters; at most %d", option, n,
+             OPERATORS_MAX_FACTORS);
+  PetscCheck(!n_powers || n > 0, comm, PETSC_ERR_USER_INPUT, "-%s_power does nothing without %s, e.g. %s speed",
+             term->name, option, option);
+  PetscCheck(!n_powers || n_powers == n, comm, PETSC_ERR_USER_INPUT,
+             "-%s_power has %" PetscInt_FMT " values, %s names %d: give a power of each", term->name, n_powers, option,
+             n);
+  for (term->n = 0; term->n < n; term->n++) {
+    const PetscInt i = term->n, power = n_powers ? term->power[i] : 1;
+
+    PetscCall(OptionsCheckName(comm, option, words[i]));
+    PetscCheck(power != 0 && PetscAbsInt(power) <= MAX_POWER, comm, PETSC_ERR_USER_INPUT,
+               "-%s_power %" PetscInt_FMT " must be an integer from -%d to %d that is not zero", term->name, power,
+               MAX_POWER, MAX_POWER);
+    PetscCall(PetscStrallocpy(words[i], &term->parameter[i]));
+    term->power[i] = power;
+  }
+  if (term->has_parameters) PetscCall(PetscStrToArrayDestroy(n, words));
   PetscFunctionReturn(0);
 }
 
@@ -108,7 +59,7 @@ static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
              term->name, term->name);
   PetscCheck((int)term->kind < 3, comm, PETSC_ERR_USER_INPUT, "-%s_kind is missing: give stiffness, damping or mass",
              term->name);
-  PetscCheck(isfinite(term->scale) && term->scale != 0 && PetscAbsReal(term->scale) <= MATRIX_LARGEST, comm,
+  PetscCheck(term->scale != 0 && PetscAbsReal(term->scale) <= MATRIX_LARGEST, comm,
              PETSC_ERR_USER_INPUT, "-%s_scale %.6g must not be zero, and of at most 1e60", term->name,
              (double)term->scale);
   PetscFunctionReturn(0);
@@ -146,12 +97,12 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
 
 PetscErrorCode MatrixTermsSetFromOptions(Operators o)
 {
-  static const OptionsList list = {"-terms", "matrices from files, each the prefix of its -file and -kind", "Matrix",
-                                   sizeof(MatrixTerm), MatrixTermRead};
-  PetscBool                help, all;
+  const QuantityList list = {"-terms", "matrices from files, each the prefix of its -file and -kind", sizeof(MatrixTerm),
+                             &operators_term, MatrixTermSetFactors};
+  PetscBool          help, all;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsReadList(o->comm, &list, NULL, &o->n_named, &o->named));
+  PetscCall(QuantitiesReadList(o->comm, &list, NULL, &o->n_named, &o->named));
   PetscCall(HelpIsAsked(&help, &all));
   for (PetscInt t = 0; t < o->n_named && !help; t++) PetscCall(MatrixTermCheck(o->comm, &o->named[t]));
   PetscFunctionReturn(0);

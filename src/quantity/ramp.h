@@ -10,7 +10,7 @@
 */
 #pragma once
 
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <math.h>
 
 #define RAMP_PI 3.14159265358979323846
@@ -47,8 +47,7 @@ static inline double RampIntegral(const Ramp *ramp, double t)
 }
 
 /*@
-   RampSetFromOptions - reads a ramp between PetscOptionsBegin(), whose prefix names its owner, and PetscOptionsEnd().
-   Collective.
+   RampSetFromOptions - reads the ramp of a name; title heads it in -help, before the name. Collective.
 
    Options Database Keys (press_ being the prefix):
 +  -press_ramp <0>                      - length, s; 0 is a jump
@@ -60,7 +59,7 @@ static inline double RampIntegral(const Ramp *ramp, double t)
 
    Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite, and for a shape of no ramp on the command line.
 @*/
-PETSC_INTERN PetscErrorCode RampSetFromOptions(OptionsItems PetscOptionsObject, Ramp *ramp);
+PETSC_INTERN PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char name[], Ramp *ramp);
 
 /*@ RampDescribe - words that follow a load or motion, such as "smooth ramp over 0.002 s from 0.001 s" or "at once". Not
     collective. @*/

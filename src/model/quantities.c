@@ -1,0 +1,161 @@
+/* Options of the model, and of what a scene names: each name is the prefix of the rows of its list */
+#include "modelimpl.h"
+
+#define SET "named surface, curve, point or volume of the mesh (required)"
+
+#define PART(member)     QUANTITY_AT(Part, member)
+#define SUPPORT(member)  QUANTITY_AT(Support, member)
+#define GROUNDED(member) QUANTITY_AT(Grounded, member)
+#define JOINT(member)    QUANTITY_AT(Joint, member)
+#define LOAD(member)     QUANTITY_AT(Load, member)
+#define MOTION(member)   QUANTITY_AT(PrescribedMotion, member)
+#define PROBE(member)    QUANTITY_AT(Probe, member)
+#define CIRCLE(member)   QUANTITY_AT(Circle, member)
+#define MODEL(member)    QUANTITY_AT(struct _p_Model, member)
+
+/* Three of six values: along x, y, z, or about them */
+#define JOINT_THREE(member, first) .at = offsetof(Joint, member[first]), .size = 3 * sizeof(PetscReal)
+
+#define TABLE(title, rows) {title, "model.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows}
+
+static const char *const sources[] = {[PETSC_FALSE] = "rig", [PETSC_TRUE] = "file", NULL};
+static const char *const joins[]   = {[PETSC_FALSE] = "mean", [PETSC_TRUE] = "rigid", NULL};
+
+static const Quantity model[] = {
+  {"-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, QUANTITY_WORD, MODEL(from_file), .words = sources,
+   .given = offsetof(struct _p_Model, given)},
+  {"-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, QUANTITY_PATH, MODEL(file),
+   .given = offsetof(struct _p_Model, has_file)},
+  {"-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", NULL, QUANTITY_TEXT, MODEL(formulation),
+   .text = "incompatible", .given = offsetof(struct _p_Model, has_formulation)},
+  {"-model_gravity", "acceleration of gravity in x,y,z", "m/s^2", QUANTITY_REALS, MODEL(scene.gravity)},
+  {"-model_loss_frequency", "where the loss factors of the parts are exact", "Hz", QUANTITY_REAL, MODEL(scene.loss_frequency),
+   .given = offsetof(struct _p_Model, has_loss)},
+};
+
+const QuantityTable model_quantities = TABLE("Model", model);
+
+/* Young's moduli, Poisson's ratios and densities are checked with the mesh: the rig's own parts need no -parts for -help */
+static const Quantity part[] = {
+  {"-volume", "volume of the mesh that it is; default the part's own name", NULL, QUANTITY_NAME, PART(volume)},
+  {"-young", "Young's modulus (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST, PART(asked.young),
+   .count = offsetof(Part, asked.n_young), .text = ""},
+  {"-poisson", "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", NULL, QUANTITY_LIST, PART(asked.poisson),
+   .count = offsetof(Part, asked.n_poisson), .initial = 0.3, .text = "0.3"},
+  {"-shear", "shear modulus of two or three -young: G_pz or G_12,G_13,G_23", "Pa", QUANTITY_LIST, PART(asked.shear),
+   .count = offsetof(Part, asked.n_shear), .text = ""},
+  {"-axis_1", "direction 1 of the material, x,y,z", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_1]),
+   .given = offsetof(Part, asked.given[AXIS_1])},
+  {"-axis_2", "direction 2, made orthogonal to 1", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_2]),
+   .given = offsetof(Part, asked.given[AXIS_2])},
+  {"-axis_3", "direction across the isotropic plane of two -young", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_3]),
+   .given = offsetof(Part, asked.given[AXIS_3])},
+  {"-cylinder_axis", "instead: 1 radial, 2 circumferential, 3 along this axis", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_CYLINDER]),
+   .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
+  {"-cylinder_centre", "a point of that axis", "m", QUANTITY_REALS, PART(asked.axis[AXIS_CENTRE]),
+   .given = offsetof(Part, asked.given[AXIS_CENTRE])},
+  {"-density", "density (required)", "kg/m^3", QUANTITY_REAL, PART(density)},
+  {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE},
+  {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE},
+  {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss), QUANTITY_NOT_NEGATIVE},
+  {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL, PART(spin.rate),
+   .given = offsetof(Part, spin.given)},
+  {"-spin_axis", "x,y,z, about which a positive spin is right-handed", NULL, QUANTITY_REALS, PART(spin.axis),
+   .given = offsetof(Part, spin.has_axis)},
+  {"-spin_centre", "a point of that axis", "m", QUANTITY_REALS, PART(spin.centre), .given = offsetof(Part, spin.has_centre)},
+};
+static const Quantity support[] = {
+  {"-set", SET, NULL, QUANTITY_NAME, SUPPORT(set), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-fix", "directions that are held: some of x, y, z", NULL, QUANTITY_TEXT, SUPPORT(word), .text = "xyz"},
+};
+static const Quantity spring[] = {
+  {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-stiffness", "stiffness in x,y,z at every node", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]), QUANTITY_NOT_NEGATIVE,
+   .given = offsetof(Grounded, given[SPREAD_EACH])},
+  {"-stiffness_total", "instead: stiffness in x,y,z of the whole set", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_TOTAL]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+  {"-stiffness_per_area", "instead: stiffness in x,y,z per area", "N/m^3", QUANTITY_REALS, GROUNDED(asked[SPREAD_AREA]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
+};
+static const Quantity dashpot[] = {
+  {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-viscosity", "viscosity in x,y,z at every node", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]), QUANTITY_NOT_NEGATIVE,
+   .given = offsetof(Grounded, given[SPREAD_EACH])},
+  {"-viscosity_total", "instead: viscosity in x,y,z of the whole set", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_TOTAL]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+  {"-viscosity_per_area", "instead: viscosity in x,y,z per area", "N s/m^3", QUANTITY_REALS, GROUNDED(asked[SPREAD_AREA]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
+};
+
+/* What resists the motions of a bushing or a point, and where they are taken */
+#define HOLDERS \
+  {"-at", "place of its motions; default the middle", "m", QUANTITY_REALS, JOINT(at), .given = offsetof(Joint, has_at)}, \
+  {"-stiffness", "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0), QUANTITY_NOT_NEGATIVE}, \
+  {"-turn_stiffness", "stiffness about x,y,z", "N m/rad", QUANTITY_REALS, JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE}, \
+  {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE}, \
+  {"-turn_viscosity", "viscosity about x,y,z", "N m s/rad", QUANTITY_REALS, JOINT_THREE(viscosity, 3), QUANTITY_NOT_NEGATIVE}
+
+static const Quantity joint[] = {
+  {"-a", "named set of one side (required)", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-b", "named set of the other side; default the ground", NULL, QUANTITY_NAME, JOINT(set[1])},
+  HOLDERS,
+};
+static const Quantity point[] = {
+  {"-set", SET, NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-join", "the set moves freely, the point with it in the mean; or as one rigid body", NULL, QUANTITY_WORD, JOINT(rigid),
+   .words = joins},
+  HOLDERS,
+  {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE},
+  {"-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz", "kg m^2", QUANTITY_LIST, JOINT(inertia),
+   .count = offsetof(Joint, n_inertia)},
+};
+static const Quantity load[] = {
+  {"-set", SET " unless on a point", NULL, QUANTITY_NAME, LOAD(set)},
+  {"-point", "instead of a set: one of the -points", NULL, QUANTITY_NAME, LOAD(on)},
+  {"-moment", "on a point: moment about x,y,z", "N m", QUANTITY_REALS, LOAD(moment), .given = offsetof(Load, has_moment)},
+  {"-force", "total force in x,y,z", "N", QUANTITY_REALS, LOAD(force), .given = offsetof(Load, has_force)},
+  {"-pressure", "instead of a force: pressure on a surface, into the body", "Pa", QUANTITY_REAL, LOAD(pressure),
+   .given = offsetof(Load, is_pressure)},
+};
+static const Quantity motion[] = {
+  {"-set", SET, NULL, QUANTITY_NAME, MOTION(set), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-displacement", "in x,y,z", "m", QUANTITY_REALS, MOTION(displacement)},
+  {"-directions", "that are prescribed: some of x, y, z; by default those of the displacement", NULL, QUANTITY_TEXT, MOTION(word),
+   .given = offsetof(PrescribedMotion, has_word)},
+};
+static const Quantity probe[] = {
+  {"-at", "place x,y,z, m: the nearest node (required)", NULL, QUANTITY_REALS, PROBE(at), .given = offsetof(Probe, has_at),
+   .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
+  {"-part", "part that has the node; default any", NULL, QUANTITY_NAME, PROBE(part)},
+};
+static const Quantity circle[] = {
+  {"-radius", "m (required)", NULL, QUANTITY_REAL, CIRCLE(radius)},
+  {"-count", "nodes at equal angles (required)", NULL, QUANTITY_INT, CIRCLE(n)},
+  {"-part", "body that has them", NULL, QUANTITY_NAME, CIRCLE(part), .text = "disc"},
+  {"-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", NULL, QUANTITY_TEXT, CIRCLE(face), .text = "z+"},
+  {"-centre", "x,y,z; default the middle of the part", "m", QUANTITY_REALS, CIRCLE(centre), .given = offsetof(Circle, has_centre)},
+  {"-tolerance", "most distance of a node from its place; default a twentieth of the radius", "m", QUANTITY_REAL, CIRCLE(tolerance),
+   .given = offsetof(Circle, has_tolerance)},
+};
+
+static const QuantityTable parts = TABLE("Part", part), supports = TABLE("Support", support), joints = TABLE("Bushing", joint),
+                           points = TABLE("Point", point), loads = TABLE("Load", load), motions = TABLE("Motion", motion),
+                           probes = TABLE("Probe", probe), circles = TABLE("Circle", circle);
+const QuantityTable spring_quantities = TABLE("Grounded spring", spring), dashpot_quantities = TABLE("Grounded dashpot", dashpot);
+
+const QuantityList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", sizeof(Part), &parts, PartCheck};
+const QuantityList supports_list = {"-supports", "essential conditions, each the prefix of its -set and -fix", sizeof(Support),
+                                    &supports, SupportCheck};
+const QuantityList springs_list = {"-springs", "each the prefix of its -set and value", sizeof(Grounded), &spring_quantities, SpringCheck};
+const QuantityList dashpots_list = {"-dashpots", "each the prefix of its -set and value", sizeof(Grounded), &dashpot_quantities,
+                                    DashpotCheck};
+const QuantityList joints_list = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", sizeof(Joint), &joints, JointCheck};
+const QuantityList points_list = {"-points", "points joined to sets, each the prefix of its -set and -mass", sizeof(Joint), &points,
+                                  PointCheck};
+const QuantityList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load), &loads, LoadCheck};
+const QuantityList motions_list = {"-motions", "prescribed displacements, each the prefix of its -set", sizeof(PrescribedMotion),
+                                   &motions, MotionCheck};
+const QuantityList probes_list = {"-probes", "places that histories and responses record, each the prefix of its -at and -part",
+                                  sizeof(Probe), &probes, ProbeCheck};
+const QuantityList circles_list = {"-circles", "circles of nodes that histories and responses record, each the prefix of its -radius and "
+                                   "-count", sizeof(Circle), &circles, CircleCheck};

@@ -1,0 +1,172 @@
+/* One option, read where its row says. A value is read where it lies */
+#include "row.h"
+#include <string.h>
+
+static void *QuantityValue(const Quantity *row, void *owner)
+{
+  return (char *)owner + row->at;
+}
+
+/* One of the words of a row, kept as int */
+static PetscErrorCode QuantityReadWord(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
+                                       const char help[], int *value, PetscBool *given)
+{
+  PetscInt n = 0, chosen = *value;
+
+  PetscFunctionBeginUser;
+  PetscCheck(row->size == sizeof(*value), PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s is no enumeration", row->name);
+  while (row->words[n]) n++;
+  PetscCall(PetscOptionsEList(row->name, help, header, row->words, n, chosen < n ? row->words[chosen] : "", &chosen, given));
+  *value = (int)chosen;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode QuantityReadText(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
+                                       const char help[], char text[], PetscBool *given)
+{
+  char initial[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(initial, text, sizeof(initial))); /* the text is written before PETSc's help shows it */
+  PetscCall(PetscOptionsString(row->name, help, header, initial, text, row->size, given));
+  PetscFunctionReturn(0);
+}
+
+/* A word of any length that its owner keeps; unchanged where it is not given */
+static PetscErrorCode QuantityReadName(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
+                                       const char help[], char **name, PetscBool *given)
+{
+  char text[QUANTITY_HELP] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(text, *name, sizeof(text)));
+  PetscCall(PetscOptionsString(row->name, help, header, *name, text, sizeof(text), given));
+  PetscCall(PetscFree(*name));
+  PetscCall(PetscStrallocpy(text, name));
+  PetscFunctionReturn(0);
+}
+
+/* As many words as its place holds */
+static PetscErrorCode QuantityReadNames(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], char *name[],
+                                        PetscBool *given)
+{
+  const PetscInt most = (PetscInt)(row->size / sizeof(*name));
+  PetscInt       n    = most + 1;
+  char         **items;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &items));
+  PetscCall(OptionsGetItems(PetscOptionsObject, row->name, help, &n, items, given));
+  PetscCheck(!*given || n == most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has %" PetscInt_FMT " names; give %" PetscInt_FMT ": %s", PetscOptionsObject->prefix, row->name + 1, n, most, row->why);
+  for (PetscInt i = 0; i < most && *given; i++) name[i] = items[i];
+  PetscCall(PetscFree(items));
+  PetscFunctionReturn(0);
+}
+
+/* As many values as are given, in an array of its own */
+static PetscErrorCode QuantityReadMany(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], PetscReal **values,
+                                       PetscInt *n)
+{
+  PetscReal *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((size_t)row->most, &all));
+  PetscCall(OptionsGetSome(PetscOptionsObject, row->name, help, "0", &(OptionsRoom){(PetscInt)row->most, all, NULL}, n));
+  if (*n) PetscCall(PetscMalloc1(*n, values));
+  PetscCall(PetscArraycpy(*values, all, *n));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* At most as many values as its place holds; how many, stands at .count */
+static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], void *owner,
+                                       PetscBool *given)
+{
+  const PetscBool integers = row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
+  const size_t    size     = integers ? sizeof(PetscInt) : sizeof(PetscReal);
+  void           *value    = QuantityValue(row, owner);
+  PetscInt        n;
+
+  PetscFunctionBeginUser;
+  PetscCall(OptionsGetSome(PetscOptionsObject, row->name, help, row->text ? row->text : "0",
+                           &(OptionsRoom){(PetscInt)(row->size / size), integers ? NULL : value, integers ? value : NULL}, &n));
+  *given = n ? PETSC_TRUE : PETSC_FALSE;
+  if (*given) *(PetscInt *)((char *)owner + row->count) = n;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
+                                         void *value, PetscBool *given)
+{
+  PetscInt  *integer = value;
+  PetscReal *real    = value;
+
+  PetscFunctionBeginUser;
+  if (row->kind == QUANTITY_INT)
+    PetscCall(OptionsGetInt(PetscOptionsObject, row->name, help, *integer, integer, given));
+  else if (row->kind == QUANTITY_REAL)
+    PetscCall(OptionsGetReal(PetscOptionsObject, row->name, help, *real, real, given));
+  else
+    PetscCall(OptionsGetReals(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*real)), real, given));
+  PetscFunctionReturn(0);
+}
+
+/* The unit behind what the help says first, and whether it is required: "largest growth, 1/s (0: any)" */
+static PetscErrorCode HelpWithUnit(const Quantity *row, size_t size, char help[])
+{
+  const char  *second = strpbrk(row->help, ";(");
+  const size_t length = strlen(row->help);
+  size_t       first  = second ? (size_t)(second - row->help) : length;
+
+  PetscFunctionBeginUser;
+  if (first < length && first > 0 && row->help[first - 1] == ' ') first--;
+  if (row->unit)
+    PetscCall(PetscSNPrintf(help, size, "%.*s, %s%s", (int)first, row->help, row->unit, row->help + first));
+  else
+    PetscCall(PetscStrncpy(help, row->help, size));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner)
+{
+  void     *value = QuantityValue(row, owner);
+  PetscBool given = PETSC_FALSE;
+  char      help[QUANTITY_HELP];
+
+  PetscFunctionBeginUser;
+  PetscCall(HelpWithUnit(row, sizeof(help), help));
+  if (row->kind <= QUANTITY_MANY) PetscCall(OptionsCheckNumber(PetscOptionsObject, row->name));
+  switch (row->kind) {
+  case QUANTITY_BOOL:
+    PetscCall(OptionsGetBool(PetscOptionsObject, row->name, help, value));
+    PetscCall(PetscOptionsHasName(PetscOptionsObject->options, PetscOptionsObject->prefix, row->name, &given));
+    break;
+  case QUANTITY_WORD:
+    PetscCall(QuantityReadWord(PetscOptionsObject, header, row, help, value, &given));
+    break;
+  case QUANTITY_TEXT:
+    PetscCall(QuantityReadText(PetscOptionsObject, header, row, help, value, &given));
+    break;
+  case QUANTITY_NAMES:
+    PetscCall(QuantityReadNames(PetscOptionsObject, row, help, value, &given));
+    break;
+  case QUANTITY_MANY:
+    PetscCall(QuantityReadMany(PetscOptionsObject, row, help, value, (PetscInt *)((char *)owner + row->count)));
+    break;
+  case QUANTITY_NAME:
+    PetscCall(QuantityReadName(PetscOptionsObject, header, row, help, value, &given));
+    break;
+  case QUANTITY_PATH:
+    PetscCall(OptionsGetPath(PetscOptionsObject, row->name, help, value, &given));
+    break;
+  case QUANTITY_LIST:
+  case QUANTITY_INTS:
+    PetscCall(QuantityReadList(PetscOptionsObject, row, help, owner, &given));
+    break;
+  default:
+    PetscCall(QuantityReadNumber(PetscOptionsObject, row, help, value, &given));
+  }
+  if (row->given) *(PetscBool *)((char *)owner + row->given) = given;
+  PetscFunctionReturn(0);
+}
