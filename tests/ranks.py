@@ -29,7 +29,8 @@ def runs_of(check, runs):
 def ranks_of_runs(case, chosen, night):
     """Gives each run its numbers of ranks, by night those of the night too; all of these, in order, with `chosen` first. By day three
     of four bad inputs are tried on one rank in place of several, where a run begins much sooner."""
-    bad = [run for run in case["run"].values() if "error" in run and "ranks" not in run]
+    alone = re.compile("|".join(f"{{{name}}}" for name in case["run"]))  # without the results of another run
+    bad = [run for run in case["run"].values() if "error" in run and "ranks" not in run and not alone.search(str(run))]
     for run in case["run"].values():
         run["ranks"] = run.get("ranks", chosen) + (run.get("night", []) if night else [])
     for k, run in enumerate(bad):
