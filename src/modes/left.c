@@ -63,7 +63,7 @@ PetscErrorCode LeftMatch(Modes modes, const Window *window, PetscReal *worst, Pe
 {
   Spectrum       *right = &modes->right, *left = &modes->left_spectrum, matched;
   const PetscReal tiny =
-    PetscMax(window->scale, LEFT_RIGID * LeftLargest(right)); /* rigid modes: zeros up to the root of rounding */
+    PetscMax(window->known.scale, LEFT_RIGID * LeftLargest(right)); /* rigid modes: zeros up to the root of rounding */
   PetscBool *used;
 
   PetscFunctionBeginUser;

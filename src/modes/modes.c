@@ -137,13 +137,13 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
 {
   PetscFunctionBeginUser;
   if (!pencil->C || modes->damping == DAMPING_PEP) PetscFunctionReturn(0);
-  if (window->singular) /* undamped vectors orthonormal in M are no basis of unknowns without mass */
-    PetscCall(PetscStrncpy(window->why, "unknowns have no mass", sizeof(window->why)));
+  if (window->known.singular) /* undamped vectors orthonormal in M are no basis of unknowns without mass */
+    PetscCall(PetscStrncpy(window->route.why, "unknowns have no mass", sizeof(window->route.why)));
   else
-    PetscCall(ProjectSolve(modes, pencil, window, &window->project));
-  PetscCheck(window->project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
-             "-modes_damping project cannot be done: %s; use auto or pep", window->why);
-  if (window->project && modes->keep)
+    PetscCall(ProjectSolve(modes, pencil, window, &window->route.project));
+  PetscCheck(window->route.project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
+             "-modes_damping project cannot be done: %s; use auto or pep", window->route.why);
+  if (window->route.project && modes->keep)
     PetscCall(ShiftInvertCreate(pencil, DampedShift(window), PETSC_FALSE, &modes->progress, &modes->factor));
   PetscFunctionReturn(0);
 }
@@ -161,21 +161,21 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
   PetscCall(WindowFind(modes, window));
   PetscCall(WindowCheckCount(modes, window));
-  *none = window->expected == 0 && pencil.symmetric && !pencil.C ? PETSC_TRUE : PETSC_FALSE;
+  *none = window->known.expected == 0 && pencil.symmetric && !pencil.C ? PETSC_TRUE : PETSC_FALSE;
   if (*none) PetscFunctionReturn(0);
   PetscCall(ShiftsChoose(modes, &pencil, window));
   PetscCall(SolveProjected(modes, &pencil, window));
-  if (!window->project) PetscCall(SolveWhole(modes, &pencil, window));
+  if (!window->route.project) PetscCall(SolveWhole(modes, &pencil, window));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil)); /* which may have been freed meanwhile */
   *none = modes->right.n ? PETSC_FALSE : PETSC_TRUE;
-  if (*none) window->below = -1; /* which says nothing of a mode with friction or damping */
+  if (*none) window->known.below = -1; /* which says nothing of a mode with friction or damping */
   if (*none) PetscFunctionReturn(0);
   PetscCall(NullDecaysCorrect(modes, &pencil, window));
   PetscCall(QualityMeasure(modes, &pencil));
   PetscCall(ShiftInvertDestroy(&modes->counter));
-  if (window->rigid) PetscCall(TwinsDrop(modes, window));
-  if (window->rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
-  if (window->rigid) PetscCall(TwinsTrim(modes, window));
+  if (window->known.rigid) PetscCall(TwinsDrop(modes, window));
+  if (window->known.rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
+  if (window->known.rigid) PetscCall(TwinsTrim(modes, window));
   PetscCall(ShiftInvertDestroy(&modes->null));
   PetscCall(WindowDescribe(modes, window));
   PetscCall(SavedByDamping(modes, &pencil, window));
@@ -202,7 +202,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(ModesReset(modes));
   PetscCall(LimitBegin(modes));
   PetscCall(FindAll(modes, &window, &none));
-  if (!modes->n) PetscCall(ComplainNone(modes, window.below));
+  if (!modes->n) PetscCall(ComplainNone(modes, window.known.below));
   PetscCall(ModesLabel(modes));
   PetscFunctionReturn(0);
 }

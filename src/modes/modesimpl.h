@@ -79,33 +79,43 @@ struct _p_Modes {
   PetscInt       found, wanted; /* eigenvalues converged at the last restart, and how many are asked for */
 };
 
-/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s, and how many there are
-   about */
+/* What inertia and norms tell of the matrices */
 typedef struct {
-  PetscReal low, high, growth;
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  massless;        /* negative pivots of K - s M at any s, of unknowns without mass: no modes */
   PetscBool singular;        /* there are such unknowns */
   PetscInt  finite;          /* frictionless modes below `most`, where there are such unknowns and a count is asked for; or -1 */
   PetscReal most;            /* with these, larger ones are no modes but infinite; infinite where that is not known, rad/s */
-  PetscInt  extra;           /* eigenvalues to compute beyond those expected */
-  PetscBool guard;           /* those are wanted even where all of the window are found without */
   PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
-  PetscInt  count;           /* > 0: this many nearest to target instead, low and high unknown */
-  PetscReal target;          /* rad/s */
-  PetscBool mapped;          /* damping left the vectors as they were: C = alpha M + beta K */
-  PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
+  PetscInt  within;          /* damped: modes about as near to the shift as the window's corners; negative: not known */
+  PetscReal scale, zero;     /* far below any elastic mode yet above rounding; below it is zero by rounding: rad/s */
+  PetscReal damping;         /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
+} WindowKnown;
+
+/* How its modes were found */
+typedef struct {
+  PetscBool project;                   /* damped: by projection (project.c) */
+  PetscBool counted;                   /* there: inertia counts the undamped modes */
   PetscInt  n_basis;                   /* vectors of a projection */
-  PetscReal scale, zero;               /* far below any elastic mode yet above rounding; below it is zero by rounding: rad/s */
-  PetscReal edge[2];                   /* ends of the band by which modes were counted and are selected, rad/s */
-  PetscReal damping; /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
-  PetscInt  within;  /* damped: modes about as near to the shift as the window's corners; negative: not known */
-  PetscBool proven;  /* inertia counts what was found */
-  PetscReal worst;   /* largest relative difference of right and left eigenvalues */
-  PetscBool project; /* damped: by projection (project.c) */
-  PetscBool counted; /* there: inertia counts the undamped modes */
-  PetscReal beyond;  /* measure of damping there, or negative */
-  char      why[64]; /* why not by projection; empty where it was not tried */
+  PetscReal beyond;                    /* measure of damping there, or negative */
+  char      why[64];                   /* why not by projection; empty where it was not tried */
+  PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
+  PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
+  PetscBool proven;                    /* inertia counts what was found */
+  PetscReal worst;                     /* largest relative difference of right and left eigenvalues */
+} WindowRoute;
+
+/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s; what is known of them, and how they were
+   found */
+typedef struct {
+  PetscReal   low, high, growth;
+  PetscInt    count;   /* > 0: this many nearest to target instead, low and high unknown */
+  PetscReal   target;  /* rad/s */
+  PetscReal   edge[2]; /* ends of the band by which modes were counted and are selected, rad/s */
+  PetscInt    extra;   /* eigenvalues to compute beyond those expected */
+  PetscBool   guard;   /* those are wanted even where all of the window are found without */
+  WindowKnown known;
+  WindowRoute route;
 } Window;
 
 /* causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
@@ -176,7 +186,7 @@ PETSC_INTERN PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *
 PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window,
                                             ShiftInvert *si);
 /* project.c - right and left spectra of a damped pencil in the window by projection on undamped modes; done = false where
-   that route is not the one, window->why says why */
+   that route is not the one, window->route.why says why */
 PETSC_INTERN PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done);
 /* undamped.c - start vectors of a solver at random, not alike on all ranks: such a vector could miss what is not */
 PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);

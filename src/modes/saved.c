@@ -35,21 +35,21 @@ PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const W
     PetscCall(PetscSNPrintf(
       text, SAVED_LENGTH, "no damping: %" PetscInt_FMT " unknowns instead of %" PetscInt_FMT " of a quadratic problem",
       n, 2 * n));
-  else if (window->project && window->mapped)
+  else if (window->route.project && window->route.mapped)
     PetscCall(
       PetscSNPrintf(text, SAVED_LENGTH,
                     "damping is alpha M + beta K with %.6g 1/s, %.6g s: by a formula from the undamped modes, no "
                     "quadratic problem of %" PetscInt_FMT " unknowns",
-                    (double)window->mapped_alpha, (double)window->mapped_beta, 2 * n));
-  else if (window->project)
+                    (double)window->route.mapped_alpha, (double)window->route.mapped_beta, 2 * n));
+  else if (window->route.project)
     PetscCall(PetscSNPrintf(text, SAVED_LENGTH,
                             "weak damping on a basis of %" PetscInt_FMT
                             " vectors: no quadratic problem of %" PetscInt_FMT " unknowns",
-                            window->n_basis, 2 * n));
+                            window->route.n_basis, 2 * n));
   else
     PetscCall(PetscSNPrintf(text, SAVED_LENGTH,
                             "nothing by damping: a quadratic problem of %" PetscInt_FMT " unknowns%s%s", 2 * n,
-                            window->why[0] ? ", since " : "", window->why));
+                            window->route.why[0] ? ", since " : "", window->route.why));
   PetscFunctionReturn(0);
 }
 

@@ -33,7 +33,7 @@ static PetscErrorCode SpectrumCopy(const Spectrum *from, Spectrum *to)
 static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal shift)
 {
   PetscReal nearest  = PETSC_MAX_REAL,
-            farthest = window->singular && !window->count ? UndampedRadius(window, shift, s) : 0;
+            farthest = window->known.singular && !window->count ? UndampedRadius(window, shift, s) : 0;
 
   for (PetscInt i = 0; i < s->n; i++) {
     const PetscReal distance = SpectrumDistance(s, i, shift);
@@ -41,7 +41,7 @@ static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal 
     nearest  = PetscMin(nearest, distance);
     farthest = PetscMax(farthest, distance);
   }
-  return nearest < (window->singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE
+  return nearest < (window->known.singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE
                                                                                                       : PETSC_FALSE;
 }
 
@@ -66,7 +66,7 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
   PetscBool       complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  window->proven = proven;
+  window->route.proven = proven;
   for (int attempt = 0; attempt < 3; attempt++) {
     PetscCall(ModesSolveRight(modes, pencil, window, si));
     if (pencil->C) PetscCall(WindowCountRigid(modes, window, &modes->right));
@@ -76,9 +76,9 @@ PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Windo
       if (complete && modes->left) PetscCall(SpectrumCopy(&modes->right, &modes->left_spectrum));
     } else if (modes->left) {
       PetscCall(SpectrumSolve(modes, pencil, window, si, PETSC_TRUE, &modes->left_spectrum));
-      PetscCall(LeftMatch(modes, window, &window->worst, &complete));
+      PetscCall(LeftMatch(modes, window, &window->route.worst, &complete));
     }
-    if (!pencil->C && window->finite >= 0 && WindowLacks(window, &modes->right)) complete = PETSC_FALSE;
+    if (!pencil->C && window->known.finite >= 0 && WindowLacks(window, &modes->right)) complete = PETSC_FALSE;
     if (complete && !proven && !pencil->C && CopiesDoubtful(modes, window, &modes->right)) complete = PETSC_FALSE;
     if (complete) break;
     CopiesMakeRoom(modes, window, &modes->right);

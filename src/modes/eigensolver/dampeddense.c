@@ -6,7 +6,8 @@
 #include "modes/modesimpl.h"
 #include "basis/pencil.h"
 
-#define DENSE_ALWAYS 200  /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
+#define DENSE_ALWAYS 200 /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
+#define DENSE_DOUBLE 1e-7 /* of its size: an imaginary part that may be rounding */
 #define DENSE_MOST   400 /* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */
 #define DENSE_SHARE  4    /* many: one of so many */
 #define DENSE_OTHER  1.7  /* times the shift: the one of the transposed problem, which symmetric matrices leave the same otherwise */
@@ -53,6 +54,20 @@ static PetscErrorCode DenseGather(Mat A, PetscBool transposed, PetscInt n, Petsc
   PetscFunctionReturn(0);
 }
 
+/* Rounding makes of a double real eigenvalue, which critical damping has, a conjugate pair apart by the root of rounding: makes two
+   real ones of such a last one, both with the larger part of its vector */
+static void DensePart(PetscInt n, PetscInt *m, PetscComplex lambda[], PetscComplex X[])
+{
+  PetscComplex *x = &X[(*m - 1) * n], *twin = x + n;
+  PetscReal     size[2] = {0, 0};
+
+  if (cimag(lambda[*m - 1]) == 0 || PetscAbsReal(cimag(lambda[*m - 1])) > DENSE_DOUBLE * cabs(lambda[*m - 1])) return;
+  for (PetscInt i = 0; i < n; i++) size[0] += PetscSqr(creal(x[i])), size[1] += PetscSqr(cimag(x[i]));
+  for (PetscInt i = 0; i < n; i++) twin[i] = x[i] = size[1] > size[0] ? cimag(x[i]) : creal(x[i]);
+  lambda[*m] = lambda[*m - 1] = creal(lambda[*m - 1]);
+  ++*m;
+}
+
 /* Eigenvalues within a circle, its middle and radius, found about a shift, and their vectors X [m][n]; on rank 0 */
 static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shift, const PetscReal circle[2],
                                        PetscInt *m, PetscComplex lambda[], PetscComplex X[])
@@ -66,6 +81,7 @@ static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shif
     if (!DenseShiftedLambda(&w, i, &lambda[*m]) || cabs(lambda[*m] - circle[0]) > circle[1]) continue;
     DenseShiftedRight(&w, i, &X[*m * pencil->n]);
     ++*m;
+    DensePart(pencil->n, m, lambda, X);
   }
   PetscCall(DenseShiftedDestroy(&w));
   PetscFunctionReturn(0);

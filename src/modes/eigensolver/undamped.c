@@ -23,10 +23,10 @@ static PetscErrorCode UndampedDropInfinite(const Window *window, PetscReal shift
   PetscReal nearest = PETSC_MAX_REAL;
 
   PetscFunctionBeginUser;
-  if (!window->singular) PetscFunctionReturn(0);
+  if (!window->known.singular) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < s->n; i++) nearest = PetscMin(nearest, SpectrumDistance(s, i, shift));
   for (PetscInt i = s->n; i-- > 0;)
-    if (SpectrumDistance(s, i, shift) > UNDAMPED_INFINITE * nearest || hypot(s->sigma[i], s->omega[i]) > window->most)
+    if (SpectrumDistance(s, i, shift) > UNDAMPED_INFINITE * nearest || hypot(s->sigma[i], s->omega[i]) > window->known.most)
       PetscCall(SpectrumRemove(s, i));
   PetscFunctionReturn(0);
 }
@@ -208,7 +208,7 @@ static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *penc
 {
   const Undamped u = {modes, pencil, window, si};
   PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2
-                                           : window->expected >= 0 ? window->expected
+                                           : window->known.expected >= 0 ? window->known.expected
                                                                    : 40);
   PetscBool      covered = PETSC_FALSE;
 
@@ -239,7 +239,7 @@ static PetscBool UndampedLacks(const Window *window, PetscReal shift, const Spec
 {
   PetscReal nearest = PETSC_MAX_REAL, farthest = 0, reach;
 
-  if (!window->singular || !window->count) return PETSC_FALSE;
+  if (!window->known.singular || !window->count) return PETSC_FALSE;
   if (WindowLacks(window, s)) return PETSC_TRUE;
   reach = WindowNearest(window, s);
   for (PetscInt i = 0; i < s->n; i++) {
@@ -256,8 +256,8 @@ static PetscBool UndampedLacks(const Window *window, PetscReal shift, const Spec
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {
-  const PetscReal least = PetscSqr(10 * window->scale);
-  const PetscReal most  = PetscMax(1e8 * PetscSqr(window->scale), UNDAMPED_AWAY * PetscSqr(window->target));
+  const PetscReal least = PetscSqr(10 * window->known.scale);
+  const PetscReal most  = PetscMax(1e8 * PetscSqr(window->known.scale), UNDAMPED_AWAY * PetscSqr(window->target));
 
   PetscFunctionBeginUser;
   PetscCall(UndampedSolveAbout(modes, pencil, window, si, transposed, spectrum));

@@ -52,7 +52,7 @@ static void SideMeasure(const Projection *p, PetscBool left, const ComplexColumn
     length      = bound * hypot(x[at], two ? x[at + 1] : 0);
     backward[i] = hypot(r[at], two ? r[at + 1] : 0) / length;
     remains     = PetscMax(CORRECT_BELOW * p->limit[left], PROJECTION_KEEP * backward[i]) * length;
-    if (backward[i] <= p->limit[left] || (p->window->rigid && size <= p->window->scale)) remains = INFINITY;
+    if (backward[i] <= p->limit[left] || (p->window->known.rigid && size <= p->window->known.scale)) remains = INFINITY;
     for (PetscInt j = at; j <= at + two; j++) tolerance[j] = remains;
   }
 }

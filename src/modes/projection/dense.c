@@ -146,7 +146,7 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
     PetscCall(PetscArraycpy(x, &before->vectors[side][i * before->size], before->size));
     if (before->backward[side][i] <= p->limit[side]) modes->backward[side][i] = before->backward[side][i];
   }
-  if ((p->window->rigid && cabs(was) <= p->window->scale) ||
+  if ((p->window->known.rigid && cabs(was) <= p->window->known.scale) ||
       (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
     PetscFunctionReturn(0);
   PetscCall(

@@ -49,7 +49,7 @@ PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBl
 
   PetscFunctionBeginUser;
   p->alpha = p->beta = 0;
-  unit               = PetscMax(unit, PetscSqr(p->window->scale));
+  unit               = PetscMax(unit, PetscSqr(p->window->known.scale));
   for (PetscInt j = 0; j < modal[0].n; j++) {
     const PetscInt  i     = modal[0].mode[j];
     const PetscReal kappa = right->omega[i] * right->omega[i] / unit;

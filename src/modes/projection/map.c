@@ -59,7 +59,7 @@ PetscErrorCode ProjectionIsZero(const Projection *p, const Spectrum *s, PetscInt
 
   PetscFunctionBeginUser;
   *zero = PETSC_FALSE;
-  if (size > p->window->scale) PetscFunctionReturn(0);
+  if (size > p->window->known.scale) PetscFunctionReturn(0);
   PetscCall(VecDuplicate(s->xr[i], &diagonal));
   PetscCall(VecDuplicate(s->xr[i], &work));
   PetscCall(MatMult(p->pencil->M, s->xr[i], work));

@@ -58,14 +58,14 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
                                     PetscReal *reach, PetscBool *complete)
 {
   Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
-  const PetscBool counted = undamped->symmetric && window->expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool counted = undamped->symmetric && window->known.expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
   Window          wide    = *window;
 
   PetscFunctionBeginUser;
   PetscCall(ModesSolveRight(modes, undamped, window, si));
-  window->counted = counted;
+  window->route.counted = counted;
   *reach          = right->reach;
-  *complete       = !counted || CountInBand(window, right) == window->expected ? PETSC_TRUE : PETSC_FALSE;
+  *complete       = !counted || CountInBand(window, right) == window->known.expected ? PETSC_TRUE : PETSC_FALSE;
   if (!modes->left || counted) PetscFunctionReturn(0);
   PetscCall(UndampedSolve(modes, undamped, window, si, PETSC_TRUE, left));
   *reach = PetscMin(right->reach, left->reach);
@@ -74,7 +74,7 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
   PetscCall(SpectrumTrim(si->shift, *reach, left));
   *complete = right->n == left->n ? PETSC_TRUE : PETSC_FALSE;
   wide.low = 0, wide.high = PETSC_MAX_REAL, wide.count = 0;
-  if (*complete) PetscCall(LeftMatch(modes, &wide, &window->worst, complete));
+  if (*complete) PetscCall(LeftMatch(modes, &wide, &window->route.worst, complete));
   if (*complete && CopiesDoubtful(modes, window, right)) *complete = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -119,7 +119,7 @@ static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *foun
                       "%" PetscInt_FMT " modes on %" PetscInt_FMT
                       " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
                       " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
-                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns, (double)p->window->beyond,
+                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns, (double)p->window->route.beyond,
                       (double)found->lambda_reach, (double)p->reach));
   PetscFunctionReturn(0);
 }
@@ -177,10 +177,10 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   Spectrum right, left = {.n = 0};
 
   PetscFunctionBeginUser;
-  window->beyond       = 0;
-  window->mapped       = PETSC_TRUE;
-  window->mapped_alpha = p->alpha;
-  window->mapped_beta  = p->beta;
+  window->route.beyond       = 0;
+  window->route.mapped       = PETSC_TRUE;
+  window->route.mapped_alpha = p->alpha;
+  window->route.mapped_beta  = p->beta;
   PetscCall(ProjectionMap(p, &modes->right, &right));
   if (modes->left) PetscCall(ProjectionMap(p, modes->left_spectrum.n ? &modes->left_spectrum : &modes->right, &left));
   PetscCall(SpectraDestroy(modes));
@@ -221,15 +221,15 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   p->limit[1] = PROJECT_LEFT;
   p->finer    = 1;
   PetscCall(AddModal(p, modal));
-  window->beyond = 0;
-  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->beyond));
-  if (window->beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
+  window->route.beyond = 0;
+  if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->route.beyond));
+  if (window->route.beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
   if (*why) PetscFunctionReturn(0);
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
   PetscCall(Iterate(p, &found, &settled));
   if (settled) PetscCall(PutModes(p, &found));
-  window->n_basis = found.size;
+  window->route.n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
   PetscCall(ProjectionModesDestroy(&found));
   PetscFunctionReturn(0);
@@ -243,11 +243,11 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   PetscBool  exact, zero;
 
   PetscFunctionBeginUser;
-  window->rigid  = 0;
-  window->mapped = PETSC_FALSE;
+  window->known.rigid  = 0;
+  window->route.mapped = PETSC_FALSE;
   for (PetscInt i = 0; i < modes->right.n; i++) {
     PetscCall(ProjectionIsZero(p, &modes->right, i, &zero));
-    window->rigid += zero;
+    window->known.rigid += zero;
   }
   PetscCall(ModalBlocksCreate(p, &modes->right, &modes->left_spectrum, modal));
   PetscCall(ProjectionFit(p, &modes->right, modal));
@@ -296,10 +296,10 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
     if (complete) PetscCall(AddDamping(&p, window, &why));
   }
   *done = why ? PETSC_FALSE : PETSC_TRUE;
-  if (why && why != why_whole) PetscCall(PetscStrncpy(window->why, why, sizeof(window->why)));
+  if (why && why != why_whole) PetscCall(PetscStrncpy(window->route.why, why, sizeof(window->route.why)));
   if (why) PetscCall(SpectraDestroy(modes));
   window->guard = PETSC_FALSE;
-  if (why) window->extra = 6, window->rigid = 0;
+  if (why) window->extra = 6, window->known.rigid = 0;
   PetscCall(SubspaceDestroy(&p.space));
   PetscCall(ShiftInvertDestroy(&p.si));
   PetscFunctionReturn(0);

@@ -51,10 +51,10 @@ static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, 
   PetscBool  null;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(window->rigid, &error));
+  PetscCall(PetscMalloc1(window->known.rigid, &error));
   PetscCall(NullFactor(modes, pencil, window));
-  PetscCall(NullIterate(modes, pencil, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, window->rigid, d->y, error));
-  for (PetscInt j = 0; j < window->rigid; j++) {
+  PetscCall(NullIterate(modes, pencil, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, window->known.rigid, d->y, error));
+  for (PetscInt j = 0; j < window->known.rigid; j++) {
     PetscCall(DecayIsNull(pencil->K, d->y[j], d->work, &null));
     if (null) PetscCall(VecSwap(d->y[j], d->y[d->n++]));
   }
@@ -155,15 +155,15 @@ PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, cons
   Decays               d        = {.pencil = damped};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; i++) n += DecayIs(s, i, window->scale);
-  if (!n || !damped->C || !window->rigid || window->mapped) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < s->n; i++) n += DecayIs(s, i, window->known.scale);
+  if (!n || !damped->C || !window->known.rigid || window->route.mapped) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(damped->K, &d.work[0], &d.work[1]));
-  PetscCall(VecDuplicateVecs(d.work[0], window->rigid, &d.y));
+  PetscCall(VecDuplicateVecs(d.work[0], window->known.rigid, &d.y));
   PetscCall(DecaysFindNull(modes, &undamped, window, &d));
   for (PetscInt i = 0; i < s->n && d.n; i++)
-    if (DecayIs(s, i, window->scale)) PetscCall(DecayCorrect(modes, &d, i));
+    if (DecayIs(s, i, window->known.scale)) PetscCall(DecayCorrect(modes, &d, i));
   PetscCall(DecaysSort(modes));
-  PetscCall(VecDestroyVecs(window->rigid, &d.y));
+  PetscCall(VecDestroyVecs(window->known.rigid, &d.y));
   PetscCall(VecDestroy(&d.work[0]));
   PetscCall(VecDestroy(&d.work[1]));
   PetscFunctionReturn(0);

@@ -22,7 +22,7 @@ PetscErrorCode TwinsDrop(Modes modes, const Window *window)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < modes->n; i++) n_rigid += modes->mode[i].rigid;
-  for (PetscInt i = modes->n - 1; i >= 0 && n_rigid > window->rigid; i--) {
+  for (PetscInt i = modes->n - 1; i >= 0 && n_rigid > window->known.rigid; i--) {
     if (!modes->mode[i].rigid) continue;
     PetscCall(ModeRemove(modes, i));
     n_rigid--;

@@ -57,7 +57,7 @@ PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Windo
 {
   PetscFunctionBeginUser;
   if (modes->null.ksp) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCreate(pencil, -PetscSqr(10 * window->scale), PETSC_FALSE, &modes->progress, &modes->null));
+  PetscCall(ShiftInvertCreate(pencil, -PetscSqr(10 * window->known.scale), PETSC_FALSE, &modes->progress, &modes->null));
   PetscFunctionReturn(0);
 }
 
@@ -213,12 +213,12 @@ PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, cons
   PetscFunctionBeginUser;
   PetscCall(NullIsGood(modes, &n, &good));
   if (!n) PetscFunctionReturn(0);
-  if (good && n == window->rigid) {
+  if (good && n == window->known.rigid) {
     PetscCall(NullList(modes, n));
     PetscFunctionReturn(0);
   }
   PetscCall(NullFactor(modes, &pencil, window));
-  if (n < window->rigid) PetscCall(NullCount(modes, &pencil, window->rigid, &found));
+  if (n < window->known.rigid) PetscCall(NullCount(modes, &pencil, window->known.rigid, &found));
   n = PetscMax(n, found);
   PetscCall(NullList(modes, n));
   PetscCall(MatCreateVecs(pencil.K, &like, NULL));

@@ -32,21 +32,21 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  if (window->expected < 0 || window->count) PetscFunctionReturn(0);
+  if (window->known.expected < 0 || window->count) PetscFunctionReturn(0);
   CountReal(modes, &rows, &pairs, &at_zero);
-  if (at_zero && window->rigid)
+  if (at_zero && window->known.rigid)
     PetscCall(PetscSNPrintf(zeros, sizeof(zeros), "; %" PetscInt_FMT " at zero, one for each motion that nothing resists, K x = 0",
                             at_zero));
   if (rows != pairs)
     PetscCall(PetscSNPrintf(real, sizeof(real),
                             "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s",
                             rows, pairs, pairs == 1 ? "" : "s"));
-  if (modes->n - rows + pairs != window->expected)
+  if (modes->n - rows + pairs != window->known.expected)
     PetscCall(PetscStrncpy(other, ", the others lie beyond that growth or have left the band", sizeof(other)));
-  if (modes->n - rows + pairs > window->expected)
+  if (modes->n - rows + pairs > window->known.expected)
     PetscCall(PetscStrncpy(other, ", the others came into the band by friction, damping or spin", sizeof(other)));
   PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s",
-                          zeros, real, window->expected, other));
+                          zeros, real, window->known.expected, other));
   PetscFunctionReturn(0);
 }
 
@@ -57,11 +57,11 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
   char undamped[192] = "inertia counts the undamped modes in the band";
 
   PetscFunctionBeginUser;
-  if (!window->counted)
+  if (!window->route.counted)
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
-                            "two independent searches of the undamped modes agree to %.1e", (double)window->worst));
+                            "two independent searches of the undamped modes agree to %.1e", (double)window->route.worst));
   PetscCall(PetscSNPrintf(text, size, "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
-                          undamped, region, (double)window->beyond, rest));
+                          undamped, region, (double)window->route.beyond, rest));
   PetscFunctionReturn(0);
 }
 
@@ -72,12 +72,12 @@ static PetscErrorCode DescribeRoute(const Window *window, PetscBool dense, char 
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  if (!window->why[0]) PetscFunctionReturn(0);
-  if (window->beyond >= 0)
+  if (!window->route.why[0]) PetscFunctionReturn(0);
+  if (window->route.beyond >= 0)
     PetscCall(PetscSNPrintf(measure, sizeof(measure), " (strength %.2g beyond the undamped modes of the window)",
-                            (double)window->beyond));
+                            (double)window->route.beyond));
   PetscCall(PetscSNPrintf(text, size, "; solved as a quadratic problem (%s), since %s%s", dense ? "LAPACK" : "PEP",
-                          window->why, measure));
+                          window->route.why, measure));
   PetscFunctionReturn(0);
 }
 
@@ -90,31 +90,31 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   PetscFunctionBeginUser;
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
   PetscCall(DescribeRoute(window, modes->dense, route, sizeof(route)));
-  if (window->most < INFINITY)
+  if (window->known.most < INFINITY)
     PetscCall(
       PetscSNPrintf(massless, sizeof(massless),
                     "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
-                    (double)window->most));
+                    (double)window->known.most));
   if (!window->count)
     PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
-  if (window->proven && window->count)
+  if (window->route.proven && window->count)
     PetscCall(PetscSNPrintf(text, size,
                             "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
-                            window->expected));
-  else if (window->proven)
+                            window->known.expected));
+  else if (window->route.proven)
     PetscCall(PetscSNPrintf(text, size,
                             "none is missing: inertia counts %" PetscInt_FMT " in the band",
-                            window->expected));
-  else if (window->project && (modes->left || window->counted))
+                            window->known.expected));
+  else if (window->route.project && (modes->left || window->route.counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)
     PetscCall(PetscSNPrintf(text, size,
                             "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
                             "transposes, to %.1e%s%s",
-                            (double)window->worst, region, frictionless));
+                            (double)window->route.worst, region, frictionless));
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",
-                            (double)window->worst, region, frictionless));
+                            (double)window->route.worst, region, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
   PetscCall(PetscStrlcat(text, route, size));
@@ -141,14 +141,15 @@ PetscErrorCode WindowCheckCount(Modes modes, const Window *window)
   char doubt[512] = "", below[64] = "";
 
   PetscFunctionBeginUser;
-  if (!modes->has_band || window->expected < 0) PetscFunctionReturn(0);
+  if (!modes->has_band || window->known.expected < 0) PetscFunctionReturn(0);
   if (!modes->has_most) PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
-  if (modes->most == 0 || window->expected <= (doubt[0] ? MODES_DOUBTED : modes->most)) PetscFunctionReturn(0);
-  if (window->below > 0) PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->below));
+  if (modes->most == 0 || window->known.expected <= (doubt[0] ? MODES_DOUBTED : modes->most)) PetscFunctionReturn(0);
+  if (window->known.below > 0) PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->known.below));
   SETERRQ(modes->comm, PETSC_ERR_USER_INPUT,
           "-modes_band %.6g,%.6g holds %" PetscInt_FMT " modes%s%s%s; narrow the band (Hz), or give -modes_most %" PetscInt_FMT
           " to compute them",
-          (double)modes->band[0], (double)modes->band[1], window->expected, below, doubt[0] ? ": " : "", doubt, window->expected);
+          (double)modes->band[0], (double)modes->band[1], window->known.expected, below, doubt[0] ? ": " : "", doubt,
+          window->known.expected);
 }
 
 PetscErrorCode WindowComplain(Modes modes, const Window *window, const char solver[])

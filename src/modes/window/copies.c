@@ -31,13 +31,13 @@ PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum
   PetscInt n = 0;
 
   for (PetscInt i = 0; i < s->n; i++) n += s->omega[i] >= window->edge[0] && s->omega[i] <= window->edge[1];
-  if (window->expected >= 0 && n >= window->expected) return PETSC_FALSE;
-  return CopiesMost(s, window->scale) >= modes->block[1] ? PETSC_TRUE : PETSC_FALSE;
+  if (window->known.expected >= 0 && n >= window->known.expected) return PETSC_FALSE;
+  return CopiesMost(s, window->known.scale) >= modes->block[1] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 void CopiesMakeRoom(Modes modes, const Window *window, const Spectrum *s)
 {
-  const PetscInt copies = CopiesMost(s, window->scale), block = modes->block[1];
+  const PetscInt copies = CopiesMost(s, window->known.scale), block = modes->block[1];
 
   if (copies >= block) modes->block[0] = PetscMax(COPIES_MORE * block, COPIES_ROOM * copies);
 }

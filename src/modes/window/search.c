@@ -7,7 +7,7 @@ PetscReal DampedShift(const Window *window)
 {
   const PetscReal high = PetscMax(window->high, window->target);
 
-  return high * PetscMax(0.3, PetscMin(1, high * window->damping));
+  return high * PetscMax(0.3, PetscMin(1, high * window->known.damping));
 }
 
 PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found)
@@ -25,9 +25,9 @@ PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *fo
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;
-  const PetscReal below = -PetscSqr((window->singular ? 100 : 10) * window->scale);
+  const PetscReal below = -PetscSqr((window->known.singular ? 100 : 10) * window->known.scale);
 
-  if (window->count) return window->target > 10 * window->scale ? window->target * window->target : below;
+  if (window->count) return window->target > 10 * window->known.scale ? window->target * window->target : below;
   return low + PetscMin(0.5, 0.3 + 1.2 * low / high) * (high - low);
 }
 
@@ -78,13 +78,13 @@ PetscInt WindowFarthest(const Window *window, const Spectrum *s)
 
 PetscBool WindowLacks(const Window *window, const Spectrum *s)
 {
-  const PetscInt wanted = window->finite < 0 ? window->count : PetscMin(window->count, window->finite);
+  const PetscInt wanted = window->known.finite < 0 ? window->count : PetscMin(window->count, window->known.finite);
 
-  return window->singular && window->count && s->n < wanted ? PETSC_TRUE : PETSC_FALSE;
+  return window->known.singular && window->count && s->n < wanted ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscInt DampedFirst(const Window *window)
 {
-  if (window->count) return 2 * (PetscMax(0, window->below) + window->count + window->extra);
-  return window->within >= 0 ? 2 * (window->within + window->extra) : 40;
+  if (window->count) return 2 * (PetscMax(0, window->known.below) + window->count + window->extra);
+  return window->known.within >= 0 ? 2 * (window->known.within + window->extra) : 40;
 }

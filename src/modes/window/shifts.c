@@ -22,15 +22,15 @@ PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Win
   PetscFunctionBeginUser;
   modes->shifts = PetscMax(1, n);
   if (!n && !pencil->C && !window->count && !modes->keep)
-    modes->shifts = PetscMax(modes->shifts, (window->expected + SHIFTS_MODES - 1) / SHIFTS_MODES);
+    modes->shifts = PetscMax(modes->shifts, (window->known.expected + SHIFTS_MODES - 1) / SHIFTS_MODES);
   if (n <= 1) PetscFunctionReturn(0);
   PetscCheck(!window->count, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " needs a band: give -modes_band, or leave it out", n);
   PetscCheck(!pencil->C, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " is not offered with damping, whose modes one shift finds; leave it out", n);
-  PetscCheck(window->expected < 0 || n <= PetscMax(1, window->expected), modes->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(window->known.expected < 0 || n <= PetscMax(1, window->known.expected), modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " must be at most %" PetscInt_FMT ", the modes in the band", n,
-             window->expected);
+             window->known.expected);
   PetscFunctionReturn(0);
 }
 
@@ -116,8 +116,8 @@ static PetscErrorCode ShiftsSolveParts(Modes modes, const PencilMatrices *pencil
     PetscCall(ShiftsPart(modes, pencil, window, k, &part));
     PetscCall(ShiftsSolvePart(modes, pencil, &part, si));
     PetscCall(ShiftsAppend(modes, k ? ShiftsSeam(window, modes->shifts, k) : 0, right, left));
-    window->worst  = PetscMax(window->worst, part.worst);
-    window->proven = part.proven;
+    window->route.worst  = PetscMax(window->route.worst, part.route.worst);
+    window->route.proven = part.route.proven;
   }
   PetscFunctionReturn(0);
 }
@@ -125,8 +125,8 @@ static PetscErrorCode ShiftsSolveParts(Modes modes, const PencilMatrices *pencil
 /* Right-hand sides that the modes of a window take about one shift; 0: not known */
 static double ShiftsSolves(Modes modes, const Window *window)
 {
-  if (modes->keep || window->expected <= 0) return 0;
-  return (modes->left ? 2 : 1) * (SHIFTS_EACH * (double)window->expected + SHIFTS_FIRST);
+  if (modes->keep || window->known.expected <= 0) return 0;
+  return (modes->left ? 2 : 1) * (SHIFTS_EACH * (double)window->known.expected + SHIFTS_FIRST);
 }
 
 /* All modes of the window about one shift; after it the matrices of the pencil are to be got again */
@@ -162,9 +162,9 @@ PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *wi
   PetscCall(ShiftsSolveParts(modes, pencil, window, si, &found[0], &found[1]));
   modes->right         = found[0];
   modes->left_spectrum = found[1];
-  PetscCheck(!window->proven || found[0].n == window->expected, modes->comm, PETSC_ERR_NOT_CONVERGED,
+  PetscCheck(!window->route.proven || found[0].n == window->known.expected, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "%" PetscInt_FMT " shifts found %" PetscInt_FMT " modes of the %" PetscInt_FMT
              " in the band; give another number of -modes_shifts",
-             modes->shifts, found[0].n, window->expected);
+             modes->shifts, found[0].n, window->known.expected);
   PetscFunctionReturn(0);
 }

@@ -47,18 +47,18 @@ static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *fric
   PetscReal most;
 
   PetscFunctionBeginUser;
-  window->massless = 0;
-  window->most     = INFINITY;
-  PetscCall(MassIsSingular(frictionless, &window->singular));
-  if (!window->singular) PetscFunctionReturn(0);
-  window->most = modes->has_band ? MODES_MOST * PetscMax(window->high, window->growth)
-                                 : PetscMax(MODES_FINITE * window->scale, MODES_MOST * window->target);
+  window->known.massless = 0;
+  window->known.most     = INFINITY;
+  PetscCall(MassIsSingular(frictionless, &window->known.singular));
+  if (!window->known.singular) PetscFunctionReturn(0);
+  window->known.most = modes->has_band ? MODES_MOST * PetscMax(window->high, window->growth)
+                                 : PetscMax(MODES_FINITE * window->known.scale, MODES_MOST * window->target);
   if (!frictionless->symmetric) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCountMassless(frictionless, window->most, &modes->counter, &window->massless));
+  PetscCall(ShiftInvertCountMassless(frictionless, window->known.most, &modes->counter, &window->known.massless));
   if (modes->has_band) PetscFunctionReturn(0);
-  most = window->most;
-  PetscCall(ShiftInvertCountBelow(frictionless, MODES_AWAY, &modes->counter, &most, &window->finite));
-  window->finite -= window->massless;
+  most = window->known.most;
+  PetscCall(ShiftInvertCountBelow(frictionless, MODES_AWAY, &modes->counter, &most, &window->known.finite));
+  window->known.finite -= window->known.massless;
   PetscFunctionReturn(0);
 }
 
@@ -70,7 +70,7 @@ static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscR
   PetscFunctionBeginUser;
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(ShiftInvertCountBelow(&frictionless, away, &modes->counter, omega, n));
-  if (*omega > 0) *n -= window->massless;
+  if (*omega > 0) *n -= window->known.massless;
   PetscFunctionReturn(0);
 }
 
@@ -78,16 +78,16 @@ static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscR
    all that is about zero is found below its end */
 static PetscErrorCode WindowCountLow(Modes modes, Window *window)
 {
-  PetscReal zero  = window->zero;
+  PetscReal zero  = window->known.zero;
   PetscInt  about = 0;
 
   PetscFunctionBeginUser;
-  window->below = 0;
+  window->known.below = 0;
   if (window->low >= MODES_BELOW * zero)
-    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->below));
+    PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &window->edge[0], &window->known.below));
   if (window->low >= zero) PetscFunctionReturn(0);
-  if (window->below) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &zero, &about));
-  if (!about || about != window->below) window->below = 0, window->edge[0] = 0;
+  if (window->known.below) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &zero, &about));
+  if (!about || about != window->known.below) window->known.below = 0, window->edge[0] = 0;
   PetscFunctionReturn(0);
 }
 
@@ -98,14 +98,14 @@ static PetscErrorCode WindowCount(Modes modes, Window *window)
 
   PetscFunctionBeginUser;
   if (!modes->has_band) {
-    PetscReal target = window->target < window->scale ? 0 : window->target;
+    PetscReal target = window->target < window->known.scale ? 0 : window->target;
 
-    PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &target, &window->below));
+    PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &target, &window->known.below));
     PetscFunctionReturn(0);
   }
   PetscCall(WindowCountLow(modes, window));
   PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &window->edge[1], &below_high));
-  window->expected = below_high - window->below;
+  window->known.expected = below_high - window->known.below;
   PetscFunctionReturn(0);
 }
 
@@ -123,14 +123,11 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
     .growth   = modes->growth > 0 ? modes->growth : 0.1 * high,
     .edge     = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
     .extra    = 6,
-    .within   = -1,
-    .expected = -1,
-    .finite   = -1,
-    .below    = -1,
-    .beyond   = -1
+    .known    = {.within = -1, .expected = -1, .finite = -1, .below = -1},
+    .route    = {.beyond = -1}
   };
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
-  PetscCall(WindowScale(&frictionless, &window->scale, &window->zero));
+  PetscCall(WindowScale(&frictionless, &window->known.scale, &window->known.zero));
   PetscCall(WindowFindMassless(modes, &frictionless, window));
   if (frictionless.symmetric) PetscCall(WindowCount(modes, window));
   PetscFunctionReturn(0);
@@ -153,15 +150,15 @@ PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Win
   part->high = ends[1];
   if (ends[0] > whole->low) part->edge[0] = ends[0] * (1 - MODES_EDGE);
   if (ends[1] < whole->high) part->edge[1] = ends[1] * (1 + MODES_EDGE);
-  if (whole->expected < 0) PetscFunctionReturn(0);
+  if (whole->known.expected < 0) PetscFunctionReturn(0);
   if (pencil->symmetric) part->growth = 0;
   middle  = WindowMiddle(part);
   radius  = UndampedRadius(part, middle, NULL);
   edge[0] = pencil->symmetric ? part->edge[0] : PetscSqrtReal(PetscMax(0, middle - radius));
   edge[1] = pencil->symmetric ? part->edge[1] : PetscSqrtReal(middle + radius);
-  PetscCall(WindowCountBelow(modes, whole, -MODES_AWAY, &edge[0], &part->below));
+  PetscCall(WindowCountBelow(modes, whole, -MODES_AWAY, &edge[0], &part->known.below));
   PetscCall(WindowCountBelow(modes, whole, MODES_AWAY, &edge[1], &below));
-  part->expected = below - part->below;
+  part->known.expected = below - part->known.below;
   if (pencil->symmetric) part->edge[0] = edge[0], part->edge[1] = edge[1];
   PetscFunctionReturn(0);
 }
@@ -179,8 +176,8 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
   PetscCall(UndampedSolve(modes, &frictionless, window, &si, PETSC_FALSE, &nearest));
   PetscCall(WindowSelect(window, &nearest));
   for (PetscInt i = 0; i < nearest.n; i++) window->high = PetscMax(window->high, nearest.omega[i]);
-  window->high = PetscMax(window->high, window->scale);
-  if (window->singular) window->most = MODES_MOST * window->high;
+  window->high = PetscMax(window->high, window->known.scale);
+  if (window->known.singular) window->known.most = MODES_MOST * window->high;
   PetscCall(SpectrumDestroy(&nearest));
   PetscCall(ShiftInvertDestroy(&si));
   PetscFunctionReturn(0);
@@ -196,25 +193,25 @@ PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Windo
   PetscFunctionBeginUser;
   PetscCall(MatNorm(pencil->K, NORM_FROBENIUS, &K));
   PetscCall(MatNorm(pencil->C, NORM_FROBENIUS, &C));
-  window->damping = K > 0 ? C / K : 0;
-  if (window->expected < 0) PetscFunctionReturn(0);
-  window->within = window->below + window->expected;
+  window->known.damping = K > 0 ? C / K : 0;
+  if (window->known.expected < 0) PetscFunctionReturn(0);
+  window->known.within = window->known.below + window->known.expected;
   shift          = DampedShift(window);
   corner         = hypot(window->high, shift + window->growth);
-  omega          = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->damping));
-  if (omega < window->high) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &omega, &window->within));
+  omega          = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->known.damping));
+  if (omega < window->high) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &omega, &window->known.within));
   PetscFunctionReturn(0);
 }
 
 /* With damping a rigid mode is a double zero, which rounding splits into two tiny eigenvalues */
 PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
 {
-  PetscReal scale = window->scale;
+  PetscReal scale = window->known.scale;
 
   PetscFunctionBeginUser;
-  if (!s->n || PetscAbsReal(s->sigma[0]) > window->scale || s->omega[0] > window->scale || window->below < 0)
+  if (!s->n || PetscAbsReal(s->sigma[0]) > window->known.scale || s->omega[0] > window->known.scale || window->known.below < 0)
     PetscFunctionReturn(0);
-  PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &scale, &window->rigid));
+  PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &scale, &window->known.rigid));
   PetscFunctionReturn(0);
 }
 
@@ -224,10 +221,10 @@ PetscErrorCode WindowSelect(const Window *window, Spectrum *s)
 
   PetscFunctionBeginUser;
   for (PetscInt i = s->n; i-- > 0;)
-    if (hypot(s->sigma[i], s->omega[i]) > window->most) PetscCall(SpectrumRemove(s, i));
+    if (hypot(s->sigma[i], s->omega[i]) > window->known.most) PetscCall(SpectrumRemove(s, i));
   n = s->n;
   if (window->count) {
-    while (s->n > window->count + window->rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
+    while (s->n > window->count + window->known.rigid) PetscCall(SpectrumRemove(s, WindowFarthest(window, s)));
     PetscFunctionReturn(0);
   }
   while (n > 0 && s->omega[first] < window->edge[0]) first++, n--;
@@ -242,14 +239,14 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
 
   PetscFunctionBeginUser;
   if (window->count && s->n) { /* just outside the outermost modes: what lies that close belongs to them */
-    PetscReal low  = s->omega[0] < window->scale ? 0 : s->omega[0] * (1 - 1e-6);
-    PetscReal high = PetscMax(window->scale, s->omega[s->n - 1] * (1 + 1e-6));
+    PetscReal low  = s->omega[0] < window->known.scale ? 0 : s->omega[0] * (1 - 1e-6);
+    PetscReal high = PetscMax(window->known.scale, s->omega[s->n - 1] * (1 + 1e-6));
 
     PetscCall(WindowCountBelow(modes, window, -MODES_AWAY, &low, &below_low));
     PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &high, &below_high));
-    window->expected = below_high - below_low;
+    window->known.expected = below_high - below_low;
   }
-  *complete = s->n == window->expected || (window->count && window->expected >= s->n && s->n == window->count)
+  *complete = s->n == window->known.expected || (window->count && window->known.expected >= s->n && s->n == window->count)
                 ? PETSC_TRUE
                 : PETSC_FALSE;
   PetscFunctionReturn(0);
