@@ -1,8 +1,15 @@
 /* The chain of a run, from options to what an analysis begins with: the rooms in their order. No physics */
 #include "chain.h"
 #include "solver/factor/shiftinvert.h"
+#include <squeal/quantity.h>
 
-static const char *const analyses[N_ANALYSES] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle"};
+static const char *const analyses[] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle", NULL};
+
+static const Quantity rows[] = {
+  {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = analyses},
+  {"-squeal_view", "print choices and why, and the time of each stage", NULL, QUANTITY_BOOL, QUANTITY_AT(Chain, view)},
+};
+static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
 
 PetscBool ChainIsInTime(const Chain *chain)
 {
@@ -15,18 +22,11 @@ PetscBool ChainIsInTime(const Chain *chain)
 static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
 {
   PetscBool has_matrices;
-  PetscInt  analysis = ANALYSIS_MODES;
 
   PetscFunctionBeginUser;
   PetscCall(OptionsClaimsCreate(&chain->claims));
   PetscCall(SquealSetFromOptions(comm));
-  PetscOptionsBegin(comm, NULL, "Analysis", NULL);
-  PetscCall(
-    PetscOptionsEList("-analysis", "what to compute", "squeal.h", analyses, N_ANALYSES, analyses[0], &analysis, NULL));
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_view", "print choices and why, and the time of each stage",
-                           &chain->view));
-  PetscOptionsEnd();
-  chain->analysis = (Analysis)analysis;
+  PetscCall(QuantitiesRead(comm, &chain_quantities, chain));
   ShiftInvertShow(chain->view);
   PetscCall(ChainGetViewers(comm, chain));
   PetscCall(OperatorsCreate(comm, &chain->operators));

@@ -21,17 +21,15 @@ static PetscErrorCode ScopeNeedsStatics(const Scope *s, PetscBool *needs)
   PetscFunctionReturn(0);
 }
 
-/* What an interface reads of sliding that it does not do: of an axis without a rotation; in time of a speed without a direction */
+/* What an interface reads of sliding that it does not do: in time of a speed without a direction */
 static PetscErrorCode ScopeCheckSliding(MPI_Comm comm, const Scope *s, const ContactInterface *c)
 {
   const PetscBool turns = Vec3Dot(c->rotation, c->rotation) > 0 ? PETSC_TRUE : PETSC_FALSE;
-  char            straight[256], still[256];
+  char            still[256];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(straight, sizeof(straight), "not used without -%s_rotation", c->name));
   PetscCall(PetscSNPrintf(still, sizeof(still), "not used where nothing slides as told: give -%s_slip or -%s_rotation",
                           c->name, c->name));
-  if (!turns) PetscCall(OptionsRefuseOf(comm, c->name, "centre", straight));
   if (s->transient && !turns && Vec3Dot(c->slip, c->slip) == 0)
     PetscCall(
       OptionsRefuseOf(comm, c->name, c->speed > 0 ? "speed ramp ramp_shape delay" : "ramp ramp_shape delay", still));
@@ -43,7 +41,7 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
 {
   static const char steady[]   = "not used by -analysis static: the loads tell the forces, and nothing moves";
   const PetscBool   constraint = c->law == CONTACT_CONSTRAINT ? PETSC_TRUE : PETSC_FALSE;
-  char              exact[256], stiff[256], lu[256], linear[256], given[256];
+  char              exact[256], stiff[256], lu[256], linear[256];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(exact, sizeof(exact),
@@ -53,9 +51,6 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
     PetscSNPrintf(stiff, sizeof(stiff), "not used with -%s_law constraint, which is as stiff as can be", c->name));
   PetscCall(PetscSNPrintf(lu, sizeof(lu), "not used with -%s_law constraint, which needs LU", c->name));
   PetscCall(PetscSNPrintf(linear, sizeof(linear), "not used by modes without -%s_friction_damping", c->name));
-  PetscCall(PetscSNPrintf(given, sizeof(given), "not used beside -%s_rotation; give one", c->name));
-  if (Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0)
-    PetscCall(OptionsRefuseOf(comm, c->name, "slip", given));
   PetscCall(ScopeCheckSliding(comm, s, c));
   if (s->transient) {
     if (!constraint) PetscCall(OptionsRefuseOf(comm, c->name, "law", exact));

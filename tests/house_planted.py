@@ -3,10 +3,10 @@
 # Files that break one rule each: rule, words of what it says, files
 MANY = "static void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
 BEGIN = "PetscOptionsBegin(comm, %s, title, NULL);\n  "
-MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-mu", "m", "a.h", m, &m, NULL);\n}\n'
-MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-mu", &m, NULL);\n}\n'
+MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-ts_dt", "m", "a.h", m, &m, NULL);\n}\n'
+MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-ts_dt", &m, NULL);\n}\n'
 LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
-       'OptionsGetReals(PetscOptionsObject, "-law", 1);\n}\n')
+       'OptionsGetReals(PetscOptionsObject, "-eps_type", 1);\n}\n')
 LOOP = "void %s(void)\n{\n  %s();\n}\n"
 
 
@@ -48,8 +48,10 @@ PLANTED = (
     ("strata", "MatIsSymmetric outside", {"src/model/a.c": "static void A(void)\n{\n  MatIsSymmetric(A, 0, &same);\n}\n"}),
     ("readmes", "no README.md", {"src/solver/a.c": ""}),
     ("readmes", "longer than", {"src/model/README.md": 26 * "\n"}),
-    ("options", "-mu is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
-    ("options", "-law is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
+    ("options", "-ts_dt is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
+    ("options", "-eps_type is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
+    ("rows", "-mu is read without", {"src/model/a.c": MU.replace("ts_dt", "mu")}),
+    ("rows", "-mu has no help", {"src/model/a.c": 'static const Quantity rows[] = {\n  {"-mu", "", NULL, QUANTITY_REAL},\n};\n'}),
     ("unused", "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
     ("unused", "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
     ("dead", "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",

@@ -12,6 +12,7 @@
   strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
+  rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
@@ -50,6 +51,13 @@ LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPus
              "DampedStop": "PEPSetStoppingTestFunction()", "UndampedStop": "EPSSetStoppingTestFunction()"}
 ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
     ("src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
+# Options that are read without a row, and why
+UNROWED = dict.fromkeys("squeal_traceback squeal_log squeal_progress squeal_memory log_file progress skip_petscrc help help_all".split(),
+                        "read by base/, on which rows stand") | \
+    dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
+                  "PETSc's own: looked at, read by PETSc") | \
+    {"ts_central_b": "read by TSSetFromOptions()", "contacts": "a list of the scene, in an array of the room",
+     "frf_probes": "a list of names", "terms": "whether it is given"}
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 
@@ -243,6 +251,19 @@ def options(house):
                 yield f"{here[1]}-{name} is read at {before[1][:-2]} too"
 
 
+def rows(house):
+    """Options that are read without a row, rows without a help, exceptions that nobody needs."""
+    read = {}
+    for source in house.c:
+        for name, _, _, line in read_options(source):
+            read[name] = house.say(source.path, line, f"-{name} is read without a row")
+        for row in re.finditer(r'\{"-(\w+)",\s*(?:NULL|""),\s*(?:NULL|"[^"]*"),\s*QUANTITY_', source.text):
+            yield house.say(source.path, source.line(row.start()), f"-{row[1]} has no help")
+    yield from (text for name, text in read.items() if name not in UNROWED)
+    if len(read) > 2:  # a planted house reads few
+        yield from (f"tests/test_house.py: -{name} of UNROWED is not read" for name in UNROWED if name not in read)
+
+
 def unused(house):
     """Python that nothing uses. What begins with handle_ the standard library calls."""
     named = collections.Counter(word for script in house.python for word in set(re.findall(r"\w+", script.text)))
@@ -286,7 +307,8 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, unused, dead, words)
+RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, rows, unused, dead, words)
+
 
 def plant(files):
     """What each rule finds in a small house with these files: name of the rule -> violations."""

@@ -79,7 +79,7 @@ PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option
 
 /*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                              PetscInt values[]);
+                              PetscInt values[], PetscBool *set);
 
 /*@ OptionsGetWords - reads a list of words, 0 where the option is not given. Collective. The caller frees the array [n] and
     each of them. @*/

@@ -14,7 +14,7 @@ typedef enum {
   QUANTITY_REAL,  /* PetscReal */
   QUANTITY_REALS, /* PetscReal [n], all of them */
   QUANTITY_LIST,  /* PetscReal [n], one at least and n at most */
-  QUANTITY_INTS,  /* PetscInt [n], likewise */
+  QUANTITY_INTS,  /* PetscInt [n], likewise; all of them where there is no .count */
   QUANTITY_MANY,  /* PetscReal *, which the owner frees, of one to .most */
   QUANTITY_BOOL,  /* PetscBool */
   QUANTITY_WORD,  /* one of .words, as int: an enumeration or PetscBool */

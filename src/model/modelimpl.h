@@ -11,6 +11,7 @@
 typedef struct {
   PetscReal disc_inner, disc_outer, disc_thickness; /* radii 50, 120 and thickness 10 mm */
   PetscInt  disc_nr, disc_ntheta, disc_nz;          /* 21 x 100 x 3 */
+  PetscBool has_disc_elements;                      /* these are given */
   PetscBool patch;                                  /* disc mesh with a Cartesian patch that matches the pad's grid */
   PetscReal disc_spread;                            /* 0..1: how far rings even out away from the patch */
   PetscBool with_pad;                               /* false: the disc alone */
@@ -85,7 +86,7 @@ PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, c
 
 /* The lists of the scene, whose records have files of their own: part.c, support.c, grounded.c, load.c, motion.c,
    probe.c, circle.c, joint.c */
-PETSC_INTERN const QuantityTable model_quantities, spring_quantities, dashpot_quantities;
+PETSC_INTERN const QuantityTable model_quantities, rig_quantities, spring_quantities, dashpot_quantities;
 PETSC_INTERN const QuantityList  parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list, probes_list,
   circles_list, joints_list, points_list;
 #define SET_WANTED "a named set of the mesh"

@@ -21,6 +21,32 @@
 static const char *const sources[] = {[PETSC_FALSE] = "rig", [PETSC_TRUE] = "file", NULL};
 static const char *const joins[]   = {[PETSC_FALSE] = "mean", [PETSC_TRUE] = "rigid", NULL};
 
+#define RIG(member)              QUANTITY_AT(Rig, member)
+#define RIG_COUNTS(member, more) .at = offsetof(Rig, member), .size = (more) * sizeof(PetscInt)
+
+static const char *const discs[] = {[PETSC_FALSE] = "axisymmetric", [PETSC_TRUE] = "patch", NULL};
+
+static const Quantity rig[] = {
+  {"-rig_disc_inner", "Inner radius of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_inner), .initial = 0.05, QUANTITY_POSITIVE},
+  {"-rig_disc_outer", "Outer radius of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_outer), .initial = 0.12},
+  {"-rig_disc_thickness", "Thickness of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_thickness), .initial = 0.01, QUANTITY_POSITIVE},
+  {"-rig_disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad", NULL, QUANTITY_WORD, RIG(patch),
+   .initial = PETSC_TRUE, .words = discs},
+  {"-rig_disc_elements", "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", NULL, QUANTITY_INTS,
+   RIG_COUNTS(disc_nr, 3), QUANTITY_POSITIVE, .given = offsetof(Rig, has_disc_elements)},
+  {"-rig_disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", NULL, QUANTITY_REAL, RIG(disc_spread),
+   QUANTITY_WITHIN(0, 1)},
+  {"-rig_pad", "Pad and beam as well as the disc", NULL, QUANTITY_BOOL, RIG(with_pad), .initial = PETSC_TRUE},
+  {"-rig_pad_radius", "Radius of the pad's centre (m)", NULL, QUANTITY_REAL, RIG(pad_radius), .initial = 0.11},
+  {"-rig_pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", NULL, QUANTITY_REALS, RIG(pad_size), QUANTITY_POSITIVE},
+  {"-rig_pad_elements", "Elements of the pad in x, y, z (10,10,10)", NULL, QUANTITY_INTS, RIG_COUNTS(pad_n, 3), QUANTITY_POSITIVE},
+  {"-rig_beam_height", "Height of the beam (m)", NULL, QUANTITY_REAL, RIG(beam_height), .initial = 0.1, QUANTITY_POSITIVE},
+  {"-rig_beam_elements", "Elements of the beam over its height (-)", NULL, QUANTITY_INT, RIG(beam_nz), .initial = 20, QUANTITY_POSITIVE},
+  {"-rig_beam_rows", "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", NULL, QUANTITY_REALS, RIG(beam_rows)},
+  {"-rig_save", "file of Gmsh to write the mesh and its sets to", NULL, QUANTITY_TEXT, RIG(save)},
+};
+const QuantityTable rig_quantities = TABLE("Built-in disc, pad and beam", rig);
+
 static const Quantity model[] = {
   {"-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, QUANTITY_WORD, MODEL(from_file), .words = sources,
    .given = offsetof(struct _p_Model, given)},

@@ -51,7 +51,7 @@ static PetscErrorCode QuantityCheck(MPI_Comm comm, const char option[], const Qu
 
   PetscFunctionBeginUser;
   if (!row->bounded) PetscFunctionReturn(0);
-  if (row->kind == QUANTITY_LIST || row->kind == QUANTITY_INTS) n = *(const PetscInt *)((const char *)owner + row->count);
+  if (row->count) n = *(const PetscInt *)((const char *)owner + row->count);
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal x = integer ? (PetscReal)((const PetscInt *)value)[i] : ((const PetscReal *)value)[i];
 
@@ -173,7 +173,10 @@ PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *own
     const PetscInt  count = row->count ? *(const PetscInt *)((const char *)owner + row->count) : 1;
 
     if (!row->restart) continue;
-    if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS) PetscCall(ChecksumAddInts(c, count, value));
+    if (row->kind == QUANTITY_INTS && !row->count)
+      PetscCall(ChecksumAddInts(c, (PetscInt)(row->size / sizeof(PetscInt)), value));
+    else if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS)
+      PetscCall(ChecksumAddInts(c, count, value));
     else if (row->kind == QUANTITY_LIST) PetscCall(ChecksumAddReals(c, count, value));
     else if (row->kind == QUANTITY_REAL || row->kind == QUANTITY_REALS)
       PetscCall(ChecksumAddReals(c, (PetscInt)(row->size / sizeof(PetscReal)), value));

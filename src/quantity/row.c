@@ -107,6 +107,8 @@ static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const 
     PetscCall(OptionsGetInt(PetscOptionsObject, row->name, help, *integer, integer, given));
   else if (row->kind == QUANTITY_REAL)
     PetscCall(OptionsGetReal(PetscOptionsObject, row->name, help, *real, real, given));
+  else if (row->kind == QUANTITY_INTS)
+    PetscCall(OptionsGetInts(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*integer)), integer, given));
   else
     PetscCall(OptionsGetReals(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*real)), real, given));
   PetscFunctionReturn(0);
@@ -160,12 +162,11 @@ PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[]
   case QUANTITY_PATH:
     PetscCall(OptionsGetPath(PetscOptionsObject, row->name, help, value, &given));
     break;
-  case QUANTITY_LIST:
-  case QUANTITY_INTS:
-    PetscCall(QuantityReadList(PetscOptionsObject, row, help, owner, &given));
-    break;
   default:
-    PetscCall(QuantityReadNumber(PetscOptionsObject, row, help, value, &given));
+    if (row->count)
+      PetscCall(QuantityReadList(PetscOptionsObject, row, help, owner, &given));
+    else
+      PetscCall(QuantityReadNumber(PetscOptionsObject, row, help, value, &given));
   }
   if (row->given) *(PetscBool *)((char *)owner + row->given) = given;
   PetscFunctionReturn(0);

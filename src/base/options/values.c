@@ -160,7 +160,7 @@ PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option
 }
 
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                              PetscInt values[])
+                              PetscInt values[], PetscBool *set)
 {
   PetscInt count = n;
   char     now[MAX_TEXT], initial[MAX_TEXT];
@@ -172,7 +172,7 @@ PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option
     PetscOptionsGetIntArray(PetscOptionsObject->options, PetscOptionsObject->prefix, option, values, &count, NULL));
   PetscCall(ArrayPrint(n, NULL, values, now));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, now, initial));
-  PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, NULL));
+  PetscCall(OptionsCheckCount(PetscOptionsObject, option, n, set));
   PetscFunctionReturn(0);
 }
 
