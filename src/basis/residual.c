@@ -6,27 +6,34 @@
 
 #define RESIDUAL_WIDTH 32 /* columns of a part, as many as BlockMultiply() takes at once */
 
-PetscErrorCode ComplexColumnsCreate(PetscInt capacity, ComplexColumns *c)
+PetscErrorCode ComplexColumnsCreate(PetscInt capacity, PetscInt size, ComplexColumns *c)
 {
   PetscFunctionBeginUser;
-  c->m = c->n_columns = 0;
-  PetscCall(PetscMalloc2(capacity + 1, &c->column, capacity, &c->lambda));
+  *c = (ComplexColumns){.size = size};
+  PetscCall(PetscMalloc3(capacity + 1, &c->column, capacity, &c->lambda, 2 * capacity * size, &c->coordinates));
   c->column[0] = 0;
   PetscFunctionReturn(0);
 }
 
-void ComplexColumnsAdd(ComplexColumns *c, PetscComplex lambda, PetscBool is_real)
+PetscErrorCode ComplexColumnsAdd(ComplexColumns *c, PetscComplex lambda, PetscBool is_real, const PetscComplex x[])
 {
+  PetscReal *re = &c->coordinates[c->n_columns * c->size], *im = re + c->size;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->size; i++) {
+    re[i] = creal(x[i]);
+    if (!is_real) im[i] = cimag(x[i]);
+  }
   c->n_columns += is_real ? 1 : 2;
-  c->lambda[c->m]     = lambda;
-  c->column[c->m + 1] = c->n_columns;
-  c->m++;
+  c->lambda[c->m]   = lambda;
+  c->column[++c->m] = c->n_columns;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode ComplexColumnsDestroy(ComplexColumns *c)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree2(c->column, c->lambda));
+  PetscCall(PetscFree3(c->column, c->lambda, c->coordinates));
   PetscFunctionReturn(0);
 }
 
@@ -138,7 +145,8 @@ static PetscErrorCode ResidualMakePart(const PencilMatrices *pencil, PetscBool t
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, Mat X, Mat R)
+/* The residuals R of X */
+static PetscErrorCode ResidualOf(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, Mat X, Mat R)
 {
   ResidualPart p = {.c = c};
 
@@ -155,5 +163,60 @@ PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, 
     PetscCall(MatDenseRestoreSubMatrix(R, &p.R));
     PetscCall(MatDenseRestoreSubMatrix(X, &p.X));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, BV V, BV *X, BV R)
+{
+  Mat x, r;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockCreate(V, c->n_columns, X));
+  PetscCall(BlockLift(V, c->size, c->n_columns, c->coordinates, *X));
+  PetscCall(BVGetMat(*X, &x));
+  PetscCall(BVGetMat(R, &r));
+  PetscCall(ResidualOf(pencil, transposed, c, x, r));
+  PetscCall(BVRestoreMat(R, &r));
+  PetscCall(BVRestoreMat(*X, &x));
+  PetscFunctionReturn(0);
+}
+
+/* The active columns of Z of one side */
+static PetscErrorCode ResidualSolve(const ShiftInvert *factor, PetscBool transposed, BV R, BV Z)
+{
+  Mat from, to;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetMat(R, &from));
+  PetscCall(BVGetMat(Z, &to));
+  PetscCall(ShiftInvertApplyBlock(factor, transposed, from, to));
+  PetscCall(BVRestoreMat(Z, &to));
+  PetscCall(BVRestoreMat(R, &from));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResidualsSolve(const ShiftInvert *factor, const BV R[2], BV Z)
+{
+  PetscInt  n[2] = {0, 0};
+  PetscBool both;
+  Mat       all;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++)
+    if (R[i]) PetscCall(BVGetActiveColumns(R[i], NULL, &n[i]));
+  both = n[0] && n[1] && factor->update ? PETSC_TRUE : PETSC_FALSE;
+  for (int i = 0; i < 2; i++) {
+    if (!n[i]) continue;
+    PetscCall(BVSetActiveColumns(Z, i ? n[0] : 0, i ? n[0] + n[1] : n[0]));
+    if (both)
+      PetscCall(BVCopy(R[i], Z));
+    else
+      PetscCall(ResidualSolve(factor, i ? PETSC_TRUE : PETSC_FALSE, R[i], Z));
+  }
+  PetscCall(BVSetActiveColumns(Z, 0, n[0] + n[1]));
+  if (!both) PetscFunctionReturn(0);
+  PetscCall(BVGetMat(Z, &all));
+  PetscCall(ShiftInvertApplyBoth((void *)factor, n[0], all));
+  PetscCall(BVRestoreMat(Z, &all));
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
    are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
 */
 #include "krylov.h"
+#include "basis/residual.h"
 #include "solver/block/orthonormal.h"
 
 #define STATE_DEPENDENT 1e-9 /* a state of length one that is nearer than this to those before is one of them */
@@ -139,24 +140,6 @@ static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, int which, BV Y)
   PetscFunctionReturn(0);
 }
 
-/* The columns first .. first + n - 1 of the block: Q0^-1 R, or Q0^-T R */
-static PetscErrorCode KrylovSolve(const FrfKrylov *chain, BV R, PetscInt first, BV block)
-{
-  PetscInt n;
-  Mat      right, answer;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(R, NULL, &n));
-  PetscCall(BVSetActiveColumns(block, first, first + n));
-  PetscCall(BVGetMat(R, &right));
-  PetscCall(BVGetMat(block, &answer));
-  PetscCall(ShiftInvertApplyBlock(&chain->factor, chain->transposed, right, answer));
-  PetscCall(BVRestoreMat(block, &answer));
-  PetscCall(BVRestoreMat(R, &right));
-  *chain->n_solves += n;
-  PetscFunctionReturn(0);
-}
-
 /* The states [c; old] of n answers with coordinates c[n][size]; old is that of the states that they came from */
 static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c[])
 {
@@ -225,19 +208,17 @@ PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
 {
   PetscInt   n[2];
   PetscReal *c;
-  BV         block, R;
+  BV         block, R[2] = {NULL, NULL};
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 2; k++) n[k] = chain[k]->begun ? chain[k]->n - chain[k]->last : chain[k]->n_b;
   if (n[0] + n[1] == 0) PetscFunctionReturn(0);
   PetscCall(BlockCreate(space->space.V, n[0] + n[1], &block));
-  for (int k = 0; k < 2; k++) {
-    if (!n[k]) continue;
-    PetscCall(KrylovCreateSides(chain[k], n[k], &R));
-    PetscCall(KrylovSolve(chain[k], R, k * n[0], block));
-    PetscCall(BVDestroy(&R));
-  }
-  PetscCall(BVSetActiveColumns(block, 0, n[0] + n[1]));
+  for (int k = 0; k < 2; k++)
+    if (n[k]) PetscCall(KrylovCreateSides(chain[k], n[k], &R[k]));
+  PetscCall(ResidualsSolve(&chain[0]->factor, R, block));
+  *chain[0]->n_solves += n[0] + n[1];
+  for (int k = 0; k < 2; k++) PetscCall(BVDestroy(&R[k]));
   PetscCall(FrfSpaceAdd(space, block));
   PetscCall(FrfSpaceCoordinates(space, block, &c));
   for (int k = 0; k < 2; k++) PetscCall(KrylovTake(chain[k], n[k], c + k * n[0] * space->size));

@@ -10,24 +10,15 @@
 #define CORRECT_BELOW 0.5 /* of the limit of backward errors: residuals below it are no concern */
 
 /* Vectors of the modes of one side as real columns, those with backward errors above the limit */
-static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, PetscReal limit, ComplexColumns *c,
-                                  PetscReal **coordinates)
+static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, PetscReal limit, ComplexColumns *c)
 {
-  const PetscInt size = modes->size;
-
   PetscFunctionBeginUser;
-  PetscCall(ComplexColumnsCreate(modes->n, c));
-  PetscCall(PetscMalloc1(2 * modes->n * size, coordinates));
+  PetscCall(ComplexColumnsCreate(modes->n, modes->size, c));
   for (PetscInt i = 0; i < modes->n; i++) {
-    const PetscComplex *x       = &modes->vectors[left][i * size];
-    const PetscBool     is_real = cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool is_real = cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
 
     if (modes->backward[left][i] <= limit) continue;
-    for (PetscInt j = 0; j < size; j++) {
-      (*coordinates)[c->n_columns * size + j] = creal(x[j]);
-      if (!is_real) (*coordinates)[(c->n_columns + 1) * size + j] = cimag(x[j]);
-    }
-    ComplexColumnsAdd(c, modes->lambda[i], is_real);
+    PetscCall(ComplexColumnsAdd(c, modes->lambda[i], is_real, &modes->vectors[left][i * modes->size]));
   }
   PetscFunctionReturn(0);
 }
@@ -84,21 +75,19 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
                                .left   = p->pencil->left,
                                .right  = p->pencil->right};
   ComplexColumns       columns;
-  PetscReal           *coordinates, *norms[2];
+  PetscReal           *norms[2];
   BV                   vectors;
   Mat                  X, R;
 
   PetscFunctionBeginUser;
   *residuals = NULL;
   *tolerance = NULL;
-  PetscCall(SideCollect(modes, left, p->limit[left], &columns, &coordinates));
+  PetscCall(SideCollect(modes, left, p->limit[left], &columns));
   if (columns.m) {
-    PetscCall(BlockCreate(p->space.V, columns.n_columns, &vectors));
     PetscCall(BlockCreate(p->space.V, columns.n_columns, residuals));
-    PetscCall(BlockLift(p->space.V, p->space.n, columns.n_columns, coordinates, vectors));
+    PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, p->space.V, &vectors, *residuals));
     PetscCall(BVGetMat(vectors, &X));
     PetscCall(BVGetMat(*residuals, &R));
-    PetscCall(ResidualMake(&side, PETSC_FALSE, &columns, X, R));
     PetscCall(PetscMalloc1(columns.n_columns, tolerance));
     PetscCall(PetscMalloc2(columns.n_columns, &norms[0], columns.n_columns, &norms[1]));
     PetscCall(MatGetColumnNorms(X, NORM_2, norms[0]));
@@ -110,7 +99,6 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
     PetscCall(BVDestroy(&vectors));
     PetscCall(SideKeep(*residuals, *tolerance));
   }
-  PetscCall(PetscFree(coordinates));
   PetscCall(ComplexColumnsDestroy(&columns));
   PetscFunctionReturn(0);
 }
@@ -138,13 +126,12 @@ PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt
 PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left, Spectrum *s)
 {
   ComplexColumns c;
-  PetscReal     *coordinates;
   BV             vectors;
 
   PetscFunctionBeginUser;
-  PetscCall(SideCollect(modes, left, -1, &c, &coordinates));
+  PetscCall(SideCollect(modes, left, -1, &c));
   PetscCall(BlockCreate(p->space.V, PetscMax(1, c.n_columns), &vectors)); /* the window may hold no mode */
-  if (c.n_columns) PetscCall(BlockLift(p->space.V, p->space.n, c.n_columns, coordinates, vectors));
+  if (c.n_columns) PetscCall(BlockLift(p->space.V, c.size, c.n_columns, c.coordinates, vectors));
   PetscCall(SpectrumCreate(modes->n, s));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscInt at = c.column[i], two = c.column[i + 1] - at == 2;
@@ -156,7 +143,6 @@ PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes,
   }
   PetscCall(SpectrumSort(s));
   PetscCall(BVDestroy(&vectors));
-  PetscCall(PetscFree(coordinates));
   PetscCall(ComplexColumnsDestroy(&c));
   PetscFunctionReturn(0);
 }

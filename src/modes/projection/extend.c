@@ -9,7 +9,7 @@
    saves a round.
 */
 #include "projection.h"
-#include "base/events.h"
+#include "basis/residual.h"
 #include "solver/block/orthonormal.h"
 
 #define EXTEND_LATER                                                                                                   \
@@ -21,92 +21,23 @@
 /* Residuals sigma B of one side */
 typedef struct {
   PetscBool  left;
-  PetscInt   n;     /* columns of B, zero where there is none */
-  BV         B, Z;  /* Z = P^-1 B, or P^-T B */
+  PetscInt   n; /* columns of B, zero where there is none */
+  BV         B;
   PetscReal *sigma; /* [n] */
 } SideOfExtension;
 
-/* Corrections, block after block, each column as long as it matters */
-typedef struct {
-  int       n;
-  BV        block[2 * EXTEND_LEVELS];
-  PetscReal longest;
-} Corrections;
-
-/* Copies the active columns of a block to those of a dense matrix from `first` on, or back */
-static PetscErrorCode ColumnsCopy(BV block, PetscInt first, PetscBool back, Mat all)
-{
-  PetscInt n;
-  Mat      b, part;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(block, NULL, &n));
-  PetscCall(BVGetMat(block, &b));
-  PetscCall(MatDenseGetSubMatrix(all, PETSC_DECIDE, PETSC_DECIDE, first, first + n, &part));
-  PetscCall(back ? MatCopy(part, b, SAME_NONZERO_PATTERN) : MatCopy(b, part, SAME_NONZERO_PATTERN));
-  PetscCall(MatDenseRestoreSubMatrix(all, &part));
-  PetscCall(BVRestoreMat(block, &b));
-  PetscFunctionReturn(0);
-}
-
-/* Z = P^-1 B of one side, P^-T B of a left one */
-static PetscErrorCode SideSolve(const Projection *p, SideOfExtension *side)
-{
-  Mat b, z;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetMat(side->B, &b));
-  PetscCall(BVGetMat(side->Z, &z));
-  PetscCall(ShiftInvertApplyBlock(&p->si, side->left, b, z));
-  PetscCall(BVRestoreMat(side->Z, &z));
-  PetscCall(BVRestoreMat(side->B, &b));
-  PetscFunctionReturn(0);
-}
-
-/* The same of both in one block, which costs less where the factors are LDL' with an update */
-static PetscErrorCode SidesSolveBoth(Projection *p, SideOfExtension side[2])
-{
-  const PetscInt n[2] = {side[0].n, side[1].n};
-  PetscInt       n_local;
-  Mat            X;
-
-  PetscFunctionBeginUser;
-  PetscCall(BVGetSizes(p->space.V, &n_local, NULL, NULL));
-  PetscCall(MatCreateDense(p->modes->comm, n_local, PETSC_DECIDE, PETSC_DETERMINE, n[0] + n[1], NULL, &X));
-  for (int i = 0; i < 2; i++) PetscCall(ColumnsCopy(side[i].B, i ? n[0] : 0, PETSC_FALSE, X));
-  PetscCall(ShiftInvertApplyBoth(&p->si, n[0], X));
-  for (int i = 0; i < 2; i++) PetscCall(ColumnsCopy(side[i].Z, i ? n[0] : 0, PETSC_TRUE, X));
-  PetscCall(MatDestroy(&X));
-  PetscFunctionReturn(0);
-}
-
-/* Z of the sides that have residuals */
-static PetscErrorCode SidesSolve(Projection *p, SideOfExtension side[2])
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < 2; i++)
-    if (side[i].n) PetscCall(BlockCreate(p->space.V, side[i].n, &side[i].Z));
-  if (side[0].n && side[1].n && p->si.update) {
-    PetscCall(SidesSolveBoth(p, side));
-    PetscFunctionReturn(0);
-  }
-  for (int i = 0; i < 2; i++)
-    if (side[i].n) PetscCall(SideSolve(p, &side[i]));
-  PetscFunctionReturn(0);
-}
-
-/* Makes the columns of the block as long as sigma says */
+/* Makes the active columns of the block as long as sigma says */
 static PetscErrorCode CorrectionsScale(BV block, const PetscReal sigma[], PetscReal *longest)
 {
-  PetscInt  n;
+  PetscInt  first, end;
   PetscReal norm;
 
   PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(block, NULL, &n));
-  for (PetscInt j = 0; j < n; j++) {
+  PetscCall(BVGetActiveColumns(block, &first, &end));
+  for (PetscInt j = first; j < end; j++) {
     PetscCall(BVNormColumn(block, j, NORM_2, &norm));
-    if (norm > 0) PetscCall(BVScaleColumn(block, j, sigma[j] / norm));
-    *longest = PetscMax(*longest, sigma[j]);
+    if (norm > 0) PetscCall(BVScaleColumn(block, j, sigma[j - first] / norm));
+    *longest = PetscMax(*longest, sigma[j - first]);
   }
   PetscFunctionReturn(0);
 }
@@ -136,7 +67,7 @@ static PetscErrorCode RemainFill(const Projection *p, PetscBool left, BV B, BV Z
 }
 
 /* What corrections Z leave of residuals, with the largest (s - kappa) and lambda of the window */
-static PetscErrorCode SideRemain(const Projection *p, const SideOfExtension *side, SideOfExtension *next)
+static PetscErrorCode SideRemain(const Projection *p, const SideOfExtension *side, BV Z, SideOfExtension *next)
 {
   const PetscReal high = PetscMax(p->window->high, p->window->target), low = p->window->low, s = p->si.shift;
   const PetscReal far = PetscMax(PetscAbsReal(high * high - s), PetscAbsReal(low * low - s));
@@ -145,7 +76,7 @@ static PetscErrorCode SideRemain(const Projection *p, const SideOfExtension *sid
 
   PetscFunctionBeginUser;
   PetscCall(BlockCreate(p->space.V, 2 * n, &next->B));
-  PetscCall(RemainFill(p, side->left, side->B, side->Z, next->B));
+  PetscCall(RemainFill(p, side->left, side->B, Z, next->B));
   PetscCall(PetscMalloc1(2 * n, &tolerance));
   PetscCall(PetscMalloc1(2 * n, &next->sigma));
   for (PetscInt j = 0; j < 2 * n; j++) tolerance[j] = EXTEND_LATER / (side->sigma[j % n] * (j < n ? far : high));
@@ -163,15 +94,14 @@ static PetscErrorCode SideDestroy(SideOfExtension *side)
   PetscFunctionReturn(0);
 }
 
-/* Moves Z to the corrections; what they leave takes the place of the residuals, but after the last level */
-static PetscErrorCode SideTake(const Projection *p, PetscBool last, SideOfExtension *side, Corrections *c)
+/* What the corrections in the active columns of Z leave takes the place of the residuals, but after the last level */
+static PetscErrorCode SideTake(const Projection *p, PetscBool last, BV Z, SideOfExtension *side, PetscReal *longest)
 {
   SideOfExtension next = {.left = side->left};
 
   PetscFunctionBeginUser;
-  if (!last) PetscCall(SideRemain(p, side, &next));
-  PetscCall(CorrectionsScale(side->Z, side->sigma, &c->longest));
-  c->block[c->n++] = side->Z;
+  if (!last) PetscCall(SideRemain(p, side, Z, &next));
+  PetscCall(CorrectionsScale(Z, side->sigma, longest));
   PetscCall(SideDestroy(side));
   *side = next;
   PetscFunctionReturn(0);
@@ -191,48 +121,52 @@ static PetscErrorCode SideBegin(BV residuals, const PetscReal tolerance[], SideO
   PetscFunctionReturn(0);
 }
 
-/* All of them side by side; those apart are destroyed */
-static PetscErrorCode CorrectionsJoin(const Projection *p, Corrections *c, BV *all, PetscInt *n)
+/* The corrections of both sides, each column as long as it matters, and their residuals, behind those that there are */
+static PetscErrorCode LevelTake(const Projection *p, PetscBool last, SideOfExtension side[2], BV *all, PetscReal *longest)
 {
-  PetscInt m[2 * EXTEND_LEVELS];
+  const PetscInt n[2] = {side[0].n, side[1].n}, m = n[0] + n[1];
+  PetscInt       before = 0;
+  BV             Z;
 
   PetscFunctionBeginUser;
-  *n = 0;
-  for (int i = 0; i < c->n; i++) {
-    PetscCall(BVGetActiveColumns(c->block[i], NULL, &m[i]));
-    *n += m[i];
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(BlockCreate(p->space.V, m, &Z));
+  PetscCall(ResidualsSolve(&p->si, (BV[2]){side[0].B, side[1].B}, Z));
+  for (int i = 0; i < 2; i++) {
+    if (!n[i]) continue;
+    PetscCall(BVSetActiveColumns(Z, i ? n[0] : 0, i ? m : n[0]));
+    PetscCall(SideTake(p, last, Z, &side[i], longest));
   }
-  PetscCall(BlockCreate(p->space.V, PetscMax(1, *n), all));
-  for (PetscInt i = 0, at = 0; i < c->n; at += m[i++]) {
-    PetscCall(BVSetActiveColumns(*all, at, at + m[i]));
-    PetscCall(BVCopy(c->block[i], *all));
-    PetscCall(BVDestroy(&c->block[i]));
+  PetscCall(BVSetActiveColumns(Z, 0, m));
+  if (*all) {
+    PetscCall(BVGetActiveColumns(*all, NULL, &before));
+    PetscCall(SubspaceAppend(before, before + m, Z, *all));
+    PetscCall(BVDestroy(&Z));
+  } else {
+    *all = Z;
   }
-  PetscCall(BVSetActiveColumns(*all, 0, *n));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const tolerance[2], PetscInt *n_columns)
 {
-  Corrections     corrections = {.n = 0};
-  SideOfExtension side[2]     = {{.left = PETSC_FALSE}, {.left = PETSC_TRUE}};
-  const PetscInt  before      = p->space.n;
-  PetscInt        n;
-  BV              all;
+  SideOfExtension side[2] = {{.left = PETSC_FALSE}, {.left = PETSC_TRUE}};
+  const PetscInt  before  = p->space.n;
+  PetscReal       longest = 0;
+  PetscInt        n       = 0;
+  BV              all     = NULL;
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++) PetscCall(SideBegin(residuals[i], tolerance[i], &side[i]));
-  for (int level = 0; level < EXTEND_LEVELS; level++) {
-    PetscCall(SidesSolve(p, side));
-    for (int i = 0; i < 2; i++)
-      if (side[i].n)
-        PetscCall(SideTake(p, level + 1 == EXTEND_LEVELS ? PETSC_TRUE : PETSC_FALSE, &side[i], &corrections));
-  }
+  for (int level = 0; level < EXTEND_LEVELS; level++)
+    PetscCall(LevelTake(p, level + 1 == EXTEND_LEVELS ? PETSC_TRUE : PETSC_FALSE, side, &all, &longest));
   for (int i = 0; i < 2; i++) PetscCall(SideDestroy(&side[i]));
-  PetscCall(CorrectionsJoin(p, &corrections, &all, &n));
-  if (n) PetscCall(SubspaceAdd(&p->space, p->finer * EXTEND_DROP / corrections.longest, all, NULL));
-  if (n && p->space.n == before) p->finer *= EXTEND_FINER;
-  PetscCall(BVDestroy(&all));
+  if (all) {
+    PetscCall(BVGetActiveColumns(all, NULL, &n));
+    PetscCall(SubspaceAdd(&p->space, p->finer * EXTEND_DROP / longest, all, NULL));
+    if (p->space.n == before) p->finer *= EXTEND_FINER;
+    PetscCall(BVDestroy(&all));
+  }
   if (n_columns) *n_columns = n;
   PetscFunctionReturn(0);
 }

@@ -80,30 +80,16 @@ static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool dam
   return cabs(modes->lambda[i] + conj(modes->lambda[i - 1])) > close ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Columns with their coordinates */
-typedef struct {
-  ComplexColumns of;
-  PetscReal     *coordinates; /* [of.n_columns][size] */
-} Columns;
-
+/* The vectors as real columns */
 static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped, const PetscComplex vectors[],
-                                     Columns *c)
+                                     ComplexColumns *c)
 {
-  const PetscInt size = modes->size;
-
   PetscFunctionBeginUser;
-  PetscCall(ComplexColumnsCreate(modes->n, &c->of));
-  PetscCall(PetscMalloc1(2 * modes->n * size, &c->coordinates));
+  PetscCall(ComplexColumnsCreate(modes->n, modes->size, c));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscBool is_real = !damped && cimag(modes->lambda[i] * modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
-    PetscReal      *first   = &c->coordinates[c->of.n_columns * size];
 
-    if (!ModeCounts(modes, i, damped)) continue;
-    for (PetscInt k = 0; k < size; k++) {
-      first[k] = creal(vectors[i * size + k]);
-      if (!is_real) first[size + k] = cimag(vectors[i * size + k]);
-    }
-    ComplexColumnsAdd(&c->of, modes->lambda[i], is_real);
+    if (ModeCounts(modes, i, damped)) PetscCall(ComplexColumnsAdd(c, modes->lambda[i], is_real, &vectors[i * modes->size]));
   }
   PetscFunctionReturn(0);
 }
@@ -125,23 +111,15 @@ static PetscErrorCode BlockAppend(const Basis *basis, PetscInt m, BV *side, Pets
 static PetscErrorCode CollectSide(const Correction *c, const ReducedModes *modes, PetscBool left, const Basis *basis,
                                   CorrectionBlock *block)
 {
-  Columns columns;
-  BV      vectors;
-  Mat     X, R;
+  ComplexColumns columns;
+  BV             vectors;
 
   PetscFunctionBeginUser;
   PetscCall(ColumnsCollect(modes, c->matrices.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
-  PetscCall(BasisCreateBlock(basis, columns.of.n_columns, &vectors));
-  PetscCall(BasisLift(basis, modes->size, columns.of.n_columns, columns.coordinates, vectors));
-  PetscCall(BlockAppend(basis, columns.of.n_columns, &block->side[left], &block->n[left]));
-  PetscCall(BVGetMat(vectors, &X));
-  PetscCall(BVGetMat(block->side[left], &R));
-  PetscCall(ResidualMake(&c->matrices, left, &columns.of, X, R));
-  PetscCall(BVRestoreMat(block->side[left], &R));
-  PetscCall(BVRestoreMat(vectors, &X));
+  PetscCall(BlockAppend(basis, columns.n_columns, &block->side[left], &block->n[left]));
+  PetscCall(ResidualMake(&c->matrices, left, &columns, basis->space.V, &vectors, block->side[left]));
   PetscCall(BVDestroy(&vectors));
-  PetscCall(ComplexColumnsDestroy(&columns.of));
-  PetscCall(PetscFree(columns.coordinates));
+  PetscCall(ComplexColumnsDestroy(&columns));
   PetscFunctionReturn(0);
 }
 
@@ -157,30 +135,10 @@ PetscErrorCode CorrectionCollect(const Correction *c, const ReducedModes *modes,
   PetscFunctionReturn(0);
 }
 
-/* Z = P^-1 R or P^-T S in the columns of Z from first on; the residuals go */
-static PetscErrorCode ApplySide(const Correction *c, PetscBool left, CorrectionBlock *block, PetscInt first, BV Z)
-{
-  const PetscInt n = block->n[left];
-  Mat            R, X;
-
-  PetscFunctionBeginUser;
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(BVSetActiveColumns(block->side[left], 0, n));
-  PetscCall(BVSetActiveColumns(Z, first, first + n));
-  PetscCall(BVGetMat(block->side[left], &R));
-  PetscCall(BVGetMat(Z, &X));
-  PetscCall(ShiftInvertApplyBlock(&c->factor, left, R, X));
-  PetscCall(BVRestoreMat(Z, &X));
-  PetscCall(BVRestoreMat(block->side[left], &R));
-  PetscCall(BVDestroy(&block->side[left]));
-  block->n[left] = 0;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis, CorrectionBlock *block,
                                PetscInt *n_added)
 {
-  const PetscInt n_right = block->n[0], n = n_right + block->n[1];
+  const PetscInt n = block->n[0] + block->n[1];
   BV             Z;
 
   PetscFunctionBeginUser;
@@ -188,9 +146,11 @@ PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis
   if (!n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
   PetscCall(BasisCreateBlock(basis, n, &Z));
-  PetscCall(ApplySide(c, PETSC_FALSE, block, 0, Z));
-  PetscCall(ApplySide(c, PETSC_TRUE, block, n_right, Z));
-  PetscCall(BVSetActiveColumns(Z, 0, n));
+  for (int i = 0; i < 2; i++)
+    if (block->side[i]) PetscCall(BVSetActiveColumns(block->side[i], 0, block->n[i]));
+  PetscCall(ResidualsSolve(&c->factor, block->side, Z));
+  for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&block->side[i]));
+  block->n[0] = block->n[1] = 0;
   PetscCall(BasisAdd(basis, Z, drop, n_added));
   PetscCall(BVDestroy(&Z));
   PetscCall(EventEnd(EVENT_CORRECT));
