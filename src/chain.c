@@ -190,7 +190,10 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     PetscCall(ChainSayUnits(chain));
     PetscCall(SquealStageEnd(SQUEAL_MODEL));
     PetscCall(SquealStageBegin(SQUEAL_CONTACT));
-    PetscCall(pairs ? ContactSetUp(chain->contact) : ContactSetUpTies(chain->contact));
+    if (pairs)
+      PetscCall(ContactSetUp(chain->contact));
+    else
+      PetscCall(ContactSetUpTies(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
     PetscCall(ChainNeedsMatrices(chain, pairs, &matrices));
     if (!matrices) PetscCall(OperatorsOmitMatrices(chain->operators));

@@ -21,8 +21,10 @@ static PetscErrorCode ChainIntegrate(Chain *chain)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedIsAsked(chain->reduced, &reduced));
-  PetscCall(reduced ? ReducedIntegrate(chain->reduced, chain->results)
-                    : DynamicsSolve(chain->dynamics, chain->results));
+  if (reduced)
+    PetscCall(ReducedIntegrate(chain->reduced, chain->results));
+  else
+    PetscCall(DynamicsSolve(chain->dynamics, chain->results));
   PetscFunctionReturn(0);
 }
 
@@ -74,18 +76,17 @@ PetscErrorCode ChainRun(Chain *chain)
   static const struct {
     SquealStage stage;
     Shown       shown;
-  } run[N_ANALYSES] = {
-    [ANALYSIS_MODES]     = {SQUEAL_MODES,    SHOWN_MODES   },
-    [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP,    SHOWN_SWEEP   },
-    [ANALYSIS_STATIC]    = {SQUEAL_STATICS,  SHOWN_STATICS },
-    [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
-    [ANALYSIS_FRF]       = {SQUEAL_FRF,      SHOWN_FRF     },
-    [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP     },
-    [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE   }
-  };
+  } run[N_ANALYSES] = {[ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES},
+                       [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP},
+                       [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS},
+                       [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
+                       [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF},
+                       [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP},
+                       [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE}};
 
   PetscFunctionBeginUser;
-  if (!ChainIsInTime(chain)) PetscCall(ResultsBegin(chain->results, PETSC_FALSE)); /* those look for checkpoints before */
+  /* those look for checkpoints before */
+  if (!ChainIsInTime(chain)) PetscCall(ResultsBegin(chain->results, PETSC_FALSE));
   PetscCall(ChainGivePencil(chain));
   PetscCall(SquealStageBegin(run[chain->analysis].stage));
   PetscCall(ChainSolve(chain));

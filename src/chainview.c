@@ -9,16 +9,16 @@ static const struct {
   const char *option, *help;
   unsigned    in; /* bits of the analyses that have something to show */
 } shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view",     "show mesh, parts, supports, springs and loads",           (1 << N_ANALYSES) - 1  },
-  [SHOWN_CONTACT]   = {"-contact_view",   "show interfaces and their pairs",                         AT_REST                },
-  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR                 },
-  [SHOWN_STATICS]   = {"-static_view",   "show the equilibrium",                                    1 << ANALYSIS_STATIC   },
-  [SHOWN_MODES]     = {"-modes_view",     "show the modes found",                                    MODAL                  },
-  [SHOWN_SWEEP]     = {"-sweep_view",     "show what a sweep found",                                 1 << ANALYSIS_SWEEP    },
-  [SHOWN_FRF]       = {"-frf_view",       "show the frequency response and its peaks",               1 << ANALYSIS_FRF      },
-  [SHOWN_MAP]       = {"-map_view",       "show regimes and cost of a map",                          1 << ANALYSIS_MAP      },
-  [SHOWN_DYNAMICS]  = {"-dynamics_view",  "show bodies, step and balances of a run in time",         1 << ANALYSIS_TRANSIENT},
-  [SHOWN_CYCLE]     = {"-cycle_view",     "show cycles, their stability and errors",                 1 << ANALYSIS_CYCLE    },
+  [SHOWN_MODEL]     = {"-model_view", "show mesh, parts, supports, springs and loads", (1 << N_ANALYSES) - 1},
+  [SHOWN_CONTACT]   = {"-contact_view", "show interfaces and their pairs", AT_REST},
+  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR},
+  [SHOWN_STATICS]   = {"-static_view", "show the equilibrium", 1 << ANALYSIS_STATIC},
+  [SHOWN_MODES]     = {"-modes_view", "show the modes found", MODAL},
+  [SHOWN_SWEEP]     = {"-sweep_view", "show what a sweep found", 1 << ANALYSIS_SWEEP},
+  [SHOWN_FRF]       = {"-frf_view", "show the frequency response and its peaks", 1 << ANALYSIS_FRF},
+  [SHOWN_MAP]       = {"-map_view", "show regimes and cost of a map", 1 << ANALYSIS_MAP},
+  [SHOWN_DYNAMICS]  = {"-dynamics_view", "show bodies, step and balances of a run in time", 1 << ANALYSIS_TRANSIENT},
+  [SHOWN_CYCLE]     = {"-cycle_view", "show cycles, their stability and errors", 1 << ANALYSIS_CYCLE},
 };
 
 /* Whether the analysis has something to show there */
@@ -52,7 +52,10 @@ static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(ReducedIsAsked(chain->reduced, &reduced));
   PetscCall(OperatorsViewOmitted(chain->operators, viewer));
-  PetscCall(reduced ? ReducedView(chain->reduced, viewer) : DynamicsView(chain->dynamics, viewer));
+  if (reduced)
+    PetscCall(ReducedView(chain->reduced, viewer));
+  else
+    PetscCall(DynamicsView(chain->dynamics, viewer));
   PetscFunctionReturn(0);
 }
 

@@ -65,7 +65,8 @@ static PetscErrorCode ScopeCheckContact(MPI_Comm comm, const Scope *s, const Con
     PetscFunctionReturn(0);
   }
   if (constraint) PetscCall(OptionsRefuse(comm, "-operators_factors", lu));
-  if (!c->damping) PetscCall(OptionsRefuseOf(comm, c->name, FrictionVaries(&c->friction) ? "force" : "force speed", linear));
+  if (!c->damping)
+    PetscCall(OptionsRefuseOf(comm, c->name, FrictionVaries(&c->friction) ? "force" : "force speed", linear));
   PetscFunctionReturn(0);
 }
 
@@ -276,17 +277,17 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
 PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *s, OptionsClaims claims)
 {
   OptionsReader readers[N_READERS] = {
-    [READER_ANY]       = {PETSC_TRUE,   "every analysis"                                                            },
-    [READER_STATICS]   = {PETSC_FALSE,  "-analysis static, and modes, sweeps and transients about the sliding state"},
-    [READER_MODES]     = {s->modes,     "-analysis modes, sweep and frf"                                            },
-    [READER_FACTOR]    = {s->modes,     "analyses that factorise a matrix"                                          },
+    [READER_ANY]       = {PETSC_TRUE, "every analysis"},
+    [READER_STATICS]   = {PETSC_FALSE, "-analysis static, and modes, sweeps and transients about the sliding state"},
+    [READER_MODES]     = {s->modes, "-analysis modes, sweep and frf"},
+    [READER_FACTOR]    = {s->modes, "analyses that factorise a matrix"},
     [READER_ITERATIVE] = {PETSC_FALSE,
-                          "an iterative -st_ksp_type such as gmres, since a factorised matrix needs no iteration"   },
-    [READER_SWEEP]     = {s->sweep,     "-analysis sweep"                                                           },
-    [READER_FRF]       = {s->frf,       "-analysis frf"                                                             },
-    [READER_DYNAMICS]  = {s->transient, "-analysis transient"                                                       },
-    [READER_MAP]       = {s->map,       "-analysis map"                                                             },
-    [READER_CYCLE]     = {s->cycle,     "-analysis cycle"                                                           },
+                          "an iterative -st_ksp_type such as gmres, since a factorised matrix needs no iteration"},
+    [READER_SWEEP]     = {s->sweep, "-analysis sweep"},
+    [READER_FRF]       = {s->frf, "-analysis frf"},
+    [READER_DYNAMICS]  = {s->transient, "-analysis transient"},
+    [READER_MAP]       = {s->map, "-analysis map"},
+    [READER_CYCLE]     = {s->cycle, "-analysis cycle"},
   };
   PetscBool statics, reduced;
 
@@ -325,8 +326,7 @@ PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
   PetscCall(ScopeNeedsStatics(s, &statics));
   PetscCall(ModelGetScene(s->model, &scene));
   idle = ScopeGetIdle(s, statics);
-  if (idle.loads && Vec3Dot(scene->gravity, scene->gravity) > 0)
-    PetscCall(IdleAdd("gravity", "", sizeof(text), text));
+  if (idle.loads && Vec3Dot(scene->gravity, scene->gravity) > 0) PetscCall(IdleAdd("gravity", "", sizeof(text), text));
   for (PetscInt i = 0; i < scene->n_loads && idle.loads; i++)
     PetscCall(IdleAdd("load ", scene->loads[i].name, sizeof(text), text));
   for (PetscInt i = 0; i < scene->n_probes && idle.places; i++)

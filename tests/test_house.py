@@ -4,11 +4,11 @@
   names      no type, macro, constant or function has one name twice in src and include, static functions included
   includes   a room includes only those below it (BELOW), a layer of the sweep only its own and lower ones (LAYERS), and
              nobody another room's private header (*impl.h)
-  lengths    no file of src, include, scripts, tests above 350 lines, main.c not above 80, no function above 80, no
+  lengths    no file of src, include, scripts, tests above 400 lines, main.c not above 80, no function above 80, no
              function of C with more than six arguments
   folders    no folder of src has more than 15 files
   circles    at most 6 circles of files that call each other, none across rooms
-  columns    no line of C, Python or the shell beyond 140 columns
+  columns    no line of C beyond 120 columns but for texts, none of Python or the shell beyond 140
   strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
@@ -32,7 +32,7 @@ from house_circles import circles_of
 from house_planted import PLANTED
 
 MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES, MOST_CIRCLES = \
-    350, 80, 80, 6, 25, 140, 15, 6
+    400, 80, 80, 6, 25, 140, 15, 6
 
 CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
@@ -189,8 +189,9 @@ def columns(house):
     """What is too wide."""
     for path in house.code:
         for n, line in enumerate(path.read_text().splitlines(), 1):
-            if len(line) > MOST_COLUMNS:
-                yield house.say(path, n, f"{len(line)} columns, more than {MOST_COLUMNS}")
+            most = MOST_COLUMNS - (20 if path.suffix in (".c", ".h") and "tests" not in path.parts and '"' not in line else 0)
+            if len(line) > most:
+                yield house.say(path, n, f"{len(line)} columns, more than {most}")
 
 
 def strata(house):

@@ -2,23 +2,24 @@
    Contact - frictional interfaces in steady sliding, linearised: pairs of facing nodes with gap and slip operators.
 
    Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i
-   of the nodes of one master facet, with its own shape functions w_i, which may be negative where it is of second order:
-   one node of weight 1 where the meshes match, up to nine where they do not. Every node of a slave face is a slave, those
-   between its corners too. n is the master's outward normal, t the direction of the slave's sliding velocity relative
-   to the master, b = n x t. For displacements u (m)
+   of the nodes of one master facet, with its own shape functions w_i, which may be negative where it is of second
+   order: one node of weight 1 where the meshes match, up to nine where they do not. Every node of a slave face is a
+   slave, those between its corners too. n is the master's outward normal, t the direction of the slave's sliding
+   velocity relative to the master, b = n x t. For displacements u (m)
       (N u)_p = n . (u_m - u_s)     closing of the gap
       (T u)_p = t . (u_m - u_s)     slip
       (B u)_p = b . (u_m - u_s)     transverse slip
    Pairs are node to surface. Where meshes match, a uniform pressure passes exactly: nodes of faces of six nodes then
    carry int N_i dA, nothing at corners, where rounding says whether they are closed (where the pressure varies some
    corners open, by gaps that vanish with the size of the mesh), and faces of eight nodes would have
-   to pull there, so that these open with the exact law (a warning says so). Where they do not match, the total is exact,
-   and the pressure at single nodes off by tens of percent, of second order more than of first.
+   to pull there, so that these open with the exact law (a warning says so). Where they do not match, the total is
+   exact, and the pressure at single nodes off by tens of percent, of second order more than of first.
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    Constraint: N u = 0 with force directions N' - mu T'.
-   Friction, in every analysis: mu(s), s the length of the slip velocity (m/s), by the law of the interface (frictionlaw.h), with the
-   stated sliding speed of the pair, 0 m/s where nothing slides as told; linearised about that speed it is mu + mu' (s - speed).
+   Friction, in every analysis: mu(s), s the length of the slip velocity (m/s), by the law of the interface
+   (frictionlaw.h), with the stated sliding speed of the pair, 0 m/s where nothing slides as told; linearised about that
+   speed it is mu + mu' (s - speed).
 */
 #pragma once
 
@@ -72,43 +73,47 @@ typedef struct {
 
 /* Parameters of an interface; SI units */
 typedef struct {
-  char       *name, *slave, *master; /* surfaces */
-  ContactLaw  law;
-  FrictionLaw friction;   /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
-  char       kn_text[128]; /* -contact_kn as it is given */
-  PetscBool  has_kn, has_kt;
-  PetscReal  kn;          /* stiffness per pair, N/m, or per area, N/m^3 */
-  PetscBool  per_area;    /* which of the two: that of a pair is then kn times the area of its slave */
-  PetscReal  kt;          /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
-  PetscBool  kt_per_area; /* which of the two */
-  PetscBool  identify;    /* kn is to be identified by pressing; until then it is 1 */
-  PetscReal  tolerance;   /* largest distance of a pair along the normal, m */
-  PetscReal  overhang;    /* along the surface: slaves farther beyond the master's border have no pair, m; 0: 1 % of a facet */
-  PetscInt   n_slaves;    /* nodes of the slave, over all ranks */
-  PetscInt   n_off;       /* those of them that have no pair, since no master lies under them */
-  PetscReal  off;         /* the farthest of these from the border, m */
-  PetscBool  damping;     /* friction damping: mu N0 / v across the slip, mu' N0 along it */
-  PetscReal  force;       /* total normal force in the sliding state, N */
-  PetscReal  speed;       /* sliding speed, m/s */
-  PetscReal  slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
-  PetscReal  rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
-  PetscReal  centre[3];   /* a point of its axis, m */
-  PetscBool  slides;      /* every pair has a slip direction; known after ContactSetUp() */
+  char      *name, *slave, *master; /* surfaces */
+  ContactLaw law;
+  /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
+  FrictionLaw friction;
+  char        kn_text[128]; /* -contact_kn as it is given */
+  PetscBool   has_kn, has_kt;
+  PetscReal   kn;       /* stiffness per pair, N/m, or per area, N/m^3 */
+  PetscBool   per_area; /* which of the two: that of a pair is then kn times the area of its slave */
+  /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
+  PetscReal kt;
+  PetscBool kt_per_area; /* which of the two */
+  PetscBool identify;    /* kn is to be identified by pressing; until then it is 1 */
+  PetscReal tolerance;   /* largest distance of a pair along the normal, m */
+  /* along the surface: slaves farther beyond the master's border have no pair, m; 0: 1 % of a facet */
+  PetscReal overhang;
+  PetscInt  n_slaves;    /* nodes of the slave, over all ranks */
+  PetscInt  n_off;       /* those of them that have no pair, since no master lies under them */
+  PetscReal off;         /* the farthest of these from the border, m */
+  PetscBool damping;     /* friction damping: mu N0 / v across the slip, mu' N0 along it */
+  PetscReal force;       /* total normal force in the sliding state, N */
+  PetscReal speed;       /* sliding speed, m/s */
+  PetscReal slip[3];     /* direction, or 0,0,0 when it comes from the rotation */
+  PetscReal rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
+  PetscReal centre[3];   /* a point of its axis, m */
+  PetscBool slides;      /* every pair has a slip direction; known after ContactSetUp() */
 } ContactInterface;
 
 /* A tie: nodes of the slave follow points of the master, their feet (ContactLink) */
 typedef struct {
   char     *name, *slave, *master; /* a set of nodes; a surface */
-  PetscReal distance;           /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
+  PetscReal distance; /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
   PetscBool has_distance;
   PetscBool free;               /* these stay free, else they are an error */
   PetscInt  n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
-  PetscInt  n_beyond;           /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */
-  PetscReal offset, beyond;     /* largest distance of a node from its foot, and of these along the surface, m */
+  /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */
+  PetscInt  n_beyond;
+  PetscReal offset, beyond; /* largest distance of a node from its foot, and of these along the surface, m */
 } ContactTie;
 
-/* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a gap is
-   kept as a rigid arm. It lives on the rank that owns the node */
+/* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a
+   gap is kept as a rigid arm. It lives on the rank that owns the node */
 typedef struct {
   PetscInt  tie, n_master, node, vertex, corner[CONTACT_MAX_MASTER]; /* local node; global numbers */
   PetscInt  slave[3], master[CONTACT_MAX_MASTER][3];                 /* unknowns x, y, z; -1 where held */
@@ -131,7 +136,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
-.  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given): stiffness
+.  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given):
+stiffness
                                    along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
 .  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
 .  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
@@ -140,9 +146,11 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu' N0 along it
 .  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
-.  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave node has a
+.  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave
+node has a
                                    pair; default 1 % of the size of the facet
-.  -ties <names>                  - surfaces glued to others; each name is the prefix of the following, shown for one named `bond`
+.  -ties <names>                  - surfaces glued to others; each name is the prefix of the following, shown for one
+named `bond`
 .  -bond_surfaces <slave,master>  - a set whose nodes follow, and a surface
 .  -bond_distance <m>             - largest distance of a node from the surface; default 5 % of the size of the facet
 -  -bond_far <error|free>         - what becomes of nodes that are farther off
@@ -152,30 +160,33 @@ PetscErrorCode ContactSetFromOptions(Contact contact);
 /*@
    ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
 
-   A slave node beyond the border of the master (over a hole or slot, or beyond the rim) has no pair and carries nothing; a
-   warning counts such nodes.
+   A slave node beyond the border of the master (over a hole or slot, or beyond the rim) has no pair and carries
+   nothing; a warning counts such nodes.
 
-   Errors: PETSC_ERR_USER_INPUT when a slave node over the master is farther from it along the normal than the tolerance, or
-   when no slave node lies over the master: names the interface, the position of the node and its distance; also when
-   a slip that is given vanishes in the
+   Errors: PETSC_ERR_USER_INPUT when a slave node over the master is farther from it along the normal than the
+   tolerance, or when no slave node lies over the master: names the interface, the position of the node and its
+   distance; also when a slip that is given vanishes in the
    surface at some pair, and friction needs it; for a node of a tie that is too far off, or that a support holds in a
    direction in which it does not hold what the node follows.
 @*/
 PetscErrorCode ContactSetUp(Contact contact);
 
-/*@ ContactDampFriction - interfaces with friction that slide at a stated speed have friction damping in modes, as Coulomb's law in
-    time has by itself: as -contact_friction_damping does, with the parameters of the operators that belong to it. Before
-    ContactSetUp(). Not collective. @*/
+/*@ ContactDampFriction - interfaces with friction that slide at a stated speed have friction damping in modes, as
+   Coulomb's law in
+    time has by itself: as -contact_friction_damping does, with the parameters of the operators that belong to it.
+    Before ContactSetUp(). Not collective. @*/
 PetscErrorCode ContactDampFriction(Contact contact);
 
-/*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are not those of the
+/*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are
+   not those of the
     mesh. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactSetUpTies(Contact contact);
 
-/*@ ContactCheckBodies - prints a line for each body that hangs together with no other one and is held by nothing, where there are
-    others, with the nodes by which it lies on them; and for nodes that two bodies have in one place without sharing them, where no
-    tie, contact or bushing has both. With matrix terms, which may hold anything, none. Collective; after ContactSetUp() or
-    ContactSetUpTies(). @*/
+/*@ ContactCheckBodies - prints a line for each body that hangs together with no other one and is held by nothing, where
+   there are
+    others, with the nodes by which it lies on them; and for nodes that two bodies have in one place without sharing
+    them, where no tie, contact or bushing has both. With matrix terms, which may hold anything, none. Collective; after
+    ContactSetUp() or ContactSetUpTies(). @*/
 PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms);
 
 /*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
@@ -224,7 +235,8 @@ PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **t
     collective; after ContactSetUp(). @*/
 PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links);
 
-/*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on nodes that
+/*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on
+   nodes that
     follow others to these, f_i += follow_i' f, but in directions that a support holds. Collective. @*/
 PetscErrorCode ContactPassForces(Contact contact, Vec local);
 
@@ -238,11 +250,13 @@ PetscErrorCode ContactPassForces(Contact contact, Vec local);
 @*/
 PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
 
-/*@ ContactPairStiffness - the stiffness of a pair, N/m, of an interface with this value of kn, as ContactInterface has it. Not
+/*@ ContactPairStiffness - the stiffness of a pair, N/m, of an interface with this value of kn, as ContactInterface has
+   it. Not
     collective. @*/
 PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn);
 
-/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu of each and kn (infinite for the constraint) of each
+/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu of each and kn (infinite for the constraint)
+   of each
     interface; displacement is the largest of the local pairs, m. Collective. @*/
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
                                  const PetscReal kn[], PetscReal displacement, ContactKKT *kkt);

@@ -10,9 +10,10 @@
 
    Energy ledger, J, of the half steps: kinetic 1/2 v'Mv, strain 1/2 u_{n+1}'K u_n; their change is the work of external
    forces, contact, friction, damping, and for b > 1/2 of the integrator. What is left over is energy_error_j: rounding.
-   It closes with any forces, since the works are those of the forces that acted. Hence a few steps are looked at by second
-   paths, which are in the view and in transient.csv, the worst so far: K u of the kernels beside that of the elements, work of
-   friction beside mu N on the way slid by the nodes' places, change of momentum beside the sum of what acts.
+   It closes with any forces, since the works are those of the forces that acted. Hence a few steps are looked at by
+   second paths, which are in the view and in transient.csv, the worst so far: K u of the kernels beside that of the
+   elements, work of friction beside mu N on the way slid by the nodes' places, change of momentum beside the sum of
+   what acts.
 */
 #pragma once
 
@@ -46,13 +47,15 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -dynamics_filters_modes <0> - numbers of the modes in modes.csv; 0: all unstable ones
 .  -dynamics_coriolis, -dynamics_centrifugal <false> - inertial forces in parts that turn
 .  -dynamics_kernel <auto|general> - internal forces; general: one matrix of blocks for every body
-.  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, and cut to the run, as the next two:
+.  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, and cut to the run, as
+the next two:
                                    longer ones of the command line are refused
 .  -dynamics_pairs_interval <0>  - between states of all pairs in contact_pairs.csv, s; 0 for none
 .  -dynamics_snapshot_interval <0> - between fields, s; 0 for none
 .  -dynamics_live <1>            - between live lines, s of the wall; 0 for none
 .  -contact_view_kkt <false>     - print the residuals of the contact laws in the last step
-.  -dynamics_check_interval <100000> - between looks at the laws by second paths, steps, besides 10, 100, 1000, ... and the last
+.  -dynamics_check_interval <100000> - between looks at the laws by second paths, steps, besides 10, 100, 1000, ... and
+the last
                                   one; 0 for none
 .  -dynamics_checkpoint_interval <0> - between checkpoints, steps; 0 for none
 -  -dynamics_restart <false>     - go on from the checkpoint in the output folder
@@ -62,7 +65,8 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 .  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
 .  -lift_ramp, -lift_ramp_shape, -lift_delay - the same of the motion `lift` (model.h), whose ramp must be given;
                                    from the sliding state motions are there from the start, and have none
--  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s; zeros for none), -hit_time (s), before
+-  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s; zeros for none),
+-hit_time (s), before
                                    the last step
    Those of contact surfaces are in projector.h.
 @*/
@@ -78,8 +82,8 @@ PetscErrorCode DynamicsSetOperators(Dynamics dynamics, Operators operators, Stat
 /*@
    DynamicsSolve - integrates and writes histories, fields and checkpoints as it goes. Collective.
 
-   Errors: PETSC_ERR_USER_INPUT for a step above the critical one or beyond the end, for impulses and intervals of the command line
-   that come after it; for bodies that interpenetrate at the start;
+   Errors: PETSC_ERR_USER_INPUT for a step above the critical one or beyond the end, for impulses and intervals of the
+   command line that come after it; for bodies that interpenetrate at the start;
    PETSC_ERR_FP for the first node and step that are no number, and for growth of energy that the ledger cannot explain;
    PETSC_ERR_NOT_CONVERGED from the contact forces.
 @*/

@@ -72,8 +72,8 @@ PetscErrorCode ElementGeometric(const Element *element, const PetscReal x[], con
                                 const PetscReal u[], PetscReal stiffness[]);
 
 /*@
-   ElementLump - lumped mass (kg) of each node, from the consistent mass [3 n_nodes][3 n_nodes] of the element: row sums,
-   or where these are not positive at every node the diagonal, scaled to the mass of the element. Not collective.
+   ElementLump - lumped mass (kg) of each node, from the consistent mass [3 n_nodes][3 n_nodes] of the element: row
+   sums, or where these are not positive at every node the diagonal, scaled to the mass of the element. Not collective.
 
    E. Hinton, T. Rock, O. C. Zienkiewicz, A note on mass lumping and related processes in the finite element method,
    Earthquake Engineering and Structural Dynamics 4 (1976) 245-249.

@@ -3,8 +3,8 @@
 
       (s^2 M + s C + K + mu H) u = f e^{st},   s = i omega, omega = 2 pi freq_hz;     H_p = u_p / |f|, m/N (receptance)
 
-   It is also the Laplace transform of h_p(t), the answer to an impulse of 1 N s at rest. Superposition of the modes lambda_k of the
-   quadratic pencil Q(s), with right and left vectors x_k, y_k,
+   It is also the Laplace transform of h_p(t), the answer to an impulse of 1 N s at rest. Superposition of the modes
+   lambda_k of the quadratic pencil Q(s), with right and left vectors x_k, y_k,
 
       H_p(s) = sum_k  (l_p^T x_k) (y_k^T f) / ((y_k^T Q'(lambda_k) x_k) (s - lambda_k)) + conjugate  +  R_p(s),
 
@@ -43,8 +43,9 @@ typedef struct {
 /* A maximum of the response over the frequencies */
 typedef struct {
   PetscReal freq_hz, magnitude; /* Hz, of the table; m/N, root of the sum of squares over the outputs */
-  PetscInt  mode;               /* that contributes most, as ModesGet() counts from 0; -1 where its frequency is further away than its
-                                   half width, 3 %, and a step of the table, or there is none */
+  /* that contributes most, as ModesGet() counts from 0; -1 where its frequency is further away than its half width, 3
+     %, and a step of the table, or there is none */
+  PetscInt mode;
 } FrfPeak;
 
 /*@ FrfCreate - makes a solver. Collective. @*/
@@ -53,11 +54,13 @@ PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf);
 /*@ FrfSetOperators - the scene with its probes (referenced until FrfDestroy()). Not collective. @*/
 PetscErrorCode FrfSetOperators(Frf frf, Operators operators);
 
-/*@ FrfSetModes - the solver of the modes (referenced until FrfDestroy()). Without -modes_band and -modes_target its band
+/*@ FrfSetModes - the solver of the modes (referenced until FrfDestroy()). Without -modes_band and -modes_target its
+   band
     becomes 0 to 1.5 times the highest frequency. Not collective. @*/
 PetscErrorCode FrfSetModes(Frf frf, Modes modes);
 
-/*@ FrfSetResults - the folder in which a direct response is kept as it grows, for one that goes on; statics: of which the pencil has
+/*@ FrfSetResults - the folder in which a direct response is kept as it grows, for one that goes on; statics: of which
+   the pencil has
     the sliding state, or NULL (both referenced until FrfWrite()). Not collective. @*/
 PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics);
 
@@ -70,7 +73,8 @@ PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil);
    Options Database Keys:
 +  -frf_force <probe,direction>   - where the force of 1 N acts: a probe and x, y, z or three numbers; for matrices
 without a mesh the number of an unknown, from 1
-.  -frf_probes <names>            - where the response is recorded; circles by name; default all probes, or all of up to 10 unknowns
+.  -frf_probes <names>            - where the response is recorded; circles by name; default all probes, or all of up to
+10 unknowns
 .  -frf_directions <xyz>          - in which directions
 .  -frf_frequencies <low:high:n>  - Hz; low:high:n:log for equal ratios; or a list
 .  -frf_times <low:high:n>        - s; the answer of the modes to an impulse of 1 N s as well; or a list
@@ -102,7 +106,8 @@ PetscErrorCode FrfSolve(Frf frf);
 /*@ FrfGet - the frequencies, Hz [n], and the outputs (borrowed). Not collective. @*/
 PetscErrorCode FrfGet(Frf frf, PetscInt *n, const PetscReal **freq_hz, PetscInt *n_outputs, const FrfOutput **output);
 
-/*@ FrfGetResponse - H of all outputs at frequency i, m/N [n_outputs] (borrowed), and its estimated error, the root of the
+/*@ FrfGetResponse - H of all outputs at frequency i, m/N [n_outputs] (borrowed), and its estimated error, the root of
+   the
     sum of squares over the outputs, m/N. Not collective. @*/
 PetscErrorCode FrfGetResponse(Frf frf, PetscInt i, const PetscReal **re, const PetscReal **im, PetscReal *error);
 

@@ -1,7 +1,7 @@
 /*
-   FrictionLaw - the friction coefficient mu(s) of a contact over the slip speed s >= 0 (m/s), as one value: its kind, its
-   parameters, and the stated sliding speed. Passed whole and copied; every analysis asks it for mu(s) and mu'(s), none knows its
-   parameters by name. A new law is a file in src/contact/law/ and a row in law.c there.
+   FrictionLaw - the friction coefficient mu(s) of a contact over the slip speed s >= 0 (m/s), as one value: its kind,
+   its parameters, and the stated sliding speed. Passed whole and copied; every analysis asks it for mu(s) and mu'(s),
+   none knows its parameters by name. A new law is a file in src/contact/law/ and a row in law.c there.
 */
 #pragma once
 
@@ -10,7 +10,7 @@
 #define FRICTION_PARAMETERS 4 /* of a law, at most */
 
 typedef struct {
-  PetscInt64 kind; /* place in the table of laws; 0: Coulomb's */
+  PetscInt64 kind;  /* place in the table of laws; 0: Coulomb's */
   PetscReal  speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
   PetscReal  parameter[FRICTION_PARAMETERS];
 } FrictionLaw;
@@ -50,11 +50,13 @@ PetscBool FrictionExists(const FrictionLaw *law);
 /*@ FrictionVaries - whether mu changes with the slip speed. Not collective. @*/
 PetscBool FrictionVaries(const FrictionLaw *law);
 
-/*@ FrictionNeedsSpeed - whether mu in steady sliding changes with the stated speed; not where the law is given about it. Not
+/*@ FrictionNeedsSpeed - whether mu in steady sliding changes with the stated speed; not where the law is given about
+   it. Not
     collective. @*/
 PetscBool FrictionNeedsSpeed(const FrictionLaw *law);
 
-/*@ FrictionIsValid - whether all parameters are finite, coefficients not negative, and the others within their limits. Not
+/*@ FrictionIsValid - whether all parameters are finite, coefficients not negative, and the others within their limits.
+   Not
     collective. @*/
 PetscBool FrictionIsValid(const FrictionLaw *law);
 
@@ -83,13 +85,15 @@ PetscInt FrictionGetParameters(const FrictionLaw *law, const FrictionParameter *
 @*/
 PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law);
 
-/*@ FrictionCheckNotNegative - raises PETSC_ERR_USER_INPUT for a negative coefficient, which no run in time has. Collective. @*/
+/*@ FrictionCheckNotNegative - raises PETSC_ERR_USER_INPUT for a negative coefficient, which no run in time has.
+   Collective. @*/
 PetscErrorCode FrictionCheckNotNegative(MPI_Comm comm, const char name[], const FrictionLaw *law);
 
 /*@ FrictionWarnLarge - a warning for coefficients as large as those in per cent. Collective. @*/
 PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const FrictionLaw *law);
 
-/*@ FrictionRefuseSlopes - raises an error for parameters on the command line that mu' alone depends on; why ends the message.
+/*@ FrictionRefuseSlopes - raises an error for parameters on the command line that mu' alone depends on; why ends the
+   message.
     Collective. @*/
 PetscErrorCode FrictionRefuseSlopes(MPI_Comm comm, const char name[], const FrictionLaw *law, const char why[]);
 

@@ -7,16 +7,17 @@
 #include <petscsys.h>
 
 /* Six motions q = (translation, m; rotation, rad) of the displacements u of sets, linear in them: q_j = sum over the
-   nodes i of all ranks and d of b[i][d][j] u_id. A force (N) and moment (N m) f on q act on the nodes as sum_j b_j f_j. */
+   nodes i of all ranks and d of b[i][d][j] u_id. A force (N) and moment (N m) f on q act on the nodes as sum_j b_j
+   f_j. */
 typedef struct {
   PetscInt   n;
   PetscInt  *vertex; /* [n] local nodes that this rank owns */
   PetscReal *b;      /* [n][3][6] */
 } ModelMean;
 
-/* A bushing between the mean motions of two sets, of a to b, or of one and the ground; or a point, which moves as its set
-   does in the mean, with mass, inertia, and what holds it to the ground. Of six values three are along x, y, z, three
-   about them. */
+/* A bushing between the mean motions of two sets, of a to b, or of one and the ground; or a point, which moves as its
+   set does in the mean, with mass, inertia, and what holds it to the ground. Of six values three are along x, y, z,
+   three about them. */
 typedef struct {
   char     *name, *set[2]; /* set[1] is empty for the ground */
   PetscBool is_point, has_at;

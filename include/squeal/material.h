@@ -38,14 +38,14 @@ typedef struct {
 
 /* Material of one body; SI units */
 typedef struct {
-  char      *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
-  PetscReal  young;   /* Young's modulus, Pa, > 0; E_1 where not isotropic */
-  PetscReal  poisson; /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
-  PetscReal  density; /* kg/m^3, > 0 */
-  PetscReal  alpha;   /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal  beta;    /* Rayleigh factor of the stiffness, s, loss included */
-  PetscReal  loss;    /* loss factor at the scene's loss_frequency, part of beta */
+  char           *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
+  PetscReal       young;         /* Young's modulus, Pa, > 0; E_1 where not isotropic */
+  PetscReal       poisson;       /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
+  PetscReal       density;       /* kg/m^3, > 0 */
+  PetscReal       alpha;         /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal       beta;          /* Rayleigh factor of the stiffness, s, loss included */
+  PetscReal       loss;          /* loss factor at the scene's loss_frequency, part of beta */
   ElasticityAsked asked;
-  Anisotropy anisotropy;
-  Spin       spin;
+  Anisotropy      anisotropy;
+  Spin            spin;
 } Part;

@@ -25,9 +25,9 @@ typedef struct {
   PetscInt              n_unknowns;       /* of all ranks */
 } Mesh;
 
-/* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise seen
-   from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle one.
-   Their number tells the shape: 3, 6 of triangles, 4, 8, 9 of quadrilaterals (kernels/contact/facet.h) */
+/* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise
+   seen from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle
+   one. Their number tells the shape: 3, 6 of triangles, 4, 8, 9 of quadrilaterals (kernels/contact/facet.h) */
 typedef struct {
   PetscInt n, *first, *node;
 } ModelFaces;

@@ -46,9 +46,9 @@ typedef struct {
 typedef struct {
   char     *name, *part; /* part is empty for any */
   PetscBool has_at;
-  PetscReal at[3];       /* place asked for, m */
-  PetscReal x[3];        /* that of the node, m */
-  PetscInt  vertex;      /* local node from 0 on the rank that records it, -1 on all others */
+  PetscReal at[3];  /* place asked for, m */
+  PetscReal x[3];   /* that of the node, m */
+  PetscInt  vertex; /* local node from 0 on the rank that records it, -1 on all others */
 } Probe;
 
 /* Nodes of a part at equal angles about an axis, whose motion along it histories and responses record */
@@ -60,8 +60,8 @@ typedef struct {
   int       axis, side;        /* 0, 1, 2 for x, y, z; 1 or -1: the side of the part on which it lies */
   PetscBool has_centre;        /* given, else the middle of the part */
   PetscBool has_tolerance;
-  PetscReal centre[3];         /* m */
-  Probe    *probe;             /* [n], named `name`_000 and so on; after ModelSetUp() */
+  PetscReal centre[3]; /* m */
+  Probe    *probe;     /* [n], named `name`_000 and so on; after ModelSetUp() */
 } Circle;
 
 /* Cells swept along an angle or an axis: each lies between two consecutive nodes of four lines. All lines have the same
@@ -117,8 +117,8 @@ typedef struct {
 PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
-   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, bushings, points,
-   loads, motions, probes, circles.
+   ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, bushings,
+   points, loads, motions, probes, circles.
    Collective.
 
    Options Database Keys:
@@ -130,7 +130,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
    or not: model/scene/anisotropic.c
 .  -<part>_spin, _spin_axis, _spin_centre - steady spin of a body of revolution, rad/s, in modes
-.  -<part>_loss_factor <0>  - structural damping, exact at -model_loss_frequency <Hz>: beta grows by loss / (2 pi frequency)
+.  -<part>_loss_factor <0>  - structural damping, exact at -model_loss_frequency <Hz>: beta grows by loss / (2 pi
+frequency)
 .  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
 .  -bush_a, -bush_b <the ground>, -bush_at x,y,z <the middle>, -bush_stiffness, _turn_stiffness, _viscosity,
    _turn_viscosity - of a bushing named `bush`: sets of its two sides, m, N/m, N m/rad, N s/m, N m s/rad
@@ -138,7 +139,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 .  -push_point, -push_force, -push_moment - of a load on a point: its name, N, N m
 .  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
    set, m, some of x, y, z
-.  -rim_radius, -rim_count, -rim_part <disc>, -rim_face <z+>, -rim_centre x,y,z, -rim_tolerance - of a circle named `rim`:
+.  -rim_radius, -rim_count, -rim_part <disc>, -rim_face <z+>, -rim_centre x,y,z, -rim_tolerance - of a circle named
+`rim`:
    m, nodes, which part and side of it, m, m
 -  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
 
@@ -168,9 +170,10 @@ PetscErrorCode ModelCheckGiven(Model model);
 /*@
    ModelSetUp - generates or reads the mesh, checks its elements, partitions it, and lays out the unknowns. Collective.
 
-   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, for an element that is
-   inverted at one of its quadrature points, has no volume (number, part and centre are named), or whose shape is lost in
-   the rounding of numbers at its distance from the origin, for elements of different order that share an edge or face.
+   Errors: PETSC_ERR_FILE_OPEN; PETSC_ERR_USER_INPUT for a part or set that the mesh does not name, for an element that
+   is inverted at one of its quadrature points, has no volume (number, part and centre are named), or whose shape is
+   lost in the rounding of numbers at its distance from the origin, for elements of different order that share an edge
+   or face.
 @*/
 PetscErrorCode ModelSetUp(Model model);
 
@@ -196,18 +199,20 @@ PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], 
     collective. @*/
 PetscErrorCode ModelGetElasticity(Model model, PetscInt c, PetscReal young, PetscReal density, Elasticity *elasticity);
 
-/*@ ModelMaterialIsSwept - whether the cells of a part are equal along lines of the mesh in their material too: isotropic,
+/*@ ModelMaterialIsSwept - whether the cells of a part are equal along lines of the mesh in their material too:
+   isotropic,
     or in axes that the sweep carries along. Not collective. @*/
 PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lines);
 
-/*@ ModelGetCell - local cell c: its element, and in the order of that the nodes [n_nodes] and their places x [n_nodes][3]
+/*@ ModelGetCell - local cell c: its element, and in the order of that the nodes [n_nodes] and their places x
+   [n_nodes][3]
     (m). Not collective. @*/
 PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[]);
 
 /*@
-   ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N, its force or pressure times factor[0], its moment times
-   factor[1]; NULL for 1, 1. On a surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all nodes, held
-   ones included, is F; a node has its full force on every rank that shares it. Collective.
+   ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N, its force or pressure times factor[0], its moment
+   times factor[1]; NULL for 1, 1. On a surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all
+   nodes, held ones included, is F; a node has its full force on every rank that shares it. Collective.
 @*/
 PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], Vec local);
 
@@ -218,11 +223,13 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
-/*@ ModelMeasureBodies - boxes of n bodies of ModelGetBodies() from number `first` on, shape [n][6], m: upper ends, and lower ones
+/*@ ModelMeasureBodies - boxes of n bodies of ModelGetBodies() from number `first` on, shape [n][6], m: upper ends, and
+   lower ones
     with the other sign; all -PETSC_MAX_REAL where a body has no node. Collective. @*/
 PetscErrorCode ModelMeasureBodies(Model model, const PetscInt body[], PetscInt first, PetscInt n, PetscReal box[]);
 
-/*@ ModelNameBody - "part pad", "parts pad, beam"; "a piece of part pad about 0.01, 0.02, 0 m" where other bodies have cells of that
+/*@ ModelNameBody - "part pad", "parts pad, beam"; "a piece of part pad about 0.01, 0.02, 0 m" where other bodies have
+   cells of that
     part too. Collective. @*/
 PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[]);
 
@@ -257,14 +264,14 @@ PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
 /*@ ModelGetSetNormals - for each local node, shape [nodes][3], the outward normal of a surface set times the node's
     share of its area (m^2), complete on every rank that has the node. Its direction is that of the sum of the area
-    vectors of the faces around the node (kernels/contact/facet.h): of first order int N_v n dA, whose length is the share too;
-    of second order the faces' own normals there with positive weights, and the length that of ModelCreateShares().
-    Collective. The caller frees it. @*/
+    vectors of the faces around the node (kernels/contact/facet.h): of first order int N_v n dA, whose length is the
+    share too; of second order the faces' own normals there with positive weights, and the length that of
+    ModelCreateShares(). Collective. The caller frees it. @*/
 PetscErrorCode ModelGetSetNormals(Model model, const char set[], PetscReal **area_normals);
 
 /*@ ModelFindNode - the node of a part (empty for any) nearest to a place (m): its local node from 0 on one rank that
-    has it, -1 on all others. Collective; after ModelSetUp(). Errors: PETSC_ERR_USER_INPUT, which names the option -name_at, for
-    a place farther off it than half the diagonal of the part, or of the largest one where it is any. @*/
+    has it, -1 on all others. Collective; after ModelSetUp(). Errors: PETSC_ERR_USER_INPUT, which names the option
+    -name_at, for a place farther off it than half the diagonal of the part, or of the largest one where it is any. @*/
 PetscErrorCode ModelFindNode(Model model, const char name[], const char part[], const PetscReal at[3],
                              PetscInt *vertex);
 
@@ -292,12 +299,14 @@ PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
-/*@ ModelDescribeDoubt - for a message that something does not come to an end: the part that a wave takes longest to cross,
+/*@ ModelDescribeDoubt - for a message that something does not come to an end: the part that a wave takes longest to
+   cross,
     and what its units probably are; empty where none takes more than 50 periods of hz (Hz). Not collective; after
     ModelSetUp(). @*/
 PetscErrorCode ModelDescribeDoubt(Model model, PetscReal hz, size_t size, char text[]);
 
-/*@ ModelAddChecksum - adds mesh, materials, supports, motions, springs and dashpots; with_partition: also which rank has which
+/*@ ModelAddChecksum - adds mesh, materials, supports, motions, springs and dashpots; with_partition: also which rank
+   has which
     cells. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);
 
@@ -307,7 +316,8 @@ PetscBool ModelHasGravity(Model model);
 /*@ ModelAddLoadsChecksum - adds the loads, and gravity. Collective. @*/
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum checksum);
 
-/*@ ModelCheckMotion - raises PETSC_ERR_USER_INPUT for a motion that prescribes no direction of a node (n_held = 0), or one
+/*@ ModelCheckMotion - raises PETSC_ERR_USER_INPUT for a motion that prescribes no direction of a node (n_held = 0), or
+   one
     that another prescribes (n_twice > 0); counts of this rank. Collective. @*/
 PetscErrorCode ModelCheckMotion(Model model, const PrescribedMotion *motion, PetscInt n_held, PetscInt n_twice);
 
@@ -330,8 +340,8 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
 PetscErrorCode ModelUnits(Model model, const char **units);
 
 /*@ ModelGetUnit - what the scene's set of units has for a unit of m, kg, s, N, Pa: mm for m and so on with mm, t, s, N,
-    MPa, else the same. For m, m^2, m^3, m/s, s/m, kg, kg/m^3, Pa, m/N, N/m, N/m^3, N s/m, N s/m^3, N m, N m/rad, N m s/rad. Not
-    collective; after ModelSetUp(). @*/
+    MPa, else the same. For m, m^2, m^3, m/s, s/m, kg, kg/m^3, Pa, m/N, N/m, N/m^3, N s/m, N s/m^3, N m, N m/rad, N m
+    s/rad. Not collective; after ModelSetUp(). @*/
 PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit);
 
 /*@ ModelView - prints in words what the scene needs: counts, parts, supports, springs. Collective. @*/

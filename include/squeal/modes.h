@@ -50,8 +50,8 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 .  -modes_count <20>         - how many; either of the two overrides a band
 .  -modes_growth <1/s>       - modes of a band with growth and decay up to this must be found; default a tenth of the
 angular frequency of f2
-.  -modes_most <3000>        - modes that a band may hold, counted before they are computed (0: any number); 100 where the units
-of a part are in doubt
+.  -modes_most <3000>        - modes that a band may hold, counted before they are computed (0: any number); 100 where
+the units of a part are in doubt
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called

@@ -46,16 +46,19 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
    Options Database Keys:
 +  -operators_load_k, _m, _c, _h <file>  - PETSc binary matrices; K and M are required together
 .  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
-.  -terms <names>                        - matrices, each the prefix of -.._file or _dense, _kind <stiffness|damping|mass>,
-_parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K, C and M are sums of scale prod_i p_i^n_i A
-.  -operators_nodes <file>               - table unknown,node,direction,x,y,z[,part] of matrices, for shapes and their names
+.  -terms <names>                        - matrices, each the prefix of -.._file or _dense, _kind
+<stiffness|damping|mass>, _parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K, C and M are
+sums of scale prod_i p_i^n_i A
+.  -operators_nodes <file>               - table unknown,node,direction,x,y,z[,part] of matrices, for shapes and their
+names
 .  -operators_mass <consistent|lumped>   - mass matrix of a model
-.  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the closed
-pairs; auto takes what needs less memory
+.  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the
+closed pairs; auto takes what needs less memory
 .  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
--  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads F.bin;
-                                          with the contact constraint, ties or rigid points the projected ones, friction in
-                                          K.bin and M.bin
+-  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads
+F.bin;
+                                          with the contact constraint, ties or rigid points the projected ones, friction
+                                          in K.bin and M.bin
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 
@@ -66,7 +69,8 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
 
-/*@ OperatorsLump - the mass matrix is lumped whatever the options say, as that of transients. Before OperatorsSetUp(). Not
+/*@ OperatorsLump - the mass matrix is lumped whatever the options say, as that of transients. Before OperatorsSetUp().
+   Not
     collective. @*/
 PetscErrorCode OperatorsLump(Operators operators);
 
@@ -74,7 +78,8 @@ PetscErrorCode OperatorsLump(Operators operators);
     time ask for. Nothing that forms a matrix may be called then. Before OperatorsSetUp(). Not collective. @*/
 PetscErrorCode OperatorsOmitMatrices(Operators operators);
 
-/*@ OperatorsViewOmitted - says so, and about how much memory that saves; nothing where matrices are there. Collective. @*/
+/*@ OperatorsViewOmitted - says so, and about how much memory that saves; nothing where matrices are there. Collective.
+   @*/
 PetscErrorCode OperatorsViewOmitted(Operators operators, PetscViewer viewer);
 
 /*@ OperatorsSetUp - assembles the bodies or loads the matrices. Collective. @*/
@@ -87,13 +92,13 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
-   turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that
-   spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by friction), and
-   with friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu standing for the parameters
-   of its friction law (frictionlaw.h), of which those that decide mu' alone are there with friction damping; contact_mu
-   for loaded or dense matrices with H, and what -terms name (borrowed). An interface of which nothing says along what it slides has
-   a mu only where it holds by friction. Then of each load force (N, the length of the vector) or pressure (Pa), and moment (N m,
-   likewise). Not collective.
+   turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part
+   that spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by
+   friction), and with friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu
+   standing for the parameters of its friction law (frictionlaw.h), of which those that decide mu' alone are there with
+   friction damping; contact_mu for loaded or dense matrices with H, and what -terms name (borrowed). An interface of
+   which nothing says along what it slides has a mu only where it holds by friction. Then of each load force (N, the
+   length of the vector) or pressure (Pa), and moment (N m, likewise). Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
@@ -105,7 +110,8 @@ PetscErrorCode OperatorsCreatePoint(Operators operators, const PetscReal from[],
     Collective. @*/
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value);
 
-/*@ OperatorsCheckMoved - raises PETSC_ERR_USER_INPUT for n parameters that `option` would give other values than those of
+/*@ OperatorsCheckMoved - raises PETSC_ERR_USER_INPUT for n parameters that `option` would give other values than those
+   of
     the scene, the same to all: where the stress of a spin depends on one of them, and where the spin of one part would
     move but not that of a part with which it shares nodes. NULL for all parameters. Collective. @*/
 PetscErrorCode OperatorsCheckMoved(Operators operators, const char option[], PetscInt n, const PetscInt parameter[]);
@@ -118,7 +124,8 @@ PetscErrorCode OperatorsAddChecksum(Operators operators, Checksum checksum);
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material);
 
-/*@ OperatorsGetInterface - friction coefficient at the stated speed and stiffness per pair (N/m, infinite for the constraint) of
+/*@ OperatorsGetInterface - friction coefficient at the stated speed and stiffness per pair (N/m, infinite for the
+   constraint) of
     an interface at p. Not collective. @*/
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
                                      PetscReal *kn);
@@ -139,9 +146,10 @@ PetscErrorCode OperatorsReleaseBodies(Operators operators);
 PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], PetscInt i, PetscReal stiffness[6],
                                  PetscReal viscosity[6], PetscReal *mass);
 
-/*@ OperatorsGetDependents - of points that are joined rigidly and of ties: all displacements u = Z q, and E' u = q, which are
-    those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint are those with
-    Z'f = 0. Not collective. @*/
+/*@ OperatorsGetDependents - of points that are joined rigidly and of ties: all displacements u = Z q, and E' u = q,
+   which are
+    those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint are those
+    with Z'f = 0. Not collective. @*/
 PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
 
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
@@ -149,7 +157,8 @@ PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
    support they are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
 
-/*@ OperatorsPrescribedForces - internal forces of the displacements that motions prescribe, all others held, as those of
+/*@ OperatorsPrescribedForces - internal forces of the displacements that motions prescribe, all others held, as those
+   of
     OperatorsInternalForces(): with u = 0 on the unknowns, K_fd d there. Zero without motions. Collective. @*/
 PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local);
 
@@ -157,7 +166,8 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);
 
-/*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N; size is a bound of the sum of
+/*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N; size is a bound of the sum
+   of
     |force| over the unknowns. Collective. @*/
 PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], Vec local, PetscReal *size);
 
@@ -168,7 +178,8 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);
     assembled matrix in rigid translations. Collective. @*/
 PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f);
 
-/*@ OperatorsCreateGeometric - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the stress
+/*@ OperatorsCreateGeometric - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the
+   stress
     sigma of displacements u (m, [nodes][3], local) with the moduli of the point p, symmetric; tension stiffens.
     Collective. The caller destroys it. @*/
 PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K);
@@ -176,7 +187,8 @@ PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[]
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);
 
-/*@ OperatorsGetMesh - the mesh of the model, or the points of -operators_nodes as a mesh whose cells are points, NULL where
+/*@ OperatorsGetMesh - the mesh of the model, or the points of -operators_nodes as a mesh whose cells are points, NULL
+   where
     there is neither (borrowed). Not collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsGetMesh(Operators operators, const Mesh **mesh);
 

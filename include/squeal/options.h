@@ -30,22 +30,26 @@ typedef PetscOptionItems OptionsItems;
 @*/
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***names);
 
-/*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of its
-    own: it is no identifier, or other options begin with it or with what stands before its first underscore. Collective. @*/
+/*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of
+   its
+    own: it is no identifier, or other options begin with it or with what stands before its first underscore.
+    Collective. @*/
 PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[]);
 
 /*@
    OptionsDropUnlisted - a list on the command line, or in a later options file, stands in place of one in a file. What
-   files say of a name that is then in no list is taken out, with a warning; it is an error where the command line says it.
-   Collective; when every room has read its options.
+   files say of a name that is then in no list is taken out, with a warning; it is an error where the command line says
+   it. Collective; when every room has read its options.
 @*/
 PetscErrorCode OptionsDropUnlisted(MPI_Comm comm);
 
-/*@ OptionsDropOf - the same of all options -`name`_... that nobody has read; `why` begins the warning, and ends the error.
+/*@ OptionsDropOf - the same of all options -`name`_... that nobody has read; `why` begins the warning, and ends the
+   error.
     Collective. @*/
 PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[]);
 
-/*@ OptionsDrop - takes out those of the options, "-modes_target -modes_count", that options files give and another option makes
+/*@ OptionsDrop - takes out those of the options, "-modes_target -modes_count", that options files give and another
+   option makes
     useless, each with a warning that ends in `why`. Collective. @*/
 PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]);
 
@@ -72,20 +76,23 @@ typedef struct {
   PetscInt  *ints;
 } OptionsRoom;
 
-/*@ OptionsGetSome - reads a list of numbers; on return n of them, 0 where the option is not given, which changes none. initial is the
+/*@ OptionsGetSome - reads a list of numbers; on return n of them, 0 where the option is not given, which changes none.
+   initial is the
     default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more than there is room for. @*/
-PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[], const char initial[],
-                              const OptionsRoom *room, PetscInt *n);
+PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                              const char initial[], const OptionsRoom *room, PetscInt *n);
 
 /*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
 PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
                               PetscInt values[], PetscBool *set);
 
-/*@ OptionsGetWords - reads a list of words, 0 where the option is not given. Collective. The caller frees the array [n] and
+/*@ OptionsGetWords - reads a list of words, 0 where the option is not given. Collective. The caller frees the array [n]
+   and
     each of them. @*/
 PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***words);
 
-/*@ OptionsGetItems - reads at most n names between PetscOptionsBegin() and PetscOptionsEnd(), without the blanks around them; where the
+/*@ OptionsGetItems - reads at most n names between PetscOptionsBegin() and PetscOptionsEnd(), without the blanks around
+   them; where the
     option is not given nothing changes but n. Collective. The caller frees them. @*/
 PetscErrorCode OptionsGetItems(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt *n,
                                char *items[], PetscBool *set);
@@ -146,26 +153,32 @@ PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char h
 @*/
 PetscErrorCode OptionsWithValue(const char value[], const char *const endings[], char text[], size_t size);
 
-/*@ OptionsFindGiven - the value of an option, NULL where it has none, without making it one that has been read. Not collective. @*/
+/*@ OptionsFindGiven - the value of an option, NULL where it has none, without making it one that has been read. Not
+   collective. @*/
 PetscErrorCode OptionsFindGiven(const char option[], const char **value, PetscBool *given);
 
-/*@ OptionsFindList - the list of the scene that holds a name, with its value, "-parts disc,pad", of a long one its number of
+/*@ OptionsFindList - the list of the scene that holds a name, with its value, "-parts disc,pad", of a long one its
+   number of
     names; empty for none. Not collective. @*/
 PetscErrorCode OptionsFindList(const char name[], size_t size, char text[]);
 
-/*@ ValueExplainUnit - what to write in place of a number with a unit, such as "210 GPa"; text is empty where it is no such
+/*@ ValueExplainUnit - what to write in place of a number with a unit, such as "210 GPa"; text is empty where it is no
+   such
     number. Not collective. @*/
 PetscErrorCode ValueExplainUnit(const char value[], char text[], size_t size);
 
-/*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. n is the number
+/*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. n is the
+   number
     of options that the file gives. It has been checked by OptionsCheckFile(). Not collective. @*/
 PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char name[], size_t *line, PetscInt *n);
 
-/*@ OptionsFindLargest - the options file of the command line that gives the most options, "brake.yaml gives 600 options"; empty
+/*@ OptionsFindLargest - the options file of the command line that gives the most options, "brake.yaml gives 600
+   options"; empty
     for none. Not collective. @*/
 PetscErrorCode OptionsFindLargest(char text[], size_t size);
 
-/*@ OptionsFindPlace - for a message "FILE:LINE: " of the last options file of the command line that gives an option, named without
+/*@ OptionsFindPlace - for a message "FILE:LINE: " of the last options file of the command line that gives an option,
+   named without
     its dash; empty where none does, or the command line itself. Not collective. @*/
 PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size);
 
@@ -179,8 +192,8 @@ PetscErrorCode OptionsFindPlace(const char name[], char text[], size_t size);
 PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t size);
 
 /*@
-   OptionsNextGiven - takes the next option off the text of PetscOptionsGetAll(), as it is given: a value may hold blanks
-   and what looks like another option. Nothing becomes used by it. Not collective.
+   OptionsNextGiven - takes the next option off the text of PetscOptionsGetAll(), as it is given: a value may hold
+   blanks and what looks like another option. Nothing becomes used by it. Not collective.
 
    Input Parameter:
 .  size - room of name
@@ -213,7 +226,8 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
 @*/
 PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
 
-/*@ OptionsNamesFile - whether a word of the command line names an options file, and one of YAML whatever its ending. Not
+/*@ OptionsNamesFile - whether a word of the command line names an options file, and one of YAML whatever its ending.
+   Not
     collective. @*/
 PetscErrorCode OptionsNamesFile(const char name[], PetscBool *file, PetscBool *is_yaml);
 
@@ -227,15 +241,17 @@ PetscErrorCode OptionsCheckNumbers(void);
 /*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/
 PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[]);
 
-/*@ OptionsGetReal, OptionsGetInt - reads a number between PetscOptionsBegin() and PetscOptionsEnd(), as PetscOptionsReal() and
-    PetscOptionsInt() do. Collective. Errors: PETSC_ERR_USER_INPUT for words that PETSc takes for numbers, such as default, and
-    integers that PetscInt does not hold. @*/
-PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                              PetscReal now, PetscReal *value, PetscBool *set);
-PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                             PetscInt now, PetscInt *value, PetscBool *set);
+/*@ OptionsGetReal, OptionsGetInt - reads a number between PetscOptionsBegin() and PetscOptionsEnd(), as
+   PetscOptionsReal() and
+    PetscOptionsInt() do. Collective. Errors: PETSC_ERR_USER_INPUT for words that PETSc takes for numbers, such as
+    default, and integers that PetscInt does not hold. @*/
+PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscReal now,
+                              PetscReal *value, PetscBool *set);
+PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt now,
+                             PetscInt *value, PetscBool *set);
 
-/*@ OptionsCheckWords - raises these errors for one option, or for an item of its array, before it is read otherwise. Not collective. @*/
+/*@ OptionsCheckWords - raises these errors for one option, or for an item of its array, before it is read otherwise.
+   Not collective. @*/
 PetscErrorCode OptionsCheckWords(OptionsItems PetscOptionsObject, const char option[], PetscBool integer);
 
 /*@ OptionsGetBool - reads a logical option between PetscOptionsBegin() and PetscOptionsEnd(); without a value it is
@@ -244,7 +260,8 @@ PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option
                               PetscBool *value);
 
 /*@ OptionsCheckValues - raises an error for an option of the program without a value, unless OptionsGetBool() or
-    OptionsGetViewer() has read it, and for a list of numbers with an empty item. Collective; when every room has read its options. @*/
+    OptionsGetViewer() has read it, and for a list of numbers with an empty item. Collective; when every room has read
+    its options. @*/
 PetscErrorCode OptionsCheckValues(MPI_Comm comm);
 
 /*@ OptionsRefuse - raises an error where one of the options, such as "-contact_kn -contact_law", stands on the command

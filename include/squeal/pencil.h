@@ -3,15 +3,15 @@
 
       M u'' + C u' + (K + mu H) u = 0
 
-   M, K symmetric; C damping, and of parts that spin the skew gyroscopic matrix; H the unsymmetric friction part per unit
-   friction coefficient; all are sums of fixed matrices with monomials of the parameters for coefficients. Where an
+   M, K symmetric; C damping, and of parts that spin the skew gyroscopic matrix; H the unsymmetric friction part per
+   unit friction coefficient; all are sums of fixed matrices with monomials of the parameters for coefficients. Where an
    interface obeys the exact constraint N u = 0, the pencil is the projection Zl' (.) Zr with N Zr = 0 and (N - mu T) Zl
-   = 0; where displacements follow others (OperatorsGetDependents()), their Z is a factor of both. Without either Zl = Zr =
-   identity, and nothing is projected.
+   = 0; where displacements follow others (OperatorsGetDependents()), their Z is a factor of both. Without either Zl =
+   Zr = identity, and nothing is projected.
 
-   A pencil has a point p of its own, as a PETSc object has its values: matrices that are handed out are formed at p when
-   they are asked for, in place where the pattern allows, so that many points cost no new symbolic work. It owns the
-   terms of the contact; those of the bodies it shares with the operators. Whoever needs two pencils makes two.
+   A pencil has a point p of its own, as a PETSc object has its values: matrices that are handed out are formed at p
+   when they are asked for, in place where the pattern allows, so that many points cost no new symbolic work. It owns
+   the terms of the contact; those of the bodies it shares with the operators. Whoever needs two pencils makes two.
 */
 #pragma once
 
@@ -24,7 +24,8 @@ typedef struct _p_Pencil *Pencil;
 
 typedef enum { OPERATORS_STIFFNESS, OPERATORS_DAMPING, OPERATORS_MASS } OperatorsTermKind;
 
-/* The friction coefficient of an interface at one sliding speed, as a factor of terms: a function of several parameters */
+/* The friction coefficient of an interface at one sliding speed, as a factor of terms: a function of several
+   parameters */
 typedef struct {
   FrictionLaw law;                            /* of the scene */
   PetscInt    parameter[FRICTION_PARAMETERS]; /* index of each of the law's, -1: it is that of the scene */
@@ -33,7 +34,8 @@ typedef struct {
 } OperatorsFriction;
 
 /* A part of the pencil whose coefficient is a monomial of parameters: c(p) A, c = scale * prod_i p_i^power_i, where
-   |p_i| stands for p_i if absolute, mu or mu' where it is friction. K, C and M of the pencil are the sums of the terms of their kind. */
+   |p_i| stands for p_i if absolute, mu or mu' where it is friction. K, C and M of the pencil are the sums of the terms
+   of their kind. */
 typedef struct {
   OperatorsTermKind kind;
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
@@ -43,11 +45,11 @@ typedef struct {
   PetscReal scale;
   PetscInt  n; /* factors */
   struct {
-    PetscInt  parameter; /* index; -1 of friction */
-    PetscInt  power;     /* not 0; of terms of a model 1 or -1 */
-    PetscBool absolute;
+    PetscInt                 parameter; /* index; -1 of friction */
+    PetscInt                 power;     /* not 0; of terms of a model 1 or -1 */
+    PetscBool                absolute;
     const OperatorsFriction *friction; /* borrowed from the operators, NULL for none */
-    PetscBool slope; /* mu' of it, else mu */
+    PetscBool                slope;    /* mu' of it, else mu */
   } factor[OPERATORS_MAX_FACTORS];
   PetscInt    constraint; /* of the friction of an exact contact: which of its left null spaces; else -1 */
   const char *cause_kind; /* what the term is, in words, where it may make modes grow or decay */
@@ -57,14 +59,15 @@ typedef struct {
 
 /* One of the reasons why modes grow or decay */
 typedef struct {
-  const char *kind; /* "friction", "friction damping", "falling friction", "material damping", "dashpot", "bushing", "point", "spin",
-                       "follower force", "stiffness matrix", "damping matrix", "mass matrix" */
+  /* "friction", "friction damping", "falling friction", "material damping", "dashpot", "bushing", "point", "spin",
+     "follower force", "stiffness matrix", "damping matrix", "mass matrix" */
+  const char *kind;
   char        name[OPERATORS_MAX_CAUSE]; /* of the contact, or of the option or matrix, e.g. pad_beta */
 } PencilCause;
 
 /* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed. Where only friction makes K
-   unsymmetric, and -operators_factors is not lu, K = K_even + left' right, K_even symmetric, left and right with a row for
-   each closed pair; NULL else. */
+   unsymmetric, and -operators_factors is not lu, K = K_even + left' right, K_even symmetric, left and right with a row
+   for each closed pair; NULL else. */
 typedef struct {
   Mat       K, C, M;   /* C is NULL without damping */
   PetscBool symmetric; /* K, M (and C) symmetric */
@@ -83,11 +86,12 @@ typedef struct {
 /* What a pencil is linearised about. Made by statics, by a sweep for groups of pairs, or by hand; a value that nobody
    else refers to. */
 typedef struct {
-  PetscInt   n_pairs;  /* local pairs */
-  PetscInt   n_groups; /* groups that are closed at some points and open at others (penalty law only) */
-  PetscInt  *group;    /* [n_pairs] -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1 */
-  PetscBool *slips;    /* [n_pairs] of interfaces that hold by friction (-contact_kt): pairs at its limit, and those that -static_rows
-                          closed; NULL: all of them stick */
+  PetscInt  n_pairs;  /* local pairs */
+  PetscInt  n_groups; /* groups that are closed at some points and open at others (penalty law only) */
+  PetscInt *group;    /* [n_pairs] -1 open, 0 closed, g = 1 .. n_groups closed as far as the parameter closed_g is 1 */
+  /* [n_pairs] of interfaces that hold by friction (-contact_kt): pairs at its limit, and those that -static_rows
+     closed; NULL: all of them stick */
+  PetscBool *slips;
   PetscBool  has_forces; /* alike on all ranks: lambda_n is known; else -contact_force counts */
   PetscReal *lambda_n;   /* [n_pairs] normal forces, N, for the friction damping */
   Mat        geometric;  /* stiffness of all unknowns that the stress adds, symmetric; NULL for none */
@@ -108,8 +112,8 @@ PetscErrorCode SlidingStateDestroy(SlidingState *state);
    that of the state, or the scene, but that the total normal forces are those of the state where it has forces.
    Collective. The state may be destroyed; the operators are referenced until PencilDestroy().
 
-   Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how stiff it
-   holds (-contact_kt), and for friction damping without a normal force; PETSC_ERR_SUP for groups with the exact
+   Errors: PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how stiff
+   it holds (-contact_kt), and for friction damping without a normal force; PETSC_ERR_SUP for groups with the exact
    constraint, and where it cannot be eliminated.
 @*/
 PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil);
@@ -137,13 +141,15 @@ PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter);
 /*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
 
-/*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name as one. Valid
+/*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name as
+   one. Valid
     after PencilReleaseTerms() too. Collective. @*/
 PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **causes);
 
 /*@
-   PencilMeasureCauses - the shares of the causes in the growth of one eigenvalue, from the imaginary part of u^H (lambda^2 M +
-   lambda C + K) u = 0. Their sum is sigma, but for what the residual of the eigenvector leaves. Collective.
+   PencilMeasureCauses - the shares of the causes in the growth of one eigenvalue, from the imaginary part of u^H
+   (lambda^2 M + lambda C + K) u = 0. Their sum is sigma, but for what the residual of the eigenvector leaves.
+   Collective.
 
    Input Parameters:
 +  sigma, omega - the eigenvalue, 1/s and rad/s, omega > 0
@@ -153,16 +159,19 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
 @*/
 PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[]);
 
-/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point are
-    formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other point will be
-    asked for. Afterwards PencilSetParameters() and PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay.
-    Collective. @*/
+/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point
+   are
+    formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other
+    point will be asked for. Afterwards PencilSetParameters() and PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE.
+    Matrices that were loaded stay. Collective. @*/
 PetscErrorCode PencilReleaseTerms(Pencil pencil);
 
-/*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored; nothing
-    before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it again, as
-    K - left' right. Where `half` is given, the upper half of K_even - shift M (MATSEQSBAIJ, shift in (rad/s)^2), the pencil
-    keeps a reference to it alone: K is freed as well, and both are made again from it. Collective. @*/
+/*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored;
+   nothing
+    before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it
+    again, as K - left' right. Where `half` is given, the upper half of K_even - shift M (MATSEQSBAIJ, shift in
+    (rad/s)^2), the pencil keeps a reference to it alone: K is freed as well, and both are made again from it.
+    Collective. @*/
 PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift);
 
 /*@ PencilGetMatrices - the matrices with friction. Collective. @*/
@@ -177,8 +186,8 @@ PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts);
 /*@ PencilGetMass - the mass matrix of all unknowns (borrowed). Collective. @*/
 PetscErrorCode PencilGetMass(Pencil pencil, Mat *M);
 
-/* Closed pairs over all ranks, those of groups included; of these, in interfaces that hold by friction (-contact_kt), those that
-   stick, and those at the limit of friction */
+/* Closed pairs over all ranks, those of groups included; of these, in interfaces that hold by friction (-contact_kt),
+   those that stick, and those at the limit of friction */
 typedef struct {
   PetscInt n, n_stick, n_limit;
 } PencilClosed;

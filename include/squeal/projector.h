@@ -51,7 +51,8 @@ typedef struct {
   PetscReal changed, most; /* steps since then with other numbers of pairs in `n`, and the most pairs that differ */
 } ContactSums;
 
-/*@ ContactSumsMark, ContactSumsCompare - keeps the numbers of pairs of each status, unless some are kept; tells after a step
+/*@ ContactSumsMark, ContactSumsCompare - keeps the numbers of pairs of each status, unless some are kept; tells after a
+   step
     whether they differ from these, and by how many pairs. Not collective. @*/
 void ContactSumsMark(ContactSums *sums);
 void ContactSumsCompare(ContactSums *sums);
@@ -93,15 +94,17 @@ PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt i
 PetscErrorCode ContactProjectorGetWay(ContactProjector projector, PetscInt interface, const PetscReal t[2],
                                       PetscReal *way, PetscBool *turning);
 
-/*@ ContactProjectorGetDelay - when the sliding of an interface begins, s; 0 where nothing slides as told. Not collective. @*/
+/*@ ContactProjectorGetDelay - when the sliding of an interface begins, s; 0 where nothing slides as told. Not
+   collective. @*/
 PetscErrorCode ContactProjectorGetDelay(ContactProjector projector, PetscInt interface, PetscReal *delay);
 
 /*@ ContactProjectorGetNodes - local nodes (from 0) of contact surfaces on this rank, copies included, [n]
     (borrowed). Not collective. @*/
 PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);
 
-/* Arms of contact forces that act at one place on both bodies: of the undeformed ones where places on the master are those of
-   undeformed bodies, present ones where slaves travel; unknown where a master moves in a frame of its own, or for both kinds */
+/* Arms of contact forces that act at one place on both bodies: of the undeformed ones where places on the master are
+   those of undeformed bodies, present ones where slaves travel; unknown where a master moves in a frame of its own, or
+   for both kinds */
 typedef enum { CONTACT_ARMS_UNDEFORMED, CONTACT_ARMS_PRESENT, CONTACT_ARMS_UNKNOWN } ContactArms;
 
 /*@ ContactProjectorGetArms - of the forces of all interfaces. Not collective. @*/
@@ -155,7 +158,8 @@ PetscErrorCode ContactProjectorMark(ContactProjector projector);
 /*@ ContactProjectorGetSums - sums of interface i, over all ranks. Collective. @*/
 PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt interface, ContactSums *sums);
 
-/*@ ContactProjectorGetSlipWork - friction of the step that ContactProject() has made, at the displacements u [nodes][3] (m) at
+/*@ ContactProjectorGetSlipWork - friction of the step that ContactProject() has made, at the displacements u [nodes][3]
+   (m) at
     its end, read at the active nodes. Collective. @*/
 PetscErrorCode ContactProjectorGetSlipWork(ContactProjector projector, const PetscReal u[], ContactSlipWork *work);
 

@@ -1,7 +1,7 @@
 /*
-   Quantity - what an option sets, in one row: its name, help, unit, limits, where it lies in the struct of its owner, when
-   nothing reads it, and whether a restart depends on it. A table of rows is read, checked, refused and summed by one call
-   each. Rows stand in quantities.c of their room, options that need more in its SetFromOptions().
+   Quantity - what an option sets, in one row: its name, help, unit, limits, where it lies in the struct of its owner,
+   when nothing reads it, and whether a restart depends on it. A table of rows is read, checked, refused and summed by
+   one call each. Rows stand in quantities.c of their room, options that need more in its SetFromOptions().
 */
 #pragma once
 
@@ -29,18 +29,18 @@ typedef struct {
   const char        *help; /* one sentence, without the unit */
   const char        *unit; /* e.g. "Hz"; NULL for what has none */
   QuantityKind       kind;
-  PetscReal          initial; /* default of a number, a logical, a word, or the first of a list */
-  const char        *text;    /* default of a text, of a list for its help; NULL: empty */
-  size_t             at;      /* offset in the owner's struct */
-  size_t             size;  /* in bytes */
-  size_t             given; /* offset of a PetscBool: whether it is given; 0 for none */
-  size_t             count; /* offset of a PetscInt: how many values are given; of a list */
-  const char *const *words; /* of QUANTITY_WORD, NULL at the end */
-  PetscReal          least, most;  /* of a number; most 0 where there is no upper limit */
-  PetscBool          bounded;      /* least and most are limits */
-  PetscBool          open;         /* the limits themselves are refused */
-  const char        *why;          /* of the limits, or what is to be given, for messages; or NULL */
-  PetscBool          required;     /* an error where it is not given; of a name, else with .given */
+  PetscReal          initial;             /* default of a number, a logical, a word, or the first of a list */
+  const char        *text;                /* default of a text, of a list for its help; NULL: empty */
+  size_t             at;                  /* offset in the owner's struct */
+  size_t             size;                /* in bytes */
+  size_t             given;               /* offset of a PetscBool: whether it is given; 0 for none */
+  size_t             count;               /* offset of a PetscInt: how many values are given; of a list */
+  const char *const *words;               /* of QUANTITY_WORD, NULL at the end */
+  PetscReal          least, most;         /* of a number; most 0 where there is no upper limit */
+  PetscBool          bounded;             /* least and most are limits */
+  PetscBool          open;                /* the limits themselves are refused */
+  const char        *why;                 /* of the limits, or what is to be given, for messages; or NULL */
+  PetscBool          required;            /* an error where it is not given; of a name, else with .given */
   const char *(*idle)(const void *owner); /* NULL where it is read, else why not; NULL: always read */
   PetscBool restart;                      /* another value is another run: a restart must not go on */
 } Quantity;
@@ -73,12 +73,14 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
    Input/Output Parameter:
 .  owner - the struct that the rows' offsets are of; unchanged where an option is not given
 
-   Errors: PETSC_ERR_USER_INPUT for a value that is none, not finite, or beyond the row's limits, for one that is required and
-   not given, and for an option of the command line whose row is idle in this owner. Files may give such options.
+   Errors: PETSC_ERR_USER_INPUT for a value that is none, not finite, or beyond the row's limits, for one that is
+   required and not given, and for an option of the command line whose row is idle in this owner. Files may give such
+   options.
 @*/
 PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
 
-/*@ QuantitiesReadOf - the same of a thing that has a name, which stands before that of each option: -pad_mu of `pad`. NULL for
+/*@ QuantitiesReadOf - the same of a thing that has a name, which stands before that of each option: -pad_mu of `pad`.
+   NULL for
     none. Collective. @*/
 PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner);
 
@@ -90,7 +92,8 @@ typedef struct {
   PetscErrorCode (*check)(MPI_Comm comm, void *owner, void *record); /* what no row says; NULL for nothing */
 } QuantityList;
 
-/*@ QuantitiesReadList - reads the names of a list into n new records, which begin as QuantitiesInit() says, and then the
+/*@ QuantitiesReadList - reads the names of a list into n new records, which begin as QuantitiesInit() says, and then
+   the
     options of each. records is the address of the pointer to them; the caller frees it and the names. Collective.
     Errors: those of OptionsGetNames(), QuantitiesRead() and check(). @*/
 PetscErrorCode QuantitiesReadList(MPI_Comm comm, const QuantityList *list, void *owner, PetscInt *n, void *records);

@@ -5,7 +5,8 @@
    Ports are directions in which forces act on the bodies and displacements are looked at: three for each pair of the
    contact (opening along n, slip of the slave along t and b), one for each load, three for each probe. With the modes
    Phi of K x = omega^2 M x below the cut-off (supports and springs included, contact left out, M lumped as in all
-   transients, Phi'M Phi = I), V the ports as vectors of all unknowns, P = V'Phi, forces p at the ports (N), lambda those of the pairs:
+   transients, Phi'M Phi = I), V the ports as vectors of all unknowns, P = V'Phi, forces p at the ports (N), lambda
+   those of the pairs:
 
       eta'' + C eta' + Omega^2 eta + Cm q' = P'p + Phi'J delta(t - T),     y = P eta + W p, but q in place of lambda
       W q + Cx q' + Cm'eta' = W lambda   in W of the pairs: q = lambda without damping
@@ -15,16 +16,17 @@
    y the displacements at the ports (m): what is above the cut-off is massless, and damped as the bodies are (left
    undamped, growth would be wrong by percents). s changes 1e-8 of it at most.
 
-   Where displacements follow others, u = Z q (ties, points that are joined rigidly: OperatorsGetDependents()), K, M, D and V are
-   Z'K Z, Z'M Z, Z'D Z and Z'V: bodies that a tie joins are one. Phi and X are kept as Z Phi and Z X, of all unknowns. Nodes that
-   follow may have pairs, loads, probes and impulses.
+   Where displacements follow others, u = Z q (ties, points that are joined rigidly: OperatorsGetDependents()), K, M, D
+   and V are Z'K Z, Z'M Z, Z'D Z and Z'V: bodies that a tie joins are one. Phi and X are kept as Z Phi and Z X, of all
+   unknowns. Nodes that follow may have pairs, loads, probes and impulses.
 
    Step from t_n to t_{n+1} = t_n + dt. Forces act on the modes as means (p_n + p_{n+1}) / 2, and these answer exactly
-   (exponential of the coupled first-order system: C need not be diagonal, and modes may be overdamped); q obeys its law in
-   the mean. This is of second order in dt, exact in statics, and stable for every dt, since energy
+   (exponential of the coupled first-order system: C need not be diagonal, and modes may be overdamped); q obeys its law
+   in the mean. This is of second order in dt, exact in statics, and stable for every dt, since energy
 
       E = 1/2 |eta'|^2 + 1/2 eta'Omega^2 eta + 1/2 p'W p (q in place of lambda),
-      E_{n+1} - E_n = mean(p) . (y_{n+1} - y_n) - int (eta', q')'[C Cm; Cm' Cx] (eta', q') dt     (constant loads), exactly.
+      E_{n+1} - E_n = mean(p) . (y_{n+1} - y_n) - int (eta', q')'[C Cm; Cm' Cx] (eta', q') dt     (constant loads),
+      exactly.
 
    lambda_{n+1} obeys at t_{n+1} the laws of projector.h, exactly:
       normal    0 <= lambda_n,  0 <= gap,  lambda_n gap = 0,   gap = g0 + y_n
@@ -36,38 +38,39 @@
    frequencies: only the modes receive them.
 
    Limit: mean forces on a massless compliance keep what alternates from step to step. On
-   a stiff light body at a low cut-off the force is right in the mean of two steps: a block at rest under 9.81 N has 9.758 and
-   9.862 N in turn (0.5 %), with 6 modes below 1000 Hz.
+   a stiff light body at a low cut-off the force is right in the mean of two steps: a block at rest under 9.81 N has
+   9.758 and 9.862 N in turn (0.5 %), with 6 modes below 1000 Hz.
 
-   Steps are longer than a period of the cut-off in no run: ReducedIntegrate() refuses them, since contact cannot follow.
+   Steps are longer than a period of the cut-off in no run: ReducedIntegrate() refuses them, since contact cannot
+   follow.
 
-   What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under the
-   pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
+   What is said of a body that turns: a disc in a fixed frame with prescribed sliding is served, one that moves under
+   the pad (-contact_kinematics turning) is refused. Pairs stay what they are in the mesh.
 */
 #pragma once
 
 #include <squeal/dynamics.h>
 #include <squeal/modes.h>
 
-/* The error of the cut-off is told by what else is found on the modes below so many times it, of a transient, a cycle and a
-   point of a map. 1.5 times may hold no further mode of a light body, and then tell a hundredth of the error: cycles of a small
-   brake at 20 kHz, whose pad has its next modes beyond 30 kHz; see cycle.h */
+/* The error of the cut-off is told by what else is found on the modes below so many times it, of a transient, a cycle
+   and a point of a map. 1.5 times may hold no further mode of a light body, and then tell a hundredth of the error:
+   cycles of a small brake at 20 kHz, whose pad has its next modes beyond 30 kHz; see cycle.h */
 #define REDUCED_HIGHER 2.25
 
 typedef struct _p_ReducedRun *ReducedRun;
 
-/* The reduced bodies: dense, alike on every rank. Matrices are column-major. Ports: normal, t, b of pair 0, of pair 1 and
-   so on, then the loads, then x, y, z of each probe */
+/* The reduced bodies: dense, alike on every rank. Matrices are column-major. Ports: normal, t, b of pair 0, of pair 1
+   and so on, then the loads, then x, y, z of each probe */
 typedef struct {
-  PetscInt   m, n_pairs, n_loads, n_probes, n_ports;
-  PetscReal *omega2; /* [m] (rad/s)^2, ascending, 0 for rigid modes */
-  PetscReal *C;      /* [m][m] 1/s, symmetric; NULL without damping */
-  PetscReal *P;      /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
-  PetscReal *W;      /* [n_ports][n_ports], m/N */
-  PetscReal *Cm;     /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
-  PetscReal *Cx;     /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
-  PetscReal *Mx;     /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
-  PetscReal *gap;    /* [n_pairs] g0, m, positive open */
+  PetscInt     m, n_pairs, n_loads, n_probes, n_ports;
+  PetscReal   *omega2;   /* [m] (rad/s)^2, ascending, 0 for rigid modes */
+  PetscReal   *C;        /* [m][m] 1/s, symmetric; NULL without damping */
+  PetscReal   *P;        /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
+  PetscReal   *W;        /* [n_ports][n_ports], m/N */
+  PetscReal   *Cm;       /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
+  PetscReal   *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal   *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
+  PetscReal   *gap;      /* [n_pairs] g0, m, positive open */
   FrictionLaw *friction; /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
@@ -91,8 +94,8 @@ typedef struct {
                                NULL for none */
 } ReducedDrive;
 
-/* What a step did: works on the bodies, J; without `works`, which cost a tenth of a step, slip and the works of contact, friction
-   and impulses alone */
+/* What a step did: works on the bodies, J; without `works`, which cost a tenth of a step, slip and the works of
+   contact, friction and impulses alone */
 typedef struct {
   PetscBool  works;
   PetscReal  external, damping;
@@ -120,8 +123,8 @@ PetscErrorCode ReducedReportCreate(const ReducedModel *model, ReducedReport *rep
 PetscErrorCode ReducedReportDestroy(ReducedReport *report);
 
 /*@ ReducedStepperCreate - the matrices of a step of length dt > 0 (s) and tolerance of the contact laws, relative. The
-    model is borrowed until ReducedStepperDestroy(). Not collective. Errors: PETSC_ERR_USER_INPUT for a compliance of the
-    pairs that is not positive semidefinite to 1e-10 of its largest diagonal. @*/
+    model is borrowed until ReducedStepperDestroy(). Not collective. Errors: PETSC_ERR_USER_INPUT for a compliance of
+    the pairs that is not positive semidefinite to 1e-10 of its largest diagonal. @*/
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper);
 PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper);
 
@@ -138,33 +141,37 @@ PetscErrorCode ReducedStep(ReducedStepper stepper, const ReducedDrive *drive, Re
 void ReducedGetContactWork(const ReducedModel *model, const ReducedReport *report, PetscReal *contact,
                            PetscReal *friction);
 
-/*@ ReducedContactFeeds - whether contact gave so much of the energy that the motion is that of the steps: more than a tenth of
+/*@ ReducedContactFeeds - whether contact gave so much of the energy that the motion is that of the steps: more than a
+   tenth of
     what others gave, J. Not collective. @*/
 PetscBool ReducedContactFeeds(PetscReal contact, PetscReal others);
 
 /*@ ReducedEnergy - kinetic energy of the modes, and strain energy of modes and residual, J. Not collective. @*/
 void ReducedEnergy(const ReducedModel *model, const ReducedState *state, PetscReal *kinetic, PetscReal *strain);
 
-/*@ ReducedLinearise - eigenvalues lambda [2 m] (rad/s) of the model about steady sliding, closed [n_pairs] telling the pairs
+/*@ ReducedLinearise - eigenvalues lambda [2 m] (rad/s) of the model about steady sliding, closed [n_pairs] telling the
+   pairs
     that are closed, which all slide along t; a real one twice in a row is two. Not collective. @*/
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
                                 PetscReal omega[]);
 
-/*@ ReducedLineariseSliding - the same with what friction damps, as -contact_friction_damping does: with the normal forces
-    lambda_n [n_pairs] (N) of the state, speed v and slope mu', a pair has mu lambda_n / v (N s/m) along b and mu' lambda_n along t;
-    NULL for none. Not collective. @*/
+/*@ ReducedLineariseSliding - the same with what friction damps, as -contact_friction_damping does: with the normal
+   forces
+    lambda_n [n_pairs] (N) of the state, speed v and slope mu', a pair has mu lambda_n / v (N s/m) along b and mu'
+    lambda_n along t; NULL for none. Not collective. @*/
 PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
                                        PetscReal sigma[], PetscReal omega[]);
 
-/*@ ReducedLineariseInertia - as ReducedLineariseSliding() with the inertia of what the modes leave out, to first order in Mx,
+/*@ ReducedLineariseInertia - as ReducedLineariseSliding() with the inertia of what the modes leave out, to first order
+   in Mx,
     which the model must have (ReducedWeigh()). The difference is the error of the cut-off. Not collective. @*/
 PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
                                        PetscReal sigma[], PetscReal omega[]);
 
 /*@
    ReducedEquilibrium - the sliding state: 0 = -Omega^2 eta + P'p with every closed pair sliding along t, lambda_T = -mu
-   lambda_n on the slave, 0 <= lambda_n, 0 <= gap, lambda_n gap = 0, by an active set. Rigid modes that nothing resists are
-   held by 1e-12 of the highest omega^2. Not collective.
+   lambda_n on the slave, 0 <= lambda_n, 0 <= gap, lambda_n gap = 0, by an active set. Rigid modes that nothing resists
+   are held by 1e-12 of the highest omega^2. Not collective.
 
    Input Parameter:
 .  loads - [n_loads] their factors
@@ -184,35 +191,44 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
 
    Options Database Keys:
 +  -dynamics_model <full|reduced> - the mesh, or modes and compliance
-.  -dynamics_verify <false>       - runs again with half the step, and with 2.25 times the cut-off: how the force differs
+.  -dynamics_verify <false>       - runs again with half the step, and with 2.25 times the cut-off: how the force
+differs
 .  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
-.  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz, and more where
+.  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz, and
+more where
                                     the comparison asks for it
--  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step are chosen; where
-                                    it is given without a band, of all modes below the cut-off, by their inertia above, the cut-off alone
+-  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step
+are chosen; where
+                                    it is given without a band, of all modes below the cut-off, by their inertia above,
+                                    the cut-off alone
 @*/
 PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
 
 /*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
 PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
 
-/*@ ReducedIsCompared - whether a transient compares its eigenvalues with those of the mesh where there is a -modes_band. Not
+/*@ ReducedIsCompared - whether a transient compares its eigenvalues with those of the mesh where there is a
+   -modes_band. Not
     collective. @*/
 PetscErrorCode ReducedIsCompared(ReducedRun run, PetscBool *compared);
 
-/*@ ReducedSetRooms - the run in time, of which loads, motions, histories and options are those of `dynamics` (referenced
+/*@ ReducedSetRooms - the run in time, of which loads, motions, histories and options are those of `dynamics`
+   (referenced
     until ReducedDestroy()), and the solver of the mesh's modes. Not collective. @*/
 PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes modes);
 
-/*@ ReducedPrepare - cut-off, step and times of the run, without reducing; raises the errors of ReducedIntegrate() for what
+/*@ ReducedPrepare - cut-off, step and times of the run, without reducing; raises the errors of ReducedIntegrate() for
+   what
     cannot be. For rooms that run reduced models by themselves. Collective. @*/
 PetscErrorCode ReducedPrepare(ReducedRun reduced, Results results);
 
-/*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the operators, NULL for
+/*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the operators,
+   NULL for
     the values of the scene; after ReducedPrepare(). The caller destroys it. Collective. @*/
 PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const PetscReal p[], ReducedRun *at);
 
-/*@ ReducedWeigh - bodies that are reduced from now on have Mx too, the inertia of what the modes leave out, which costs another
+/*@ ReducedWeigh - bodies that are reduced from now on have Mx too, the inertia of what the modes leave out, which costs
+   another
     block of solutions each. Not collective, alike on all ranks. @*/
 PetscErrorCode ReducedWeigh(ReducedRun reduced, PetscBool weighs);
 
@@ -222,7 +238,8 @@ PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);
 /*@ ReducedGetRun - cut-off (Hz), step and end (s); NULL for what is not needed. Not collective. @*/
 PetscErrorCode ReducedGetRun(ReducedRun reduced, PetscReal *cutoff, PetscReal *dt, PetscReal *end);
 
-/*@ ReducedGetHits - the impulses, after ReducedPrepare(): their number, and of bodies that are reduced Phi'J [n][m], m sqrt(kg)/s,
+/*@ ReducedGetHits - the impulses, after ReducedPrepare(): their number, and of bodies that are reduced Phi'J [n][m], m
+   sqrt(kg)/s,
     and when they are due, s (borrowed; NULL for what is not needed). Not collective. @*/
 PetscErrorCode ReducedGetHits(ReducedRun reduced, PetscInt *n, const PetscReal **hits, const PetscReal **due);
 
@@ -233,8 +250,8 @@ PetscErrorCode ReducedAddChecksum(ReducedRun reduced, Checksum checksum);
 PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *interface);
 
 /*@
-   ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes what
-   DynamicsSolve() writes but for amplitudes.csv, which -dynamics_filters asks for in vain. Collective.
+   ReducedIntegrate - reduces the bodies, compares with the mesh where -modes_band says a band, integrates, and writes
+   what DynamicsSolve() writes but for amplitudes.csv, which -dynamics_filters asks for in vain. Collective.
 
    Errors: PETSC_ERR_USER_INPUT for a cut-off without modes below it, below an unstable mode of the mesh, or with modes
    that hold less than 90 % of the starting velocities or shape; PETSC_ERR_SUP
@@ -242,8 +259,10 @@ PetscErrorCode ReducedGetInterface(ReducedRun reduced, PetscInt pair, PetscInt *
 @*/
 PetscErrorCode ReducedIntegrate(ReducedRun reduced, Results results);
 
-/*@ ReducedJudgeVerified - raises PETSC_ERR_NOT_CONVERGED where -dynamics_verify has found that the level of the vibration or the time
-    without contact is another one by more than 10 % beyond twice its standard error. After ReducedView(). Collective. @*/
+/*@ ReducedJudgeVerified - raises PETSC_ERR_NOT_CONVERGED where -dynamics_verify has found that the level of the
+   vibration or the time
+    without contact is another one by more than 10 % beyond twice its standard error. After ReducedView(). Collective.
+    @*/
 PetscErrorCode ReducedJudgeVerified(ReducedRun reduced);
 
 /*@ ReducedView - modes, cut-off, step, cost, errors, ledger in words. Collective. @*/

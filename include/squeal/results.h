@@ -27,11 +27,12 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results);
 PetscErrorCode ResultsSetFromOptions(Results results);
 
 /*@ ResultsOpenDirectory - makes the folder and its parents where they are missing, and locks it until ResultsUnlock().
-    Collective. Errors: PETSC_ERR_FILE_OPEN with the folder and the reason, also for a folder in which nothing may be written,
-    or into which another run writes. @*/
+    Collective. Errors: PETSC_ERR_FILE_OPEN with the folder and the reason, also for a folder in which nothing may be
+    written, or into which another run writes. @*/
 PetscErrorCode ResultsOpenDirectory(Results results);
 
-/*@ ResultsUnlock - lets another run write into the folder, also where this one has failed; ResultsDestroy() does so too. Not
+/*@ ResultsUnlock - lets another run write into the folder, also where this one has failed; ResultsDestroy() does so
+   too. Not
     collective. @*/
 void ResultsUnlock(Results results);
 
@@ -149,10 +150,10 @@ typedef struct {
 } ResultsPiece;
 
 /*@
-   ResultsBinaryWrite - file `name` of the pieces of all ranks of a communicator one after the other, those of rank 0 first. They
-   are on the disk, under the final name, when it returns; until then a file of that name stays as it is. scene.yaml names the
-   file where it is `listed`. Collective on the communicator, which is that of the results, or of one rank and not listed.
-   Errors: PETSC_ERR_FILE_WRITE with the file and the reason; the temporary file is removed.
+   ResultsBinaryWrite - file `name` of the pieces of all ranks of a communicator one after the other, those of rank 0
+   first. They are on the disk, under the final name, when it returns; until then a file of that name stays as it is.
+   scene.yaml names the file where it is `listed`. Collective on the communicator, which is that of the results, or of
+   one rank and not listed. Errors: PETSC_ERR_FILE_WRITE with the file and the reason; the temporary file is removed.
 @*/
 PetscErrorCode ResultsBinaryWrite(Results results, MPI_Comm comm, const char name[], PetscBool listed, PetscInt n,
                                   const ResultsPiece pieces[]);
@@ -174,8 +175,10 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
 @*/
 PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
 
-/*@ ResultsBegin - writes scene.yaml, with `end: not yet`, where the folder has none, or in place of an earlier run's with
-    `replace`: for runs that keep something before they write a table. Once it is there, nothing is done. Collective. @*/
+/*@ ResultsBegin - writes scene.yaml, with `end: not yet`, where the folder has none, or in place of an earlier run's
+   with
+    `replace`: for runs that keep something before they write a table. Once it is there, nothing is done. Collective.
+    @*/
 PetscErrorCode ResultsBegin(Results results, PetscBool replace);
 
 /*@
@@ -190,10 +193,10 @@ PetscErrorCode ResultsNote(Results results, const char key[], const char format[
 /*@
    ResultsFinish - ends a run that did what was asked. Collective.
 
-   It writes scene.yaml anew: the commands of this run and of its repetition, versions, ranks, time, memory, both of each
-   stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads. Then
-   the files go that the scene.yaml of an earlier run in the folder lists. All others stay, and so does what a killed
-   run goes on from: a transient while its table is unfinished, sweep_restart_*. Errors: as ResultsTableClose().
+   It writes scene.yaml anew: the commands of this run and of its repetition, versions, ranks, time, memory, both of
+   each stage too, what ResultsNote() was told, the files, and all options in force, as a file that -options_file reads.
+   Then the files go that the scene.yaml of an earlier run in the folder lists. All others stay, and so does what a
+   killed run goes on from: a transient while its table is unfinished, sweep_restart_*. Errors: as ResultsTableClose().
 @*/
 PetscErrorCode ResultsFinish(Results results);
 

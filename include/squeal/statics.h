@@ -11,16 +11,16 @@
    lambda_n, lambda_b = 0 at every closed pair; else Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of
    the slave along the friction on the master.
 
-   Motions (-motions) hold u = d: these displacements are no unknowns, f has -K_fd d more, and gaps and slip count d. In modes
-   about the state they are held. Their reactions are rows of reactions.csv.
+   Motions (-motions) hold u = d: these displacements are no unknowns, f has -K_fd d more, and gaps and slip count d. In
+   modes about the state they are held. Their reactions are rows of reactions.csv.
 
    Method: one factorisation of K_a = K + kappa G'G (+ pins), G the rows of N (and T, B where Coulomb's law holds), and
    from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
    forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,
    K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
    kappa is only a device: it drops out of the solution. Where the iteration does not settle with Coulomb's law,
-   continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid motions
-   that neither supports nor springs nor any pair resists are held at single unknowns,
+   continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid
+   motions that neither supports nor springs nor any pair resists are held at single unknowns,
    whose reactions vanish in equilibrium; u has no part of them.
 */
 #pragma once
@@ -78,8 +78,8 @@ PetscErrorCode StaticsSetFromOptions(Statics statics);
    Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
    no equilibrium ("no equilibrium": proven by a rigid motion, which the message names, along which the loads push and
    against which no force of a pair acts), where what was found is not stable, or where none was found ("no equilibrium
-   found": the message says how far friction could be raised, and whether the bodies then jam, the pairs do not settle or
-   go round in a circle, or GMRES did not converge).
+   found": the message says how far friction could be raised, and whether the bodies then jam, the pairs do not settle
+   or go round in a circle, or GMRES did not converge).
 @*/
 PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
 
@@ -88,8 +88,8 @@ PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
    edge where -static_rows asks for it), the normal forces, the optional stiffness of the preload, and p. The caller
    destroys it. Collective.
 
-   Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how stiff
-   it holds (-contact_kt), and for a normal force that is given although the loads tell it.
+   Errors: also PETSC_ERR_USER_INPUT for an interface with friction of which nothing says along what it slides, nor how
+   stiff it holds (-contact_kt), and for a normal force that is given although the loads tell it.
 @*/
 PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], SlidingState *state);
 

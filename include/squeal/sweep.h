@@ -9,10 +9,11 @@
    is largest, until it is below -sweep_rtol for every eigenvalue of the band at every point. The error is an estimate,
    not a bound; -sweep_verify compares it with full solutions at points that the basis has never seen.
 
-   Branches follow a mode from point to point by products of right and left vectors; an onset is where one of them becomes
-   unstable or stable again. On the basis steps are divided where products do not tell, and onsets are found to rounding.
-   -sweep_method full solves at the points alone: a branch ends where products do not tell, and an onset has an error that
-   reaches both of its points.
+   Branches follow a mode from point to point by products of right and left vectors; an onset is where one of them
+   becomes unstable or stable again. On the basis steps are divided where products do not tell, and onsets are found to
+   rounding.
+   -sweep_method full solves at the points alone: a branch ends where products do not tell, and an onset has an error
+   that reaches both of its points.
 */
 #pragma once
 
@@ -49,21 +50,23 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 
    Options Database Keys:
 +  -sweep_parameter <name[,name]> - one or two options of the scene: young, density, alpha, beta of a part, stiffness of
-springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu; about the sliding state also the size
-of a load: force (N, its length), pressure (Pa) or moment (N m)
+springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu; about the sliding state also
+the size of a load: force (N, its length), pressure (Pa) or moment (N m)
 .  -sweep_values <first:last:n>   - n equal steps; first:last:n:log for equal ratios; or a list v1,v2,...
 .  -sweep_values_2 <values>       - those of the second parameter
 .  -sweep_link <name,name[:...]>  - parameters of one unit that take the value of the swept one among them, one link or,
 with : between, one for each swept parameter: inner_mu,outer_mu. Derivatives along a link are sums over its parameters;
 -sweep_uncertain moves all of a link, each by the same part of its own value
-.  -sweep_method <reduced>        - reduced; full solves every point in full, and nothing between; real projects on real modes
+.  -sweep_method <reduced>        - reduced; full solves every point in full, and nothing between; real projects on real
+modes
 .  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
 .  -sweep_real_modes <80>         - real modes of each point that -sweep_method real projects on
 .  -sweep_real_stiffness <symmetrised> - of these modes: K + mu H made symmetric, or K alone (frictionless)
 .  -sweep_max_samples <20>        - most full solutions; by itself as many as there are points and ends of brackets
 around changes of contact status, where these are more
 .  -sweep_verify <0>              - full solutions at this many points between those of the sweep: true errors
-.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem (full: between points)
+.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem (full: between
+points)
 .  -sweep_sensitivities <false>   - derivatives of every eigenvalue by every parameter
 .  -sweep_uncertain <names>       - parameters known to -sweep_percent only: which modes can become unstable
 .  -sweep_percent <percents>      - their uncertainty, one value for all names or one for each
@@ -72,7 +75,8 @@ around changes of contact status, where these are more
 @*/
 PetscErrorCode SweepSetFromOptions(Sweep sweep);
 
-/*@ SweepGetDamping - whether it varies a parameter of damping, which may be 0 at some points, and whether it projects on
+/*@ SweepGetDamping - whether it varies a parameter of damping, which may be 0 at some points, and whether it projects
+   on
     real modes, which have none. Not collective. @*/
 PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real);
 

@@ -24,7 +24,8 @@ typedef struct {
   char squeal[32], petsc[32], slepc[32], mumps[32], blas[64], mpi[MPI_MAX_LIBRARY_VERSION_STRING];
 } SquealVersions;
 
-/*@ SquealGetVersions - e.g. "3.18.5"; of OpenBLAS also its kernels, by which results differ in rounding. Not collective; MPI
+/*@ SquealGetVersions - e.g. "3.18.5"; of OpenBLAS also its kernels, by which results differ in rounding. Not
+   collective; MPI
     must be up. @*/
 void SquealGetVersions(SquealVersions *versions);
 
@@ -61,11 +62,13 @@ PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI
    SquealSetFromOptions - what concerns every room. Collective.
 
    Options Database Keys:
-+  -squeal_traceback  - shows PETSc's traceback of an error, on each rank that meets it, before the line that a user sees
++  -squeal_traceback  - shows PETSc's traceback of an error, on each rank that meets it, before the line that a user
+sees
 .  -squeal_log <file> - all that is printed on stdout and stderr, but for progress, goes to this file as well; also
                         -log_file
 .  -squeal_progress   - the stage and the time left, on stderr; by default where that is a terminal
--  -squeal_memory <mb> - that factors, or models over -cycle_parameter, may take on one machine, all ranks there together; by default
+-  -squeal_memory <mb> - that factors, or models over -cycle_parameter, may take on one machine, all ranks there
+together; by default
                         what is free
 
    Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written, or would replace a file that is no log.
@@ -87,10 +90,12 @@ typedef struct {
 /*@ SquealGetStages - cost [SQUEAL_N_STAGES] of the n stages that were entered. Collective. @*/
 PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[]);
 
-/*@ SquealGetPeak - the most memory that the ranks had at any time of the run, each at its own, MB in all. Collective. @*/
+/*@ SquealGetPeak - the most memory that the ranks had at any time of the run, each at its own, MB in all. Collective.
+   @*/
 PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes);
 
-/*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage, and the most that there
+/*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage, and the most that
+   there
     was. Collective. @*/
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer);
 

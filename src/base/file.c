@@ -1,6 +1,6 @@
 /*
-   Regular files: opened without waiting for whoever would write into a pipe, and created under a name that nobody else can
-   have taken in between (open(2): O_EXCL follows no link).
+   Regular files: opened without waiting for whoever would write into a pipe, and created under a name that nobody else
+   can have taken in between (open(2): O_EXCL follows no link).
 */
 #include "file.h"
 #include <errno.h>
@@ -23,7 +23,8 @@ int FileOpen(const char path[], int flags)
   const int   fd = open(path, flags | O_NONBLOCK | O_CLOEXEC, 0666);
   struct stat what;
 
-  if (fd < 0 && (errno == ENXIO || errno == ELOOP)) errno = FILE_NO_REGULAR; /* a pipe that nobody reads, a socket, a link */
+  /* a pipe that nobody reads, a socket, a link */
+  if (fd < 0 && (errno == ENXIO || errno == ELOOP)) errno = FILE_NO_REGULAR;
   if (fd < 0) return -1;
   if (fstat(fd, &what)) return FileGiveUp(fd, errno);
   return S_ISREG(what.st_mode) ? fd : FileGiveUp(fd, S_ISDIR(what.st_mode) ? EISDIR : FILE_NO_REGULAR);

@@ -5,8 +5,8 @@
 */
 #include "gather.h"
 
-/* Places of records that come in these numbers from the ranks, or go to them; their sum, an error on all ranks where one has
-   too many */
+/* Places of records that come in these numbers from the ranks, or go to them; their sum, an error on all ranks where
+   one has too many */
 static PetscErrorCode Places(MPI_Comm comm, const PetscMPIInt count[], PetscMPIInt start[], PetscInt *sum)
 {
   PetscInt64  total = 0, most;

@@ -34,25 +34,25 @@ static const struct {
   const char *name;
   SquealStage room;
 } events[N_EVENTS] = {
-  [EVENT_PAIR]           = {"ContactPair",    SQUEAL_CONTACT  },
-  [EVENT_SEARCH]         = {"ContactSearch",  SQUEAL_CONTACT  },
-  [EVENT_ASSEMBLE]       = {"Assemble",       SQUEAL_OPERATORS},
-  [EVENT_STATICS]        = {"StaticsSolve",   SQUEAL_STATICS  },
-  [EVENT_FACTOR]         = {"ShiftInvFactor", SQUEAL_MODES    },
-  [EVENT_SOLVE]          = {"ShiftInvSolve",  SQUEAL_MODES    },
-  [EVENT_COLUMN]         = {"ShiftInvColumn", SQUEAL_MODES    },
-  [EVENT_CORRECT]        = {"BasisCorrect",   SQUEAL_SWEEP    },
-  [EVENT_ORTHOGONALISE]  = {"BasisOrthonorm", SQUEAL_SWEEP    },
-  [EVENT_REDUCED]        = {"ReducedEigen",   SQUEAL_SWEEP    },
-  [EVENT_FOLLOW]         = {"ReducedFollow",  SQUEAL_SWEEP    },
-  [EVENT_TRACK]          = {"TrackLine",      SQUEAL_SWEEP    },
-  [EVENT_BODIES_ADVANCE] = {"BodiesAdvance",  SQUEAL_DYNAMICS },
-  [EVENT_EXCHANGE]       = {"BodiesExchange", SQUEAL_DYNAMICS },
-  [EVENT_EXTERNAL]       = {"External",       SQUEAL_DYNAMICS },
-  [EVENT_PROJECT]        = {"ContactProject", SQUEAL_CONTACT  },
-  [EVENT_MOVE]           = {"KickAndDrift",   SQUEAL_DYNAMICS },
-  [EVENT_RECORD]         = {"HistoryRecord",  SQUEAL_RESULTS  },
-  [EVENT_CHECKPOINT]     = {"Checkpoint",     SQUEAL_RESULTS  },
+  [EVENT_PAIR]           = {"ContactPair", SQUEAL_CONTACT},
+  [EVENT_SEARCH]         = {"ContactSearch", SQUEAL_CONTACT},
+  [EVENT_ASSEMBLE]       = {"Assemble", SQUEAL_OPERATORS},
+  [EVENT_STATICS]        = {"StaticsSolve", SQUEAL_STATICS},
+  [EVENT_FACTOR]         = {"ShiftInvFactor", SQUEAL_MODES},
+  [EVENT_SOLVE]          = {"ShiftInvSolve", SQUEAL_MODES},
+  [EVENT_COLUMN]         = {"ShiftInvColumn", SQUEAL_MODES},
+  [EVENT_CORRECT]        = {"BasisCorrect", SQUEAL_SWEEP},
+  [EVENT_ORTHOGONALISE]  = {"BasisOrthonorm", SQUEAL_SWEEP},
+  [EVENT_REDUCED]        = {"ReducedEigen", SQUEAL_SWEEP},
+  [EVENT_FOLLOW]         = {"ReducedFollow", SQUEAL_SWEEP},
+  [EVENT_TRACK]          = {"TrackLine", SQUEAL_SWEEP},
+  [EVENT_BODIES_ADVANCE] = {"BodiesAdvance", SQUEAL_DYNAMICS},
+  [EVENT_EXCHANGE]       = {"BodiesExchange", SQUEAL_DYNAMICS},
+  [EVENT_EXTERNAL]       = {"External", SQUEAL_DYNAMICS},
+  [EVENT_PROJECT]        = {"ContactProject", SQUEAL_CONTACT},
+  [EVENT_MOVE]           = {"KickAndDrift", SQUEAL_DYNAMICS},
+  [EVENT_RECORD]         = {"HistoryRecord", SQUEAL_RESULTS},
+  [EVENT_CHECKPOINT]     = {"Checkpoint", SQUEAL_RESULTS},
 };
 
 PetscLogEvent squeal_events[N_EVENTS];
@@ -67,8 +67,8 @@ static const char citation[] = "@inproceedings{massi2005,\n  author = {Massi, F.
 static PetscBool  cited      = PETSC_FALSE;
 static PetscBool  traced     = PETSC_FALSE; /* -squeal_traceback */
 
-/* Whether no more memory is to be had. MUMPS says so by -13 and -7, which PETSc passes on as an error of a library where
-   it solves; 3.18 has another code than PETSC_ERR_MEM for its own */
+/* Whether no more memory is to be had. MUMPS says so by -13 and -7, which PETSc passes on as an error of a library
+   where it solves; 3.18 has another code than PETSC_ERR_MEM for its own */
 static PetscBool IsOfMemory(PetscErrorCode code, const char function[], const char message[])
 {
   if (strstr(message, "max number of options")) return PETSC_FALSE;
@@ -132,7 +132,7 @@ static PetscErrorCode EnvironmentSay(MPI_Comm comm)
 {
   static const char *const variables[]                 = {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"};
   char                     file[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
-  PetscBool                skip = PETSC_FALSE, there;
+  PetscBool                skip                        = PETSC_FALSE, there;
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(variables); i++) {

@@ -48,8 +48,8 @@ static PetscErrorCode SolveSymmetric(DenseShifted *w, PetscBool *definite)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DenseCompanion(const DensePencil *q, const PetscReal s[2], PetscReal P[], PetscBLASInt pivot[], PetscReal B[],
-                              PetscBool *singular)
+PetscErrorCode DenseCompanion(const DensePencil *q, const PetscReal s[2], PetscReal P[], PetscBLASInt pivot[],
+                              PetscReal B[], PetscBool *singular)
 {
   const PetscInt n = q->n, N = q->damped ? 2 * n : n;
   PetscReal     *row; /* lower half, [N][n] */

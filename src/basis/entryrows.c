@@ -41,7 +41,7 @@ PetscErrorCode EntryRowsCreate(Mat A, EntryRows *rows)
   rows->all = (PetscReal)rows->n > ROWS_MOST * (PetscReal)(last - first) ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt i = 0; i < last - first && rows->all; i++) rows->row[i] = i;
   if (rows->all) rows->n = last - first;
-  rows->few  = (PetscReal)n_all <= ROWS_FEW * (PetscReal)n_rows ? PETSC_TRUE : PETSC_FALSE;
+  rows->few = (PetscReal)n_all <= ROWS_FEW * (PetscReal)n_rows ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

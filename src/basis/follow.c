@@ -5,10 +5,10 @@
 
       Q(lambda) u = Q'(lambda) x,   Q(lambda)^T v = Q'(lambda)^T y,   lambda := lambda - v^T Q' x / (v^T Q' u),
 
-   where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K. Convergence is cubic: three or four complex
-   factorisations of size n, where all eigenvalues with their vectors cost a hundred. Where a step changed lambda by little its
-   factors serve again: that is inverse iteration on Q(lambda) + (mu - lambda) Q'(lambda), which differs from Q(mu) by the
-   square of the change.
+   where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K. Convergence is cubic: three or four
+   complex factorisations of size n, where all eigenvalues with their vectors cost a hundred. Where a step changed
+   lambda by little its factors serve again: that is inverse iteration on Q(lambda) + (mu - lambda) Q'(lambda), which
+   differs from Q(mu) by the square of the change.
 */
 #include "pencil.h"
 #include "base/events.h"
@@ -81,8 +81,8 @@ static PetscErrorCode FactorAt(const DensePencil *q, PetscComplex lambda, Follow
   PetscFunctionReturn(0);
 }
 
-/* One step with the factors: lambda, x, y are replaced; change = |that of lambda|, not finite where y and x have nothing in
-   common */
+/* One step with the factors: lambda, x, y are replaced; change = |that of lambda|, not finite where y and x have
+   nothing in common */
 static PetscErrorCode FollowStep(const DensePencil *q, const FollowFactors *factors, PetscComplex *lambda,
                                  PetscComplex x[], PetscComplex y[], PetscReal *change)
 {

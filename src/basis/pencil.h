@@ -42,7 +42,7 @@ void           DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex
 PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[]);
 PetscErrorCode DenseShiftedDestroy(DenseShifted *w);
 
-/* follow.c - from a guess lambda, x, y [n] the eigenvalue with vectors of any length that Newton's method finds; found =
-   false where it does not settle or Q(lambda) stays singular */
+/* follow.c - from a guess lambda, x, y [n] the eigenvalue with vectors of any length that Newton's method finds; found
+   = false where it does not settle or Q(lambda) stays singular */
 PetscErrorCode DensePencilFollow(const DensePencil *pencil, PetscComplex *lambda, PetscComplex x[], PetscComplex y[],
                                  PetscBool *found);

@@ -37,8 +37,8 @@ PetscErrorCode ComplexColumnsDestroy(ComplexColumns *c)
   PetscFunctionReturn(0);
 }
 
-/* Modes `first` .. `end` - 1 and their columns of the vectors and of the residuals, which stay in a cache while all matrices
-   are multiplied with them, with room for products with C and M */
+/* Modes `first` .. `end` - 1 and their columns of the vectors and of the residuals, which stay in a cache while all
+   matrices are multiplied with them, with room for products with C and M */
 typedef struct {
   const ComplexColumns *c;
   PetscInt              first, end;
@@ -146,7 +146,8 @@ static PetscErrorCode ResidualMakePart(const PencilMatrices *pencil, PetscBool t
 }
 
 /* The residuals R of X */
-static PetscErrorCode ResidualOf(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, Mat X, Mat R)
+static PetscErrorCode ResidualOf(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, Mat X,
+                                 Mat R)
 {
   ResidualPart p = {.c = c};
 
@@ -166,7 +167,8 @@ static PetscErrorCode ResidualOf(const PencilMatrices *pencil, PetscBool transpo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, BV V, BV *X, BV R)
+PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, const ComplexColumns *c, BV V, BV *X,
+                            BV R)
 {
   Mat x, r;
 

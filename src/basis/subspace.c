@@ -1,5 +1,6 @@
 /*
-   The basis of a Galerkin method for right and left vectors together: two bases would make the dense problem ill-conditioned.
+   The basis of a Galerkin method for right and left vectors together: two bases would make the dense problem
+   ill-conditioned.
 */
 #include "subspace.h"
 #include "base/events.h"
@@ -86,7 +87,8 @@ PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
   Vec           pairs;
 
   PetscFunctionBeginUser;
-  PetscCall(SubspaceAddTerm(s, pencil->left ? pencil->K_even : pencil->K, pencil->symmetric || pencil->left, PETSC_FALSE));
+  PetscCall(
+    SubspaceAddTerm(s, pencil->left ? pencil->K_even : pencil->K, pencil->symmetric || pencil->left, PETSC_FALSE));
   PetscCall(SubspaceAddTerm(s, pencil->C, pencil->symmetric, PETSC_FALSE));
   PetscCall(SubspaceAddTerm(s, pencil->M, pencil->symmetric, PETSC_FALSE));
   if (!pencil->left) PetscFunctionReturn(0);

@@ -1,12 +1,13 @@
 /*
-   V' A V of all terms, extended by new columns W at the end of V: V' A W, and (V' A' W)' in the new rows. Matrices that fill all rows
-   are multiplied side by side, so that V is read once for all of them; those of a small part by their rows. Friction is
+   V' A V of all terms, extended by new columns W at the end of V: V' A W, and (V' A' W)' in the new rows. Matrices that
+   fill all rows are multiplied side by side, so that V is read once for all of them; those of a small part by their
+   rows. Friction is
 
       V' (A + L' R) W = V' A W + (L V)' R W,   V' (A + L' R)' W = V' A W + (R V)' L W,   A = A'.
 
-   Between new columns all entries are w_i'A'w_j as of rows: e_i, what rounding does to A'w_i, is of no concern then to a mode x that
-   does not move where A is, e_i'x = 0. Taken from both sides, it is, and nothing states that error: 1e-10 of a disc's mode beside
-   a beam 1e6 times stiffer than it.
+   Between new columns all entries are w_i'A'w_j as of rows: e_i, what rounding does to A'w_i, is of no concern then to
+   a mode x that does not move where A is, e_i'x = 0. Taken from both sides, it is, and nothing states that error: 1e-10
+   of a disc's mode beside a beam 1e6 times stiffer than it.
 */
 #include "subspace.h"
 #include "solver/block/orthonormal.h"
@@ -55,7 +56,8 @@ static PetscErrorCode TermProductsCreate(const Subspace *s, TermProducts *p)
 
     p->columns[t] = term->transposed ? TermFind(p, term->A) : -1;
   }
-  for (PetscInt t = 0; t < s->n_terms; t++) p->rows[t] = s->term[t].transposed ? TermFind(p, s->term[t].transposed) : -1;
+  for (PetscInt t = 0; t < s->n_terms; t++)
+    p->rows[t] = s->term[t].transposed ? TermFind(p, s->term[t].transposed) : -1;
   PetscFunctionReturn(0);
 }
 

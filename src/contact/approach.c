@@ -81,8 +81,8 @@ static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[
 /* The best local edges of all nodes of a surface on this rank that are not held */
 static PetscErrorCode BelowLocal(Model model, const char set[], PetscInt *n_found, Below **found)
 {
-  PetscReal      *normals;
-  PetscInt        n, *vertices;
+  PetscReal *normals;
+  PetscInt   n, *vertices;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetSetNormals(model, set, &normals));

@@ -23,8 +23,8 @@ static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
   char unit[256], *end;
 
   PetscFunctionBeginUser;
-  PetscCheck(!c->has_kn || !c->per_area, comm, PETSC_ERR_USER_INPUT, "-%s_kn and -%s_kn_per_area are given; give one of them",
-             c->name, c->name);
+  PetscCheck(!c->has_kn || !c->per_area, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kn and -%s_kn_per_area are given; give one of them", c->name, c->name);
   if (!c->has_kn) PetscFunctionReturn(0);
   c->identify = !strcmp(c->kn_text, "identify") ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ValueExplainUnit(c->kn_text, unit, sizeof(unit)));
@@ -46,8 +46,10 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
              "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
   c->friction.speed = c->speed;
-  PetscCheck(!FrictionNeedsSpeed(&c->friction) || c->speed > 0 || Vec3Length(c->rotation) > 0 || Vec3Length(c->slip) == 0, comm,
-             PETSC_ERR_USER_INPUT, "contact %s: friction depends on the sliding speed: give a positive -%s_speed (m/s) with -%s_slip",
+  PetscCheck(!FrictionNeedsSpeed(&c->friction) || c->speed > 0 || Vec3Length(c->rotation) > 0 ||
+               Vec3Length(c->slip) == 0,
+             comm, PETSC_ERR_USER_INPUT,
+             "contact %s: friction depends on the sliding speed: give a positive -%s_speed (m/s) with -%s_slip",
              c->name, c->name, c->name);
   PetscFunctionReturn(0);
 }
@@ -63,8 +65,8 @@ static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
   PetscCheck(c->kt == 0 || FrictionExists(&c->friction), comm, PETSC_ERR_USER_INPUT,
-             "-%s_kt%s %.6g does nothing without friction; give a coefficient of -%s_friction_law, or leave it out", c->name,
-             c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
+             "-%s_kt%s %.6g does nothing without friction; give a coefficient of -%s_friction_law, or leave it out",
+             c->name, c->kt_per_area ? "_per_area" : "", (double)c->kt, c->name);
   PetscCheck(c->kt == 0 || !c->damping, comm, PETSC_ERR_USER_INPUT,
              "-%s_friction_damping does nothing where the contact holds by friction (-%s_kt%s); leave one out", c->name,
              c->name, c->kt_per_area ? "_per_area" : "");
@@ -94,9 +96,11 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscInt n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", &n, &names));
+  PetscCall(
+    OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", &n, &names));
   PetscCheck(n <= CONTACT_MAX, contact->comm, PETSC_ERR_USER_INPUT,
-             "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh", n, CONTACT_MAX);
+             "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh", n,
+             CONTACT_MAX);
   for (PetscInt i = 0; i < n; i++) {
     ContactInterface *c = &contact->interfaces[i];
 
@@ -125,8 +129,8 @@ static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt c
   PetscFunctionReturn(0);
 }
 
-/* A warning for slaves of eight nodes a face that can open; an error where second rows of nodes are asked for under faces
-   of second order, whose sides and middles have no edge into the body */
+/* A warning for slaves of eight nodes a face that can open; an error where second rows of nodes are asked for under
+   faces of second order, whose sides and middles have no edge into the body */
 static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterface *c)
 {
   PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0;
@@ -236,13 +240,14 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
     else if (c->law == CONTACT_PENALTY)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
+      PetscCall(
+        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
     else
       PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
     if (c->n_off)
-      PetscCall(PetscViewerASCIIPrintf(viewer,
-                                       "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n",
-                                       c->n_off, c->n_slaves, c->slave));
+      PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n", c->n_off,
+        c->n_slaves, c->slave));
   }
   if (contact->n_interfaces)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));

@@ -25,8 +25,8 @@ PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt inter
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 
-/* cover.c - areas of n new pairs, of local nodes node[n], where faces of the slave lie partly over the master; takes out those
-   without. *lost: area over the master of faces without any pair, m^2. Collective. */
+/* cover.c - areas of n new pairs, of local nodes node[n], where faces of the slave lie partly over the master; takes
+   out those without. *lost: area over the master of faces without any pair, m^2. Collective. */
 PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
                                               ContactPair pair[], PetscReal *lost);
 

@@ -1,14 +1,15 @@
 /*
-   Area of a slave node where its faces lie partly over the master, beside a hole, a slot or the rim. A face f of area A_f, with
-   positive shares s_fv of its nodes (kernels/contact/facet.h), sum_v s_fv = A_f, of which the part c_f lies over the master, gives it to
-   those of its nodes that have a pair, P_f:
+   Area of a slave node where its faces lie partly over the master, beside a hole, a slot or the rim. A face f of area
+   A_f, with positive shares s_fv of its nodes (kernels/contact/facet.h), sum_v s_fv = A_f, of which the part c_f lies
+   over the master, gives it to those of its nodes that have a pair, P_f:
 
       a_v = sum_f  s_fv c_f A_f / sum_{u in P_f} s_fu
 
-   so that sum_v a_v = sum_f c_f A_f is the area in contact, and k sum_v a_v the stiffness of a contact per area k. c_f is the sum of
-   the areas in which f and the facets of the master lie over each other along the normal of f (kernels/contact/overlap.h), over that of f.
-   Faces with pairs at all nodes, of which less than 1 % hangs over (as chords of one circle differ), count in full, and so do they
-   where -X_overhang is given, since then nodes beyond the border press on it. A face without pairs gives nothing.
+   so that sum_v a_v = sum_f c_f A_f is the area in contact, and k sum_v a_v the stiffness of a contact per area k. c_f
+   is the sum of the areas in which f and the facets of the master lie over each other along the normal of f
+   (kernels/contact/overlap.h), over that of f. Faces with pairs at all nodes, of which less than 1 % hangs over (as
+   chords of one circle differ), count in full, and so do they where -X_overhang is given, since then nodes beyond the
+   border press on it. A face without pairs gives nothing.
 */
 #include "contactimpl.h"
 #include "base/algebra/vec3.h"
@@ -26,20 +27,22 @@ typedef struct {
 } Cover;
 
 /* Whether a facet lies within the tolerance of a face, and looks towards it; e[2] is the face's normal */
-static PetscBool FacetFaces(const Cover *k, const ContactFacet *g, const double e[3][3], const double origin[3], PetscReal size)
+static PetscBool FacetFaces(const Cover *k, const ContactFacet *g, const double e[3][3], const double origin[3],
+                            PetscReal size)
 {
   PetscReal away[3];
 
   for (int d = 0; d < 3; d++) away[d] = ContactFacetMiddle(g, d) / 4 - origin[d];
-  return Vec3Dot(g->normal, e[2]) < 0 && PetscAbsReal(Vec3Dot(away, e[2])) <= k->c->tolerance + (size + g->size) / 2 ? PETSC_TRUE
-                                                                                                                 : PETSC_FALSE;
+  return Vec3Dot(g->normal, e[2]) < 0 && PetscAbsReal(Vec3Dot(away, e[2])) <= k->c->tolerance + (size + g->size) / 2
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 /* c_f of a face */
 static PetscErrorCode FaceCover(Cover *k, int n, const double x[][3], PetscReal *part)
 {
-  const ContactShape rest   = {.surface = k->surface};
-  PetscBool          border = PETSC_FALSE;
+  const ContactShape rest     = {.surface = k->surface};
+  PetscBool          border   = PETSC_FALSE;
   PetscInt           n_facing = 0;
   PetscReal          area = 0, size = 0;
   double             e[3][3], origin[3];
@@ -69,7 +72,8 @@ static PetscErrorCode FaceCover(Cover *k, int n, const double x[][3], PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Adds what a face gives its nodes to sum[v][3]: the area, and 1 where it is not all of their shares; has[v][3] tells pairs */
+/* Adds what a face gives its nodes to sum[v][3]: the area, and 1 where it is not all of their shares; has[v][3] tells
+   pairs */
 static PetscErrorCode FaceGive(Cover *k, int n, const PetscInt node[], const double x[][3], const PetscScalar has[],
                                PetscScalar sum[])
 {
@@ -128,8 +132,8 @@ static PetscErrorCode FacesGive(Contact contact, Cover *k, Vec has, Vec sums)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[], ContactPair pair[],
-                                 PetscReal *lost)
+PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
+                                 ContactPair pair[], PetscReal *lost)
 {
   Cover              k = {.c = &contact->interfaces[interface]};
   const PetscScalar *sum;

@@ -131,11 +131,11 @@ typedef struct {
 static void LawsOf(const ContactKKT *kkt, Law law[N_LAWS])
 {
   const Law all[N_LAWS] = {
-    {"penetration",     "pairs that overlap, to the largest displacement or gap",         kkt->penetration    },
-    {"sign",            "pairs that pull, to the largest normal force",                   kkt->sign           },
-    {"complementarity", "pairs that carry force across a gap",                            kkt->complementarity},
-    {"cone",            "friction beyond mu lambda_n, to the largest normal force",       kkt->cone           },
-    {"dissipation",     "friction off the direction of slip, or slip where a pair holds", kkt->dissipation    },
+    {"penetration", "pairs that overlap, to the largest displacement or gap", kkt->penetration},
+    {"sign", "pairs that pull, to the largest normal force", kkt->sign},
+    {"complementarity", "pairs that carry force across a gap", kkt->complementarity},
+    {"cone", "friction beyond mu lambda_n, to the largest normal force", kkt->cone},
+    {"dissipation", "friction off the direction of slip, or slip where a pair holds", kkt->dissipation},
   };
 
   for (int i = 0; i < N_LAWS; i++) law[i] = all[i];

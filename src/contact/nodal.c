@@ -1,7 +1,7 @@
 /*
    Forces of the contact at the nodes of the mesh: -lambda_n n + lambda_t t + lambda_b b on the master point, shared by
-   the nodes of its facet with their weights, and the opposite on the slave. Nodes that a support holds are included. And
-   what ties pass on: forces on slaves act on the nodes that they follow.
+   the nodes of its facet with their weights, and the opposite on the slave. Nodes that a support holds are included.
+   And what ties pass on: forces on slaves act on the nodes that they follow.
 */
 #include "contactimpl.h"
 
@@ -76,7 +76,8 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
   PetscFunctionReturn(0);
 }
 
-/* Adds what passes of the force [3] on the slave of a link: to the nodes that it follows, and with the other sign to itself */
+/* Adds what passes of the force [3] on the slave of a link: to the nodes that it follows, and with the other sign to
+   itself */
 static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal force[3], Vec forces)
 {
   PetscScalar part[3];

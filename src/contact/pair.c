@@ -1,8 +1,8 @@
 /*
    Pairing by position. Every rank finds the feet of its own slave nodes on the master surface (surface.h): the nearest
    point, and from there the facet whose normal leads to the node. A node beyond the border of the master has no pair: a
-   distance along the surface is no gap. Those beside it have the area that lies over the master (cover.c). The master point
-   moves with the facet's shape functions, so that matching meshes give node-to-node pairs.
+   distance along the surface is no gap. Those beside it have the area that lies over the master (cover.c). The master
+   point moves with the facet's shape functions, so that matching meshes give node-to-node pairs.
 
    Slip: given, or the velocity of the slave relative to a master that turns with angular velocity w about c:
    v = -w x (x - c) in m/s. Both are projected on the tangent plane of the pair.
@@ -40,14 +40,14 @@ static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *
   return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the border of
-   the master the farthest, and the nearest (its distance along the surface and in all, and where); whether a slip vanished;
-   area over the master of faces without any pair (m^2, complete on every rank); slaves that are nodes of the master too, and whose
-   surface looks towards the master's or with it */
+/* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the
+   border of the master the farthest, and the nearest (its distance along the surface and in all, and where); whether a
+   slip vanished; area over the master of faces without any pair (m^2, complete on every rank); slaves that are nodes of
+   the master too, and whose surface looks towards the master's or with it */
 typedef struct {
-  PetscReal distance, x[3], off, nearest[2], nearest_x[3], no_slip;
+  PetscReal   distance, x[3], off, nearest[2], nearest_x[3], no_slip;
   const char *metre; /* what the scene has for m */
-  PetscInt  n_common, n_towards, n_with, n, n_off;
+  PetscInt    n_common, n_towards, n_with, n, n_off;
 } PairFailure;
 
 /* Counts a pair that has one node twice, or of which one surface looks towards the other or where that looks */
@@ -103,12 +103,12 @@ static PetscBool PairMake(const ContactInterface *c, const ContactSurface *surfa
   return PETSC_TRUE;
 }
 
-/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure. vertices: of the new
-   pairs, which the caller frees */
+/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure. vertices: of
+   the new pairs, which the caller frees */
 static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
                                 PairFailure *failure, PetscInt **vertices)
 {
-  const ContactInterface *c     = &contact->interfaces[interface];
+  const ContactInterface *c = &contact->interfaces[interface];
   const Mesh             *mesh;
   PetscReal              *normals; /* [node][3], times area, m^2 */
   PetscInt                n, n_new = 0;
@@ -133,8 +133,8 @@ static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const Conta
   PetscFunctionReturn(0);
 }
 
-/* Areas of the pairs from the first on; those on the border of the master, none of whose faces lies over it, are taken out: an
-   error where they are all. lost: area over the master that no pair gets, m^2 */
+/* Areas of the pairs from the first on; those on the border of the master, none of whose faces lies over it, are taken
+   out: an error where they are all. lost: area over the master that no pair gets, m^2 */
 static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt first, const PetscInt vertices[],
                                  PetscReal *lost)
 {
@@ -147,10 +147,11 @@ static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt f
   all[0]           = n - kept;
   all[1]           = kept;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCheck(all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "
-             "-%s_surfaces that lie over each other",
-             c->name, c->slave, c->master, c->name);
+  PetscCheck(
+    all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT,
+    "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "
+    "-%s_surfaces that lie over each other",
+    c->name, c->slave, c->master, c->name);
   c->n_off += all[0];
   PetscFunctionReturn(0);
 }
@@ -190,7 +191,7 @@ PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]
 static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   PetscReal *const along = failure->nearest, *const x = failure->nearest_x;
-  PetscReal        order = failure->n_off ? -along[0] : -PETSC_MAX_REAL, away[3] = {along[0], along[1], 0};
+  PetscReal order = failure->n_off ? -along[0] : -PETSC_MAX_REAL, away[3] = {along[0], along[1], 0};
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->n_common, 5, MPIU_INT, MPI_SUM, comm));
@@ -200,11 +201,12 @@ static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *
   PetscCallMPI(MPI_Allreduce(&failure->off, &c->off, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCall(ContactShareWorst(comm, &(PetscReal){order}, x));
   PetscCall(ContactShareWorst(comm, &order, away));
-  PetscCheck(failure->n, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g %s, is %.6g %s away, %.6g %s of "
-             "it beyond the border along the surface; give two of -%s_surfaces that touch",
-             c->name, c->slave, c->master, (double)x[0], (double)x[1], (double)x[2], failure->metre, (double)away[1],
-             failure->metre, (double)away[0], failure->metre, c->name);
+  PetscCheck(
+    failure->n, comm, PETSC_ERR_USER_INPUT,
+    "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g %s, is %.6g %s away, %.6g %s of "
+    "it beyond the border along the surface; give two of -%s_surfaces that touch",
+    c->name, c->slave, c->master, (double)x[0], (double)x[1], (double)x[2], failure->metre, (double)away[1],
+    failure->metre, (double)away[0], failure->metre, c->name);
   PetscFunctionReturn(0);
 }
 
@@ -218,13 +220,15 @@ static PetscErrorCode OffWarn(Contact contact, const ContactInterface *c, PetscR
   if (!c->n_off) PetscFunctionReturn(0);
   PetscCall(ModelGetUnit(contact->model, "m", &metre));
   PetscCall(ModelGetUnit(contact->model, "m^2", &area));
-  PetscCall(PetscFPrintf(comm, stderr,
-                         "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
-                         " nodes of %s have no master under them, and carry nothing; the farthest is %.3g %s beyond the "
-                         "border of %s",
-                         c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, metre, c->master));
+  PetscCall(
+    PetscFPrintf(comm, stderr,
+                 "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
+                 " nodes of %s have no master under them, and carry nothing; the farthest is %.3g %s beyond the "
+                 "border of %s",
+                 c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, metre, c->master));
   if (lost > 0)
-    PetscCall(PetscFPrintf(comm, stderr, "; %.3g %s over it carry nothing either, on faces none of whose nodes has a pair",
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "; %.3g %s over it carry nothing either, on faces none of whose nodes has a pair",
                            (double)lost, area));
   PetscCall(PetscFPrintf(comm, stderr, "\n"));
   PetscFunctionReturn(0);
@@ -240,11 +244,12 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscCall(OffCheck(comm, c, failure));
   PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->no_slip, 1, MPIU_REAL, MPI_MAX, comm));
-  PetscCheck(failure->distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
-             "contact %s: the node of %s at %.6g, %.6g, %.6g %s finds no partner on %s: it is %.6g %s above or below it, "
-             "-%s_tolerance is %.6g %s; give a larger one for a gap that may close, or a set of the nodes that touch",
-             c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2],
-             failure->metre, c->master, (double)failure->distance, failure->metre, c->name, (double)c->tolerance, failure->metre);
+  PetscCheck(
+    failure->distance <= c->tolerance, comm, PETSC_ERR_USER_INPUT,
+    "contact %s: the node of %s at %.6g, %.6g, %.6g %s finds no partner on %s: it is %.6g %s above or below it, "
+    "-%s_tolerance is %.6g %s; give a larger one for a gap that may close, or a set of the nodes that touch",
+    c->name, c->slave, (double)failure->x[0], (double)failure->x[1], (double)failure->x[2], failure->metre, c->master,
+    (double)failure->distance, failure->metre, c->name, (double)c->tolerance, failure->metre);
   PetscCall(SurfacesCheck(comm, c, failure));
   c->slides = failure->no_slip == 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(

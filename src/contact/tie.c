@@ -1,20 +1,20 @@
 /*
-   Ties: bodies whose meshes do not match, glued. Every node of the slave follows one point x(xi) of the master, its foot,
-   in all three directions,
+   Ties: bodies whose meshes do not match, glued. Every node of the slave follows one point x(xi) of the master, its
+   foot, in all three directions,
 
       u_s = sum_i w_i(xi) u_i + omega x (x_s - x(xi)).
 
-   The weights w_i are those of the facet, of second order too. omega is the turning of the facet there (kernels/contact/arm.h). A
-   gap between the surfaces is a rigid arm, which turns with the master: rigid motions of both bodies are exact. Forces on
-   the slave act on the nodes of the facet by the transpose.
+   The weights w_i are those of the facet, of second order too. omega is the turning of the facet there
+   (kernels/contact/arm.h). A gap between the surfaces is a rigid arm, which turns with the master: rigid motions of
+   both bodies are exact. Forces on the slave act on the nodes of the facet by the transpose.
 
    At its foot the normal of the master leads to the node. It is interpolated between the nodes of the surface (foot.c).
    Where no normal does, the foot is the nearest point, beyond the border one on it. -X_distance is the longest arm.
 
-   Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress along the surface is exact on
-   any two meshes. Traction on it is where the slave's mesh refines the master's: sum_s w_i(x_s) int N_s dA = int N_i dA.
-   Elsewhere its total is exact, and stress beside the surface is off by an amount that vanishes with the mesh. Let the
-   finer of the two be the slave.
+   Where flat surfaces touch, displacements that are linear in x obey the tie. Uniform stress along the surface is exact
+   on any two meshes. Traction on it is where the slave's mesh refines the master's: sum_s w_i(x_s) int N_s dA = int N_i
+   dA. Elsewhere its total is exact, and stress beside the surface is off by an amount that vanishes with the mesh. Let
+   the finer of the two be the slave.
 
    Nodes of both surfaces need no equation. A direction in which a support holds the slave needs none where it holds the
    nodes of the facet as well.

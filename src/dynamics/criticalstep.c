@@ -10,8 +10,8 @@
    Lanczos iteration (SLEPc) on the symmetric M^-1/2 (K + s C) M^-1/2 at s = 2 / dt. With its largest eigenvector x,
    x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from above, since another vector may be
    worse at the new dt. lambda_max is raised by the tolerance of the residual, not by the residual that is left, which
-   hangs on rounding and ranks: the eigenvalue itself has twice its digits. Upper bound of lambda_max for the check: that
-   of the single elements.
+   hangs on rounding and ranks: the eigenvalue itself has twice its digits. Upper bound of lambda_max for the check:
+   that of the single elements.
 */
 #include "dynamicsimpl.h"
 #include "base/algebra/synchronize.h"

@@ -78,16 +78,16 @@ struct _p_Dynamics {
 /* quantities.c - rows of the options */
 extern const QuantityTable dynamics_quantities;
 
-/* run/run.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there. Errors:
-   PETSC_ERR_USER_INPUT for an end that is none, and for a -ts_dt beyond it. Collective. */
+/* run/run.c - when the run ends, s; the step is at most as long, and divides it where the run shall end exactly there.
+   Errors: PETSC_ERR_USER_INPUT for an end that is none, and for a -ts_dt beyond it. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsFitEnd(Dynamics dynamics, PetscReal *dt, PetscReal *end);
 
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
 PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx);
 PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx);
 
-/* laws.c - second paths of a step that is due: begins with the forces f of the bodies; f with the loads; all forces; the step
-   is made. Collective. */
+/* laws.c - second paths of a step that is due: begins with the forces f of the bodies; f with the loads; all forces;
+   the step is made. Collective. */
 typedef struct {
   const PetscReal *u, *v, *f, *f_old; /* state vectors: u_n, v_{n-1/2}, f_n and f_{n-1}; f_old NULL for b = 1/2 */
 } LawsArrays;
@@ -127,5 +127,6 @@ PETSC_INTERN PetscErrorCode DynamicsDestroyFilters(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsKeep(Dynamics dynamics);
 PETSC_INTERN PetscErrorCode DynamicsGoOn(Dynamics dynamics);
 
-/* raises an error where that would lose the checkpoint of an unfinished run, or a file that is not squeal's. Collective. */
+/* raises an error where that would lose the checkpoint of an unfinished run, or a file that is not squeal's.
+   Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckEarlier(Dynamics dynamics);

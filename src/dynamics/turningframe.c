@@ -7,9 +7,9 @@
 /* Part that has most cells at a surface: the one that the surface belongs to */
 static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *part)
 {
-  const Mesh     *mesh;
-  PetscInt        n, *count, *vertices;
-  PetscBool      *in_set;
+  const Mesh *mesh;
+  PetscInt    n, *count, *vertices;
+  PetscBool  *in_set;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(d->model, &mesh));

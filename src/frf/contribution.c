@@ -1,6 +1,6 @@
 /*
-   How much each mode gives: |r_k| / |i omega - lambda_k| with the residue r_k = (l^T x)(y^T f) / (y^T Q'(lambda) x), whose
-   denominator is 2 |lambda| |x|_M |y|_M / condition. A rigid mode gives (l^T x)(y^T f) / (y^T M x) / omega^2.
+   How much each mode gives: |r_k| / |i omega - lambda_k| with the residue r_k = (l^T x)(y^T f) / (y^T Q'(lambda) x),
+   whose denominator is 2 |lambda| |x|_M |y|_M / condition. A rigid mode gives (l^T x)(y^T f) / (y^T M x) / omega^2.
 */
 #include "frfimpl.h"
 

@@ -137,7 +137,10 @@ PetscErrorCode FrfSolve(Frf frf)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(frf->n * frf->n_outputs, &frf->re, frf->n * frf->n_outputs, &frf->im, frf->n, &frf->error));
-  PetscCall(frf->method == FRF_DIRECT ? FrfSolveDirect(frf) : FrfSolveModal(frf));
+  if (frf->method == FRF_DIRECT)
+    PetscCall(FrfSolveDirect(frf));
+  else
+    PetscCall(FrfSolveModal(frf));
   PetscFunctionReturn(0);
 }
 

@@ -52,8 +52,8 @@ extern const QuantityTable frf_quantities;
 /* places.c - the force, and the unknowns that are recorded */
 PETSC_INTERN PetscErrorCode FrfFindForce(Frf frf);
 PETSC_INTERN PetscErrorCode FrfFindOutputs(Frf frf);
-/* The force and the outputs in the unknowns of the pencil: right[1] = Zl' f, left[n_outputs] = Zr' l; the caller destroys
-   the vectors */
+/* The force and the outputs in the unknowns of the pencil: right[1] = Zl' f, left[n_outputs] = Zr' l; the caller
+   destroys the vectors */
 PETSC_INTERN PetscErrorCode FrfProject(Frf frf, Vec *right, Vec **left);
 
 /* modal.c, direct.c - the response at all frequencies */

@@ -4,9 +4,9 @@
       h(t) = sum_k w Re(r_k e^{lambda_k t}),   r_k = (l^T x_k) (y_k^T f) / (2 lambda_k p_k),
       p_k  = y_k^T (M + C / (2 lambda_k)) x_k,
 
-   w = 2 where omega > 0, for the conjugate, else 1. A mode with omega = 0 of a system without damping stands for -lambda
-   as well: r (e^{lambda t} - e^{-lambda t}). The rigid modes X, Y, whose left vectors need not match the right ones one by
-   one, move on together, X (Y^T M X)^-1 Y^T f t; where dampers to the ground hold them they come to rest at
+   w = 2 where omega > 0, for the conjugate, else 1. A mode with omega = 0 of a system without damping stands for
+   -lambda as well: r (e^{lambda t} - e^{-lambda t}). The rigid modes X, Y, whose left vectors need not match the right
+   ones one by one, move on together, X (Y^T M X)^-1 Y^T f t; where dampers to the ground hold them they come to rest at
    X (Y^T C X)^-1 Y^T f, and the eigenvalues that bring them there are modes of their own.
 */
 #include "frfimpl.h"
@@ -130,7 +130,8 @@ static PetscErrorCode RigidModesSolve(MPI_Comm comm, PetscInt n, PetscReal A[], 
   PetscFunctionBeginUser;
   PetscCall(DenseLeast(n, n, A, b, HELD, &rank));
   PetscCheck(rank == n, comm, PETSC_ERR_USER_INPUT,
-             "-frf_times: damping holds some of the %" PetscInt_FMT " rigid modes and others not; hold all, or none", n);
+             "-frf_times: damping holds some of the %" PetscInt_FMT " rigid modes and others not; hold all, or none",
+             n);
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
-   What a killed direct response goes on from: the file frf_restart, the responses of all frequencies so far, written anew after each
-   and taken away when all are there.
+   What a killed direct response goes on from: the file frf_restart, the responses of all frequencies so far, written
+   anew after each and taken away when all are there.
 */
 #include "frfimpl.h"
 #include "base/process/interrupt.h"
@@ -81,7 +81,8 @@ PetscErrorCode FrfResume(Frf frf, PetscInt *n)
     PetscCall(PetscFree(item[k].values));
   }
   if (taken)
-    PetscCall(PetscPrintf(frf->comm, "going on with %" PetscInt_FMT " of %" PetscInt_FMT " frequencies kept\n", *n, frf->n));
+    PetscCall(
+      PetscPrintf(frf->comm, "going on with %" PetscInt_FMT " of %" PetscInt_FMT " frequencies kept\n", *n, frf->n));
   PetscFunctionReturn(0);
 }
 

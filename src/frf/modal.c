@@ -93,7 +93,8 @@ static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
 }
 
 /* Both responses at the frequencies first, first + step and so on, FRF_BATCH at most; the error is their difference.
-   schur[0] NULL: its responses are there already. work[4][FRF_BATCH][n_outputs]. Returns in *singular one that is a pole
+   schur[0] NULL: its responses are there already. work[4][FRF_BATCH][n_outputs]. Returns in *singular one that is a
+   pole
  */
 static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt first, PetscInt step, PetscReal work[],
                                    PetscInt *singular)

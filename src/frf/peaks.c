@@ -14,8 +14,8 @@ PetscReal FrfMagnitude(Frf frf, PetscInt i)
   return PetscSqrtReal(sum);
 }
 
-/* Whether frequency i is that of the mode: off by its half width, 3 %, or a step of the table at most. A mode further away may give
-   most there, and makes no maximum */
+/* Whether frequency i is that of the mode: off by its half width, 3 %, or a step of the table at most. A mode further
+   away may give most there, and makes no maximum */
 static PetscErrorCode PeakIsOf(Frf frf, PetscInt i, PetscInt mode, PetscBool *is)
 {
   const PetscReal freq = frf->freq[i], step = PetscMax(freq - frf->freq[i - 1], frf->freq[i + 1] - freq);

@@ -293,7 +293,10 @@ PetscErrorCode FrfFindOutputs(Frf frf)
   for (PetscInt i = 0; scene && i < scene->n_circles; i++) most += scene->circles[i].n;
   PetscCall(PetscCalloc1(most, &frf->output));
   PetscCall(PetscCalloc1(most, &frf->l));
-  PetscCall(model ? OutputsOfModel(frf, model) : OutputsOfMatrices(frf, n));
+  if (model)
+    PetscCall(OutputsOfModel(frf, model));
+  else
+    PetscCall(OutputsOfMatrices(frf, n));
   PetscFunctionReturn(0);
 }
 

@@ -23,12 +23,12 @@ static const Quantity rows[] = {
   {"-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,...", "s", QUANTITY_TEXT, FRF_AT(times)},
   {"-frf_method", "superposition of modes, or the whole system at each frequency", NULL, QUANTITY_WORD, FRF_AT(method),
    .initial = FRF_MODAL, .words = methods},
-  {"-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)", NULL, QUANTITY_REAL, FRF_AT(rtol),
-   .initial = 1e-8, QUANTITY_POSITIVE, .idle = FrfIdleDirect},
-  {"-frf_max_steps", "most steps of the residual term", NULL, QUANTITY_INT, FRF_AT(max_steps), .initial = 30, QUANTITY_POSITIVE,
-   .idle = FrfIdleDirect},
-  {"-frf_restart", "go on where a direct response of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL, FRF_AT(restart),
-   .initial = PETSC_TRUE, .idle = FrfIdleModal},
+  {"-frf_rtol", "largest estimated relative error of superposition (an estimate, no bound)", NULL, QUANTITY_REAL,
+   FRF_AT(rtol), .initial = 1e-8, QUANTITY_POSITIVE, .idle = FrfIdleDirect},
+  {"-frf_max_steps", "most steps of the residual term", NULL, QUANTITY_INT, FRF_AT(max_steps), .initial = 30,
+   QUANTITY_POSITIVE, .idle = FrfIdleDirect},
+  {"-frf_restart", "go on where a direct response of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
+   FRF_AT(restart), .initial = PETSC_TRUE, .idle = FrfIdleModal},
 };
 
 const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};

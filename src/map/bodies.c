@@ -1,6 +1,6 @@
 /*
-   Bodies of a line of the map, reduced with its value of the second parameter where that is one of theirs, and what acts on them
-   at a place: friction, sliding and loads of the model that belong to the values there.
+   Bodies of a line of the map, reduced with its value of the second parameter where that is one of theirs, and what
+   acts on them at a place: friction, sliding and loads of the model that belong to the values there.
 */
 #include "mapimpl.h"
 

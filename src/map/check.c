@@ -1,5 +1,6 @@
 /*
-   What a map cannot do, and what does nothing in it: how a single transient begins, what it records, what comes after its end.
+   What a map cannot do, and what does nothing in it: how a single transient begins, what it records, what comes after
+   its end.
 */
 #include "mapimpl.h"
 #include "reduced/idle.h"

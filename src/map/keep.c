@@ -1,7 +1,8 @@
 /*
-   What a killed map goes on with, in files of the output folder until it is complete: the reduced bodies, since made anew on
-   several ranks they differ by rounding and by signs, and of every chain its rows and the state at the end of the last one. A
-   point depends on these alone, so that the map is the same bit by bit, on any number of ranks: each file is one rank's.
+   What a killed map goes on with, in files of the output folder until it is complete: the reduced bodies, since made
+   anew on several ranks they differ by rounding and by signs, and of every chain its rows and the state at the end of
+   the last one. A point depends on these alone, so that the map is the same bit by bit, on any number of ranks: each
+   file is one rank's.
 */
 #include "mapimpl.h"
 #include "base/process/interrupt.h"
@@ -104,19 +105,21 @@ PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoin
   PetscFunctionReturn(0);
 }
 
-/* Arrays of the bodies, allocated where they are read; dims: modes, pairs, loads, probes, ports, impulses, damped, weighed */
+/* Arrays of the bodies, allocated where they are read; dims: modes, pairs, loads, probes, ports, impulses, damped,
+   weighed */
 static PetscErrorCode KeptBodiesMove(MapBodies *b, JournalPack *pack)
 {
-  ReducedModel   *a           = &b->model;
-  PetscInt        dims[N_DIMS] = {a->m, a->n_pairs, a->n_loads, a->n_probes, a->n_ports, b->n_hits, a->C ? 1 : 0, a->Mx ? 1 : 0};
+  ReducedModel   *a                = &b->model;
+  PetscInt        dims[N_DIMS]     = {a->m,       a->n_pairs, a->n_loads,   a->n_probes,
+                                      a->n_ports, b->n_hits,  a->C ? 1 : 0, a->Mx ? 1 : 0};
   PetscReal     **array[N_NUMBERS] = {&a->gap, &a->omega2, &a->C, &a->P, &a->W, &a->Cm, &a->Cx, &a->Mx, &b->hits};
   const PetscBool read             = pack->write ? PETSC_FALSE : PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(JournalPackMove(pack, dims, sizeof(dims)));
   const PetscInt m = dims[0], n = dims[1], N = dims[4], c = dims[6];
-  const PetscInt size[N_NUMBERS] = {n,     m,         c * m * m, m * N, N * N, c * 3 * n * m, c * 9 * n * n, dims[7] * 9 * n * n,
-                                    dims[5] * (m + 1)};
+  const PetscInt size[N_NUMBERS] = {
+    n, m, c * m * m, m * N, N * N, c * 3 * n * m, c * 9 * n * n, dims[7] * 9 * n * n, dims[5] * (m + 1)};
 
   if (read) {
     a->m = m, a->n_pairs = n, a->n_loads = dims[2], a->n_probes = dims[3], a->n_ports = N, b->n_hits = dims[5];

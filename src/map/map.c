@@ -7,7 +7,6 @@
 #include <squeal/options.h>
 #include <petsctime.h>
 
-
 PetscErrorCode MapCreate(MPI_Comm comm, Map *map)
 {
   PetscFunctionBeginUser;
@@ -65,7 +64,8 @@ static PetscErrorCode MapTakeRows(Map map, PetscInt n, const MapPoint row[], con
   PetscFunctionReturn(0);
 }
 
-/* Chains ends[0] .. ends[1] - 1 on these bodies [lines], or on one for all; row [their points], of which n are this rank's */
+/* Chains ends[0] .. ends[1] - 1 on these bodies [lines], or on one for all; row [their points], of which n are this
+   rank's */
 static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt ends[2], PetscInt *n, MapPoint row[])
 {
   PetscInt k, line = -1;
@@ -192,9 +192,9 @@ PetscErrorCode MapJudge(Map map)
                                                 [MAP_MADE]      = "normal contact, which does no work, feeds the "
                                                                   "motion: take a lower -dynamics_cutoff, or look "
                                                                   "at the point by -dynamics_model full"};
-  const MapPoint *first = NULL;
-  PetscInt        n     = 0;
-  char            text[512], other[320] = "";
+  const MapPoint          *first             = NULL;
+  PetscInt                 n                 = 0;
+  char                     text[512], other[320] = "";
 
   PetscFunctionBeginUser;
   for (PetscInt i = map->n_rows - 1; i >= 0; i--)

@@ -20,7 +20,8 @@
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_BISTABLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
-typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_MADE, MAP_N_FAULTS } MapFault; /* why a transient failed */
+/* why a transient failed */
+typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_MADE, MAP_N_FAULTS } MapFault;
 typedef enum { MAP_HALF_STEP, MAP_TIGHT_LAWS, MAP_HIGHER_CUTOFF, MAP_N_CHECKS } MapCheckRun; /* of -map_verify */
 typedef enum { MAP_BOTH, MAP_UP, MAP_DOWN, MAP_APART } MapDirection;
 
@@ -46,9 +47,10 @@ typedef struct {
   PetscReal error; /* of the rms, relative */
   PetscReal time;  /* s */
   PetscInt  steps;
-  PetscInt  n_runs, n_loud, all_steps; /* transients of the point, its own and its twins; of these vibrate; steps of all */
-  PetscInt  regimes;                   /* of these: sum of 1 << MapRegime */
-  PetscReal quantile[MAP_N_QUANTILES]; /* N, 5, 50, 95 % of the rms of their windows */
+  /* transients of the point, its own and its twins; of these vibrate; steps of all */
+  PetscInt  n_runs, n_loud, all_steps;
+  PetscInt  regimes;                                    /* of these: sum of 1 << MapRegime */
+  PetscReal quantile[MAP_N_QUANTILES];                  /* N, 5, 50, 95 % of the rms of their windows */
   PetscInt  n_growing;                                  /* modes of the sliding state that grow */
   PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* of the fastest of these, rad/s */
 } MapPoint;
@@ -67,8 +69,8 @@ typedef struct {
 /* Reduced bodies and what acts on them, dense, alike on all ranks */
 typedef struct {
   ReducedModel model;
-  PetscInt    *interface;          /* [n_pairs] */
-  FrictionLaw *friction;           /* [n_pairs] of the scene */
+  PetscInt    *interface; /* [n_pairs] */
+  FrictionLaw *friction;  /* [n_pairs] of the scene */
   PetscInt     n_hits;
   PetscReal   *hits; /* [n_hits][m] Phi'J, m sqrt(kg)/s, then [n_hits] when they are due, s */
   PetscBool    kept; /* by an earlier run, whose chains belong to them */
@@ -137,11 +139,12 @@ struct _p_MapMarch {
   PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
   PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
   PetscInt       first;                  /* window from which the numbers of a transient are */
-  PetscReal      contact, friction, given; /* works in a transient; of impulses, with the energy that it began with, J */
-  PetscReal     *slip;                   /* [n_most n] mean slip speed along t, m/s */
-  PetscReal     *force;                  /* [n_most n] N */
-  ContactStatus *status;                 /* [n_pairs] at the beginning of the window */
-  PetscBool     *closed, *known;         /* [n_pairs]; those of which `growth` is */
+  /* works in a transient; of impulses, with the energy that it began with, J */
+  PetscReal      contact, friction, given;
+  PetscReal     *slip;           /* [n_most n] mean slip speed along t, m/s */
+  PetscReal     *force;          /* [n_most n] N */
+  ContactStatus *status;         /* [n_pairs] at the beginning of the window */
+  PetscBool     *closed, *known; /* [n_pairs]; those of which `growth` is */
   PetscReal      growth;
   PetscReal     *lambda_n, *sigma, *omega; /* [n_pairs] N, [2 m] */
   MapSample     *sample;                   /* [n_most] */
@@ -165,14 +168,14 @@ PETSC_INTERN PetscErrorCode MapAxes(Map map);
 PETSC_INTERN PetscBool MapAxisIsBody(const MapAxis *axis);
 
 /* map/check.c - raises the error for a scene of which no map can be made, and for options of the command line that do
-   nothing; after ReducedPrepare() for a scene without impulses or sliding; for a window, an end and impulses that do not fit to
-   each other and to the step */
+   nothing; after ReducedPrepare() for a scene without impulses or sliding; for a window, an end and impulses that do
+   not fit to each other and to the step */
 PETSC_INTERN PetscErrorCode MapCheck(Map map);
 PETSC_INTERN PetscErrorCode MapCheckPrepared(Map map);
 PETSC_INTERN PetscErrorCode MapCheckTimes(Map map);
 
-/* map/check.c - steps dt (s) of a window, which lasts as long with any dt that divides the map's step, and windows of a point at
-   most. Not collective. */
+/* map/check.c - steps dt (s) of a window, which lasts as long with any dt that divides the map's step, and windows of a
+   point at most. Not collective. */
 PETSC_INTERN void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windows);
 
 /* point/modes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
@@ -188,8 +191,8 @@ PETSC_INTERN PetscErrorCode MapBodiesDestroy(MapBodies *bodies);
 
 /* map/bodies.c - whether all impulses of the bodies are due at t (s) at the latest. Not collective. */
 PETSC_INTERN PetscBool MapBodiesAreHit(const MapBodies *bodies, PetscReal t);
-/* map/bodies.c - sum [m] of the impulses that act at t in steps of dt (s), or NULL: one between two steps acts at both in shares, as in
-   any reduced run. Not collective. */
+/* map/bodies.c - sum [m] of the impulses that act at t in steps of dt (s), or NULL: one between two steps acts at both
+   in shares, as in any reduced run. Not collective. */
 PETSC_INTERN const PetscReal *MapBodiesKick(const MapBodies *bodies, PetscReal t, PetscReal dt, PetscReal kick[]);
 
 /* map/share.c - numbers 0, 1, ... for ranks that ask; Begin anew is collective, Next is not */
@@ -198,31 +201,32 @@ PETSC_INTERN PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm);
 PETSC_INTERN PetscErrorCode MapShareNext(MapShare *share, PetscInt *k);
 PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
 
-/* bodies.c - lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as their bodies are
-   small. A line has n_jobs for the ranks, and n_bodies */
+/* bodies.c - lines at a time: where each has bodies of its own, so many that no rank is idle for long, as far as their
+   bodies are small. A line has n_jobs for the ranks, and n_bodies */
 PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch);
 
-/* point/chain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all points of a
-   chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
+/* point/chain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all
+   points of a chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
 PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march);
 PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint row[]);
 PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
-/* point/march.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not collective */
+/* point/march.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not
+   collective */
 PETSC_INTERN PetscErrorCode MapMarchTry(MapMarch march, MapPoint *row);
 
-/* point/judge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no mode of the
-   sliding state, or with the pairs that are closed now, grows, and the rms falls from window to window: two of them in which no
-   pair changed its status, or four of a small vibration; the regime of a transient that has ended, and its numbers: of the
-   windows that agree, or the last half of all. Not collective */
+/* point/judge.c - eigenvalues about sliding with the pairs of `status` closed; whether the last motion dies out: no
+   mode of the sliding state, or with the pairs that are closed now, grows, and the rms falls from window to window: two
+   of them in which no pair changed its status, or four of a small vibration; the regime of a transient that has ended,
+   and its numbers: of the windows that agree, or the last half of all. Not collective */
 PETSC_INTERN PetscErrorCode MapMarchLinearise(MapMarch march, const ContactStatus status[], MapFastest *fastest);
 PETSC_INTERN PetscErrorCode MapMarchDiesOut(MapMarch march, PetscBool *dies);
 PETSC_INTERN void           MapMarchJudge(MapMarch march, MapPoint *row);
 
-/* point/twins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state; after its
-   transient the twins of it, from `begin`, its row before, and what they say, into the row. Not collective */
+/* point/twins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state;
+   after its transient the twins of it, from `begin`, its row before, and what they say, into the row. Not collective */
 PETSC_INTERN PetscErrorCode MapTwinsCreate(MapMarch march);
 PETSC_INTERN PetscErrorCode MapTwinsBegin(MapMarch march);
 PETSC_INTERN PetscErrorCode MapTwinsRun(MapMarch march, const MapPoint *begin, MapPoint *row);
@@ -238,7 +242,8 @@ typedef struct {
 } MapKept;
 
 /* map/keep.c - the journal; bodies and chains that a killed map goes on with: good is false, and the number of rows 0,
-   where there are none of this scene; takes their files away. Chains are not collective, and are taken with kept bodies only */
+   where there are none of this scene; takes their files away. Chains are not collective, and are taken with kept bodies
+   only */
 PETSC_INTERN PetscErrorCode MapJournalOpen(Map map, Results results);
 PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
 PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *bodies, PetscBool *good);
@@ -246,8 +251,9 @@ PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_row
 PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
 
-/* point/force.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its relative standard
-   error, as if they were independent; main line of forces dt apart, in records of n, Hz, NAN for none */
+/* point/force.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its
+   relative standard error, as if they were independent; main line of forces dt apart, in records of n, Hz, NAN for
+   none */
 PETSC_INTERN void      MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *sample);
 PETSC_INTERN PetscReal MapForceLevel(PetscInt n, const MapSample sample[], PetscReal *error);
 PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], PetscReal dt);
@@ -255,13 +261,12 @@ PETSC_INTERN PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscR
 PETSC_INTERN PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 PETSC_INTERN PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error);
 
-/* point/spread.c - pure: quantiles 5, 50 and 95 % of n numbers, which are sorted; what in 5 of 100 the mean of n numbers is off from
-   that of as many others; the same, relative, of the root of the mean square over n_runs transients of n[] windows, of rms
-   [n_runs][stride] */
+/* point/spread.c - pure: quantiles 5, 50 and 95 % of n numbers, which are sorted; what in 5 of 100 the mean of n
+   numbers is off from that of as many others; the same, relative, of the root of the mean square over n_runs transients
+   of n[] windows, of rms [n_runs][stride] */
 PETSC_INTERN PetscErrorCode MapSpreadQuantiles(PetscInt n, PetscReal x[], PetscReal quantile[MAP_N_QUANTILES]);
 PETSC_INTERN PetscReal      MapSpreadOfMean(PetscInt n, const PetscReal x[]);
-PETSC_INTERN PetscReal      MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride,
-                                             const PetscReal rms[]);
+PETSC_INTERN PetscReal MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride, const PetscReal rms[]);
 
 /* map/verify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
 PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);

@@ -1,7 +1,8 @@
 /*
-   Chains for the ranks, each the next one as it becomes free: transients that settle are much shorter than those that do not. The
-   counter is on rank 0, and others add to it one-sided: on one node in shared memory, without its help; over a network that
-   cannot add by itself, when rank 0 next enters MPI, so that others may wait until its own chain ends.
+   Chains for the ranks, each the next one as it becomes free: transients that settle are much shorter than those that
+   do not. The counter is on rank 0, and others add to it one-sided: on one node in shared memory, without its help;
+   over a network that cannot add by itself, when rank 0 next enters MPI, so that others may wait until its own chain
+   ends.
 */
 #include "mapimpl.h"
 

@@ -1,9 +1,10 @@
 /*
-   The error of the model at some points of a map, on request: the transient from the sliding state of the point, as the map runs
-   it where each point stands apart, then with half the step, with tighter contact laws, and with 2.25 times the cut-off.
-   Differences are the errors: of amplitude and frequency where both runs vibrate. That of growth, which is of the bodies, is
-   told by the inertia of all that the cut-off leaves out: a higher one may hold little of it (small_brake_map.yaml at 12 kHz and
-   mu 0.6: 1.174 1/s, beside the mesh 1.175, of which 27 kHz makes 0.32, since the pad has no mode in between).
+   The error of the model at some points of a map, on request: the transient from the sliding state of the point, as the
+   map runs it where each point stands apart, then with half the step, with tighter contact laws, and with 2.25 times
+   the cut-off. Differences are the errors: of amplitude and frequency where both runs vibrate. That of growth, which is
+   of the bodies, is told by the inertia of all that the cut-off leaves out: a higher one may hold little of it
+   (small_brake_map.yaml at 12 kHz and mu 0.6: 1.174 1/s, beside the mesh 1.175, of which 27 kHz makes 0.32, since the
+   pad has no mode in between).
 */
 #include "mapimpl.h"
 #include "base/gather.h"
@@ -50,7 +51,8 @@ static PetscErrorCode VerifyBegin(Map map, PetscInt most, VerifyBatch *b)
     if (line < 0 || (map->lines_differ && at.line != line)) {
       if (b->n_lines == most) break;
       PetscCall(MapBodiesCreate(map, at.line, 0, &b->bodies[VERIFY_BODIES * b->n_lines]));
-      PetscCall(MapBodiesCreate(map, at.line, REDUCED_HIGHER * map->cutoff, &b->bodies[VERIFY_BODIES * b->n_lines + 1]));
+      PetscCall(
+        MapBodiesCreate(map, at.line, REDUCED_HIGHER * map->cutoff, &b->bodies[VERIFY_BODIES * b->n_lines + 1]));
       b->n_lines++;
     }
     line             = at.line;

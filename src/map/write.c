@@ -3,17 +3,14 @@
 */
 #include "mapimpl.h"
 
-static const char *const regimes[MAP_N_REGIMES] = {[MAP_STABLE]   = "stable",
-                                                   [MAP_GROWTH]   = "growth",
-                                                   [MAP_STICKING] = "sticking",
-                                                   [MAP_CYCLE]    = "cycle",
-                                                   [MAP_BISTABLE] = "bistable",
-                                                   [MAP_UNKNOWN]  = "unknown"};
-static const char *const ends[MAP_N_ENDS]       = {[MAP_DECAYS]  = "decays",
-                                                   [MAP_SETTLED] = "settled",
-                                                   [MAP_STEADY]  = "steady",
-                                                   [MAP_TIME]    = "time",
-                                                   [MAP_FAILED]  = "failed"};
+static const char *const regimes[MAP_N_REGIMES] = {
+  [MAP_STABLE] = "stable", [MAP_GROWTH] = "growth",     [MAP_STICKING] = "sticking",
+  [MAP_CYCLE] = "cycle",   [MAP_BISTABLE] = "bistable", [MAP_UNKNOWN] = "unknown"};
+static const char *const ends[MAP_N_ENDS] = {[MAP_DECAYS]  = "decays",
+                                             [MAP_SETTLED] = "settled",
+                                             [MAP_STEADY]  = "steady",
+                                             [MAP_TIME]    = "time",
+                                             [MAP_FAILED]  = "failed"};
 
 PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
 {
@@ -32,7 +29,8 @@ static PetscBool MapVibrates(const MapPoint *row)
   return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether a point vibrates one way and is stable the other; its row of the other way follows those of this one, or the reverse */
+/* Whether a point vibrates one way and is stable the other; its row of the other way follows those of this one, or the
+   reverse */
 static PetscBool MapHangsOnWay(Map map, const MapPoint *row)
 {
   const MapPoint *other;
@@ -71,7 +69,8 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   if (map->n_axes > 1)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(
-    table, "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d,%d,%d,%s,%s,"
+    table,
+    "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d,%d,%d,%s,%s,"
     "%.15g,%.15g,%.15g",
     (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
     map->direction == MAP_APART ? "apart"
@@ -79,9 +78,8 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
                                 : "up",
     regimes[r->regime], (double)r->freq, (double)r->freq_error, (double)r->rms, (double)r->peak, (double)r->mean,
     (double)r->open, (double)r->stick, (double)r->growth, (double)r->mode_freq, (double)r->index, (double)r->error,
-    (int)r->steps, (double)r->time, ends[r->end], (int)r->n_growing, (int)r->n_runs,
-    (int)r->n_loud, list,
-    r->regime == MAP_BISTABLE    ? "rounding"
+    (int)r->steps, (double)r->time, ends[r->end], (int)r->n_growing, (int)r->n_runs, (int)r->n_loud, list,
+    r->regime == MAP_BISTABLE   ? "rounding"
     : MapHangsOnWay(map, point) ? "direction"
                                 : "",
     (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2]));
@@ -130,9 +128,9 @@ PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const
   PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
                             (int)(r->line * x->n + r->place + 1), (double)x->value[r->place], second, run,
                             regimes[r->regime], (double)(r->end == MAP_FAILED ? NAN : r->freq),
-                            (double)(r->end == MAP_FAILED ? NAN : r->rms),
-                            (double)r->growth, (double)r->mode_freq, (double)error->freq, (double)error->rms,
-                            (double)error->growth, (int)r->steps, (double)r->time, ends[r->end]));
+                            (double)(r->end == MAP_FAILED ? NAN : r->rms), (double)r->growth, (double)r->mode_freq,
+                            (double)error->freq, (double)error->rms, (double)error->growth, (int)r->steps,
+                            (double)r->time, ends[r->end]));
   PetscFunctionReturn(0);
 }
 

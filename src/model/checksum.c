@@ -15,10 +15,10 @@ static uint64_t ModelSumVertices(const Mesh *mesh, PetscInt n, const PetscInt ve
 
 PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_surface, Checksum c)
 {
-  const Mesh     *mesh;
-  PetscInt        n, *vertex;
-  ModelFaces      faces = {0, NULL, NULL};
-  uint64_t       *piece;
+  const Mesh *mesh;
+  PetscInt    n, *vertex;
+  ModelFaces  faces = {0, NULL, NULL};
+  uint64_t   *piece;
 
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddString(c, set));
@@ -168,7 +168,10 @@ PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
       PetscCall(ModelAddSetChecksum(model, load->set, PETSC_FALSE, c));
     }
     /* the resultant of a pressure is a sum over ranks, whose rounding is no difference */
-    PetscCall(load->is_pressure ? ChecksumAddReals(c, 1, &load->pressure) : ChecksumAddReals(c, 3, load->force));
+    if (load->is_pressure)
+      PetscCall(ChecksumAddReals(c, 1, &load->pressure));
+    else
+      PetscCall(ChecksumAddReals(c, 3, load->force));
   }
   PetscFunctionReturn(0);
 }

@@ -21,7 +21,8 @@ static const unsigned char at_hex[]   = {1,   2,   4,  8,  16, 32,  64,  128, 3,
 
 #define ROW_TET   .shape = DM_POLYTOPE_TETRAHEDRON, .n_corners = 4, .closure_order = {1, 0, 2, 3}, .at = at_tet
 #define ROW_WEDGE .shape = DM_POLYTOPE_TRI_PRISM, .n_corners = 6, .closure_order = {0, 2, 1, 3, 4, 5}, .at = at_wedge
-#define ROW_HEX   .shape = DM_POLYTOPE_HEXAHEDRON, .n_corners = 8, .closure_order = {0, 3, 2, 1, 4, 5, 6, 7}, .at = at_hex
+#define ORDER_HEX .closure_order = {0, 3, 2, 1, 4, 5, 6, 7}
+#define ROW_HEX   .shape = DM_POLYTOPE_HEXAHEDRON, .n_corners = 8, ORDER_HEX, .at = at_hex
 #define ROW_SOLID .matrices = SolidMatrices, .geometric = SolidGeometric, .measure = SolidMeasure
 #define ROW_HEX8  ROW_HEX, .name = "hex8", .vtk = 12, .xdmf = "Hexahedron", .xdmf_number = 9, .row_sums = PETSC_TRUE
 

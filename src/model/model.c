@@ -34,7 +34,8 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscFunctionBeginUser;
   PetscCall(ModelReadSource(model));
   if (!model->from_file) PetscCall(RigSetFromOptions(model->comm, &model->rig));
-  if (model->from_file) PetscCall(OptionsDropOf(model->comm, "rig", "the mesh comes from a file, not from the built-in rig"));
+  if (model->from_file)
+    PetscCall(OptionsDropOf(model->comm, "rig", "the mesh comes from a file, not from the built-in rig"));
   PetscCall(PetscOptionsHasName(NULL, NULL, parts_list.option, &given));
   if (!given && !model->from_file) PetscCall(PetscOptionsSetValue(NULL, parts_list.option, "disc,pad,beam"));
   PetscCall(QuantitiesReadList(model->comm, &parts_list, model, &scene->n_parts, &scene->parts));
@@ -159,8 +160,8 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   PetscCall(MeshDescribe(model, sizeof(words), words));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "model: %s, %" PetscInt_FMT " cells, %" PetscInt_FMT " unknowns on %d rank%s; %s\n",
-                                   !model->from_file ? "built-in rig" : model->file, n_cells,
-                                   model->mesh.n_unknowns, size, size == 1 ? "" : "s", words));
+                                   !model->from_file ? "built-in rig" : model->file, n_cells, model->mesh.n_unknowns,
+                                   size, size == 1 ? "" : "s", words));
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++) PetscCall(SupportView(&model->scene.supports[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_springs; i++)

@@ -32,7 +32,7 @@ typedef struct {
 struct _p_Model {
   MPI_Comm comm;
   /* set by options */
-  PetscBool  given; /* the scene names a mesh */
+  PetscBool  given;                         /* the scene names a mesh */
   PetscBool  from_file, has_file, has_loss; /* the mesh comes from a file, not from the rig; what is given */
   char       file[PETSC_MAX_PATH_LEN], formulation[32];
   PetscBool  has_formulation; /* -model_element is given */
@@ -87,8 +87,8 @@ PETSC_INTERN PetscErrorCode PointGetCorners(DM dm, PetscInt point, PetscInt n, c
 /* The lists of the scene, whose records have files of their own: part.c, support.c, grounded.c, load.c, motion.c,
    probe.c, circle.c, joint.c */
 PETSC_INTERN const QuantityTable model_quantities, rig_quantities, spring_quantities, dashpot_quantities;
-PETSC_INTERN const QuantityList  parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list, probes_list,
-  circles_list, joints_list, points_list;
+PETSC_INTERN const QuantityList  parts_list, supports_list, springs_list, dashpots_list, loads_list, motions_list,
+  probes_list, circles_list, joints_list, points_list;
 #define SET_WANTED "a named set of the mesh"
 
 /* The same files - what the rows of a record do not say; owner is the model */
@@ -119,14 +119,15 @@ PETSC_INTERN PetscErrorCode MeanDestroy(ModelMean *mean);
 
 /* mean.c - eigenvalues, ascending, and -vectors [3][3] of a symmetric matrix xx, yy, zz, xy, xz, yz */
 PETSC_INTERN PetscErrorCode InertiaPrincipal(const PetscReal inertia[6], PetscReal principal[3], PetscReal axes[9]);
-/* joint.c - the motions of all bushings and points, frees these; the point that -`load`_point names; a line about one */
+/* joint.c - the motions of all bushings and points, frees these; the point that -`load`_point names; a line about
+   one */
 PETSC_INTERN PetscErrorCode JointsSetUp(Model model);
 PETSC_INTERN PetscErrorCode JointsDestroy(PetscInt n, Joint joint[]);
 PETSC_INTERN PetscErrorCode JointFindPoint(Model model, const char load[], const char name[], PetscInt *index);
 PETSC_INTERN PetscErrorCode JointView(Model model, const Joint *joint, PetscViewer viewer);
 
-/* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that do
-   not belong together, for axes that are none, and for a stiffness that is not positive definite */
+/* anisotropic.c - Young's moduli, Poisson's ratios, shear moduli and axes of a part; errors for numbers of values that
+   do not belong together, for axes that are none, and for a stiffness that is not positive definite */
 PETSC_INTERN PetscErrorCode PartSetElasticity(MPI_Comm comm, Part *part);
 PETSC_INTERN PetscErrorCode AnisotropyView(Model model, const Anisotropy *a, PetscViewer viewer);
 
@@ -140,7 +141,8 @@ PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
 /* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
 PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
 
-/* part.c - the loss factors as stiffness damping; errors for those without -model_loss_frequency, and for the reverse */
+/* part.c - the loss factors as stiffness damping; errors for those without -model_loss_frequency, and for the
+   reverse */
 PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
 
 /* part.c - checks the materials, and finds the part of each cell */
@@ -163,12 +165,12 @@ PETSC_INTERN PetscErrorCode SharesCreate(Model model, const char owner[], const 
 PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
 PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);
 
-/* Values of a set's label: at a point that is in it with all nodes on it and around it, or at one whose own node alone is
-   in it (in the middle of an edge or face) */
+/* Values of a set's label: at a point that is in it with all nodes on it and around it, or at one whose own node alone
+   is in it (in the middle of an edge or face) */
 enum { SET_CLOSED = 1, SET_ALONE = 2 };
 
-/* set.c - points of this rank that are in a set with all nodes around them, those of range[0] .. range[1] - 1, NULL for all; the
-   caller frees them. An error when no rank has a point of the set. Collective */
+/* set.c - points of this rank that are in a set with all nodes around them, those of range[0] .. range[1] - 1, NULL for
+   all; the caller frees them. An error when no rank has a point of the set. Collective */
 PETSC_INTERN PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n,
                                          PetscInt **point);
 /* Whether another rank owns a point. Not collective */

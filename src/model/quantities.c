@@ -16,7 +16,10 @@
 /* Three of six values: along x, y, z, or about them */
 #define JOINT_THREE(member, first) .at = offsetof(Joint, member[first]), .size = 3 * sizeof(PetscReal)
 
-#define TABLE(title, rows) {title, "model.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows}
+#define TABLE(title, rows)                                                                                             \
+  {                                                                                                                    \
+    title, "model.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows                                                            \
+  }
 
 static const char *const sources[] = {[PETSC_FALSE] = "rig", [PETSC_TRUE] = "file", NULL};
 static const char *const joins[]   = {[PETSC_FALSE] = "mean", [PETSC_TRUE] = "rigid", NULL};
@@ -27,45 +30,53 @@ static const char *const joins[]   = {[PETSC_FALSE] = "mean", [PETSC_TRUE] = "ri
 static const char *const discs[] = {[PETSC_FALSE] = "axisymmetric", [PETSC_TRUE] = "patch", NULL};
 
 static const Quantity rig[] = {
-  {"-rig_disc_inner", "Inner radius of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_inner), .initial = 0.05, QUANTITY_POSITIVE},
+  {"-rig_disc_inner", "Inner radius of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_inner), .initial = 0.05,
+   QUANTITY_POSITIVE},
   {"-rig_disc_outer", "Outer radius of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_outer), .initial = 0.12},
-  {"-rig_disc_thickness", "Thickness of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_thickness), .initial = 0.01, QUANTITY_POSITIVE},
-  {"-rig_disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad", NULL, QUANTITY_WORD, RIG(patch),
-   .initial = PETSC_TRUE, .words = discs},
-  {"-rig_disc_elements", "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", NULL, QUANTITY_INTS,
-   RIG_COUNTS(disc_nr, 3), QUANTITY_POSITIVE, .given = offsetof(Rig, has_disc_elements)},
-  {"-rig_disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", NULL, QUANTITY_REAL, RIG(disc_spread),
-   QUANTITY_WITHIN(0, 1)},
+  {"-rig_disc_thickness", "Thickness of the disc (m)", NULL, QUANTITY_REAL, RIG(disc_thickness), .initial = 0.01,
+   QUANTITY_POSITIVE},
+  {"-rig_disc_mesh", "Grid of the disc: axisymmetric, or with a patch that matches the pad", NULL, QUANTITY_WORD,
+   RIG(patch), .initial = PETSC_TRUE, .words = discs},
+  {"-rig_disc_elements", "Elements of the disc: rings, columns, layers (21,100,3, axisymmetric 16,160,4)", NULL,
+   QUANTITY_INTS, RIG_COUNTS(disc_nr, 3), QUANTITY_POSITIVE, .given = offsetof(Rig, has_disc_elements)},
+  {"-rig_disc_spread", "Rings away from the patch: 0 keep their radii, 1 become uniform (-)", NULL, QUANTITY_REAL,
+   RIG(disc_spread), QUANTITY_WITHIN(0, 1)},
   {"-rig_pad", "Pad and beam as well as the disc", NULL, QUANTITY_BOOL, RIG(with_pad), .initial = PETSC_TRUE},
   {"-rig_pad_radius", "Radius of the pad's centre (m)", NULL, QUANTITY_REAL, RIG(pad_radius), .initial = 0.11},
-  {"-rig_pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", NULL, QUANTITY_REALS, RIG(pad_size), QUANTITY_POSITIVE},
-  {"-rig_pad_elements", "Elements of the pad in x, y, z (10,10,10)", NULL, QUANTITY_INTS, RIG_COUNTS(pad_n, 3), QUANTITY_POSITIVE},
-  {"-rig_beam_height", "Height of the beam (m)", NULL, QUANTITY_REAL, RIG(beam_height), .initial = 0.1, QUANTITY_POSITIVE},
-  {"-rig_beam_elements", "Elements of the beam over its height (-)", NULL, QUANTITY_INT, RIG(beam_nz), .initial = 20, QUANTITY_POSITIVE},
-  {"-rig_beam_rows", "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", NULL, QUANTITY_REALS, RIG(beam_rows)},
+  {"-rig_pad_size", "Size of the pad in x, y, z (m; 0.01,0.01,0.01)", NULL, QUANTITY_REALS, RIG(pad_size),
+   QUANTITY_POSITIVE},
+  {"-rig_pad_elements", "Elements of the pad in x, y, z (10,10,10)", NULL, QUANTITY_INTS, RIG_COUNTS(pad_n, 3),
+   QUANTITY_POSITIVE},
+  {"-rig_beam_height", "Height of the beam (m)", NULL, QUANTITY_REAL, RIG(beam_height), .initial = 0.1,
+   QUANTITY_POSITIVE},
+  {"-rig_beam_elements", "Elements of the beam over its height (-)", NULL, QUANTITY_INT, RIG(beam_nz), .initial = 20,
+   QUANTITY_POSITIVE},
+  {"-rig_beam_rows", "Heights of the spring rows above the beam's lower end (m; 0.02,0.08)", NULL, QUANTITY_REALS,
+   RIG(beam_rows)},
   {"-rig_save", "file of Gmsh to write the mesh and its sets to", NULL, QUANTITY_TEXT, RIG(save)},
 };
 const QuantityTable rig_quantities = TABLE("Built-in disc, pad and beam", rig);
 
 static const Quantity model[] = {
-  {"-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, QUANTITY_WORD, MODEL(from_file), .words = sources,
-   .given = offsetof(struct _p_Model, given)},
+  {"-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, QUANTITY_WORD, MODEL(from_file),
+   .words = sources, .given = offsetof(struct _p_Model, given)},
   {"-model_mesh", "Gmsh file, format 2.2 or 4.1, with physical names", NULL, QUANTITY_PATH, MODEL(file),
    .given = offsetof(struct _p_Model, has_file)},
-  {"-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", NULL, QUANTITY_TEXT, MODEL(formulation),
-   .text = "incompatible", .given = offsetof(struct _p_Model, has_formulation)},
+  {"-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", NULL, QUANTITY_TEXT,
+   MODEL(formulation), .text = "incompatible", .given = offsetof(struct _p_Model, has_formulation)},
   {"-model_gravity", "acceleration of gravity in x,y,z", "m/s^2", QUANTITY_REALS, MODEL(scene.gravity)},
-  {"-model_loss_frequency", "where the loss factors of the parts are exact", "Hz", QUANTITY_REAL, MODEL(scene.loss_frequency),
-   .given = offsetof(struct _p_Model, has_loss)},
+  {"-model_loss_frequency", "where the loss factors of the parts are exact", "Hz", QUANTITY_REAL,
+   MODEL(scene.loss_frequency), .given = offsetof(struct _p_Model, has_loss)},
 };
 
 const QuantityTable model_quantities = TABLE("Model", model);
 
-/* Young's moduli, Poisson's ratios and densities are checked with the mesh: the rig's own parts need no -parts for -help */
+/* Young's moduli, Poisson's ratios and densities are checked with the mesh: the rig's own parts need no -parts for
+   -help */
 static const Quantity part[] = {
   {"-volume", "volume of the mesh that it is; default the part's own name", NULL, QUANTITY_NAME, PART(volume)},
-  {"-young", "Young's modulus (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST, PART(asked.young),
-   .count = offsetof(Part, asked.n_young), .text = ""},
+  {"-young", "Young's modulus (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST,
+   PART(asked.young), .count = offsetof(Part, asked.n_young), .text = ""},
   {"-poisson", "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", NULL, QUANTITY_LIST, PART(asked.poisson),
    .count = offsetof(Part, asked.n_poisson), .initial = 0.3, .text = "0.3"},
   {"-shear", "shear modulus of two or three -young: G_pz or G_12,G_13,G_23", "Pa", QUANTITY_LIST, PART(asked.shear),
@@ -76,19 +87,21 @@ static const Quantity part[] = {
    .given = offsetof(Part, asked.given[AXIS_2])},
   {"-axis_3", "direction across the isotropic plane of two -young", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_3]),
    .given = offsetof(Part, asked.given[AXIS_3])},
-  {"-cylinder_axis", "instead: 1 radial, 2 circumferential, 3 along this axis", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_CYLINDER]),
-   .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
+  {"-cylinder_axis", "instead: 1 radial, 2 circumferential, 3 along this axis", NULL, QUANTITY_REALS,
+   PART(asked.axis[AXIS_CYLINDER]), .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
   {"-cylinder_centre", "a point of that axis", "m", QUANTITY_REALS, PART(asked.axis[AXIS_CENTRE]),
    .given = offsetof(Part, asked.given[AXIS_CENTRE])},
   {"-density", "density (required)", "kg/m^3", QUANTITY_REAL, PART(density)},
   {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE},
   {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE},
-  {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss), QUANTITY_NOT_NEGATIVE},
-  {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL, PART(spin.rate),
-   .given = offsetof(Part, spin.given)},
+  {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss),
+   QUANTITY_NOT_NEGATIVE},
+  {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
+   PART(spin.rate), .given = offsetof(Part, spin.given)},
   {"-spin_axis", "x,y,z, about which a positive spin is right-handed", NULL, QUANTITY_REALS, PART(spin.axis),
    .given = offsetof(Part, spin.has_axis)},
-  {"-spin_centre", "a point of that axis", "m", QUANTITY_REALS, PART(spin.centre), .given = offsetof(Part, spin.has_centre)},
+  {"-spin_centre", "a point of that axis", "m", QUANTITY_REALS, PART(spin.centre),
+   .given = offsetof(Part, spin.has_centre)},
 };
 static const Quantity support[] = {
   {"-set", SET, NULL, QUANTITY_NAME, SUPPORT(set), .required = PETSC_TRUE, .why = SET_WANTED},
@@ -96,40 +109,48 @@ static const Quantity support[] = {
 };
 static const Quantity spring[] = {
   {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
-  {"-stiffness", "stiffness in x,y,z at every node", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]), QUANTITY_NOT_NEGATIVE,
-   .given = offsetof(Grounded, given[SPREAD_EACH])},
-  {"-stiffness_total", "instead: stiffness in x,y,z of the whole set", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_TOTAL]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+  {"-stiffness", "stiffness in x,y,z at every node", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH])},
+  {"-stiffness_total", "instead: stiffness in x,y,z of the whole set", "N/m", QUANTITY_REALS,
+   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
   {"-stiffness_per_area", "instead: stiffness in x,y,z per area", "N/m^3", QUANTITY_REALS, GROUNDED(asked[SPREAD_AREA]),
    QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
 };
 static const Quantity dashpot[] = {
   {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
-  {"-viscosity", "viscosity in x,y,z at every node", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]), QUANTITY_NOT_NEGATIVE,
-   .given = offsetof(Grounded, given[SPREAD_EACH])},
-  {"-viscosity_total", "instead: viscosity in x,y,z of the whole set", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_TOTAL]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
-  {"-viscosity_per_area", "instead: viscosity in x,y,z per area", "N s/m^3", QUANTITY_REALS, GROUNDED(asked[SPREAD_AREA]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
+  {"-viscosity", "viscosity in x,y,z at every node", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]),
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH])},
+  {"-viscosity_total", "instead: viscosity in x,y,z of the whole set", "N s/m", QUANTITY_REALS,
+   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+  {"-viscosity_per_area", "instead: viscosity in x,y,z per area", "N s/m^3", QUANTITY_REALS,
+   GROUNDED(asked[SPREAD_AREA]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
 };
 
 /* What resists the motions of a bushing or a point, and where they are taken */
-#define HOLDERS \
-  {"-at", "place of its motions; default the middle", "m", QUANTITY_REALS, JOINT(at), .given = offsetof(Joint, has_at)}, \
-  {"-stiffness", "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0), QUANTITY_NOT_NEGATIVE}, \
-  {"-turn_stiffness", "stiffness about x,y,z", "N m/rad", QUANTITY_REALS, JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE}, \
-  {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE}, \
-  {"-turn_viscosity", "viscosity about x,y,z", "N m s/rad", QUANTITY_REALS, JOINT_THREE(viscosity, 3), QUANTITY_NOT_NEGATIVE}
+#define HOLDERS                                                                                                        \
+  {                                                                                                                    \
+    "-at",     "place of its motions; default the middle",                                                             \
+    "m",       QUANTITY_REALS,                                                                                         \
+    JOINT(at), .given = offsetof(Joint, has_at)},                                                                      \
+    {"-stiffness", "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0), QUANTITY_NOT_NEGATIVE},     \
+    {"-turn_stiffness", "stiffness about x,y,z",   "N m/rad",                                                          \
+     QUANTITY_REALS,    JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE},                                             \
+    {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE},   \
+  {                                                                                                                    \
+    "-turn_viscosity", "viscosity about x,y,z", "N m s/rad", QUANTITY_REALS, JOINT_THREE(viscosity, 3),                \
+      QUANTITY_NOT_NEGATIVE                                                                                            \
+  }
 
 static const Quantity joint[] = {
-  {"-a", "named set of one side (required)", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
+  {"-a", "named set of one side (required)", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE,
+   .why = SET_WANTED},
   {"-b", "named set of the other side; default the ground", NULL, QUANTITY_NAME, JOINT(set[1])},
   HOLDERS,
 };
 static const Quantity point[] = {
   {"-set", SET, NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
-  {"-join", "the set moves freely, the point with it in the mean; or as one rigid body", NULL, QUANTITY_WORD, JOINT(rigid),
-   .words = joins},
+  {"-join", "the set moves freely, the point with it in the mean; or as one rigid body", NULL, QUANTITY_WORD,
+   JOINT(rigid), .words = joins},
   HOLDERS,
   {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE},
   {"-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz", "kg m^2", QUANTITY_LIST, JOINT(inertia),
@@ -138,7 +159,8 @@ static const Quantity point[] = {
 static const Quantity load[] = {
   {"-set", SET " unless on a point", NULL, QUANTITY_NAME, LOAD(set)},
   {"-point", "instead of a set: one of the -points", NULL, QUANTITY_NAME, LOAD(on)},
-  {"-moment", "on a point: moment about x,y,z", "N m", QUANTITY_REALS, LOAD(moment), .given = offsetof(Load, has_moment)},
+  {"-moment", "on a point: moment about x,y,z", "N m", QUANTITY_REALS, LOAD(moment),
+   .given = offsetof(Load, has_moment)},
   {"-force", "total force in x,y,z", "N", QUANTITY_REALS, LOAD(force), .given = offsetof(Load, has_force)},
   {"-pressure", "instead of a force: pressure on a surface, into the body", "Pa", QUANTITY_REAL, LOAD(pressure),
    .given = offsetof(Load, is_pressure)},
@@ -146,42 +168,54 @@ static const Quantity load[] = {
 static const Quantity motion[] = {
   {"-set", SET, NULL, QUANTITY_NAME, MOTION(set), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-displacement", "in x,y,z", "m", QUANTITY_REALS, MOTION(displacement)},
-  {"-directions", "that are prescribed: some of x, y, z; by default those of the displacement", NULL, QUANTITY_TEXT, MOTION(word),
-   .given = offsetof(PrescribedMotion, has_word)},
+  {"-directions", "that are prescribed: some of x, y, z; by default those of the displacement", NULL, QUANTITY_TEXT,
+   MOTION(word), .given = offsetof(PrescribedMotion, has_word)},
 };
 static const Quantity probe[] = {
-  {"-at", "place x,y,z, m: the nearest node (required)", NULL, QUANTITY_REALS, PROBE(at), .given = offsetof(Probe, has_at),
-   .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
+  {"-at", "place x,y,z, m: the nearest node (required)", NULL, QUANTITY_REALS, PROBE(at),
+   .given = offsetof(Probe, has_at), .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
   {"-part", "part that has the node; default any", NULL, QUANTITY_NAME, PROBE(part)},
 };
 static const Quantity circle[] = {
   {"-radius", "m (required)", NULL, QUANTITY_REAL, CIRCLE(radius)},
   {"-count", "nodes at equal angles (required)", NULL, QUANTITY_INT, CIRCLE(n)},
   {"-part", "body that has them", NULL, QUANTITY_NAME, CIRCLE(part), .text = "disc"},
-  {"-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", NULL, QUANTITY_TEXT, CIRCLE(face), .text = "z+"},
-  {"-centre", "x,y,z; default the middle of the part", "m", QUANTITY_REALS, CIRCLE(centre), .given = offsetof(Circle, has_centre)},
-  {"-tolerance", "most distance of a node from its place; default a twentieth of the radius", "m", QUANTITY_REAL, CIRCLE(tolerance),
-   .given = offsetof(Circle, has_tolerance)},
+  {"-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", NULL, QUANTITY_TEXT, CIRCLE(face),
+   .text = "z+"},
+  {"-centre", "x,y,z; default the middle of the part", "m", QUANTITY_REALS, CIRCLE(centre),
+   .given = offsetof(Circle, has_centre)},
+  {"-tolerance", "most distance of a node from its place; default a twentieth of the radius", "m", QUANTITY_REAL,
+   CIRCLE(tolerance), .given = offsetof(Circle, has_tolerance)},
 };
 
-static const QuantityTable parts = TABLE("Part", part), supports = TABLE("Support", support), joints = TABLE("Bushing", joint),
-                           points = TABLE("Point", point), loads = TABLE("Load", load), motions = TABLE("Motion", motion),
+static const QuantityTable parts = TABLE("Part", part), supports = TABLE("Support", support),
+                           joints = TABLE("Bushing", joint), points = TABLE("Point", point),
+                           loads = TABLE("Load", load), motions = TABLE("Motion", motion),
                            probes = TABLE("Probe", probe), circles = TABLE("Circle", circle);
-const QuantityTable spring_quantities = TABLE("Grounded spring", spring), dashpot_quantities = TABLE("Grounded dashpot", dashpot);
+const QuantityTable spring_quantities  = TABLE("Grounded spring", spring),
+                    dashpot_quantities = TABLE("Grounded dashpot", dashpot);
 
-const QuantityList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", sizeof(Part), &parts, PartCheck};
-const QuantityList supports_list = {"-supports", "essential conditions, each the prefix of its -set and -fix", sizeof(Support),
-                                    &supports, SupportCheck};
-const QuantityList springs_list = {"-springs", "each the prefix of its -set and value", sizeof(Grounded), &spring_quantities, SpringCheck};
-const QuantityList dashpots_list = {"-dashpots", "each the prefix of its -set and value", sizeof(Grounded), &dashpot_quantities,
-                                    DashpotCheck};
-const QuantityList joints_list = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", sizeof(Joint), &joints, JointCheck};
-const QuantityList points_list = {"-points", "points joined to sets, each the prefix of its -set and -mass", sizeof(Joint), &points,
-                                  PointCheck};
-const QuantityList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load), &loads, LoadCheck};
-const QuantityList motions_list = {"-motions", "prescribed displacements, each the prefix of its -set", sizeof(PrescribedMotion),
-                                   &motions, MotionCheck};
-const QuantityList probes_list = {"-probes", "places that histories and responses record, each the prefix of its -at and -part",
-                                  sizeof(Probe), &probes, ProbeCheck};
-const QuantityList circles_list = {"-circles", "circles of nodes that histories and responses record, each the prefix of its -radius and "
-                                   "-count", sizeof(Circle), &circles, CircleCheck};
+const QuantityList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", sizeof(Part),
+                                 &parts, PartCheck};
+const QuantityList supports_list = {"-supports", "essential conditions, each the prefix of its -set and -fix",
+                                    sizeof(Support), &supports, SupportCheck};
+const QuantityList springs_list  = {"-springs", "each the prefix of its -set and value", sizeof(Grounded),
+                                    &spring_quantities, SpringCheck};
+const QuantityList dashpots_list = {"-dashpots", "each the prefix of its -set and value", sizeof(Grounded),
+                                    &dashpot_quantities, DashpotCheck};
+const QuantityList joints_list   = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", sizeof(Joint),
+                                    &joints, JointCheck};
+const QuantityList points_list   = {"-points", "points joined to sets, each the prefix of its -set and -mass",
+                                    sizeof(Joint), &points, PointCheck};
+const QuantityList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load),
+                                 &loads, LoadCheck};
+const QuantityList motions_list = {"-motions", "prescribed displacements, each the prefix of its -set",
+                                   sizeof(PrescribedMotion), &motions, MotionCheck};
+const QuantityList probes_list  = {"-probes",
+                                   "places that histories and responses record, each the prefix of its -at and -part",
+                                   sizeof(Probe), &probes, ProbeCheck};
+const QuantityList circles_list = {
+  "-circles",
+  "circles of nodes that histories and responses record, each the prefix of its -radius and "
+  "-count",
+  sizeof(Circle), &circles, CircleCheck};

@@ -89,16 +89,15 @@ PetscErrorCode ModelComplainSet(Model model, const char what[], const char name[
 {
   static const char *const of_volumes[] = {"parts", "_volume", NULL};
   static const char *const of_sets[]    = {"_set", "_surfaces", "_a", "_b", NULL};
-  char      list[1024], option[256];
-  PetscBool is_volume;
+  char                     list[1024], option[256];
+  PetscBool                is_volume;
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(what, "volume", &is_volume));
   PetscCall(SetListNames(model, is_volume, list, sizeof(list)));
   PetscCall(OptionsWithValue(name, is_volume ? of_volumes : of_sets, option, sizeof(option)));
   SETERRQ(model->comm, PETSC_ERR_USER_INPUT, "%s%sthe mesh has no %s named '%s'; it names: %s%s", option,
-          option[0] ? ": " : "", what, name, list,
-          is_volume ? " (-NAME_volume gives a part another one)" : "");
+          option[0] ? ": " : "", what, name, list, is_volume ? " (-NAME_volume gives a part another one)" : "");
 }
 
 PetscErrorCode SetGetPoints(Model model, const char set[], const PetscInt range[2], PetscInt *n, PetscInt **point)

@@ -71,26 +71,24 @@ PetscErrorCode ModelUnits(Model model, const char **units)
 
 PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit)
 {
-  static const char *const names[][2] = {
-    {"m",         "mm"        },
-    {"m^2",       "mm^2"      },
-    {"m^3",       "mm^3"      },
-    {"m/s",       "mm/s"      },
-    {"s/m",       "s/mm"      },
-    {"kg",        "t"         },
-    {"kg/m^3",    "t/mm^3"    },
-    {"kg m^2",    "t mm^2"    },
-    {"Pa",        "MPa"       },
-    {"m/N",       "mm/N"      },
-    {"N/m",       "N/mm"      },
-    {"N/m^3",     "N/mm^3"    },
-    {"N s/m",     "N s/mm"    },
-    {"N s/m^3",   "N s/mm^3"  },
-    {"N m",       "N mm"      },
-    {"N m/rad",   "N mm/rad"  },
-    {"N m s/rad", "N mm s/rad"}
-  };
-  const char *units;
+  static const char *const names[][2] = {{"m", "mm"},
+                                         {"m^2", "mm^2"},
+                                         {"m^3", "mm^3"},
+                                         {"m/s", "mm/s"},
+                                         {"s/m", "s/mm"},
+                                         {"kg", "t"},
+                                         {"kg/m^3", "t/mm^3"},
+                                         {"kg m^2", "t mm^2"},
+                                         {"Pa", "MPa"},
+                                         {"m/N", "mm/N"},
+                                         {"N/m", "N/mm"},
+                                         {"N/m^3", "N/mm^3"},
+                                         {"N s/m", "N s/mm"},
+                                         {"N s/m^3", "N s/mm^3"},
+                                         {"N m", "N mm"},
+                                         {"N m/rad", "N mm/rad"},
+                                         {"N m s/rad", "N mm s/rad"}};
+  const char              *units;
 
   PetscFunctionBeginUser;
   *unit = si;

@@ -1,9 +1,9 @@
 /*
    Why modes grow or decay: modes_causes.csv, and the largest shares of unstable ones in the view.
 
-   Error of a share, an estimate of first order: the vector is off by about d / g, d the error of the eigenvalue and g the distance
-   of the next one, so that the share is off by d + 2 s d / g, s the largest share of the mode, and by what the balance leaves. Modes of
-   one eigenvalue have no shares of their own, and errors as large as these.
+   Error of a share, an estimate of first order: the vector is off by about d / g, d the error of the eigenvalue and g
+   the distance of the next one, so that the share is off by d + 2 s d / g, s the largest share of the mode, and by what
+   the balance leaves. Modes of one eigenvalue have no shares of their own, and errors as large as these.
 */
 #include "modesimpl.h"
 
@@ -11,7 +11,7 @@
 
 /* Shares of one mode */
 typedef struct {
-  PetscReal *growth; /* [causes] 1/s */
+  PetscReal *growth;      /* [causes] 1/s */
   PetscReal  rest, error; /* of the growth, what they leave of it; of each share, 1/s */
   PetscBool  known;       /* the mode has a frequency */
 } ModeShares;
@@ -22,7 +22,8 @@ static PetscReal ModeGap(const Modes modes, PetscInt i)
   const Mode *a   = &modes->mode[i];
   PetscReal   gap = 2 * a->omega;
 
-  for (int k = 0; k < 2 && modes->has_band; k++) gap = PetscMin(gap, PetscAbsReal(a->omega - 2 * PETSC_PI * modes->band[k]));
+  for (int k = 0; k < 2 && modes->has_band; k++)
+    gap = PetscMin(gap, PetscAbsReal(a->omega - 2 * PETSC_PI * modes->band[k]));
   for (PetscInt k = 0; k < modes->n; k++) {
     const Mode *b = &modes->mode[k];
 
@@ -65,8 +66,8 @@ PetscErrorCode ModesWriteCauses(Modes modes, Results results)
   for (PetscInt i = 0; i < modes->n; i++) {
     PetscCall(ModeMeasureShares(modes, i, n, &s));
     for (PetscInt k = 0; k < n && s.known; k++)
-      PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.3g", (int)i + 1, cause[k].name, cause[k].kind, (double)(s.growth[k] + 0),
-                                (double)s.error));
+      PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.3g", (int)i + 1, cause[k].name, cause[k].kind,
+                                (double)(s.growth[k] + 0), (double)s.error));
     if (s.known) PetscCall(ResultsTableRow(table, "%d,,rest,%.15g,%.3g", (int)i + 1, (double)s.rest, (double)s.error));
   }
   PetscCall(ResultsTableClose(&table));
@@ -101,13 +102,15 @@ PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer)
     PetscCall(ModeMeasureShares(modes, i, n, &s));
     if (!s.known) continue;
     PetscCall(PetscArrayzero(shown, n));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s:", i + 1, (double)modes->mode[i].sigma));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s:", i + 1, (double)modes->mode[i].sigma));
     for (PetscInt k = 0; k < CAUSES_SHOWN; k++) {
       const PetscInt at = CauseNext(n, &s, shown);
 
       if (at < 0) break;
       shown[at] = PETSC_TRUE;
-      PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : "", cause[at].kind, cause[at].name, (double)s.growth[at]));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : "", cause[at].kind, cause[at].name,
+                                       (double)s.growth[at]));
     }
     PetscCall(PetscViewerASCIIPrintf(viewer, CauseNext(n, &s, shown) < 0 ? "\n" : ", others in modes_causes.csv\n"));
   }

@@ -1,13 +1,14 @@
 /*
    Left vectors for right ones. The two spectra were computed apart; here each right eigenvalue gets its left partner,
    or the spectra are found to differ, so that a mode is missing in one of them. Eigenvalues that are no farther apart
-   than left and right ones may be may have exchanged partners, or be one multiple eigenvalue: in such a cluster the left
-   vectors are combined so that
+   than left and right ones may be may have exchanged partners, or be one multiple eigenvalue: in such a cluster the
+   left vectors are combined so that
 
       y_i^T D((lambda_i + lambda_j) / 2) x_j = delta_ij,   D(s) = M + C / (2 s),
 
    which holds for different eigenvalues of the quadratic problem as well. Without that neither condition, error nor
-   residue would mean anything for a double mode. Right vectors of one multiple eigenvalue are any basis of their space, and
+   residue would mean anything for a double mode. Right vectors of one multiple eigenvalue are any basis of their space,
+   and
    |x_i| |y_i| depends on it: they are made orthogonal in M before, x_i^H M x_j = 0, the basis for which it is least.
 */
 #include "complexvec.h"
@@ -130,7 +131,8 @@ static PetscErrorCode LeftInner(ComplexVec w, ComplexVec z, PetscComplex *inner)
   PetscFunctionReturn(0);
 }
 
-/* Makes right vector i orthogonal in M to right vector j, unless they are parallel: an eigenvalue with one vector alone */
+/* Makes right vector i orthogonal in M to right vector j, unless they are parallel: an eigenvalue with one vector
+   alone */
 static PetscErrorCode LeftOrthogonalisePair(Spectrum *right, Mat M, PetscInt i, PetscInt j, ComplexVec z)
 {
   const ComplexVec w = {right->xr[j], right->xi[j]};

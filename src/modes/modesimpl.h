@@ -22,7 +22,8 @@ PETSC_INTERN PetscErrorCode SpectrumCreate(PetscInt capacity, Spectrum *spectrum
 /* Distance of kappa = -lambda^2 of entry i from a shift */
 PETSC_INTERN PetscReal      SpectrumDistance(const Spectrum *spectrum, PetscInt i, PetscReal shift);
 PETSC_INTERN PetscErrorCode SpectrumAdd(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
-PETSC_INTERN PetscErrorCode SpectrumTake(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi); /* no copies */
+/* no copies */
+PETSC_INTERN PetscErrorCode SpectrumTake(Spectrum *spectrum, PetscReal sigma, PetscReal omega, Vec xr, Vec xi);
 PETSC_INTERN PetscErrorCode SpectrumSort(Spectrum *spectrum);
 /* In place of its entries copies of n of them, some more than once */
 PETSC_INTERN PetscErrorCode SpectrumTakeFrom(Spectrum *spectrum, PetscInt n, const PetscInt from[]);
@@ -47,17 +48,17 @@ struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
   /* set by options */
-  PetscReal band[2], target; /* Hz */
-  PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
-  PetscInt  most;            /* modes that a band may hold; 0: any number */
-  PetscBool has_most;        /* given */
-  PetscReal max_time;        /* s, of one solution; 0: any */
-  PetscBool has_band, has_target, has_count, has_nearest, has_route, has_disc, left, is_static, keep, filters;
-  PetscInt  count;
-  DampingRoute damping; /* of a damped solution */
-  PetscInt  n_shifts; /* of a band; 0: chosen */
-  char      disc[64];
-  Progress  progress;
+  PetscReal    band[2], target; /* Hz */
+  PetscReal    growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscInt     most;            /* modes that a band may hold; 0: any number */
+  PetscBool    has_most;        /* given */
+  PetscReal    max_time;        /* s, of one solution; 0: any */
+  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, is_static, keep, filters;
+  PetscInt     count;
+  DampingRoute damping;  /* of a damped solution */
+  PetscInt     n_shifts; /* of a band; 0: chosen */
+  char         disc[64];
+  Progress     progress;
   /* results */
   Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode       *mode;
@@ -73,7 +74,8 @@ struct _p_Modes {
   ShiftInvert null;        /* far below all elastic modes, for the null space of K */
   ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* of the solution under way */
-  PetscInt       block[2];      /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
+  /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
+  PetscInt       block[2];
   PetscLogDouble begun;         /* s */
   PetscBool      over;          /* max_time is */
   PetscInt       found, wanted; /* eigenvalues converged at the last restart, and how many are asked for */
@@ -84,12 +86,14 @@ typedef struct {
   PetscInt  expected, below; /* frictionless modes in the window and below it, by inertia; negative when not known */
   PetscInt  massless;        /* negative pivots of K - s M at any s, of unknowns without mass: no modes */
   PetscBool singular;        /* there are such unknowns */
-  PetscInt  finite;          /* frictionless modes below `most`, where there are such unknowns and a count is asked for; or -1 */
-  PetscReal most;            /* with these, larger ones are no modes but infinite; infinite where that is not known, rad/s */
-  PetscInt  rigid;           /* damped: rigid modes, each a double zero; listed once */
-  PetscInt  within;          /* damped: modes about as near to the shift as the window's corners; negative: not known */
-  PetscReal scale, zero;     /* far below any elastic mode yet above rounding; below it is zero by rounding: rad/s */
-  PetscReal damping;         /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
+  /* frictionless modes below `most`, where there are such unknowns and a count is asked for; or -1 */
+  PetscInt finite;
+  /* with these, larger ones are no modes but infinite; infinite where that is not known, rad/s */
+  PetscReal most;
+  PetscInt  rigid;       /* damped: rigid modes, each a double zero; listed once */
+  PetscInt  within;      /* damped: modes about as near to the shift as the window's corners; negative: not known */
+  PetscReal scale, zero; /* far below any elastic mode yet above rounding; below it is zero by rounding: rad/s */
+  PetscReal damping;     /* |C| / |K|, s: with stiffness damping beta the overdamped modes gather at -1 / beta */
 } WindowKnown;
 
 /* How its modes were found */
@@ -105,8 +109,8 @@ typedef struct {
   PetscReal worst;                     /* largest relative difference of right and left eigenvalues */
 } WindowRoute;
 
-/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s; what is known of them, and how they were
-   found */
+/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s; what is known of them, and
+   how they were found */
 typedef struct {
   PetscReal   low, high, growth;
   PetscInt    count;   /* > 0: this many nearest to target instead, low and high unknown */
@@ -125,8 +129,8 @@ PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 /* quantities.c - rows of the options */
 extern const QuantityTable modes_quantities;
 
-/* solve.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up, and
-   their analysis serves */
+/* solve.c - factors of K - shift M, or with damping of K + shift C + shift^2 M; those of the last count are given up,
+   and their analysis serves */
 PETSC_INTERN PetscErrorCode ModesFactor(Modes modes, const PencilMatrices *pencil, PetscReal shift, ReleaseKind release,
                                         ShiftInvert *si);
 
@@ -138,9 +142,10 @@ PETSC_INTERN PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *
 PETSC_INTERN PetscReal      WindowNearest(const Window *window, const Spectrum *spectrum);
 PETSC_INTERN PetscErrorCode WindowSelect(const Window *window, Spectrum *spectrum);
 /* With unknowns without mass: whether fewer modes are there than were asked for and than are finite */
-PETSC_INTERN PetscBool      WindowLacks(const Window *window, const Spectrum *spectrum);
-PETSC_INTERN PetscInt       WindowFarthest(const Window *window, const Spectrum *spectrum);
-/* The part ends[0] to ends[1] (rad/s) of a band, with its own count; frictional: of all modes that its circle may hold */
+PETSC_INTERN PetscBool WindowLacks(const Window *window, const Spectrum *spectrum);
+PETSC_INTERN PetscInt  WindowFarthest(const Window *window, const Spectrum *spectrum);
+/* The part ends[0] to ends[1] (rad/s) of a band, with its own count; frictional: of all modes that its circle may
+   hold */
 PETSC_INTERN PetscErrorCode WindowNarrow(Modes modes, const PencilMatrices *pencil, const Window *whole,
                                          const PetscReal ends[2], Window *part);
 PETSC_INTERN PetscReal      WindowMiddle(const Window *window); /* of a part, in the plane of kappa = omega^2 */
@@ -170,41 +175,45 @@ PETSC_INTERN PetscErrorCode DampedSolve(Modes modes, const PencilMatrices *penci
 /* The same by SLEPc's PEP; all ranks have unknowns */
 PETSC_INTERN PetscErrorCode DampedSolvePep(Modes modes, const PencilMatrices *pencil, const Window *window,
                                            ShiftInvert *si, PetscBool transposed, Spectrum *spectrum);
-/* dampedlayout.c - whether a rank has no unknowns; and by PEP where one has none, with factors of its own about the shift */
+/* dampedlayout.c - whether a rank has no unknowns; and by PEP where one has none, with factors of its own about the
+   shift */
 PETSC_INTERN PetscErrorCode DampedHasEmpty(Mat K, PetscBool *empty);
 PETSC_INTERN PetscErrorCode DampedSolveSpread(Modes modes, const PencilMatrices *pencil, const Window *window,
                                               PetscReal shift, PetscBool transposed, Spectrum *spectrum);
-/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the window; for
-   modes near a target those at most as far from it as the count-th nearest that was found */
+/* Distance from the shift that the converged eigenvalues must exceed: the farthest corner sigma + i omega of the
+   window; for modes near a target those at most as far from it as the count-th nearest that was found */
 PETSC_INTERN PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
-/* dampeddense.c - whether LAPACK is to find all eigenvalues where nev of them are asked for, for the attempt-th time; it does so,
-   about the shift. Sets modes->dense */
+/* dampeddense.c - whether LAPACK is to find all eigenvalues where nev of them are asked for, for the attempt-th time;
+   it does so, about the shift. Sets modes->dense */
 PETSC_INTERN PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense);
 PETSC_INTERN PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *pencil, const Window *window,
                                              PetscReal shift, PetscBool transposed, Spectrum *spectrum);
 /* solve.c - right spectrum by the solver that fits the pencil; a shift that happens to be an eigenvalue is moved */
 PETSC_INTERN PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window,
                                             ShiftInvert *si);
-/* project.c - right and left spectra of a damped pencil in the window by projection on undamped modes; done = false where
-   that route is not the one, window->route.why says why */
+/* project.c - right and left spectra of a damped pencil in the window by projection on undamped modes; done = false
+   where that route is not the one, window->route.why says why */
 PETSC_INTERN PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done);
 /* undamped.c - start vectors of a solver at random, not alike on all ranks: such a vector could miss what is not */
 PETSC_INTERN PetscErrorCode SolverSeed(BV bv, unsigned long seed);
-/* Radius about the shift that the converged eigenvalues kappa must exceed; found is for the modes nearest to a target */
+/* Radius about the shift that the converged eigenvalues kappa must exceed; found is for the modes nearest to a
+   target */
 PETSC_INTERN PetscReal UndampedRadius(const Window *window, PetscReal shift, const Spectrum *found);
 PETSC_INTERN PetscReal UndampedShift(const Window *window);
 PETSC_INTERN PetscReal DampedShift(const Window *window);
 PETSC_INTERN PetscInt  DampedFirst(const Window *window);
 
-/* copies.c - whether as many equal eigenvalues of the spectrum were found as a block of the eigensolver has vectors, and no count
-   says that these are all; makes the next blocks larger, also where it is known that eigenvalues are missing */
+/* copies.c - whether as many equal eigenvalues of the spectrum were found as a block of the eigensolver has vectors,
+   and no count says that these are all; makes the next blocks larger, also where it is known that eigenvalues are
+   missing */
 PETSC_INTERN PetscBool CopiesDoubtful(const Modes modes, const Window *window, const Spectrum *spectrum);
 PETSC_INTERN void      CopiesMakeRoom(Modes modes, const Window *window, const Spectrum *spectrum);
 
 /* solve.c - right and left spectra of a window that agree, with a factorisation about its shift */
 PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *pencil, Window *window,
                                              ShiftInvert *si);
-/* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last one */
+/* shifts.c - sets modes->shifts, of a band; the same as above of all of it by so many, si is made here, of the last
+   one */
 PETSC_INTERN PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si);
 
@@ -222,7 +231,8 @@ PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal
 /* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 
-#define LABEL_TIE 1e-6 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
+/* relative: of what differs less the first one names a mode, for rounding tells which is larger */
+#define LABEL_TIE 1e-6
 
 /* label/unknown.c - names after the unknowns that move most */
 PETSC_INTERN PetscErrorCode ModesLabelUnknowns(Modes modes);
@@ -236,15 +246,15 @@ PETSC_INTERN PetscErrorCode SavedByFactors(Modes modes, const ShiftInvert *si);
 PETSC_INTERN PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
 
-/* rigid/vectors.c - lists a rigid mode of a damped system for each vector of the null space, first of all, and finds their vectors
-   where those of the eigensolver are bad. Errors:
+/* rigid/vectors.c - lists a rigid mode of a damped system for each vector of the null space, first of all, and finds
+   their vectors where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
-/* n vectors x of the null space of K, or of K', M-orthonormal, by modes->null, which NullFactor makes where it is not there;
-   error [n] is |K x| / (|K| |x|) */
+/* n vectors x of the null space of K, or of K', M-orthonormal, by modes->null, which NullFactor makes where it is not
+   there; error [n] is |K x| / (|K| |x|) */
 PETSC_INTERN PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Window *window);
-PETSC_INTERN PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[],
-                                        PetscReal error[]);
+PETSC_INTERN PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n,
+                                        Vec x[], PetscReal error[]);
 
 /* rigid/decays.c - decays of rigid motions without the rounding of K. Collective */
 PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);

@@ -3,7 +3,8 @@
 
       backward error   |Q x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)
       condition        |x|_M |y|_M / |y^T D x|
-      error            |y^T Q x| / |y^T Q' x|, first order in the residual, and what rounding in K does, ROUNDINGS times:
+      error            |y^T Q x| / |y^T Q' x|, first order in the residual, and what rounding in K does, ROUNDINGS
+      times:
                        in its entries, in products with it, and in its factors
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.)
 */
@@ -14,9 +15,10 @@
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
 #define ROUNDINGS        3
 #define QUALITY_NULL     1e-10 /* |K x| / (|K| |x|) of a rigid motion */
-#define QUALITY_ENERGY   0.1   /* x'K x / (lambda^2 x'M x) of one, at most; of an elastic one that does not oscillate 1 at least */
+/* x'K x / (lambda^2 x'M x) of one, at most; of an elastic one that does not oscillate 1 at least */
+#define QUALITY_ENERGY 0.1
 #define QUALITY_DOUBLE 6.7e7 /* 1 / sqrt(machine epsilon) */
-#define QUALITY_NOISE    100 /* lambda^2 below this many times its error is a rigid mode */
+#define QUALITY_NOISE  100   /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
@@ -42,7 +44,8 @@ static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *sq
   PetscFunctionReturn(0);
 }
 
-/* Each A times the vectors of modes first .. first + n - 1, by columns: the real part, and the imaginary one where there is one */
+/* Each A times the vectors of modes first .. first + n - 1, by columns: the real part, and the imaginary one where
+   there is one */
 static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscInt n, PetscInt n_matrices, const Mat A[],
                                       Mat AX[])
 {
@@ -176,7 +179,8 @@ static PetscErrorCode QualityNoise(const Quality *q, ComplexVec x, PetscReal *no
 }
 
 /* Whether a real x of an eigenvalue of that size is a rigid motion, from Mx and z = K x */
-static PetscErrorCode QualityIsSlowing(const Quality *q, PetscReal size, ComplexVec x, PetscReal noise, PetscBool *slowing)
+static PetscErrorCode QualityIsSlowing(const Quality *q, PetscReal size, ComplexVec x, PetscReal noise,
+                                       PetscBool *slowing)
 {
   PetscReal energy, mass, length, force;
 

@@ -1,35 +1,40 @@
 /* Options of modes */
 #include "modesimpl.h"
 
-#define MODES_LARGEST 1e30 /* Hz, 1/s: squares stay finite */
-#define MODES_AT(member) QUANTITY_AT(struct _p_Modes, member)
+#define MODES_LARGEST       1e30 /* Hz, 1/s: squares stay finite */
+#define MODES_AT(member)    QUANTITY_AT(struct _p_Modes, member)
 #define MODES_GIVEN(member) .given = offsetof(struct _p_Modes, member)
 
 static const char *const contacts[] = {[PETSC_FALSE] = "all", [PETSC_TRUE] = "static", NULL};
-static const char *const routes[]   = {[DAMPING_AUTO] = "auto", [DAMPING_PROJECT] = "project", [DAMPING_PEP] = "pep", NULL};
+static const char *const routes[]   = {
+    [DAMPING_AUTO] = "auto", [DAMPING_PROJECT] = "project", [DAMPING_PEP] = "pep", NULL};
 
 static const Quantity rows[] = {
   {"-modes_band", "all modes with frequency in f1,f2", "Hz", QUANTITY_REALS, MODES_AT(band), MODES_GIVEN(has_band),
    QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE},
   {"-modes_target", "instead of a band: the modes nearest to this frequency", "Hz", QUANTITY_REAL, MODES_AT(target),
    MODES_GIVEN(has_target), QUANTITY_WITHIN(0, MODES_LARGEST)},
-  {"-modes_count", "how many of them", NULL, QUANTITY_INT, MODES_AT(count), .initial = 20, MODES_GIVEN(has_count), QUANTITY_POSITIVE},
-  {"-modes_growth", "modes of a band with growth and decay up to this must be found (0: a tenth of the angular frequency f2)", "1/s",
+  {"-modes_count", "how many of them", NULL, QUANTITY_INT, MODES_AT(count), .initial = 20, MODES_GIVEN(has_count),
+   QUANTITY_POSITIVE},
+  {"-modes_growth",
+   "modes of a band with growth and decay up to this must be found (0: a tenth of the angular frequency f2)", "1/s",
    QUANTITY_REAL, MODES_AT(growth), QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE},
-  {"-modes_shifts", "shifts that share a band without damping (0: by the count of modes)", NULL, QUANTITY_INT, MODES_AT(n_shifts),
-   QUANTITY_NOT_NEGATIVE},
-  {"-modes_most", "modes that a band may hold, counted before they are computed; more are an error (0: any number)", NULL,
-   QUANTITY_INT, MODES_AT(most), .initial = 3000, MODES_GIVEN(has_most), QUANTITY_NOT_NEGATIVE},
-  {"-modes_max_time", "time that a solution may take (0: any); asked after every solve", "s", QUANTITY_REAL, MODES_AT(max_time),
-   .initial = 3600, QUANTITY_NOT_NEGATIVE},
-  {"-modes_left", "left vectors: condition and error of each eigenvalue", NULL, QUANTITY_BOOL, MODES_AT(left), .initial = PETSC_TRUE,
-   .restart = PETSC_TRUE},
-  {"-modes_filters", "write modal filters, which find the modes' amplitudes in a transient", NULL, QUANTITY_BOOL, MODES_AT(filters)},
-  {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc), .text = "disc",
-   MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
-  {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD, MODES_AT(is_static),
-   .words = contacts, .restart = PETSC_TRUE},
-  {MODES_DAMPING, "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
+  {"-modes_shifts", "shifts that share a band without damping (0: by the count of modes)", NULL, QUANTITY_INT,
+   MODES_AT(n_shifts), QUANTITY_NOT_NEGATIVE},
+  {"-modes_most", "modes that a band may hold, counted before they are computed; more are an error (0: any number)",
+   NULL, QUANTITY_INT, MODES_AT(most), .initial = 3000, MODES_GIVEN(has_most), QUANTITY_NOT_NEGATIVE},
+  {"-modes_max_time", "time that a solution may take (0: any); asked after every solve", "s", QUANTITY_REAL,
+   MODES_AT(max_time), .initial = 3600, QUANTITY_NOT_NEGATIVE},
+  {"-modes_left", "left vectors: condition and error of each eigenvalue", NULL, QUANTITY_BOOL, MODES_AT(left),
+   .initial = PETSC_TRUE, .restart = PETSC_TRUE},
+  {"-modes_filters", "write modal filters, which find the modes' amplitudes in a transient", NULL, QUANTITY_BOOL,
+   MODES_AT(filters)},
+  {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
+   .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
+  {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD,
+   MODES_AT(is_static), .words = contacts, .restart = PETSC_TRUE},
+  {MODES_DAMPING,
+   "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
    NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),
    .restart = PETSC_TRUE},
 };

@@ -1,6 +1,6 @@
 /*
-   What the choices of a solution saved, a line each for -squeal_view. LU of n unknowns has about twice the entries of LDL',
-   8 bytes each, as MUMPS estimates them; a quadratic problem is a linear one of twice the unknowns.
+   What the choices of a solution saved, a line each for -squeal_view. LU of n unknowns has about twice the entries of
+   LDL', 8 bytes each, as MUMPS estimates them; a quadratic problem is a linear one of twice the unknowns.
 */
 #include "modesimpl.h"
 #include "solver/factor/lowrank.h"

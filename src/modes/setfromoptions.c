@@ -8,14 +8,13 @@ static PetscErrorCode ModesCheckValues(Modes modes)
   PetscFunctionBeginUser;
   PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_filters needs left vectors: leave out -modes_left false");
-  PetscCheck(!modes->has_band || modes->band[1] > modes->band[0], modes->comm,
-             PETSC_ERR_USER_INPUT, "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0],
-             (double)modes->band[1]);
+  PetscCheck(!modes->has_band || modes->band[1] > modes->band[0], modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
   PetscFunctionReturn(0);
 }
 
-/* A band or a number of modes nearest to a frequency: what the command line says before what files say, of files the number.
-   What is then not used is said, and taken out. */
+/* A band or a number of modes nearest to a frequency: what the command line says before what files say, of files the
+   number. What is then not used is said, and taken out. */
 static PetscErrorCode ModesChooseRange(Modes modes)
 {
   PetscBool band, target, count;
@@ -33,7 +32,7 @@ static PetscErrorCode ModesChooseRange(Modes modes)
   else
     PetscCall(OptionsDrop(modes->comm, "-modes_band",
                           modes->has_count ? "-modes_count asks for the modes nearest to -modes_target"
-                                    : "-modes_target asks for the modes nearest to it"));
+                                           : "-modes_target asks for the modes nearest to it"));
   modes->has_band    = band;
   modes->has_nearest = band ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);

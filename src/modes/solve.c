@@ -1,10 +1,11 @@
 /*
-   The eigenvalues of one window with one factorisation: right vectors, again where the shift is too near to one of them, left vectors,
-   and again with more of them where some are missing.
+   The eigenvalues of one window with one factorisation: right vectors, again where the shift is too near to one of
+   them, left vectors, and again with more of them where some are missing.
 */
 #include "modesimpl.h"
 
-#define MODES_NEAR          1e-9 /* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
+/* distance of an eigenvalue from the shift, beside the farthest: below it the shift is moved */
+#define MODES_NEAR          1e-9
 #define MODES_NEAR_SINGULAR 1e-5 /* the same where infinite eigenvalues are to be told from finite ones */
 
 /* Right or left spectrum by the solver that fits the pencil */
@@ -41,8 +42,9 @@ static PetscBool ShiftSpoils(const Window *window, const Spectrum *s, PetscReal 
     nearest  = PetscMin(nearest, distance);
     farthest = PetscMax(farthest, distance);
   }
-  return nearest < (window->known.singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest ? PETSC_TRUE
-                                                                                                      : PETSC_FALSE;
+  return nearest < (window->known.singular && !window->count ? MODES_NEAR_SINGULAR : MODES_NEAR) * farthest
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 PetscErrorCode ModesSolveRight(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si)

@@ -56,8 +56,8 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscInt n_unstable = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
+  PetscCall(
+    PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 

@@ -1,14 +1,15 @@
 /*
-   Why an eigenvalue grows. From (lambda^2 M + lambda C + K) u = 0, lambda = sigma + i omega, K = sum_t c_t A_t and so on, the
-   imaginary part of u^H (...) u = 0 is, with q_t = u^H A_t u,
+   Why an eigenvalue grows. From (lambda^2 M + lambda C + K) u = 0, lambda = sigma + i omega, K = sum_t c_t A_t and so
+   on, the imaginary part of u^H (...) u = 0 is, with q_t = u^H A_t u,
 
       sigma D = - sum_stiffness c_t Im q_t - omega sum_damping c_t Re q_t - (sigma^2 - omega^2) sum_mass c_t Im q_t,
 
       D = 2 omega u^H M u + sum_damping c_t Im q_t      (kg rad/s times m^2),
 
-   exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, and a gyroscopic term
-   one of rounding: it has a part in D alone. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...) Zr q = 0: interface i adds
-   w_i = mu_i (Zl_i q)^H (...) u, of which -Im w_i / D is the share, the limit of the penalty's.
+   exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, and a
+   gyroscopic term one of rounding: it has a part in D alone. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...)
+   Zr q = 0: interface i adds w_i = mu_i (Zl_i q)^H (...) u, of which -Im w_i / D is the share, the limit of the
+   penalty's.
 */
 #include "pencilimpl.h"
 
@@ -39,9 +40,9 @@ static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
 {
   Terms                  *causing = &pencil->causing;
   const PetscInt          n       = causing->n;
-  const PetscBool         exact = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE;
-  const Terms             one   = {.n = 1, .term = (OperatorsTerm *)term};
-  const char             *name  = term->cause;
+  const PetscBool         exact   = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  const Terms             one     = {.n = 1, .term = (OperatorsTerm *)term};
+  const char             *name    = term->cause;
   const ContactInterface *c;
   PetscInt                n_interfaces;
 
@@ -127,7 +128,8 @@ static PetscErrorCode VectorDestroy(CauseVector *v)
 }
 
 /* What a term adds to -sigma D and to D, of form = x^H A x */
-static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal omega, const PetscReal form[2], PetscReal *D)
+static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal omega, const PetscReal form[2],
+                           PetscReal *D)
 {
   const PetscReal re = term->scale * form[0], im = term->scale * form[1], square = sigma * sigma - omega * omega;
 

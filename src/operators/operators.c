@@ -11,7 +11,7 @@ PetscErrorCode OperatorsCreate(MPI_Comm comm, Operators *operators)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, operators));
-  (*operators)->mu   = -1;
+  (*operators)->mu        = -1;
   (*operators)->comm      = comm;
   (*operators)->symmetric = PETSC_TRUE;
   PetscFunctionReturn(0);

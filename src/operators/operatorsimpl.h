@@ -18,12 +18,13 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
-  PetscInt           law[FRICTION_PARAMETERS];
-  PetscInt           kn, kt, force, speed;
-  PetscReal          stated;  /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
-  PetscReal          range[2]; /* least and most sliding speed of its pairs, of V */
-  PetscInt           n_nodes; /* sliding speeds at which mu is a factor of terms, 0 where nothing says along what it slides */
-  OperatorsFriction *node;    /* [n_nodes] */
+  PetscInt  law[FRICTION_PARAMETERS];
+  PetscInt  kn, kt, force, speed;
+  PetscReal stated;   /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
+  PetscReal range[2]; /* least and most sliding speed of its pairs, of V */
+  /* sliding speeds at which mu is a factor of terms, 0 where nothing says along what it slides */
+  PetscInt           n_nodes;
+  OperatorsFriction *node; /* [n_nodes] */
 } InterfaceParameters;
 
 /* Indices of the parameters of a bushing or point, -1 where there is none */
@@ -44,32 +45,32 @@ struct _p_Operators {
   Model    model; /* NULL for loaded or dense matrices */
   Contact  contact;
   /* set by options */
-  char       load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
-  int        save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
-  PetscReal *dense[N_OPERATORS];   /* [n_dense] entries of -operators_dense_k and the like, by rows */
-  PetscInt   n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
-  PetscBool  lump, omit;
-  OperatorsFactors factors;
-  PetscReal  loaded_mu; /* -contact_mu of loaded or dense matrices */
-  PetscInt   n_named;   /* matrices of -terms */
+  char                  load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
+  int                   save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
+  PetscReal            *dense[N_OPERATORS];   /* [n_dense] entries of -operators_dense_k and the like, by rows */
+  PetscInt              n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
+  PetscBool             lump, omit;
+  OperatorsFactors      factors;
+  PetscReal             loaded_mu; /* -contact_mu of loaded or dense matrices */
+  PetscInt              n_named;   /* matrices of -terms */
   struct _p_MatrixTerm *named;
   char                  nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
   struct _p_Cloud      *cloud;                     /* their points, NULL without */
   /* built by OperatorsSetUp() */
-  Parameters           parameters;       /* at the values of the scene */
-  PetscInt             mu;               /* parameter of loaded matrices that is a friction coefficient, -1 for none */
-  InterfaceParameters *interface;        /* of each interface */
-  LoadParameters      *load_size;        /* of each load */
-  JointParameters     *joint;            /* of each bushing, then of each point */
-  PetscInt             n_local;          /* the first parameters are those of parts, springs and dashpots */
-  PetscInt            *spin_of_part;     /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
-  Terms                spin;             /* of spinning parts, for pencils; made when the first one asks */
-  Terms                terms;            /* of the bodies, in all unknowns; with loaded matrices friction too */
-  PetscBool            mass_singular;    /* loaded: there is no mass along some directions that are no unknowns */
-  PetscBool            symmetric;        /* K, M and C are symmetric without friction; always true for a model */
-  Mat                  Z, E;             /* u = Z q, q = E'u where some displacements follow others; else NULL */
-  PetscBool           *follows;          /* [unknowns of this rank] which ones do */
-  char                 dependent[160];   /* the option that makes them follow */
+  Parameters           parameters;     /* at the values of the scene */
+  PetscInt             mu;             /* parameter of loaded matrices that is a friction coefficient, -1 for none */
+  InterfaceParameters *interface;      /* of each interface */
+  LoadParameters      *load_size;      /* of each load */
+  JointParameters     *joint;          /* of each bushing, then of each point */
+  PetscInt             n_local;        /* the first parameters are those of parts, springs and dashpots */
+  PetscInt            *spin_of_part;   /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
+  Terms                spin;           /* of spinning parts, for pencils; made when the first one asks */
+  Terms                terms;          /* of the bodies, in all unknowns; with loaded matrices friction too */
+  PetscBool            mass_singular;  /* loaded: there is no mass along some directions that are no unknowns */
+  PetscBool            symmetric;      /* K, M and C are symmetric without friction; always true for a model */
+  Mat                  Z, E;           /* u = Z q, q = E'u where some displacements follow others; else NULL */
+  PetscBool           *follows;        /* [unknowns of this rank] which ones do */
+  char                 dependent[160]; /* the option that makes them follow */
   /* formed when asked for */
   TermsSum sum[N_BODIES_SUMS];
 };
@@ -99,8 +100,8 @@ typedef struct {
   const void *of;
 } Components;
 
-/* components.c - parameters and terms of them: one where all that are not zero are equal, else one for each with _x, _y, _z
-   appended; index = the parameter of each, or -1 */
+/* components.c - parameters and terms of them: one where all that are not zero are equal, else one for each with _x,
+   _y, _z appended; index = the parameter of each, or -1 */
 PETSC_INTERN PetscErrorCode OperatorsAddComponents(Operators operators, const Components *components,
                                                    PetscInt index[3]);
 
@@ -124,8 +125,8 @@ PETSC_INTERN PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, P
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
 
-/* dependents.c - Z and E of points that are joined rigidly and of ties, where matrices are made; raises an error where two
-   of them claim one node. Collective. */
+/* dependents.c - Z and E of points that are joined rigidly and of ties, where matrices are made; raises an error where
+   two of them claim one node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCreateDependents(Operators operators);
 
 /* pattern.c - empty matrices of all unknowns, preallocated for the couplings of the cells of one part: K of all
@@ -135,10 +136,11 @@ PETSC_INTERN PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool 
 /* load.c - sizes of the loads as parameters */
 PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 
-/* frictionfactor.c - parameters of the contact, and the speeds at which mu is a factor of terms; part of pairs that slide at
-   `speed` (m/s) in the terms of node k; the end. Collective. */
+/* frictionfactor.c - parameters of the contact, and the speeds at which mu is a factor of terms; part of pairs that
+   slide at `speed` (m/s) in the terms of node k; the end. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
-/* Raises the error for a point at which the speeds of the nodes do not give the friction between them. Same on all ranks. */
+/* Raises the error for a point at which the speeds of the nodes do not give the friction between them. Same on all
+   ranks. */
 PETSC_INTERN PetscErrorCode OperatorsCheckFriction(Operators operators, const PetscReal p[]);
 PETSC_INTERN PetscReal      FrictionNodeShare(const InterfaceParameters *interface, PetscInt k, PetscReal speed);
 PETSC_INTERN PetscErrorCode OperatorsDestroyContactParameters(Operators operators);

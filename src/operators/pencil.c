@@ -9,9 +9,9 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, &s));
-  *pencil      = s;
-  s->comm      = operators->comm;
-  s->operators = operators;
+  *pencil          = s;
+  s->comm          = operators->comm;
+  s->operators     = operators;
   s->mass_singular = operators->mass_singular;
   PetscCall(PencilTakeState(s, state));
   PetscCall(PencilCheckSliding(s));
@@ -26,7 +26,10 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
     PetscCall(TermsSetCause(&s->base, "follower force", NULL, "static_follower"));
   }
   if (operators->model) PetscCall(PencilCreateNullSpaces(s));
-  PetscCall(operators->model ? PencilTakeDependents(s) : PencilScaleMultipliers(s));
+  if (operators->model)
+    PetscCall(PencilTakeDependents(s));
+  else
+    PetscCall(PencilScaleMultipliers(s));
   PetscFunctionReturn(0);
 }
 

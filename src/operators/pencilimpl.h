@@ -31,23 +31,23 @@ struct _p_Pencil {
   PetscReal *force; /* [n_pairs] normal force, N: of the state, or of -contact_force shared by area */
   PetscReal *total; /* [interfaces] their sums over all ranks */
   /* matrices */
-  Terms     base;      /* in all unknowns: those of the bodies, of the contact, of the preload */
-  Mat       Zr, E;     /* right null space of the constraints and its injection; NULL without constraints */
-  PetscInt  n_left;    /* Zl = Zr + sum_i mu_i left[i] */
-  Mat      *left;      /* [n_left] */
-  const OperatorsFriction **left_mu; /* [n_left] mu_i (borrowed) */
-  PetscInt *left_interface; /* [n_left] */
-  Terms     projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
-  TermsSum  sum[N_PENCIL_SUMS];
-  Terms        causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
-  PetscInt     n_causes;
+  Terms                     base;  /* in all unknowns: those of the bodies, of the contact, of the preload */
+  Mat                       Zr, E; /* right null space of the constraints and its injection; NULL without constraints */
+  PetscInt                  n_left;         /* Zl = Zr + sum_i mu_i left[i] */
+  Mat                      *left;           /* [n_left] */
+  const OperatorsFriction **left_mu;        /* [n_left] mu_i (borrowed) */
+  PetscInt                 *left_interface; /* [n_left] */
+  Terms    projected; /* in the unknowns of the pencil, made when asked for; empty without constraints: base serves */
+  TermsSum sum[N_PENCIL_SUMS];
+  Terms    causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
+  PetscInt n_causes;
   PencilCause *cause;
-  PetscBool mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
-  PetscBool released;    /* the terms are gone */
-  PetscBool has_factors; /* left' right was formed at the present point */
-  Mat       factor[2];   /* left and right factor of the unsymmetric stiffness, NULL where it has none */
-  Mat       half;       /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
-  PetscReal half_shift; /* (rad/s)^2 */
+  PetscBool    mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
+  PetscBool    released;      /* the terms are gone */
+  PetscBool    has_factors;   /* left' right was formed at the present point */
+  Mat          factor[2];     /* left and right factor of the unsymmetric stiffness, NULL where it has none */
+  Mat          half; /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
+  PetscReal    half_shift; /* (rad/s)^2 */
 };
 
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
@@ -68,7 +68,8 @@ PETSC_INTERN PetscErrorCode PencilRestore(Pencil pencil, PencilSum which);
 /* dependents.c - null space of displacements that follow others, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeDependents(Pencil pencil);
 
-/* multipliers.c - of matrices without a mesh: scales of unknowns without mass as Zr and E, where they are far from one. Collective. */
+/* multipliers.c - of matrices without a mesh: scales of unknowns without mass as Zr and E, where they are far from one.
+   Collective. */
 PETSC_INTERN PetscErrorCode PencilScaleMultipliers(Pencil pencil);
 
 /* slidingstate.c - takes the groups and forces of a state, or those of the scene; its parameters and point */
@@ -85,8 +86,8 @@ PETSC_INTERN PetscErrorCode PencilCreateNullSpaces(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilProjectTerms(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
 
-/* matrixfile.c - opens a file of PETSc's; an error where a mass matrix has negative eigenvalues of its symmetric part beyond
-   rounding. Singular: some are zero to rounding, beside those of unknowns without any mass */
+/* matrixfile.c - opens a file of PETSc's; an error where a mass matrix has negative eigenvalues of its symmetric part
+   beyond rounding. Singular: some are zero to rounding, beside those of unknowns without any mass */
 PETSC_INTERN PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer);
 PETSC_INTERN PetscErrorCode MassCheck(Mat M, PetscBool *singular);
 /* matrixterm.c - the same of the mass at the present point, where it depends on parameters, which may be of any sign */

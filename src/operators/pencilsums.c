@@ -1,6 +1,6 @@
 /*
-   What a pencil hands out at its present point: sums sum_t c_t(p) A_t of terms, formed when asked for, and vectors of all unknowns u
-   as those of the pencil, u = Z q.
+   What a pencil hands out at its present point: sums sum_t c_t(p) A_t of terms, formed when asked for, and vectors of
+   all unknowns u as those of the pencil, u = Z q.
 */
 #include "pencilimpl.h"
 
@@ -10,15 +10,15 @@ static const struct {
   PetscBool    symmetric;   /* without friction and damping */
   PencilSum    unprojected; /* the same sum when no constraint projects */
 } sums[N_PENCIL_SUMS] = {
-  [SUM_K]       = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},   PETSC_TRUE,  SUM_K   },
-  [SUM_M]       = {{OPERATORS_MASS, TERMS_ALL, 1},              PETSC_TRUE,  SUM_M   },
-  [SUM_C]       = {{OPERATORS_DAMPING, TERMS_ALL, 1},           PETSC_FALSE, SUM_C   },
-  [SUM_H]       = {{OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, 1}, PETSC_FALSE, SUM_H   },
-  [PROJECTED_K] = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},   PETSC_TRUE,  SUM_K   },
-  [PROJECTED_M] = {{OPERATORS_MASS, TERMS_SYMMETRIC, 1},        PETSC_TRUE,  SUM_M   },
-  [PENCIL_K]    = {{OPERATORS_STIFFNESS, TERMS_ALL, 1},         PETSC_FALSE, PENCIL_K},
-  [PENCIL_M]    = {{OPERATORS_MASS, TERMS_ALL, 1},              PETSC_FALSE, SUM_M   },
-  [PENCIL_C]    = {{OPERATORS_DAMPING, TERMS_ALL, 1},           PETSC_FALSE, SUM_C   },
+  [SUM_K]       = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1}, PETSC_TRUE, SUM_K},
+  [SUM_M]       = {{OPERATORS_MASS, TERMS_ALL, 1}, PETSC_TRUE, SUM_M},
+  [SUM_C]       = {{OPERATORS_DAMPING, TERMS_ALL, 1}, PETSC_FALSE, SUM_C},
+  [SUM_H]       = {{OPERATORS_STIFFNESS, TERMS_UNSYMMETRIC, 1}, PETSC_FALSE, SUM_H},
+  [PROJECTED_K] = {{OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1}, PETSC_TRUE, SUM_K},
+  [PROJECTED_M] = {{OPERATORS_MASS, TERMS_SYMMETRIC, 1}, PETSC_TRUE, SUM_M},
+  [PENCIL_K]    = {{OPERATORS_STIFFNESS, TERMS_ALL, 1}, PETSC_FALSE, PENCIL_K},
+  [PENCIL_M]    = {{OPERATORS_MASS, TERMS_ALL, 1}, PETSC_FALSE, SUM_M},
+  [PENCIL_C]    = {{OPERATORS_DAMPING, TERMS_ALL, 1}, PETSC_FALSE, SUM_C},
 };
 
 /* One of the sums at the present point (borrowed); NULL when it vanishes */
@@ -34,9 +34,10 @@ static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
   if (!sum->current) {
     if (projected) PetscCall(PencilProjectTerms(pencil));
     if (at == SUM_H && mu != 0) kind.scale = 1 / mu;
-    PetscCall(pencil->released && (at == PencilEven(pencil) || at == PENCIL_K)
-                ? PencilRestore(pencil, at)
-                : TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
+    if (pencil->released && (at == PencilEven(pencil) || at == PENCIL_K))
+      PetscCall(PencilRestore(pencil, at));
+    else
+      PetscCall(TermsSumForm(projected ? &pencil->projected : &pencil->base, &kind, p, sum));
     if (sum->A) PetscCall(MatSetOption(sum->A, MAT_SYMMETRIC, sums[at].symmetric && pencil->operators->symmetric));
     if (sum->A && kind.kind == OPERATORS_MASS) PetscCall(PencilCheckMass(pencil, sum->A));
   }

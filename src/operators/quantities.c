@@ -3,29 +3,33 @@
 
 #define OPERATORS_OPTION(member) QUANTITY_AT(struct _p_Operators, member)
 
-static const char *const factors[] = {[OPERATORS_AUTO] = "auto", [OPERATORS_LU] = "lu", [OPERATORS_EVEN] = "symmetric", NULL};
-static const char *const masses[]  = {[PETSC_FALSE] = "consistent", [PETSC_TRUE] = "lumped", NULL};
+static const char *const factors[] = {
+  [OPERATORS_AUTO] = "auto", [OPERATORS_LU] = "lu", [OPERATORS_EVEN] = "symmetric", NULL};
+static const char *const masses[] = {[PETSC_FALSE] = "consistent", [PETSC_TRUE] = "lumped", NULL};
 
 static const Quantity rows[] = {
-  {"-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal", NULL,
-   QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses},
+  {"-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
+   NULL, QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses},
   {"-operators_factors",
-   "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak for", NULL,
-   QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors},
+   "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak "
+   "for",
+   NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors},
   {"-operators_save", "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)", NULL, QUANTITY_TEXT,
    OPERATORS_OPTION(save)},
-  {"-operators_nodes", "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes", NULL, QUANTITY_PATH,
-   OPERATORS_OPTION(nodes)},
+  {"-operators_nodes", "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes", NULL,
+   QUANTITY_PATH, OPERATORS_OPTION(nodes)},
 };
 static const Quantity loaded[] = {
   {"-contact_mu", "friction coefficient of K + mu H", NULL, QUANTITY_REAL, OPERATORS_OPTION(loaded_mu)},
 };
 
 /* Of one matrix: the file, or all entries */
-#define MATRIX(letter, meaning, i) \
-  {"-operators_load_" letter, "PETSc binary file of the " meaning, NULL, QUANTITY_PATH, OPERATORS_OPTION(load[i])}, \
-  {"-operators_dense_" letter, "small dense matrix of the " meaning ", rows one after another", NULL, QUANTITY_MANY, \
-   OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .most = OPERATORS_MAX_DENSE}
+#define MATRIX(letter, meaning, i)                                                                                     \
+  {"-operators_load_" letter, "PETSc binary file of the " meaning, NULL, QUANTITY_PATH, OPERATORS_OPTION(load[i])},    \
+  {                                                                                                                    \
+    "-operators_dense_" letter, "small dense matrix of the " meaning ", rows one after another", NULL, QUANTITY_MANY,  \
+      OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .most = OPERATORS_MAX_DENSE      \
+  }
 
 static const Quantity matrices[] = {
   MATRIX("k", "stiffness, N/m", OPERATOR_K),
@@ -37,7 +41,8 @@ static const Quantity matrices[] = {
 #define TERM(member) QUANTITY_AT(MatrixTerm, member)
 
 static const char *const kinds[]      = {"stiffness", "damping", "mass", NULL}; /* of OperatorsTermKind */
-static const char *const symmetries[] = {[MATRIX_ANY] = "any", [MATRIX_EVEN] = "symmetric", [MATRIX_SKEW] = "skew", NULL};
+static const char *const symmetries[] = {
+  [MATRIX_ANY] = "any", [MATRIX_EVEN] = "symmetric", [MATRIX_SKEW] = "skew", NULL};
 
 static const Quantity term[] = {
   {"-file", "PETSc binary file of the matrix", NULL, QUANTITY_PATH, TERM(file)},
@@ -46,9 +51,10 @@ static const Quantity term[] = {
   {"-kind", "what it is part of (required)", NULL, QUANTITY_WORD, TERM(kind), .initial = 3, .words = kinds},
   {"-symmetry", "what it must be, else the run stops", NULL, QUANTITY_WORD, TERM(symmetry), .words = symmetries},
   {"-scale", "a number that it is multiplied with", NULL, QUANTITY_REAL, TERM(scale), .initial = 1},
-  {"-parameter", "numbers that it is proportional to, options of their own, e.g. speed", NULL, QUANTITY_TEXT, TERM(parameters),
-   .given = offsetof(MatrixTerm, has_parameters)},
-  {"-power", "power of each of them, e.g. 2 or -1", NULL, QUANTITY_INTS, TERM(power), .count = offsetof(MatrixTerm, n_powers), .text = "1"},
+  {"-parameter", "numbers that it is proportional to, options of their own, e.g. speed", NULL, QUANTITY_TEXT,
+   TERM(parameters), .given = offsetof(MatrixTerm, has_parameters)},
+  {"-power", "power of each of them, e.g. 2 or -1", NULL, QUANTITY_INTS, TERM(power),
+   .count = offsetof(MatrixTerm, n_powers), .text = "1"},
 };
 
 const QuantityTable operators_quantities = {"Operators", "operators.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};

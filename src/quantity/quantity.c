@@ -177,7 +177,8 @@ PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *own
       PetscCall(ChecksumAddInts(c, (PetscInt)(row->size / sizeof(PetscInt)), value));
     else if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS)
       PetscCall(ChecksumAddInts(c, count, value));
-    else if (row->kind == QUANTITY_LIST) PetscCall(ChecksumAddReals(c, count, value));
+    else if (row->kind == QUANTITY_LIST)
+      PetscCall(ChecksumAddReals(c, count, value));
     else if (row->kind == QUANTITY_REAL || row->kind == QUANTITY_REALS)
       PetscCall(ChecksumAddReals(c, (PetscInt)(row->size / sizeof(PetscReal)), value));
     else if (row->kind == QUANTITY_TEXT || row->kind == QUANTITY_PATH)

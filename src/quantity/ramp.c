@@ -12,8 +12,8 @@ static const char *RampIdleShape(const void *ramp)
 
 static const Quantity rows[] = {
   {"-ramp", "time from nothing to all of it", "s", QUANTITY_REAL, QUANTITY_AT(Ramp, length), QUANTITY_NOT_NEGATIVE},
-  {"-ramp_shape", "how it grows", NULL, QUANTITY_WORD, QUANTITY_AT(Ramp, shape), .initial = RAMP_SMOOTH, .words = shapes,
-   .idle = RampIdleShape},
+  {"-ramp_shape", "how it grows", NULL, QUANTITY_WORD, QUANTITY_AT(Ramp, shape), .initial = RAMP_SMOOTH,
+   .words = shapes, .idle = RampIdleShape},
   {"-delay", "time at which it begins", "s", QUANTITY_REAL, QUANTITY_AT(Ramp, delay), QUANTITY_NOT_NEGATIVE},
 };
 

@@ -1,12 +1,12 @@
 /*
-   Ramps of loads, motions and sliding speeds: a factor of time r(t), which is 0 before a delay and 1 after delay + length;
-   between them, with x = (t - delay) / length,
+   Ramps of loads, motions and sliding speeds: a factor of time r(t), which is 0 before a delay and 1 after delay +
+   length; between them, with x = (t - delay) / length,
 
       linear   r = x
       smooth   r = (1 - cos(pi x)) / 2     (no jump of the rate)
 
-   its rate r'(t) (1/s), and its integral R(t) = int_0^t r (s), for speeds that are ramped and the way they make. A length
-   of 0 is a jump at the delay. Times in s.
+   its rate r'(t) (1/s), and its integral R(t) = int_0^t r (s), for speeds that are ramped and the way they make. A
+   length of 0 is a jump at the delay. Times in s.
 */
 #pragma once
 
@@ -57,7 +57,8 @@ static inline double RampIntegral(const Ramp *ramp, double t)
    Output Parameter:
 .  ramp - the defaults where nothing is given, whatever it was before
 
-   Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite, and for a shape of no ramp on the command line.
+   Errors: PETSC_ERR_USER_INPUT for a length or delay that is negative or not finite, and for a shape of no ramp on the
+   command line.
 @*/
 PETSC_INTERN PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char name[], Ramp *ramp);
 

@@ -16,7 +16,8 @@ static PetscErrorCode QuantityReadWord(OptionsItems PetscOptionsObject, const ch
   PetscFunctionBeginUser;
   PetscCheck(row->size == sizeof(*value), PETSC_COMM_SELF, PETSC_ERR_PLIB, "%s is no enumeration", row->name);
   while (row->words[n]) n++;
-  PetscCall(PetscOptionsEList(row->name, help, header, row->words, n, chosen < n ? row->words[chosen] : "", &chosen, given));
+  PetscCall(
+    PetscOptionsEList(row->name, help, header, row->words, n, chosen < n ? row->words[chosen] : "", &chosen, given));
   *value = (int)chosen;
   PetscFunctionReturn(0);
 }
@@ -47,8 +48,8 @@ static PetscErrorCode QuantityReadName(OptionsItems PetscOptionsObject, const ch
 }
 
 /* As many words as its place holds */
-static PetscErrorCode QuantityReadNames(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], char *name[],
-                                        PetscBool *given)
+static PetscErrorCode QuantityReadNames(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
+                                        char *name[], PetscBool *given)
 {
   const PetscInt most = (PetscInt)(row->size / sizeof(*name));
   PetscInt       n    = most + 1;
@@ -58,21 +59,23 @@ static PetscErrorCode QuantityReadNames(OptionsItems PetscOptionsObject, const Q
   PetscCall(PetscCalloc1(n, &items));
   PetscCall(OptionsGetItems(PetscOptionsObject, row->name, help, &n, items, given));
   PetscCheck(!*given || n == most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
-             "-%s%s has %" PetscInt_FMT " names; give %" PetscInt_FMT ": %s", PetscOptionsObject->prefix, row->name + 1, n, most, row->why);
+             "-%s%s has %" PetscInt_FMT " names; give %" PetscInt_FMT ": %s", PetscOptionsObject->prefix, row->name + 1,
+             n, most, row->why);
   for (PetscInt i = 0; i < most && *given; i++) name[i] = items[i];
   PetscCall(PetscFree(items));
   PetscFunctionReturn(0);
 }
 
 /* As many values as are given, in an array of its own */
-static PetscErrorCode QuantityReadMany(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], PetscReal **values,
-                                       PetscInt *n)
+static PetscErrorCode QuantityReadMany(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
+                                       PetscReal **values, PetscInt *n)
 {
   PetscReal *all;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((size_t)row->most, &all));
-  PetscCall(OptionsGetSome(PetscOptionsObject, row->name, help, "0", &(OptionsRoom){(PetscInt)row->most, all, NULL}, n));
+  PetscCall(
+    OptionsGetSome(PetscOptionsObject, row->name, help, "0", &(OptionsRoom){(PetscInt)row->most, all, NULL}, n));
   if (*n) PetscCall(PetscMalloc1(*n, values));
   PetscCall(PetscArraycpy(*values, all, *n));
   PetscCall(PetscFree(all));
@@ -80,8 +83,8 @@ static PetscErrorCode QuantityReadMany(OptionsItems PetscOptionsObject, const Qu
 }
 
 /* At most as many values as its place holds; how many, stands at .count */
-static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const Quantity *row, const char help[], void *owner,
-                                       PetscBool *given)
+static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
+                                       void *owner, PetscBool *given)
 {
   const PetscBool integers = row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
   const size_t    size     = integers ? sizeof(PetscInt) : sizeof(PetscReal);
@@ -89,8 +92,9 @@ static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const Qu
   PetscInt        n;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetSome(PetscOptionsObject, row->name, help, row->text ? row->text : "0",
-                           &(OptionsRoom){(PetscInt)(row->size / size), integers ? NULL : value, integers ? value : NULL}, &n));
+  PetscCall(
+    OptionsGetSome(PetscOptionsObject, row->name, help, row->text ? row->text : "0",
+                   &(OptionsRoom){(PetscInt)(row->size / size), integers ? NULL : value, integers ? value : NULL}, &n));
   *given = n ? PETSC_TRUE : PETSC_FALSE;
   if (*given) *(PetscInt *)((char *)owner + row->count) = n;
   PetscFunctionReturn(0);
@@ -108,7 +112,8 @@ static PetscErrorCode QuantityReadNumber(OptionsItems PetscOptionsObject, const 
   else if (row->kind == QUANTITY_REAL)
     PetscCall(OptionsGetReal(PetscOptionsObject, row->name, help, *real, real, given));
   else if (row->kind == QUANTITY_INTS)
-    PetscCall(OptionsGetInts(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*integer)), integer, given));
+    PetscCall(
+      OptionsGetInts(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*integer)), integer, given));
   else
     PetscCall(OptionsGetReals(PetscOptionsObject, row->name, help, (PetscInt)(row->size / sizeof(*real)), real, given));
   PetscFunctionReturn(0);

@@ -6,4 +6,5 @@
 #define QUANTITY_HELP 512 /* help as -help shows it: "largest growth, 1/s" */
 
 /* Reads the option of a row into its owner, between PetscOptionsBegin() and PetscOptionsEnd(). Collective */
-PETSC_INTERN PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner);
+PETSC_INTERN PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
+                                         void *owner);

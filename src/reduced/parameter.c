@@ -1,5 +1,5 @@
-/* Parameters that reduced models are varied over: see parameter.h. Named as in sweeps; what acts on the bodies from outside
-   comes first. */
+/* Parameters that reduced models are varied over: see parameter.h. Named as in sweeps; what acts on the bodies from
+   outside comes first. */
 #include "parameter.h"
 #include "base/algebra/vec3.h"
 
@@ -31,7 +31,8 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
 /* Friction and speed of a contact */
 static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
 {
-  const ReducedParameter   speed = {.unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
+  const ReducedParameter speed = {
+    .unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
   const FrictionParameter *law;
   const PetscInt           n = FrictionGetParameters(&c->friction, &law);
 
@@ -57,9 +58,10 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
 {
   const PetscReal force = load->is_pressure ? 0 : Vec3Length(load->force), moment = Vec3Length(load->moment);
 
-  const ReducedParameter press = {.unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
-  const ReducedParameter push  = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
-  const ReducedParameter turn  = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
+  const ReducedParameter press = {
+    .unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
+  const ReducedParameter push = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
+  const ReducedParameter turn = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   if (load->is_pressure) PetscCall(ParameterTry(load->name, "pressure", &press, search));
@@ -111,9 +113,10 @@ PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], co
 PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], const ReducedParameter *p,
                                      PetscReal value)
 {
-  const PetscBool good = p->kind == REDUCED_BODY || value > p->least || (!p->open && value == p->least) ? PETSC_TRUE : PETSC_FALSE;
-  MPI_Comm  comm;
-  Model     model;
+  const PetscBool good =
+    p->kind == REDUCED_BODY || value > p->least || (!p->open && value == p->least) ? PETSC_TRUE : PETSC_FALSE;
+  MPI_Comm comm;
+  Model    model;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, NULL));

@@ -22,14 +22,14 @@ typedef struct {
 
 /* What a parameter moves that leaves the bodies as they are */
 typedef struct {
-  ReducedModel    *model;     /* friction */
-  const PetscInt  *interface; /* [n_pairs] */
-  const FrictionLaw *friction; /* [n_pairs] of the scene */
-  PetscReal       *loads;     /* [n_loads] factors, 1 in the scene */
+  ReducedModel      *model;     /* friction */
+  const PetscInt    *interface; /* [n_pairs] */
+  const FrictionLaw *friction;  /* [n_pairs] of the scene */
+  PetscReal         *loads;     /* [n_loads] factors, 1 in the scene */
 } ReducedMoved;
 
-/* ReducedParameterFind - the parameter of that name, p [parameters] being the values of the operators. Collective. Errors:
-   PETSC_ERR_USER_INPUT "<option> '<name>' is no parameter <what>; valid are ...". */
+/* ReducedParameterFind - the parameter of that name, p [parameters] being the values of the operators. Collective.
+   Errors: PETSC_ERR_USER_INPUT "<option> '<name>' is no parameter <what>; valid are ...". */
 PETSC_INTERN PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], const char option[],
                                                  const char what[], const char name[], ReducedParameter *parameter);
 
@@ -40,10 +40,11 @@ PETSC_INTERN PetscErrorCode ReducedParameterCheck(Operators operators, const cha
 /* ReducedParameterMove - gives one that is none of the bodies a value. Not collective. */
 PETSC_INTERN void ReducedParameterMove(const ReducedParameter *parameter, PetscReal value, const ReducedMoved *moved);
 
-/* ReducedUnitIsGyration - whether a parameter is one of damping or spin, which real modes know nothing of: by its unit, since
-   names begin with those that the user gave. Not collective. */
+/* ReducedUnitIsGyration - whether a parameter is one of damping or spin, which real modes know nothing of: by its unit,
+   since names begin with those that the user gave. Not collective. */
 PETSC_INTERN PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is);
 
-/* What no frequency of the bodies rises by more than from the scene to a value: the root of a stiffness, or of one over a mass */
+/* What no frequency of the bodies rises by more than from the scene to a value: the root of a stiffness, or of one over
+   a mass */
 PETSC_INTERN PetscErrorCode ReducedParameterGetRise(const ReducedParameter *parameter, PetscReal value,
                                                     PetscReal *rise);

@@ -18,19 +18,21 @@ static const char *ReducedIdleChosen(const void *reduced)
 }
 
 static const Quantity rows[] = {
-  {"-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance", NULL, QUANTITY_WORD, REDUCED_AT(asked),
-   .words = models},
-  {"-dynamics_cutoff", "of the modes of a reduced model; 0: 4 times the end of -modes_band, or 20 kHz", "Hz", QUANTITY_REAL,
-   REDUCED_AT(cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
+  {"-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance", NULL, QUANTITY_WORD,
+   REDUCED_AT(asked), .words = models},
+  {"-dynamics_cutoff", "of the modes of a reduced model; 0: 4 times the end of -modes_band, or 20 kHz", "Hz",
+   QUANTITY_REAL, REDUCED_AT(cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
   {"-dynamics_growth_rtol",
-   "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step are chosen", NULL, QUANTITY_REAL,
-   REDUCED_AT(growth_rtol), .initial = 5e-3, .given = offsetof(struct _p_ReducedRun, has_rtol), QUANTITY_WITHIN(0, 1),
-   .open = PETSC_TRUE, .idle = ReducedIdleChosen},
+   "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step are chosen", NULL,
+   QUANTITY_REAL, REDUCED_AT(growth_rtol), .initial = 5e-3, .given = offsetof(struct _p_ReducedRun, has_rtol),
+   QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE, .idle = ReducedIdleChosen},
   {"-dynamics_compare", "eigenvalues of a reduced model beside those of the mesh in -modes_band", NULL, QUANTITY_BOOL,
    REDUCED_AT(compare), .initial = PETSC_TRUE, .idle = ReducedIdle},
   {"-dynamics_verify",
-   "after a reduced run once more with half the step, and with 2.25 times the cut-off; an error where the rms of the normal force "
-   "in the last half of the time, or the share of the time without contact, differs by more than 10 % beyond twice its standard error",
+   "after a reduced run once more with half the step, and with 2.25 times the cut-off; an error where the rms of the "
+   "normal force "
+   "in the last half of the time, or the share of the time without contact, differs by more than 10 % beyond twice its "
+   "standard error",
    NULL, QUANTITY_BOOL, REDUCED_AT(verify), .idle = ReducedIdle},
 };
 

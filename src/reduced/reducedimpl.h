@@ -40,8 +40,8 @@ typedef struct {
   char      label[32];
 } ReducedPair;
 
-/* A mode about the sliding state: growth without and with the inertia of what the cut-off leaves out, 1/s; frequency, rad/s; what
-   growth is off by, relative */
+/* A mode about the sliding state: growth without and with the inertia of what the cut-off leaves out, 1/s; frequency,
+   rad/s; what growth is off by, relative */
 typedef struct {
   PetscReal growth, whole, omega, off;
 } ReducedGrowing;
@@ -129,8 +129,8 @@ struct _p_ReducedRun {
   PetscLogDouble setup_seconds, seconds;
 };
 
-/* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns; X'Y of dense matrices of all ranks,
-   H [columns of X][columns of Y] by columns, on every rank */
+/* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns; X'Y of dense matrices of all
+   ranks, H [columns of X][columns of Y] by columns, on every rank */
 PETSC_INTERN void           ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
 PETSC_INTERN void           ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
 PETSC_INTERN PetscErrorCode ReducedGram(Mat X, Mat Y, PetscReal H[]);
@@ -144,12 +144,13 @@ PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const 
 PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[],
                                     PetscReal y[]);
 
-/* z_{n+1}, q_{n+1} and y_{n+1} of a state without loads, lambda_n in `last` and lambda_{n+1} in p: the linear part of a step */
+/* z_{n+1}, q_{n+1} and y_{n+1} of a state without loads, lambda_n in `last` and lambda_{n+1} in p: the linear part of a
+   step */
 PETSC_INTERN void ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[], PetscReal q[],
                                      PetscReal y[]);
 
-/* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many numbers;
-   the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
+/* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many
+   numbers; the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
 typedef struct _p_ReducedTangent *ReducedTangent;
 PETSC_INTERN PetscInt             ReducedTangentSize(const ReducedModel *model);
 PETSC_INTERN PetscErrorCode       ReducedTangentCreate(ReducedStepper stepper, ReducedTangent *tangent);
@@ -164,12 +165,13 @@ PETSC_INTERN PetscErrorCode ReducedWeighModes(ReducedRun reduced);
 /* ports.c - ports as vectors of all unknowns, impulses, and P */
 PETSC_INTERN PetscErrorCode ReducedSetPorts(ReducedRun reduced);
 
-/* linear.c - of the modes about a sliding state that turn in time the one that grows fastest: eigenvalue (rad/s), -infinity and 0 for
-   none; real and imaginary part of its motion and forces, without loads, or NULL */
+/* linear.c - of the modes about a sliding state that turn in time the one that grows fastest: eigenvalue (rad/s),
+   -infinity and 0 for none; real and imaginary part of its motion and forces, without loads, or NULL */
 PETSC_INTERN PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding,
                                                PetscReal eigenvalue[2], ReducedState mode[2]);
 
-/* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same size */
+/* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same
+   size */
 PETSC_INTERN PetscErrorCode ReducedSetResidual(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat X);
 
@@ -193,8 +195,8 @@ PETSC_INTERN PetscErrorCode ReducedCompareMesh(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompare(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedCompareView(ReducedRun reduced, PetscViewer viewer);
 
-/* inertia.c - modes that grow without and with the inertia of what the cut-off leaves out; the most that one is off by, relative;
-   a warning where that is much */
+/* inertia.c - modes that grow without and with the inertia of what the cut-off leaves out; the most that one is off by,
+   relative; a warning where that is much */
 PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *off);
 PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
@@ -203,8 +205,8 @@ PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer vi
 PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
                                                   const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[]);
 
-/* choose.c - the cut-off to begin with; the step where -ts_dt leaves it open; reduces and compares with the mesh, with another
-   cut-off and step where the first ones do not do */
+/* choose.c - the cut-off to begin with; the step where -ts_dt leaves it open; reduces and compares with the mesh, with
+   another cut-off and step where the first ones do not do */
 PETSC_INTERN PetscErrorCode ReducedChooseCutoff(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedSetStep(ReducedRun reduced, PetscReal dt);
 PETSC_INTERN PetscErrorCode ReducedChoose(ReducedRun reduced);
@@ -213,13 +215,13 @@ PETSC_INTERN PetscErrorCode ReducedChoose(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
 
-/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own and lie
-   below `cutoff` (Hz). The caller destroys them. Collective */
+/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own
+   and lie below `cutoff` (Hz). The caller destroys them. Collective */
 PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
                                               ReducedRun *at);
 
-/* step/residual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much less on the
-   chosen ones: a force that moves the same */
+/* step/residual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much
+   less on the chosen ones: a force that moves the same */
 PETSC_INTERN PetscErrorCode ReducedStepperSetResidual(ReducedStepper stepper);
 PETSC_INTERN void           ReducedStepperSettle(ReducedStepper stepper, const PetscReal lambda[]);
 

@@ -1,6 +1,6 @@
 /*
-   Binary files: every rank of a communicator writes its pieces in place and flushes them to the disk; then the first rank renames the
-   file and flushes the folder, without which a crash of the machine may take the new name back.
+   Binary files: every rank of a communicator writes its pieces in place and flushes them to the disk; then the first
+   rank renames the file and flushes the folder, without which a crash of the machine may take the new name back.
 */
 #include "resultsimpl.h"
 #include "base/file.h"

@@ -1,6 +1,6 @@
 /*
-   Files of earlier runs in the folder. What is removed is only what their scene.yaml says that squeal wrote: a file that
-   somebody else put there may have any name.
+   Files of earlier runs in the folder. What is removed is only what their scene.yaml says that squeal wrote: a file
+   that somebody else put there may have any name.
 */
 #include "resultsimpl.h"
 #include "base/file.h"
@@ -10,44 +10,45 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Files that squeal writes and may remove, each with the unfinished one without which it may go; # stands for a row of digits */
+/* Files that squeal writes and may remove, each with the unfinished one without which it may go; # stands for a row of
+   digits */
 static const struct {
   const char *name, *unfinished;
 } known[] = {
-  {"modes.csv",         NULL                },
-  {"filters.h5",        NULL                },
-  {"filters.xmf",       NULL                },
-  {"modes.h5",          NULL                },
-  {"modes.xmf",         NULL                },
-  {"static.csv",        NULL                },
-  {"static.h5",         NULL                },
-  {"static.xmf",        NULL                },
-  {"reactions.csv",     NULL                },
-  {"sweep.csv",         NULL                },
-  {"onsets.csv",        NULL                },
-  {"verify.csv",        NULL                },
-  {"sensitivities.csv", NULL                },
-  {"modes_causes.csv",  NULL                },
-  {"robustness.csv",    NULL                },
-  {"parameters.csv",    NULL                },
-  {"frf.csv",           NULL                },
-  {"peaks.csv",         NULL                },
-  {"cycle.csv",         NULL                },
-  {"cycle_probes.csv",  NULL                },
-  {"map.csv",           NULL                },
-  {"map_modes.csv",     NULL                },
-  {"map_errors.csv",    NULL                },
-  {"impulse.csv",       NULL                },
-  {"transient.csv",     "transient.csv.part"},
-  {"transient.xmf",     "transient.csv.part"},
-  {"amplitudes.csv",    "transient.csv.part"},
-  {"circles.csv",       "transient.csv.part"},
-  {"circle_nodes.csv",  "transient.csv.part"},
-  {"impulses.csv",      "transient.csv.part"},
+  {"modes.csv", NULL},
+  {"filters.h5", NULL},
+  {"filters.xmf", NULL},
+  {"modes.h5", NULL},
+  {"modes.xmf", NULL},
+  {"static.csv", NULL},
+  {"static.h5", NULL},
+  {"static.xmf", NULL},
+  {"reactions.csv", NULL},
+  {"sweep.csv", NULL},
+  {"onsets.csv", NULL},
+  {"verify.csv", NULL},
+  {"sensitivities.csv", NULL},
+  {"modes_causes.csv", NULL},
+  {"robustness.csv", NULL},
+  {"parameters.csv", NULL},
+  {"frf.csv", NULL},
+  {"peaks.csv", NULL},
+  {"cycle.csv", NULL},
+  {"cycle_probes.csv", NULL},
+  {"map.csv", NULL},
+  {"map_modes.csv", NULL},
+  {"map_errors.csv", NULL},
+  {"impulse.csv", NULL},
+  {"transient.csv", "transient.csv.part"},
+  {"transient.xmf", "transient.csv.part"},
+  {"amplitudes.csv", "transient.csv.part"},
+  {"circles.csv", "transient.csv.part"},
+  {"circle_nodes.csv", "transient.csv.part"},
+  {"impulses.csv", "transient.csv.part"},
   {"contact_pairs.csv", "transient.csv.part"},
-  {"snapshot_#.h5",     "transient.csv.part"},
-  {"snapshot_#.xmf",    "transient.csv.part"},
-  {"checkpoint.bin",    "transient.csv.part"},
+  {"snapshot_#.h5", "transient.csv.part"},
+  {"snapshot_#.xmf", "transient.csv.part"},
+  {"checkpoint.bin", "transient.csv.part"},
 };
 
 /* Whether the name is in a list of n */
@@ -165,8 +166,8 @@ PetscErrorCode EarlierRead(Results results)
   PetscCallMPI(MPI_Bcast(&results->has_earlier, 1, MPIU_BOOL, 0, results->comm));
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
-             "cannot read %s, which names the files of earlier runs: %s; remove it, or choose another -output_dir", path,
-             FileReason(error));
+             "cannot read %s, which names the files of earlier runs: %s; remove it, or choose another -output_dir",
+             path, FileReason(error));
   PetscFunctionReturn(0);
 }
 

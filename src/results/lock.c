@@ -1,7 +1,7 @@
 /*
-   The lock of a folder: two runs that write into one would mix their rows. The first rank holds a lock (flock(2)) on a file
-   in it, which the system takes back however the run ends. Where a file system has no locks, the file says who writes: a
-   process of this machine that is gone, or has given its number to another, is no run.
+   The lock of a folder: two runs that write into one would mix their rows. The first rank holds a lock (flock(2)) on a
+   file in it, which the system takes back however the run ends. Where a file system has no locks, the file says who
+   writes: a process of this machine that is gone, or has given its number to another, is no run.
 */
 #include "resultsimpl.h"
 #include "base/file.h"
@@ -26,8 +26,8 @@ typedef struct {
   char               machine[128];
 } LockOwner;
 
-/* When a process began, 0 where there is none: field 22 of proc_pid_stat(5), the 20th after the name in parentheses; and its parent,
-   the 2nd */
+/* When a process began, 0 where there is none: field 22 of proc_pid_stat(5), the 20th after the name in parentheses;
+   and its parent, the 2nd */
 static unsigned long long ProcessBegun(long process, long *parent)
 {
   char               path[64], text[1024] = "", *rest;
@@ -89,7 +89,8 @@ static PetscBool LockIsNamed(int fd, const char path[])
   return !fstat(fd, &here) && !stat(path, &there) && here.st_ino == there.st_ino && here.st_dev == there.st_dev;
 }
 
-/* Tries to take the lock: the errno of a failure, EWOULDBLOCK where another run has it, ENOLCK where there are no locks */
+/* Tries to take the lock: the errno of a failure, EWOULDBLOCK where another run has it, ENOLCK where there are no
+   locks */
 static int LockTry(const char path[], int *fd)
 {
   int error = 0;
@@ -114,7 +115,8 @@ static PetscBool LockOwnerEnds(const LockOwner *owner)
   return ProcessBegun(owner->process, &parent) != owner->begun || parent != owner->parent ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The same, for three seconds again and again where who has it may be about to end; owner = who that is where another run does */
+/* The same, for three seconds again and again where who has it may be about to end; owner = who that is where another
+   run does */
 static int LockWait(const char path[], int *fd, LockOwner *owner)
 {
   int error = LockTry(path, fd);

@@ -230,7 +230,8 @@ static PetscErrorCode OutFileDiscard(OutFile *file)
   PetscCallMPI(MPI_Comm_rank(file->comm, &rank));
   PetscCall(OutFileCloseText(file));
   PetscCall(OutFileH5Close(file));
-  if (rank == 0 && !file->keep && file->error != FILE_NO_REGULAR) (void)unlink(file->part); /* it may never have come to exist */
+  /* it may never have come to exist */
+  if (rank == 0 && !file->keep && file->error != FILE_NO_REGULAR) (void)unlink(file->part);
   PetscFunctionReturn(0);
 }
 
@@ -263,8 +264,8 @@ PetscErrorCode OutFilesCheck(PetscInt n, OutFile *const files[])
 }
 
 /*
-   Completes the files and gives them their final names, in this order, once scene.yaml names them; an error leaves no temporary
-   file. Collective.
+   Completes the files and gives them their final names, in this order, once scene.yaml names them; an error leaves no
+   temporary file. Collective.
 */
 PetscErrorCode OutFilesPublish(PetscInt n, OutFile *const files[])
 {

@@ -1,6 +1,7 @@
 /*
-   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again. It names each of them before it has
-   its final name, and is written anew at the end: what a run that is stopped, or finds no room, leaves is known to be its.
+   Provenance: scene.yaml, which tells where the files of a folder come from and can be run again. It names each of them
+   before it has its final name, and is written anew at the end: what a run that is stopped, or finds no room, leaves is
+   known to be its.
 */
 #include "resultsimpl.h"
 #include "base/options/help.h"
@@ -53,8 +54,12 @@ static PetscErrorCode ScenePrintWord(OutFile *file, const char word[])
     PetscFunctionReturn(0);
   }
   PetscCall(OutFilePrint(file, "'"));
-  for (const char *c = word; *c; c++)
-    PetscCall(*c == '\'' ? OutFilePrint(file, "'\\''") : OutFilePrint(file, "%c", *c));
+  for (const char *c = word; *c; c++) {
+    if (*c == '\'')
+      PetscCall(OutFilePrint(file, "'\\''"));
+    else
+      PetscCall(OutFilePrint(file, "%c", *c));
+  }
   PetscCall(OutFilePrint(file, "'"));
   PetscFunctionReturn(0);
 }

@@ -10,12 +10,7 @@
 /* Prints a string as the value of an XML attribute */
 static PetscErrorCode XdmfText(OutFile *file, const char text[])
 {
-  static const char *const entities[][2] = {
-    {"&",  "&amp;" },
-    {"<",  "&lt;"  },
-    {">",  "&gt;"  },
-    {"\"", "&quot;"}
-  };
+  static const char *const entities[][2] = {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}};
 
   PetscFunctionBeginUser;
   for (; *text; text++) {

@@ -133,8 +133,8 @@ static PetscErrorCode PepReadOptions(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-/* Of a linear solver with the types that it has by default. Where MUMPS factorises, it reads its own options as it does:
-   hence a matrix of one unknown */
+/* Of a linear solver with the types that it has by default. Where MUMPS factorises, it reads its own options as it
+   does: hence a matrix of one unknown */
 static PetscErrorCode KspReadOptions(MPI_Comm comm, const char prefix[], KSPType ksp_type, PCType pc_type)
 {
   PetscMPIInt rank;

@@ -27,11 +27,11 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
   static const char *const how[] = {
     [ACTIVE_CONVERGED] = "",
     [ACTIVE_SINGULAR]  = "the closed pairs leave a motion that nothing resists; give -supports or -springs",
-    [ACTIVE_REPEATS] =
-      "the statuses of the pairs go round in a circle; change the -loads a little, or -static_load_steps where pairs can stick",
-    [ACTIVE_SLOW]     = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
-    [ACTIVE_JAMMED]   = "the bodies jam: friction presses them together by more than they yield",
-    [ACTIVE_UNSOLVED] = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it"};
+    [ACTIVE_REPEATS]   = "the statuses of the pairs go round in a circle; change the -loads a little, or "
+                         "-static_load_steps where pairs can stick",
+    [ACTIVE_SLOW]      = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
+    [ACTIVE_JAMMED]    = "the bodies jam: friction presses them together by more than they yield",
+    [ACTIVE_UNSOLVED]  = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it"};
   char dense[96] = "";
 
   PetscFunctionBeginUser;
@@ -118,8 +118,8 @@ static PetscErrorCode EquilibriumRefine(Active *a)
   PetscFunctionReturn(0);
 }
 
-/* Forces must not push along a free motion, friction included. Where they do, whether the active set found an end hangs on rounding:
-   the proof says the same as where it found none */
+/* Forces must not push along a free motion, friction included. Where they do, whether the active set found an end hangs
+   on rounding: the proof says the same as where it found none */
 static PetscErrorCode FrictionCheck(const Active *a)
 {
   PetscBool moves;

@@ -3,7 +3,8 @@
 
    Geometric stiffness, of the stress sigma (Pa) in the bodies:
 
-      K_g = int grad N_i . sigma . grad N_j dV   times the 3 x 3 identity                    (kernels/element/geometric.h)
+      K_g = int grad N_i . sigma . grad N_j dV   times the 3 x 3 identity
+      (kernels/element/geometric.h)
 
    Follower stiffness, of the contact forces on the surfaces. Pair p: normal force l, friction f_t, f_b on the master
    along t, b (N); internal forces N' l - T' f_t - B' f_b. When the master's surface turns, by Theta_t u = t . delta n
@@ -87,14 +88,8 @@ PetscErrorCode FollowerStiffnessCreate(Operators operators, const ContactState s
   static const struct {
     FollowerOperator left, right;
     int              force;
-  } product[] = {
-    {FOLLOWER_T,      FOLLOWER_TILT_T, 0},
-    {FOLLOWER_B,      FOLLOWER_TILT_B, 0},
-    {FOLLOWER_TILT_T, FOLLOWER_T,      0},
-    {FOLLOWER_TILT_B, FOLLOWER_B,      0},
-    {FOLLOWER_N,      FOLLOWER_TILT_T, 1},
-    {FOLLOWER_N,      FOLLOWER_TILT_B, 2}
-  };
+  } product[] = {{FOLLOWER_T, FOLLOWER_TILT_T, 0}, {FOLLOWER_B, FOLLOWER_TILT_B, 0}, {FOLLOWER_TILT_T, FOLLOWER_T, 0},
+                 {FOLLOWER_TILT_B, FOLLOWER_B, 0}, {FOLLOWER_N, FOLLOWER_TILT_T, 1}, {FOLLOWER_N, FOLLOWER_TILT_B, 2}};
   const ContactPair *pairs;
   PetscInt           n, n_all;
   Contact            contact;

@@ -19,7 +19,8 @@ PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
   PetscFunctionReturn(0);
 }
 
-/* Modes about the sliding state need one: every pair slides, is open, or belongs to an interface that holds by friction */
+/* Modes about the sliding state need one: every pair slides, is open, or belongs to an interface that holds by
+   friction */
 static PetscErrorCode StaticsCheckSliding(Statics s)
 {
   const ContactInterface *c = s->rows.interface;

@@ -25,7 +25,8 @@ static void StaticsSetPairs(const PairRows *rows, PetscReal kappa, const Contact
   }
 }
 
-/* Moment of the friction f on the master at x about the axis of its rotation w through c, against w: -w (x - c) x f / |w| */
+/* Moment of the friction f on the master at x about the axis of its rotation w through c, against w: -w (x - c) x f /
+   |w| */
 static PetscReal BrakingMoment(const ContactInterface *c, const PetscReal x[3], const PetscReal f[3])
 {
   const PetscReal arm[3] = {x[0] - c->centre[0], x[1] - c->centre[1], x[2] - c->centre[2]}, w = Vec3Length(c->rotation);

@@ -41,12 +41,12 @@ typedef struct {
   const PairRows *rows;
   PetscReal       kappa; /* N/m */
   Hold            hold;
-  ShiftInvert     inverse;          /* of K_a, or of Z'K_a Z where there is Z */
-  Mat             Z, E;             /* OperatorsGetDependents() */
-  Vec             reduced[2];       /* work where there is Z */
-  PetscReal      *W, *V; /* [rows][rows] by columns, of all ranks */
-  Vec             u, b;  /* work: all unknowns */
-  Vec             row;   /* work: rows */
+  ShiftInvert     inverse;    /* of K_a, or of Z'K_a Z where there is Z */
+  Mat             Z, E;       /* OperatorsGetDependents() */
+  Vec             reduced[2]; /* work where there is Z */
+  PetscReal      *W, *V;      /* [rows][rows] by columns, of all ranks */
+  Vec             u, b;       /* work: all unknowns */
+  Vec             row;        /* work: rows */
 } Compliance;
 
 /* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
@@ -144,9 +144,9 @@ struct _p_Statics {
   /* the solution */
   PetscBool         solved;
   PetscInt          n_parameters, n_it, n_factored; /* iterations; sparse factorisations of the last solution */
-  ContactStatus    *status; /* [n_pairs] open, stick or slip */
-  ContactState     *state;  /* [n_pairs] gap, forces, status */
-  Vec               u;      /* displacements, m; length: all unknowns */
+  ContactStatus    *status;                         /* [n_pairs] open, stick or slip */
+  ContactState     *state;                          /* [n_pairs] gap, forces, status */
+  Vec               u;                              /* displacements, m; length: all unknowns */
   ContactKKT        kkt;
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */
@@ -186,8 +186,8 @@ PETSC_INTERN PetscErrorCode HoldRelieve(const Hold *hold, Vec f);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
 /* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
-   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL; b += kappa (S' (slide l) - G'(l - w)),
-   l and w may be NULL without friction, w with it; w = G u */
+   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL; b += kappa (S' (slide l) - G'(l -
+   w)), l and w may be NULL without friction, w with it; w = G u */
 PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows,
                                              PetscInt max_rows, Progress *progress, Compliance *c);
 PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[],
@@ -266,8 +266,8 @@ PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscRe
 PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
 PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Vec *local);
 
-/* pressure.c - a vector of one force per node, in the order of their global numbers; and the pressures (Pa) in its place
-   that have forces of a set, pressing on it, where any of its faces is of second order. Collective */
+/* pressure.c - a vector of one force per node, in the order of their global numbers; and the pressures (Pa) in its
+   place that have forces of a set, pressing on it, where any of its faces is of second order. Collective */
 PETSC_INTERN PetscErrorCode PressureCreateForces(Model model, Vec *forces);
 PETSC_INTERN PetscErrorCode PressureRecover(Model model, const char set[], Vec forces, PetscBool *recovered);
 

@@ -4,10 +4,10 @@
    value is found again. It counts as confirmed when this no longer changes it.
 
    Corrections take factors of the full pencil, not those at the very value: with P from another point they are the
-   errors of the vectors times P^-1 Q, and Galerkin's method scales them. The error of an eigenvalue, of second order, then
-   falls at least by ((c - 1) / (c + 1))^2, c the condition of P^-1 Q (L. V. Kantorovich, Uspekhi Mat. Nauk 3, 1948), so
-   that (c - 1)^2 / (4 c) of the change remains. Onsets with a small c are corrected together, by one factorisation, as
-   long as their changes fall; then each is alone, with factors of its own next to the pair.
+   errors of the vectors times P^-1 Q, and Galerkin's method scales them. The error of an eigenvalue, of second order,
+   then falls at least by ((c - 1) / (c + 1))^2, c the condition of P^-1 Q (L. V. Kantorovich, Uspekhi Mat. Nauk 3,
+   1948), so that (c - 1)^2 / (4 c) of the change remains. Onsets with a small c are corrected together, by one
+   factorisation, as long as their changes fall; then each is alone, with factors of its own next to the pair.
 */
 #include "sweepimpl.h"
 
@@ -55,8 +55,8 @@ static PetscBool OnsetIsSimple(Sweep sweep, const PetscReal p[], const BranchEve
   return ReducedIsDamped(&sweep->basis.reduced, p);
 }
 
-/* Frequencies about an onset: close to the pair or the mode; the whole window for a divergence with damping, whose shift
-   is far from all of them */
+/* Frequencies about an onset: close to the pair or the mode; the whole window for a divergence with damping, whose
+   shift is far from all of them */
 static ReducedWindow WindowNear(Sweep sweep, const PetscReal p[], const BranchEvent *event)
 {
   ReducedWindow near = sweep->window;
@@ -92,7 +92,7 @@ static PetscErrorCode OnsetAgain(Sweep sweep, PetscReal spread, OnsetWork *w)
 
   PetscFunctionBeginUser;
   PetscCall(OnsetReduced(sweep, &w->line, w->event, &w->critical));
-  w->change = PetscAbsReal(w->event->critical - before) * PetscMax(1, rest);
+  w->change  = PetscAbsReal(w->event->critical - before) * PetscMax(1, rest);
   w->pending = OnsetIsLocated(w->event) && w->change > CONFIRMED * PetscAbsReal(w->event->critical) &&
                    w->event->n_corrected < ONSET_STEPS
                  ? PETSC_TRUE

@@ -285,8 +285,12 @@ PetscErrorCode LineFinish(Sweep sweep, PetscInt first_new, PetscInt first_event,
   PetscCall(PetscArrayzero(sweep->label + first_new, sweep->n_branches - first_new));
   PetscCall(PetscMalloc1(sweep->n_branches, &at));
   LabelPoints(sweep, points, at);
-  for (PetscInt i = 0; i < points->n; i++)
-    PetscCall(points->name ? PointTakeNames(sweep, points, i, at) : PointLabel(sweep, points, i, at));
+  for (PetscInt i = 0; i < points->n; i++) {
+    if (points->name)
+      PetscCall(PointTakeNames(sweep, points, i, at));
+    else
+      PetscCall(PointLabel(sweep, points, i, at));
+  }
   PetscCall(PetscFree(at));
   PetscCall(PairsByLabel(sweep, first_event, points));
   PetscCall(PointsKeep(sweep, points));

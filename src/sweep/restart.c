@@ -1,8 +1,8 @@
 /*
-   What a killed sweep goes on from, in files of the output folder until it is complete: the full solutions behind the basis of a
-   reduced sweep, after each of them a file sweep_restart_<k> with its new vectors. The dense model is made again from the same
-   blocks of vectors: on one rank bit by bit the same. Files of another sweep and damaged ones are named, not read, and in the end
-   replaced. Sweeps that have no basis keep their points (keptpoints.c).
+   What a killed sweep goes on from, in files of the output folder until it is complete: the full solutions behind the
+   basis of a reduced sweep, after each of them a file sweep_restart_<k> with its new vectors. The dense model is made
+   again from the same blocks of vectors: on one rank bit by bit the same. Files of another sweep and damaged ones are
+   named, not read, and in the end replaced. Sweeps that have no basis keep their points (keptpoints.c).
 */
 #include "sweepimpl.h"
 #include "base/process/interrupt.h"
@@ -53,7 +53,8 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   PetscCallMPI(MPI_Comm_size(sweep->comm, &size));
   PetscCall(ChecksumSetPart(c, "the sweep"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){size}));
-  PetscCall(ChecksumAddInts(c, 3, (const PetscInt[]){(PetscInt)sweep->method, (PetscInt)sweep->real_stiffness, sweep->n_real}));
+  PetscCall(
+    ChecksumAddInts(c, 3, (const PetscInt[]){(PetscInt)sweep->method, (PetscInt)sweep->real_stiffness, sweep->n_real}));
   PetscCall(ChecksumAddReals(c, 1, &sweep->rtol));
   for (PetscInt k = 0; k < grid->n_axes; k++) {
     PetscCall(ChecksumAddInts(c, 1, &grid->n_moved[k]));
@@ -206,11 +207,8 @@ static PetscErrorCode BasisTakeUp(Sweep sweep, const BasisHeader *h, JournalPack
 /* Reads the next file into the basis; taken = whether it is there, whole and of this sweep */
 static PetscErrorCode FileResume(Sweep sweep, PetscBool *taken)
 {
-  JournalItem item[2] = {
-    {"samples", -1, NULL},
-    {"vectors", -1, NULL}
-  };
-  JournalPack pack = {.good = PETSC_TRUE};
+  JournalItem item[2] = {{"samples", -1, NULL}, {"vectors", -1, NULL}};
+  JournalPack pack    = {.good = PETSC_TRUE};
   BasisHeader h;
   char        name[64];
 
@@ -223,11 +221,13 @@ static PetscErrorCode FileResume(Sweep sweep, PetscBool *taken)
   pack.n    = item[0].n;
   PetscCall(JournalPackMove(&pack, &h, sizeof(h)));
   PetscCall(HeaderFits(sweep, &h, item[1].n, taken));
-  if (*taken) PetscCall(BasisTakeUp(sweep, &h, &pack, item[1].values));
+  if (*taken)
+    PetscCall(BasisTakeUp(sweep, &h, &pack, item[1].values));
   else
-    PetscCall(PetscFPrintf(sweep->comm, stderr,
-                           "squeal: warning: '%s/%s' does not follow the file before it; the sweep goes on without it\n",
-                           sweep->folder, name));
+    PetscCall(
+      PetscFPrintf(sweep->comm, stderr,
+                   "squeal: warning: '%s/%s' does not follow the file before it; the sweep goes on without it\n",
+                   sweep->folder, name));
   PetscCall(JournalPackDestroy(&pack));
   PetscCall(PetscFree(item[1].values));
   PetscFunctionReturn(0);

@@ -55,12 +55,11 @@ PetscErrorCode LineTrackSegments(Sweep sweep, LinePoints *points)
   PetscFunctionBeginUser;
   for (PetscInt k = 0, last; k < points->n; k = last) {
     const PetscInt first_new = sweep->n_branches, first_event = sweep->events.n;
-    BranchLine     line = {
-          sweep->grid.n_moved[0], 0, sweep->grid.parameter[0], &points->value[k], &points->p[k * sweep->grid.n_parameters],
-          &sweep->window};
+    BranchLine line = {sweep->grid.n_moved[0], 0, sweep->grid.parameter[0], &points->value[k], NULL, &sweep->window};
 
     for (last = k + 1; last < points->n && place[last].status == place[k].status;) last++;
-    line.n = last - k;
+    line.n    = last - k;
+    line.base = &points->p[k * sweep->grid.n_parameters];
     PetscCall(TrackLine(&sweep->basis.reduced, &line, &points->modes[k], &points->branch[k], &sweep->n_branches,
                         &sweep->events));
     if (k) PetscCall(SegmentLink(sweep, first_new, k, last, first_event, points));

@@ -52,7 +52,8 @@ static PetscErrorCode SweepCheckMethod(Sweep sweep)
   PetscCheck(!sweep->n_percent || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_percent does nothing without -sweep_uncertain");
   PetscCheck(sweep->n_percent || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each", sweep->uncertain);
+             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each",
+             sweep->uncertain);
   PetscCheck(sweep->method != SWEEP_REAL || !sweep->onsets, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_onsets true: -sweep_method real follows no branches, and finds no onsets");
   if (sweep->method == SWEEP_REAL && !sweep->n_verify)
@@ -131,7 +132,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
     sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
-  PetscCall(PetscCalloc1(2 * sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
+  PetscCall(
+    PetscCalloc1(2 * sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
   PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
   if (!sweep->whole && sweep->restart) { /* kept in the output folder as it grows */
@@ -161,9 +163,9 @@ static PetscErrorCode LinesSolve(Sweep sweep)
   sweep->groups.store = NULL;
   sweep->greedy.keep  = NULL;
   sweep->greedy.worst = SweepWorst(sweep);
-  PetscCheck(sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm,
-             PETSC_ERR_NOT_CONVERGED, "-sweep_rtol %.6g was not reached, the estimate is %.2g; raise -sweep_rtol",
-             (double)sweep->rtol, (double)sweep->greedy.worst);
+  PetscCheck(sweep->whole || sweep->greedy.worst <= sweep->rtol, sweep->comm, PETSC_ERR_NOT_CONVERGED,
+             "-sweep_rtol %.6g was not reached, the estimate is %.2g; raise -sweep_rtol", (double)sweep->rtol,
+             (double)sweep->greedy.worst);
   PetscFunctionReturn(0);
 }
 

@@ -66,40 +66,41 @@ struct _p_Sweep {
   Pencil    pencil;  /* of all points; NULL where each has its own sliding state */
   Progress  progress;
   /* set by options */
-  char        parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
-  SweepMethod method;
-  PetscReal   rtol, percent[SWEEP_MAX_UNCERTAIN];
-  PetscInt    max_samples, n_real, n_verify, n_groups, n_percent;
+  char           parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
+  SweepMethod    method;
+  PetscReal      rtol, percent[SWEEP_MAX_UNCERTAIN];
+  PetscInt       max_samples, n_real, n_verify, n_groups, n_percent;
   SweepStiffness real_stiffness;
-  PetscBool   linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
-  PetscBool   max_given, onsets_given;                /* -sweep_max_samples, -sweep_onsets are */
+  PetscBool      linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
+  PetscBool      max_given, onsets_given;                /* -sweep_max_samples, -sweep_onsets are */
   /* results */
-  SweepGrid      grid;
-  PointGroups    groups;
-  PointStore     store;
-  ReducedWindow  window;
-  Basis          basis;
-  Greedy         greedy;
-  StatusList     statuses;              /* empty without statics; n_pairs -1 without contact */
-  PetscInt       base_status, n_static; /* status of the scene's own values; static solutions */
-  SweepPoint    *point;                 /* [places] */
-  PetscReal     *worst;                 /* [places] largest estimated relative error, but for rounding */
-  PetscInt       n_branches;
-  PetscInt       n_broken; /* in full: branches of which it is not known where they go on */
-  PetscBool      whole;    /* the basis is the whole space */
-  BranchName    *label;    /* [n_branches] */
-  BranchEvents   events;
-  PetscBool     *is_confirmed; /* [onsets] on the full problem */
-  SweepCheck    *check;        /* [n_checks] */
-  SweepRisk     *risk;         /* [n_risks] */
-  PetscInt       n_checks, n_risks, n_combinations;
-  PetscReal      worst_risk; /* largest estimated relative error of all combinations */
-  const char    *folder;
-  Results        results;
-  Journal        journal; /* what a killed sweep goes on from */
-  JournalPack    places;          /* of a sweep without basis: those solved, being taken up while it is not to be written */
+  SweepGrid     grid;
+  PointGroups   groups;
+  PointStore    store;
+  ReducedWindow window;
+  Basis         basis;
+  Greedy        greedy;
+  StatusList    statuses;              /* empty without statics; n_pairs -1 without contact */
+  PetscInt      base_status, n_static; /* status of the scene's own values; static solutions */
+  SweepPoint   *point;                 /* [places] */
+  PetscReal    *worst;                 /* [places] largest estimated relative error, but for rounding */
+  PetscInt      n_branches;
+  PetscInt      n_broken; /* in full: branches of which it is not known where they go on */
+  PetscBool     whole;    /* the basis is the whole space */
+  BranchName   *label;    /* [n_branches] */
+  BranchEvents  events;
+  PetscBool    *is_confirmed; /* [onsets] on the full problem */
+  SweepCheck   *check;        /* [n_checks] */
+  SweepRisk    *risk;         /* [n_risks] */
+  PetscInt      n_checks, n_risks, n_combinations;
+  PetscReal     worst_risk; /* largest estimated relative error of all combinations */
+  const char   *folder;
+  Results       results;
+  Journal       journal; /* what a killed sweep goes on from */
+  /* of a sweep without basis: those solved, being taken up while it is not to be written */
+  JournalPack    places;
   PetscInt       n_files, n_kept; /* files; vectors in them, or places */
-  PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
+  PetscLogDouble seconds[5];      /* basis, points, onsets, verification, contact statuses */
 };
 
 /* quantities.c - rows of the options */
@@ -151,11 +152,13 @@ PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], con
 /* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
 PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
-/* restart.c - the journal; name of file k; columns first .. n - 1 of vectors to or from values; keeps the full solutions so far (ctx is
-   the sweep), takes up what an earlier run kept, and deletes all that is kept in the folder, also by longer sweeps */
+/* restart.c - the journal; name of file k; columns first .. n - 1 of vectors to or from values; keeps the full
+   solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that is kept in the folder,
+   also by longer sweeps */
 PETSC_INTERN PetscErrorCode SweepJournalOpen(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepFileName(PetscInt k, char name[64]);
-PETSC_INTERN PetscErrorCode SweepVectorsMove(BV vectors, PetscInt first, PetscInt n, PetscBool read, PetscReal values[]);
+PETSC_INTERN PetscErrorCode SweepVectorsMove(BV vectors, PetscInt first, PetscInt n, PetscBool read,
+                                             PetscReal values[]);
 PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
 PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

@@ -1,8 +1,8 @@
 /*
-   The BLAS that the program runs on. OpenBLAS chooses its kernels as it is loaded, by a table of processors that were known
-   when it was released. For a newer one it may take kernels of 2004 (Prescott), with which a factorisation takes two to
-   three times as long. OPENBLAS_CORETYPE in the environment names others. Results differ by rounding, so that a run tells
-   which they were.
+   The BLAS that the program runs on. OpenBLAS chooses its kernels as it is loaded, by a table of processors that were
+   known when it was released. For a newer one it may take kernels of 2004 (Prescott), with which a factorisation takes
+   two to three times as long. OPENBLAS_CORETYPE in the environment names others. Results differ by rounding, so that a
+   run tells which they were.
 */
 #include "blas.h"
 #include <string.h>

@@ -1,6 +1,6 @@
 /*
-   Small dense problems by LAPACK: getrf, getrs, gelss, geev, syev, sygv, ggev, pstrf. PETSc with real scalars declares the real
-   routines only, and not pstrf; the others are declared here.
+   Small dense problems by LAPACK: getrf, getrs, gelss, geev, syev, sygv, ggev, pstrf. PETSc with real scalars declares
+   the real routines only, and not pstrf; the others are declared here.
 */
 #include "base/algebra/dense.h"
 #include <petscblaslapack.h>
@@ -88,7 +88,8 @@ PetscErrorCode DenseSolveWith(PetscInt size, PetscReal A[], PetscInt m, PetscRea
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond, PetscInt *rank)
+PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond,
+                          PetscInt *rank)
 {
   const PetscInt     most = PetscMax(1, PetscMax(rows, columns));
   const PetscBLASInt one  = 1;
@@ -101,7 +102,8 @@ PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscR
   PetscCall(PetscBLASIntCast(most, &ldb));
   PetscCall(PetscBLASIntCast(10 * most, &work_size));
   PetscCall(PetscMalloc2(most, &singular, 10 * most, &work));
-  PetscCallBLAS("LAPACKgelss", LAPACKgelss_(&m, &n, &one, A, &m, b, &ldb, singular, &rcond, &found, work, &work_size, &info));
+  PetscCallBLAS("LAPACKgelss",
+                LAPACKgelss_(&m, &n, &one, A, &m, b, &ldb, singular, &rcond, &found, work, &work_size, &info));
   PetscCheck(info >= 0 && (!info || rank), PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gelss: info %d", (int)info);
   if (rank) *rank = info ? -1 : found;
   PetscCall(PetscFree2(singular, work));

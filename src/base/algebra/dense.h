@@ -6,24 +6,25 @@
 
 /* dense.c - LU factors in place of A; singular (may be NULL: then an error) = a pivot is zero */
 PetscErrorCode DenseFactor(PetscInt n, PetscReal A[], PetscBLASInt pivot[], PetscBool *singular);
-/* Rows and columns of a semidefinite symmetric A (overwritten) of which all others are combinations, but for a rest of `tolerance`
-   on the diagonal: chosen [n], `rank` of them */
+/* Rows and columns of a semidefinite symmetric A (overwritten) of which all others are combinations, but for a rest of
+   `tolerance` on the diagonal: chosen [n], `rank` of them */
 PetscErrorCode DenseChoose(PetscInt n, PetscReal A[], PetscReal tolerance, PetscInt *rank, PetscInt chosen[]);
 /* B := op(A)^-1 B from the factors, B [m][n] */
 PetscErrorCode DenseSolve(PetscInt n, const PetscReal LU[], const PetscBLASInt pivot[], PetscBool transposed,
                           PetscInt m, PetscReal B[]);
 /* B := A^-1 B, B [m][n]; A overwritten. singular as above: then B is no solution */
 PetscErrorCode DenseSolveWith(PetscInt n, PetscReal A[], PetscInt m, PetscReal B[], PetscBool *singular);
-/* The least x of those with the least |A x - b|, in place of b; A [columns][rows] is overwritten, b has room for both. Singular
-   values below rcond of the largest are none; rank = how many are left, -1 where LAPACK does not
+/* The least x of those with the least |A x - b|, in place of b; A [columns][rows] is overwritten, b has room for both.
+   Singular values below rcond of the largest are none; rank = how many are left, -1 where LAPACK does not
    converge, which is an error without it */
-PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond, PetscInt *rank);
+PetscErrorCode DenseLeast(PetscInt rows, PetscInt columns, PetscReal A[], PetscReal b[], PetscReal rcond,
+                          PetscInt *rank);
 /* The same for complex matrices */
 PetscErrorCode DenseComplexFactor(PetscInt n, PetscComplex A[], PetscBLASInt pivot[], PetscBool *singular);
 PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const PetscBLASInt pivot[], PetscBool transposed,
                                  PetscInt m, PetscComplex B[]);
-/* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H; NULL for
-   not */
+/* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H;
+   NULL for not */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
 /* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending,
    vectors in place of A */

@@ -1,13 +1,13 @@
 /*
    A += c X of two sparse matrices row by row, see matrixadd.h. Columns of a row are in order in both, so that one walk
-   along the row of A meets those of X. PETSc's MatSetValues() and MatAXPY() with SUBSET_NONZERO_PATTERN search each entry
-   for itself.
+   along the row of A meets those of X. PETSc's MatSetValues() and MatAXPY() with SUBSET_NONZERO_PATTERN search each
+   entry for itself.
 */
 #include "matrixadd.h"
 #include <petsc/private/petscimpl.h> /* PetscObjectStateIncrease() */
 
-/* Rows of a sequential matrix, whole or from their diagonal on; column j stands for number[j] where numbers are given, which
-   grow with j */
+/* Rows of a sequential matrix, whole or from their diagonal on; column j stands for number[j] where numbers are given,
+   which grow with j */
 typedef struct {
   Mat             A;
   PetscBool       upper;
@@ -77,9 +77,19 @@ static PetscErrorCode SequentialAdd(PetscBool add, PetscReal c, AddRows *X, AddR
 
   PetscFunctionBeginUser;
   if (add) PetscCall(MatSeqAIJGetArrayRead(X->A, &x));
-  if (add) PetscCall(A->upper ? MatSeqSBAIJGetArray(A->A, &a) : MatSeqAIJGetArray(A->A, &a));
+  if (add) {
+    if (A->upper)
+      PetscCall(MatSeqSBAIJGetArray(A->A, &a));
+    else
+      PetscCall(MatSeqAIJGetArray(A->A, &a));
+  }
   for (PetscInt i = 0; i < A->n && *fits; i++) *fits = RowAdd(i, c, X, x, A, a);
-  if (add) PetscCall(A->upper ? MatSeqSBAIJRestoreArray(A->A, &a) : MatSeqAIJRestoreArray(A->A, &a));
+  if (add) {
+    if (A->upper)
+      PetscCall(MatSeqSBAIJRestoreArray(A->A, &a));
+    else
+      PetscCall(MatSeqAIJRestoreArray(A->A, &a));
+  }
   if (add) PetscCall(MatSeqAIJRestoreArrayRead(X->A, &x));
   PetscFunctionReturn(0);
 }

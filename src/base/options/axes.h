@@ -1,5 +1,6 @@
 /*
-   Axes - one or two parameters that an analysis varies over values, each with those that take the same values, in the words of
+   Axes - one or two parameters that an analysis varies over values, each with those that take the same values, in the
+   words of
    -<owner>_parameter and -<owner>_link. Private to the rooms above base/, which know what the names stand for.
 */
 #pragma once
@@ -16,8 +17,8 @@ typedef struct {
   PetscBool   has_second; /* values of a second parameter are given */
 } AxesGiven;
 
-/* Adds a parameter to axis k, the varied one first; unit (borrowed) = its unit, "" or "-" for none. Raises the error for
-   what is no parameter, which `option` names */
+/* Adds a parameter to axis k, the varied one first; unit (borrowed) = its unit, "" or "-" for none. Raises the error
+   for what is no parameter, which `option` names */
 typedef PetscErrorCode (*AxesAdd)(void *ctx, const char option[], const char name[], PetscInt k, const char **unit);
 
 /* AxesRead - adds the varied parameters, then those of the links. Not collective, same call on all ranks.

@@ -1,9 +1,9 @@
 /*
    Help: the short one of -h, the list of all options of -help, the versions.
 
-   The options are those that PETSc's help printer is told of while all rooms read theirs: its lines are taken apart into
-   name, value in force, default and text. PETSc prints lists of types past the help printer, hence both are replaced
-   for that time.
+   The options are those that PETSc's help printer is told of while all rooms read theirs: its lines are taken apart
+   into name, value in force, default and text. PETSc prints lists of types past the help printer, hence both are
+   replaced for that time.
 */
 #include "help.h"
 #include "base/algebra/blas.h"
@@ -233,7 +233,10 @@ void HelpHush(int argc, char *const argv[])
 static PetscErrorCode HelpForce(PetscBool on)
 {
   PetscFunctionBeginUser;
-  PetscCall(on ? PetscOptionsSetValue(NULL, "-help", NULL) : PetscOptionsClearValue(NULL, "-help"));
+  if (on)
+    PetscCall(PetscOptionsSetValue(NULL, "-help", NULL));
+  else
+    PetscCall(PetscOptionsClearValue(NULL, "-help"));
   PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton));
   PetscFunctionReturn(0);
 }

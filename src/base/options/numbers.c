@@ -1,6 +1,7 @@
 /*
-   Numbers between PetscOptionsBegin() and PetscOptionsEnd(). PETSc reads `default`, `decide` and `mouse` as -2 and -1, which are codes of
-   its own functions and no numbers of a scene, and an integer that its type does not hold as another one: both are refused.
+   Numbers between PetscOptionsBegin() and PetscOptionsEnd(). PETSc reads `default`, `decide` and `mouse` as -2 and -1,
+   which are codes of its own functions and no numbers of a scene, and an integer that its type does not hold as another
+   one: both are refused.
 */
 #include <squeal/options.h>
 #include <stdlib.h>
@@ -27,7 +28,8 @@ static PetscErrorCode WordCheck(MPI_Comm comm, const char name[], const char wor
   const double value = strtod(word, &end);
 
   PetscFunctionBeginUser;
-  PetscCheck(!WordIsCode(word), comm, PETSC_ERR_USER_INPUT, "%s: %s has no numeric value: write it as %s, several with commas", name, word,
+  PetscCheck(!WordIsCode(word), comm, PETSC_ERR_USER_INPUT,
+             "%s: %s has no numeric value: write it as %s, several with commas", name, word,
              integer ? "4 or 1000, without a point, an exponent or a unit" : "0.3 or 16e9, without a unit");
   PetscCheck(!integer || end == word || *end || (value <= PETSC_MAX_INT && value >= -PETSC_MAX_INT), comm,
              PETSC_ERR_USER_INPUT, "%s %s must be an integer from -%" PetscInt_FMT " to %" PetscInt_FMT, name, word,

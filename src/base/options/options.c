@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <strings.h>
 
-#define MAX_NAME    HELP_MAX_NAME
-#define MAX_LIST    4096 /* characters of a message */
-#define MAX_SHOWN   160  /* characters of a list that are shown */
+#define MAX_NAME  HELP_MAX_NAME
+#define MAX_LIST  4096 /* characters of a message */
+#define MAX_SHOWN 160  /* characters of a list that are shown */
 
 /* All lists of a scene */
 static const char *const lists[] = {"-parts",   "-supports", "-springs", "-dashpots", "-loads",  "-contacts", "-probes",
@@ -52,8 +52,10 @@ static PetscErrorCode ListShow(const char list[], const char names[], size_t siz
 
   PetscFunctionBeginUser;
   for (const char *c = names; *c; c++) n += *c == ',';
-  PetscCall(strlen(names) < MAX_SHOWN ? PetscSNPrintf(text, size, "%s %s", list, names)
-                                      : PetscSNPrintf(text, size, "the %" PetscInt_FMT " names of %s", n, list));
+  if (strlen(names) < MAX_SHOWN)
+    PetscCall(PetscSNPrintf(text, size, "%s %s", list, names));
+  else
+    PetscCall(PetscSNPrintf(text, size, "the %" PetscInt_FMT " names of %s", n, list));
   PetscFunctionReturn(0);
 }
 
@@ -212,7 +214,8 @@ static PetscErrorCode FileDropUnlisted(MPI_Comm comm, PetscOptions file, const c
   PetscCall(ListShow(list, now ? now : "", sizeof(shown), shown));
   for (; *(given += strspn(given, ", ")); given += strcspn(given, ", ")) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s", (int)strcspn(given, ", "), given));
-    PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s, which stands in place of an options file's list", name, shown));
+    PetscCall(PetscSNPrintf(why, sizeof(why), "'%s' is not in %s, which stands in place of an options file's list",
+                            name, shown));
     if (!now || !ListHolds(now, name)) PetscCall(OptionsDropOf(comm, name, why));
   }
   PetscFunctionReturn(0);
@@ -234,8 +237,10 @@ PetscErrorCode OptionsDropUnlisted(MPI_Comm comm)
     PetscCall(OptionsNamesFile(word[i], &is_file, &is_yaml));
     if (!is_file) continue;
     PetscCall(PetscOptionsCreate(&file));
-    PetscCall(is_yaml ? PetscOptionsInsertFileYAML(comm, file, word[i + 1], PETSC_TRUE)
-                      : PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
+    if (is_yaml)
+      PetscCall(PetscOptionsInsertFileYAML(comm, file, word[i + 1], PETSC_TRUE));
+    else
+      PetscCall(PetscOptionsInsertFile(comm, file, word[i + 1], PETSC_TRUE));
     for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) PetscCall(FileDropUnlisted(comm, file, lists[k]));
     PetscCall(PetscOptionsDestroy(&file));
   }
@@ -252,13 +257,13 @@ static PetscBool MessageSplit(const char message[], char value[MAX_NAME], const 
   static const struct {
     const char *start, *end, *wrong; /* wrong NULL: the end says it */
   } forms[] = {
-    {"Input string ",           " has no numeric", NUMBER                              },
-    {"Input string ",           " has no integer", INTEGER_ONLY                        },
-    {"Input string ",           " has no ",        NULL                                },
-    {"String of length zero ",  "has no ",         "a number is missing beside a comma"},
-    {"Newly set value ",        " less ",          " must be a finite number"          },
-    {"Newly set value ",        " greater ",       " must be a finite number"          },
-    {"Unknown logical value: ", NULL,              " is neither true nor false"        },
+    {"Input string ", " has no numeric", NUMBER},
+    {"Input string ", " has no integer", INTEGER_ONLY},
+    {"Input string ", " has no ", NULL},
+    {"String of length zero ", "has no ", "a number is missing beside a comma"},
+    {"Newly set value ", " less ", " must be a finite number"},
+    {"Newly set value ", " greater ", " must be a finite number"},
+    {"Unknown logical value: ", NULL, " is neither true nor false"},
   };
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(forms); i++) {
@@ -309,15 +314,16 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 {
   char        value[MAX_NAME], names[MAX_LIST], place[PETSC_MAX_PATH_LEN], unit[MAX_NAME];
   const char *wrong;
-  int most;
+  int         most;
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (sscanf(message, "Number of options %*d < max number of options %d", &most) == 1) {
     PetscCall(OptionsFindLargest(place, sizeof(place)));
-    PetscCall(PetscSNPrintf(text, size,
-                            "%s; PETSc %d.%d takes %d options of all files and the command line: unite supports, loads or probes of "
-                            "one kind in one set of the mesh, leave defaults out, or compile with PETSc 3.22, which takes any number",
-                            place[0] ? place : "too many options", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, most));
+    PetscCall(PetscSNPrintf(
+      text, size,
+      "%s; PETSc %d.%d takes %d options of all files and the command line: unite supports, loads or probes of "
+      "one kind in one set of the mesh, leave defaults out, or compile with PETSc 3.22, which takes any number",
+      place[0] ? place : "too many options", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, most));
   }
   if (!MessageSplit(message, value, &wrong)) PetscFunctionReturn(0);
   PetscCall(OptionsWithValue(value + strspn(value, " "), NULL, names, sizeof(names)));

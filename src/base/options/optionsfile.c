@@ -18,7 +18,7 @@
 #define MAX_SIZE  (16 << 20) /* bytes of an options file */
 #define MAX_DEPTH 32
 #define MAX_KEY   512
-#define MAX_KEYS  10000  /* of a file */
+#define MAX_KEYS  10000 /* of a file */
 
 /* A mapping or a list that is open */
 typedef struct {
@@ -339,7 +339,10 @@ PetscErrorCode OptionsFindLine(const char file[], PetscBool is_yaml, const char 
   stream = fopen(file, "rb");
   PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "-options_file %s: %s", file, strerror(errno));
   PetscCall(FileIsYaml(file, stream, &is_yaml));
-  PetscCall(is_yaml ? YamlCheck(file, stream, name, line, n) : TextCheck(file, stream, name, line, n));
+  if (is_yaml)
+    PetscCall(YamlCheck(file, stream, name, line, n));
+  else
+    PetscCall(TextCheck(file, stream, name, line, n));
   (void)fclose(stream);
   PetscFunctionReturn(0);
 }

@@ -29,7 +29,8 @@ static PetscErrorCode WordCheckUnit(const ValuesOption *option, const char word[
 
   PetscFunctionBeginUser;
   PetscCall(ValueExplainUnit(word, text, sizeof(text)));
-  PetscCheck(!text[0], option->comm, PETSC_ERR_USER_INPUT, "%s '%s': %s has a unit: %s", option->name, option->text, word, text);
+  PetscCheck(!text[0], option->comm, PETSC_ERR_USER_INPUT, "%s '%s': %s has a unit: %s", option->name, option->text,
+             word, text);
   PetscFunctionReturn(0);
 }
 

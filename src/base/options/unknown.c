@@ -4,8 +4,8 @@
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are exactly
    those that -help would print, so they are collected by reading all options once more (help.c); this happens only when
    there is something to complain about. Nearest = smallest Damerau-Levenshtein distance (adjacent swaps count once): F.
-   J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, that of another name (-contact_mu of a page, where the
-   scene calls its contact brake) as two and a half.
+   J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, that of another name (-contact_mu of a page,
+   where the scene calls its contact brake) as two and a half.
 
    PETSc has read most of its own options before the run. What it reads later is listed below; anything else of its
    prefixes that is left then is never read: an error on the command line, while a file or an environment may be shared
@@ -128,8 +128,8 @@ static int NameDistance(const char unknown[], const char valid[], PetscBool is_l
   return !is_librarys && tail && other && !strcmp(tail, other) ? PetscMin(distance, OTHER_PREFIX) : distance;
 }
 
-/* Options of PETSc's and SLEPc's solvers: read when the rooms read theirs, or when SolverReadEigenOptions() and its like
-   ask, but for those of viewers */
+/* Options of PETSc's and SLEPc's solvers: read when the rooms read theirs, or when SolverReadEigenOptions() and its
+   like ask, but for those of viewers */
 static PetscBool OptionIsSolvers(const char name[])
 {
   static const char *const prefixes[] = {"eps_", "pep_", "st_", "ts_", "bv_", "ds_", "rg_"};
@@ -215,11 +215,12 @@ static PetscErrorCode UnknownTake(UnknownOption list[], PetscInt most, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* What may be missing where only the name before the tail differs, as of -pad_density and -disc_density: in which list the other is */
+/* What may be missing where only the name before the tail differs, as of -pad_density and -disc_density: in which list
+   the other is */
 static PetscErrorCode UnknownFindList(const UnknownOption *u, size_t size, char text[])
 {
   const size_t length = strlen(u->name), other = strlen(u->nearest);
-  size_t       tail   = 0;
+  size_t       tail = 0;
   char         name[HELP_MAX_NAME], list[HELP_MAX_NAME];
 
   PetscFunctionBeginUser;
@@ -240,10 +241,11 @@ static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
   const int length = (int)strlen(u->name), near = ONE_EDIT * (u->is_librarys ? 1 + length / 6 : 2 + length / 3);
 
   PetscFunctionBeginUser;
-  PetscCheck(!FormerInstead(u->name), comm, PETSC_ERR_USER_INPUT, "-%s is no more: %s", u->name, FormerInstead(u->name));
+  PetscCheck(!FormerInstead(u->name), comm, PETSC_ERR_USER_INPUT, "-%s is no more: %s", u->name,
+             FormerInstead(u->name));
   PetscCall(UnknownFindList(u, sizeof(missing), missing));
-  PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s%s", u->name, u->nearest,
-             missing);
+  PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s%s",
+             u->name, u->nearest, missing);
   PetscCheck(!u->is_librarys, comm, PETSC_ERR_USER_INPUT, "-%s: nothing in squeal reads it; leave it out", u->name);
   SETERRQ(comm, PETSC_ERR_USER_INPUT, "unknown option -%s; -help lists the valid ones", u->name);
 }
@@ -261,8 +263,10 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
   for (PetscInt k = 0; k < n; k++) {
     if (FormerInstead(unknown[k].name)) unknown[k].distance = -1;
     for (int i = 0; i < valid.n; i++) PetscCall(UnknownCompare(&unknown[k], valid.option[i].name));
-    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++) PetscCall(UnknownCompare(&unknown[k], read_later[i]));
-    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++) PetscCall(UnknownCompare(&unknown[k], read_first[i]));
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_later); i++)
+      PetscCall(UnknownCompare(&unknown[k], read_later[i]));
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(read_first); i++)
+      PetscCall(UnknownCompare(&unknown[k], read_first[i]));
     if (unknown[k].distance < unknown[best].distance) best = k;
   }
   free(valid.option);

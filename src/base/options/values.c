@@ -131,8 +131,8 @@ PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char optio
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[], const char initial[],
-                              const OptionsRoom *room, PetscInt *n)
+PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[],
+                              const char initial[], const OptionsRoom *room, PetscInt *n)
 {
   const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
   char        now[MAX_TEXT];
@@ -148,13 +148,14 @@ PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option
   else
     PetscCall(PetscOptionsGetRealArray(PetscOptionsObject->options, prefix, option, real, &count, &given));
   *n = given ? count : 0;
-  PetscCheck(*n <= room->most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT, "-%s%s has more than %" PetscInt_FMT " values",
-             prefix, option + 1, room->most);
+  PetscCheck(*n <= room->most, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has more than %" PetscInt_FMT " values", prefix, option + 1, room->most);
   if (room->ints) PetscCall(PetscArraycpy(room->ints, integer, *n));
   if (room->reals) PetscCall(PetscArraycpy(room->reals, real, *n));
   PetscCall(PetscFree2(real, integer));
   PetscCall(ArrayPrint(*n, room->reals, room->ints, now));
-  if (*n == 1 && room->reals) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)room->reals[0])); /* as PETSc shows one number */
+  /* as PETSc shows one number */
+  if (*n == 1 && room->reals) PetscCall(PetscSNPrintf(now, sizeof(now), "%g", (double)room->reals[0]));
   PetscCall(OptionsShow(PetscOptionsObject, option, help, *n ? now : initial, initial));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 /*
-   Aliases of a YAML file, looked at before PETSc reads it: it says of a name that is not there neither file nor line, and twelve levels
-   of lists of aliases would fill the memory.
+   Aliases of a YAML file, looked at before PETSc reads it: it says of a name that is not there neither file nor line,
+   and twelve levels of lists of aliases would fill the memory.
 */
 #include "yamlanchors.h"
 
@@ -45,9 +45,10 @@ PetscErrorCode YamlAnchorsRepeat(YamlAnchors *a, const char file[], size_t line,
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < a->n; i++)
     if (!strcmp(a->anchor[i].name, name)) found = &a->anchor[i];
-  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s:%zu: *%s repeats what has the name &%s, and nothing above has it; put a text that begins with * in quotes",
-             file, line, name, name);
+  PetscCheck(
+    found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+    "%s:%zu: *%s repeats what has the name &%s, and nothing above has it; put a text that begins with * in quotes",
+    file, line, name, name);
   PetscCheck(found->depth == YAML_VALUE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s:%zu: *%s stands within what it repeats", file, line, name);
   PetscCheck(!in_list || !found->many, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,

@@ -28,8 +28,8 @@ PETSC_INTERN void           YamlAnchorsEnd(YamlAnchors *anchors, PetscInt depth)
 /* Raises PETSC_ERR_USER_INPUT where there are too many values with some more of them. Not collective. */
 PETSC_INTERN PetscErrorCode YamlAnchorsCount(YamlAnchors *anchors, const char file[], size_t line, size_t more);
 
-/* An alias, in a list or not: raises PETSC_ERR_USER_INPUT where nothing has that name, where it stands within what it repeats, for a
-   mapping or list in a list, and for too many values. Not collective. */
+/* An alias, in a list or not: raises PETSC_ERR_USER_INPUT where nothing has that name, where it stands within what it
+   repeats, for a mapping or list in a list, and for too many values. Not collective. */
 PETSC_INTERN PetscErrorCode YamlAnchorsRepeat(YamlAnchors *anchors, const char file[], size_t line, PetscBool in_list,
                                               const char name[]);
 PETSC_INTERN PetscErrorCode YamlAnchorsDestroy(YamlAnchors *anchors);

@@ -21,10 +21,8 @@
 /* Where the two versions of control groups tell limit and use, bytes */
 static const struct {
   const char *line, *folder, *limit, *used; /* beginning of the line of /proc/self/cgroup after its number */
-} groups[] = {
-  {":",       "/sys/fs/cgroup",        "memory.max",            "anon"     },
-  {"memory:", "/sys/fs/cgroup/memory", "memory.limit_in_bytes", "total_rss"}
-};
+} groups[] = {{":", "/sys/fs/cgroup", "memory.max", "anon"},
+              {"memory:", "/sys/fs/cgroup/memory", "memory.limit_in_bytes", "total_rss"}};
 
 static PetscReal allowed       = 0; /* -squeal_memory, MB */
 static int       machine_ranks = 1; /* log handle: ranks of the run on this machine */

@@ -17,8 +17,8 @@ PETSC_INTERN void MemoryReturn(void);
 
 /* Reads -squeal_memory */
 PETSC_INTERN PetscErrorCode MemorySetFromOptions(MPI_Comm comm);
-/* MB that factors or models may take on this machine, all ranks there together: -squeal_memory where given, else what is
-   free, infinite where nothing tells */
+/* MB that factors or models may take on this machine, all ranks there together: -squeal_memory where given, else what
+   is free, infinite where nothing tells */
 PETSC_INTERN double MemoryRoom(PetscBool *given);
 /* Ranks of the whole run on this machine. Not collective. */
 PETSC_INTERN int MemoryRanks(void);

@@ -1,6 +1,6 @@
 /*
-   Printing: PETSc hands all text of its printers to PetscVFPrintf, which is replaced here. Text for stdout and stderr is
-   copied to the log file. A progress line, which begins with a carriage return, is no part of the log, and is erased
+   Printing: PETSc hands all text of its printers to PetscVFPrintf, which is replaced here. Text for stdout and stderr
+   is copied to the log file. A progress line, which begins with a carriage return, is no part of the log, and is erased
    before other text follows it.
 */
 #include "print.h"

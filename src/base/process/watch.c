@@ -1,9 +1,9 @@
 /*
-   A rank that is killed, by the system where memory runs out or by a person, can say nothing, and the launcher then kills
-   the others before one of them could. Hence each of several ranks has a parent, which waits: it says which rank was
-   killed, by which signal, and where results are, and dies of the same signal, so that the launcher sees what it would
-   have seen. Signals of the launcher it passes on; the rank is in a process group of its own, else it would get them
-   twice. Each dies with its parent, prctl(2), so that none is left where only one is killed.
+   A rank that is killed, by the system where memory runs out or by a person, can say nothing, and the launcher then
+   kills the others before one of them could. Hence each of several ranks has a parent, which waits: it says which rank
+   was killed, by which signal, and where results are, and dies of the same signal, so that the launcher sees what it
+   would have seen. Signals of the launcher it passes on; the rank is in a process group of its own, else it would get
+   them twice. Each dies with its parent, prctl(2), so that none is left where only one is killed.
 
    SIGINT and SIGTERM have a line already (interrupt.c), as have faults of the program, which PETSc catches.
 */
@@ -35,8 +35,7 @@ static void WatchSignals(void)
   static const int passed[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGTSTP, SIGCONT};
   struct sigaction action   = {.sa_handler = PassOn, .sa_flags = SA_RESTART};
 
-  for (size_t i = 0; i < sizeof(passed) / sizeof(passed[0]); i++)
-    (void)sigaction(passed[i], &action, NULL);
+  for (size_t i = 0; i < sizeof(passed) / sizeof(passed[0]); i++) (void)sigaction(passed[i], &action, NULL);
 }
 
 static void WatchSay(const char rank[], int number)
@@ -46,8 +45,8 @@ static void WatchSay(const char rank[], int number)
   const char *const where = folder[0] ? "files in " : "nothing has been written";
   const char *const kept  = folder[0] ? " that bear their final name are complete" : "";
   char              line[PATH_MAX + 256];
-  const int         n = snprintf(line, sizeof(line), "squeal: error: rank %s was killed by %s%s; %s%s%s\n", rank, name,
-                                 cause, where, folder, kept);
+  const int n = snprintf(line, sizeof(line), "squeal: error: rank %s was killed by %s%s; %s%s%s\n", rank, name, cause,
+                         where, folder, kept);
 
   if (write(STDERR_FILENO, line, (size_t)n) < 0) return; /* nobody reads */
 }
@@ -72,7 +71,7 @@ static void WatchEnd(const char rank[])
 void WatchBegin(void)
 {
   const char *const size = getenv("OMPI_COMM_WORLD_SIZE"), *const rank = getenv("OMPI_COMM_WORLD_RANK");
-  const pid_t       parent = getpid();
+  const pid_t parent = getpid();
 
   if (!size || !rank || atoi(size) < 2) return;
   folder = mmap(NULL, PATH_MAX, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);

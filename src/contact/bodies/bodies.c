@@ -1,8 +1,8 @@
 /*
-   What holds the bodies. Two bodies hang together by ties, contacts, bushings and points that have nodes of both; a body is held
-   by supports, motions, springs, dashpots, and by bushings and points that stand on the ground. Bodies that hang together with no
-   other ones and on nothing are said, and nodes in one place that nothing joins (touch.c). A scene that is free as a whole is
-   none of these.
+   What holds the bodies. Two bodies hang together by ties, contacts, bushings and points that have nodes of both; a
+   body is held by supports, motions, springs, dashpots, and by bushings and points that stand on the ground. Bodies
+   that hang together with no other ones and on nothing are said, and nodes in one place that nothing joins (touch.c). A
+   scene that is free as a whole is none of these.
 */
 #include "bodiesimpl.h"
 
@@ -105,7 +105,8 @@ static PetscErrorCode PairsMark(BodyGraph *b, PetscInt interface, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* What the pairs of a contact join: the body of a slave and those under it, of slaves that have pairs alone; slave[n_pairs] */
+/* What the pairs of a contact join: the body of a slave and those under it, of slaves that have pairs alone;
+   slave[n_pairs] */
 static PetscErrorCode PairsJoin(BodyGraph *b, PetscInt interface, const PetscInt slave[])
 {
   const ContactSurface *s;
@@ -189,8 +190,7 @@ static PetscErrorCode GraphHold(BodyGraph *b)
   for (PetscInt i = 0; i < s->n_springs; i++) PetscCall(SetsJoin(b, s->springs[i].set, NULL, PETSC_TRUE));
   for (PetscInt i = 0; i < s->n_dashpots; i++) PetscCall(SetsJoin(b, s->dashpots[i].set, NULL, PETSC_TRUE));
   for (PetscInt i = 0; i < s->n_joints; i++)
-    if (!s->joints[i].set[1] || !s->joints[i].set[1][0])
-      PetscCall(SetsJoin(b, s->joints[i].set[0], NULL, PETSC_TRUE));
+    if (!s->joints[i].set[1] || !s->joints[i].set[1][0]) PetscCall(SetsJoin(b, s->joints[i].set[0], NULL, PETSC_TRUE));
   for (PetscInt i = 0; i < s->n_points; i++)
     if (PointStands(&s->points[i])) PetscCall(SetsJoin(b, s->points[i].set[0], NULL, PETSC_TRUE));
   PetscFunctionReturn(0);
@@ -217,8 +217,8 @@ static PetscErrorCode PieceName(const BodyGraph *b, PetscInt first, size_t size,
 /* "; 35 of its nodes lie on nodes of part a, which it does not share": where the piece lies on others */
 static PetscErrorCode PieceNameTouched(const BodyGraph *b, PetscInt first, PetscInt n_bodies, size_t size, char text[])
 {
-  const PetscInt root = RootOf(b->parent, first);
-  PetscInt       n    = 0;
+  const PetscInt root       = RootOf(b->parent, first);
+  PetscInt       n          = 0;
   char           names[512] = "";
 
   PetscFunctionBeginUser;
@@ -236,7 +236,8 @@ static PetscErrorCode PieceNameTouched(const BodyGraph *b, PetscInt first, Petsc
   }
   if (n)
     PetscCall(PetscSNPrintf(text, size,
-                            "; %" PetscInt_FMT " of %s nodes lie on nodes of %s and are not shared: merge them in the mesh, or "
+                            "; %" PetscInt_FMT
+                            " of %s nodes lie on nodes of %s and are not shared: merge them in the mesh, or "
                             "join the bodies by -ties",
                             n, n_bodies > 1 ? "their" : "its", names));
   PetscFunctionReturn(0);
@@ -245,7 +246,7 @@ static PetscErrorCode PieceNameTouched(const BodyGraph *b, PetscInt first, Petsc
 /* Whether a body is the first of a piece that hangs on nothing, where there is another piece */
 static PetscBool PieceIsLoose(const BodyGraph *b, PetscInt first)
 {
-  const PetscInt root = RootOf(b->parent, first);
+  const PetscInt root   = RootOf(b->parent, first);
   PetscBool      others = PETSC_FALSE;
 
   if (root == RootOf(b->parent, b->n)) return PETSC_FALSE;
@@ -259,7 +260,7 @@ static PetscBool PieceIsLoose(const BodyGraph *b, PetscInt first)
 static PetscErrorCode SayLoose(const BodyGraph *b)
 {
   const MPI_Comm comm = b->contact->comm;
-  PetscInt       n = 0, n_bodies;
+  PetscInt       n    = 0, n_bodies;
   char           names[512], touched[768];
 
   PetscFunctionBeginUser;
@@ -268,13 +269,12 @@ static PetscErrorCode SayLoose(const BodyGraph *b)
     PetscCall(PieceName(b, i, sizeof(names), names, &n_bodies));
     PetscCall(PieceNameTouched(b, i, n_bodies, sizeof(touched), touched));
     PetscCall(PetscPrintf(comm, "note: %s %s: 6 rigid motions%s\n", names,
-                           n_bodies > 1 ? "hang together with no other body, and are held by nothing"
-                                        : "hangs together with no other body, and is held by nothing",
-                           touched));
+                          n_bodies > 1 ? "hang together with no other body, and are held by nothing"
+                                       : "hangs together with no other body, and is held by nothing",
+                          touched));
   }
   if (n > MAX_LINES)
-    PetscCall(PetscPrintf(comm, "note: %" PetscInt_FMT " more bodies are held by nothing\n",
-                           n - MAX_LINES));
+    PetscCall(PetscPrintf(comm, "note: %" PetscInt_FMT " more bodies are held by nothing\n", n - MAX_LINES));
   PetscFunctionReturn(0);
 }
 
@@ -299,14 +299,14 @@ static PetscErrorCode SayTouches(const BodyGraph *b)
     PetscCall(ModelNameBody(b->contact->model, b->body, t->a, sizeof(name[0]), name[0]));
     PetscCall(ModelNameBody(b->contact->model, b->body, t->b, sizeof(name[1]), name[1]));
     PetscCall(PetscPrintf(b->contact->comm,
-                           "note: %" PetscInt_FMT " nodes of %s lie on nodes of %s and are not shared: nothing "
-                           "joins the bodies there; merge them in the mesh, or give -ties or -contacts\n",
-                           t->n, name[0], name[1]));
+                          "note: %" PetscInt_FMT " nodes of %s lie on nodes of %s and are not shared: nothing "
+                          "joins the bodies there; merge them in the mesh, or give -ties or -contacts\n",
+                          t->n, name[0], name[1]));
   }
   if (n > MAX_LINES)
     PetscCall(PetscPrintf(b->contact->comm,
-                           "note: so do %" PetscInt_FMT " more nodes of %" PetscInt_FMT " more pairs of bodies\n",
-                           n_nodes, n - MAX_LINES));
+                          "note: so do %" PetscInt_FMT " more nodes of %" PetscInt_FMT " more pairs of bodies\n",
+                          n_nodes, n - MAX_LINES));
   PetscFunctionReturn(0);
 }
 

@@ -8,8 +8,8 @@ typedef struct {
   PetscInt a, b, n;
 } BodyTouch;
 
-/* The bodies of a scene, and what hangs together: parent[n + 1], the last for the ground; has[n] is work; together[n] tells those that
-   joints hold together, without the ground */
+/* The bodies of a scene, and what hangs together: parent[n + 1], the last for the ground; has[n] is work; together[n]
+   tells those that joints hold together, without the ground */
 typedef struct {
   Contact     contact;
   const Mesh *mesh;
@@ -17,5 +17,6 @@ typedef struct {
   BodyTouch  *touch; /* ordered, one for each two bodies */
 } BodyGraph;
 
-/* touch.c - nodes that two bodies have in one place, of which no joint, tie or contact has one on each side. Collective. */
+/* touch.c - nodes that two bodies have in one place, of which no joint, tie or contact has one on each side.
+   Collective. */
 PETSC_INTERN PetscErrorCode GraphFindTouches(BodyGraph *bodies);

@@ -1,9 +1,10 @@
 /*
-   Nodes that two bodies have in one place without sharing them, where no tie, contact or bushing joins both: often those that a
-   mesher should have made one.
+   Nodes that two bodies have in one place without sharing them, where no tie, contact or bushing joins both: often
+   those that a mesher should have made one.
 
-   They are found by their places along a direction askew to all meshes: each node within the box of another body goes to the rank
-   of its interval there, where those beside each other are compared. One near an end of its interval goes to the next as well.
+   They are found by their places along a direction askew to all meshes: each node within the box of another body goes
+   to the rank of its interval there, where those beside each other are compared. One near an end of its interval goes
+   to the next as well.
 */
 #include "bodiesimpl.h"
 #include "base/gather.h"
@@ -16,7 +17,7 @@
 typedef struct {
   PetscReal x[3], key; /* m */
   PetscInt  body;
-  PetscBool copy; /* of one that another rank has */
+  PetscBool copy;                /* of one that another rank has */
   uint64_t  side[2][MASK_WORDS]; /* on which sides of which joints it is */
 } BodyNode;
 
@@ -34,7 +35,8 @@ static PetscErrorCode BoxesMeasure(const BodyGraph *b, PetscReal box[], PetscRea
 }
 
 /* Whether a place is in the box of another body */
-static PetscBool InOtherBox(const BodyGraph *b, const PetscReal box[], PetscReal tol, PetscInt body, const PetscReal x[3])
+static PetscBool InOtherBox(const BodyGraph *b, const PetscReal box[], PetscReal tol, PetscInt body,
+                            const PetscReal x[3])
 {
   for (PetscInt i = 0; i < b->n; i++) {
     PetscBool in = i == body ? PETSC_FALSE : PETSC_TRUE;
@@ -83,8 +85,10 @@ static PetscErrorCode SidesMark(const BodyGraph *b, const PetscInt at[], BodyNod
   PetscFunctionReturn(0);
 }
 
-/* Nodes of this rank that may be where those of another body are; room for three of each, since some go to other ranks too */
-static PetscErrorCode BodyNodesFind(const BodyGraph *b, const PetscReal box[], PetscReal tol, PetscInt *n, BodyNode **node)
+/* Nodes of this rank that may be where those of another body are; room for three of each, since some go to other ranks
+   too */
+static PetscErrorCode BodyNodesFind(const BodyGraph *b, const PetscReal box[], PetscReal tol, PetscInt *n,
+                                    BodyNode **node)
 {
   const Mesh *mesh = b->mesh;
   PetscInt   *at;
@@ -113,10 +117,10 @@ static PetscErrorCode BodyNodesFind(const BodyGraph *b, const PetscReal box[], P
 /* Sends the candidates to the ranks of their intervals */
 static PetscErrorCode BodyNodesSend(MPI_Comm comm, PetscReal tol, PetscInt *n, BodyNode **node)
 {
-  PetscReal    end[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
-  PetscMPIInt  size, *rank;
-  PetscInt     n_all = *n;
-  BodyNode    *all = *node;
+  PetscReal   end[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  PetscMPIInt size, *rank;
+  PetscInt    n_all = *n;
+  BodyNode   *all   = *node;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -182,8 +186,8 @@ static PetscBool NodeIsJoined(const BodyNode *p)
   return PETSC_FALSE;
 }
 
-/* Whether two nodes are in one place, of two bodies, and nothing joins them: no joint has one on each side, nor do joints of both
-   nodes hold the bodies together by way of others */
+/* Whether two nodes are in one place, of two bodies, and nothing joins them: no joint has one on each side, nor do
+   joints of both nodes hold the bodies together by way of others */
 static PetscBool NodesTouch(const BodyGraph *b, const BodyNode *p, const BodyNode *q, PetscReal tol)
 {
   if (p->body == q->body) return PETSC_FALSE;
@@ -195,7 +199,8 @@ static PetscBool NodesTouch(const BodyGraph *b, const BodyNode *p, const BodyNod
 }
 
 /* Compares those of this rank that are beside each other; of each two the one of the larger key is no copy */
-static PetscErrorCode TouchesCount(const BodyGraph *b, PetscReal tol, PetscInt n, BodyNode node[], PetscInt *n_touches, BodyTouch **touch)
+static PetscErrorCode TouchesCount(const BodyGraph *b, PetscReal tol, PetscInt n, BodyNode node[], PetscInt *n_touches,
+                                   BodyTouch **touch)
 {
   PetscInt room = 0;
 

@@ -41,8 +41,9 @@ static void StiffnessSet(ContactCompliance c)
   }
 }
 
-/* Statuses are decided by l - a v, a = 1 / sqrt(largest eigenvalue of W kappa): between what a pair feels alone, 1, and what
-   all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their statuses. */
+/* Statuses are decided by l - a v, a = 1 / sqrt(largest eigenvalue of W kappa): between what a pair feels alone, 1, and
+   what all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their
+   statuses. */
 static void WeightSet(ContactCompliance c)
 {
   const PetscReal    zero = 0, one = 1;

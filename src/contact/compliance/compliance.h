@@ -16,13 +16,13 @@
 
    Residual: natural map per pair in metres, forces divided by the pair's stiffness kappa = 3 / trace W_pp,
       |l_n - max(0, l_n - r_n)|,  |p - Proj(p + d)| on the disc of radius mu l_n,     l = lambda / kappa,  p = -l_T,
-   relative to the largest l; what rounding of q and W lambda leaves is never asked for. It hardly feels the direction of
-   a slip that is short beside l: Newton's method goes on until friction is along slip to 100 tolerances, 1e-10 of the largest
-   force for 1e-12.
+   relative to the largest l; what rounding of q and W lambda leaves is never asked for. It hardly feels the direction
+   of a slip that is short beside l: Newton's method goes on until friction is along slip to 100 tolerances, 1e-10 of
+   the largest force for 1e-12.
 
-   Methods, each where the one before does not end: Newton on the statuses of the pairs with factors of the steps before,
-   bordered by what has changed (chord.c); semismooth Newton (newton.c), on motions where fewer of these than of forces are free
-   (dual.c); the same with a line search on the natural map;
+   Methods, each where the one before does not end: Newton on the statuses of the pairs with factors of the steps
+   before, bordered by what has changed (chord.c); semismooth Newton (newton.c), on motions where fewer of these than of
+   forces are free (dual.c); the same with a line search on the natural map;
    the path of solutions from pairs that do not feel each other to W, followed through its folds (path.c). All have
    limits: a step always ends, and tells whether it converged.
 */
@@ -70,9 +70,12 @@ PETSC_INTERN PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal 
     a Cholesky factor. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance compliance, PetscBool *definite);
 
-/*@ ContactComplianceSetFriction - laws [n], copied, and the length of a step, s, read where mu changes with the slip speed.
-    Errors: PETSC_ERR_ARG_OUTOFRANGE where mu is negative or not finite, or dt not positive beside such a law. Not collective. @*/
-PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance compliance, const FrictionLaw friction[], PetscReal dt);
+/*@ ContactComplianceSetFriction - laws [n], copied, and the length of a step, s, read where mu changes with the slip
+   speed.
+    Errors: PETSC_ERR_ARG_OUTOFRANGE where mu is negative or not finite, or dt not positive beside such a law. Not
+    collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance compliance, const FrictionLaw friction[],
+                                                         PetscReal dt);
 
 /*@ ContactComplianceSetTolerance - relative residual, 1e-12 unless set. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSetTolerance(ContactCompliance compliance, PetscReal rtol);
@@ -91,7 +94,8 @@ PETSC_INTERN PetscErrorCode ContactComplianceSetTolerance(ContactCompliance comp
 +  r      - relative displacements, m, [n][3]; or NULL
 -  report - of this step; or NULL
 
-   Errors: PETSC_ERR_FP where q, slip0 or the guess is not finite. That it does not converge is no error: see the report.
+   Errors: PETSC_ERR_FP where q, slip0 or the guess is not finite. That it does not converge is no error: see the
+   report.
 @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSolve(ContactCompliance compliance, const PetscReal q[],
                                                    const PetscReal slip0[], PetscReal lambda[], PetscReal r[],

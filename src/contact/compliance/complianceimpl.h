@@ -56,11 +56,11 @@ typedef struct {
 struct _p_ContactCompliance {
   PetscInt         n;
   const PetscReal *W;
-  PetscReal       *kappa;              /* N/m, [n] */
-  FrictionLaw     *friction;           /* [n] */
-  PetscReal       *mu;                 /* [n] at the stated speed */
-  PetscBool       *varies;             /* [n] with the slip speed */
-  PetscReal        weight;             /* a: statuses are decided by l - a v */
+  PetscReal       *kappa;    /* N/m, [n] */
+  FrictionLaw     *friction; /* [n] */
+  PetscReal       *mu;       /* [n] at the stated speed */
+  PetscBool       *varies;   /* [n] with the slip speed */
+  PetscReal        weight;   /* a: statuses are decided by l - a v */
   PetscReal        dt, rtol;
   PetscReal       *free;    /* v without forces, [n][3] */
   PetscReal       *l, *v;   /* now, [n][3] */
@@ -83,8 +83,8 @@ struct _p_ContactCompliance {
   ComplianceReport report, totals;
 };
 
-/* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v; statuses that l, v
-   ask for */
+/* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v;
+   statuses that l, v ask for */
 PETSC_INTERN PetscErrorCode ComplianceMove(ContactCompliance c);
 PETSC_INTERN void           ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss);
 PETSC_INTERN PetscBool      ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss);
@@ -92,9 +92,9 @@ PETSC_INTERN void           ComplianceChoose(ContactCompliance c);
 PETSC_INTERN void           ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2]);
 PETSC_INTERN CoulombPair    ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3]);
 
-/* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; l as these laws have it, and the
-   right-hand side; that and the matrix, row[n_closed] rows and the border; its factors, without exchange of rows where these are
-   good and with it */
+/* linear.c - the laws of the closed pairs at the present l, v; x [3] along the rows of closed pair k; l as these laws
+   have it, and the right-hand side; that and the matrix, row[n_closed] rows and the border; its factors, without
+   exchange of rows where these are good and with it */
 PETSC_INTERN void ComplianceLinearise(ContactCompliance c);
 PETSC_INTERN void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal x[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border);
@@ -105,13 +105,15 @@ PETSC_INTERN void           ComplianceShift(ContactCompliance c, PetscInt border
 PETSC_INTERN PetscErrorCode ComplianceBackSolve(const ContactCompliance c, PetscInt rows, PetscReal x[]);
 PETSC_INTERN void           ComplianceTake(ContactCompliance c);
 
-/* dual.c - whether a step of Newton's method at the present statuses is cheaper on motions; that step where it is, into rhs */
+/* dual.c - whether a step of Newton's method at the present statuses is cheaper on motions; that step where it is, into
+   rhs */
 PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool *serves);
 PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
 PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
-/* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column that an index
-   adds, NULL where the store is full; the border for the present statuses; A dz against what its rows miss, dz [4 n] */
+/* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column
+   that an index adds, NULL where the store is full; the border for the present statuses; A dz against what its rows
+   miss, dz [4 n] */
 PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordRenew(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
@@ -131,7 +133,8 @@ PETSC_INTERN void      ComplianceAddColumns(PetscInt N, const PetscReal W[], Pet
 /* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
 PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);
 
-/* newton.c - iterations, at most max_it; damped = with a line search; steps on what is solved, until friction is along slip */
+/* newton.c - iterations, at most max_it; damped = with a line search; steps on what is solved, until friction is along
+   slip */
 PETSC_INTERN PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt max_it,
                                               ComplianceMiss *miss);
 PETSC_INTERN PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss);
@@ -146,8 +149,9 @@ typedef struct {
   PetscInt   sign;           /* of the determinant */
 } CompliancePath;
 
-/* pathpoint.c - t at x; |l|; the system at the present l, v, x, factored, and how far ahead of the plane that is; point and
-   tangent from one path to another; takes the point, with its tangent; cosine of two tangents; the point at a distance */
+/* pathpoint.c - t at x; |l|; the system at the present l, v, x, factored, and how far ahead of the plane that is; point
+   and tangent from one path to another; takes the point, with its tangent; cosine of two tangents; the point at a
+   distance */
 PETSC_INTERN PetscErrorCode CompliancePathCreate(ContactCompliance c, CompliancePath *path);
 PETSC_INTERN PetscErrorCode CompliancePathDestroy(CompliancePath *path);
 PETSC_INTERN PetscReal      CompliancePathBlend(PetscReal x);

@@ -1,12 +1,14 @@
 /*
-   Step of Newton's method on the motions that the laws leave free, instead of the forces that they ask for. With V = W^-1, which is
-   made once, changes obey dlambda = V dv. The laws of linear.c, in the frame of each pair (n, across, e), say of them
+   Step of Newton's method on the motions that the laws leave free, instead of the forces that they ask for. With V =
+   W^-1, which is made once, changes obey dlambda = V dv. The laws of linear.c, in the frame of each pair (n, across,
+   e), say of them
 
       closed   dv_n known,     stick  dv_T known,     open  dlambda = 0
       slip     dlambda_e = -mu dlambda_n,     (1 - alpha) dl_across + a alpha dv_across known
 
-   so that the unknowns are dv of open pairs, and across and along the slip of those that slide: 3 and 2 rows, where linear.c has 0
-   and 2, but none instead of 3 of a pair that sticks. What V leaves by rounding is found again in the next step.
+   so that the unknowns are dv of open pairs, and across and along the slip of those that slide: 3 and 2 rows, where
+   linear.c has 0 and 2, but none instead of 3 of a pair that sticks. What V leaves by rounding is found again in the
+   next step.
 */
 #include "complianceimpl.h"
 
@@ -59,8 +61,8 @@ PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool *serves)
   PetscFunctionReturn(0);
 }
 
-/* A motion of pair p along a direction of (n, t, b) is unknown: of the forces that belong to dv, test . (V dv)_p / kappa, with own
-   times the motion itself, is value */
+/* A motion of pair p along a direction of (n, t, b) is unknown: of the forces that belong to dv, test . (V dv)_p /
+   kappa, with own times the motion itself, is value */
 static void DualAddRow(ContactCompliance c, PetscInt p, const PetscReal along[3], const PetscReal test[3],
                        PetscReal own, PetscReal value)
 {
@@ -134,7 +136,8 @@ static void DualAssemble(ContactCompliance c)
     for (PetscInt i = 0; i < 3; i++) d->x[r] -= d->test[3 * r + i] * d->force[3 * d->at[r] + i];
 }
 
-/* dz of the closed pairs, as linear.c has it, into rhs: of the across rows from what is the better known, force or motion */
+/* dz of the closed pairs, as linear.c has it, into rhs: of the across rows from what is the better known, force or
+   motion */
 static void DualGather(ContactCompliance c)
 {
   ComplianceDual *d = &c->dual;

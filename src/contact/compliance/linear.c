@@ -3,9 +3,9 @@
 
       [Q + a W kappa P] dz = -[Q z0 + q0 + a free + a W kappa (P z0 + p0)],     l = P (z0 + dz) + p0
 
-   A pair that slides along e with a friction that does not change with the slip has P z = P (1 - e e') z: how far it slides makes no
-   force. Its z and rows are turned to (n, across e, e), where Q is diagonal, and the last of both left out: two rows instead of
-   three, and what z_e is follows from v.
+   A pair that slides along e with a friction that does not change with the slip has P z = P (1 - e e') z: how far it
+   slides makes no force. Its z and rows are turned to (n, across e, e), where Q is diagonal, and the last of both left
+   out: two rows instead of three, and what z_e is follows from v.
 
    z0 is taken from the present l, v, so that what rounding or a shift of the matrix leaves is found again in the next
    step. A border of one row and column is the path's. Singular matrices (pairs that share what they carry) get a shift
@@ -26,11 +26,8 @@ static inline PetscInt LinearRows(const ContactCompliance c, PetscInt k)
 /* A law along (n, across e, e) */
 static void LinearTurn(const PetscReal e[2], CoulombLaw *law)
 {
-  const PetscReal F[2][2] = {
-    {-e[1], e[0]},
-    {e[0],  e[1]}
-  };
-  CoulombLaw old = *law;
+  const PetscReal F[2][2] = {{-e[1], e[0]}, {e[0], e[1]}};
+  CoulombLaw      old     = *law;
 
   for (int i = 0; i < 2; i++) {
     law->q0[1 + i] = F[i][0] * old.q0[1] + F[i][1] * old.q0[2];

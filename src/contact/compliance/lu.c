@@ -1,7 +1,7 @@
 /*
-   What an iteration spends its time in: sums of columns of W, and LU factors of a hundred rows or two, for which BLAS and LAPACK are
-   slow. Rows are not exchanged: what small pivots spoil shows in their ratio, which ComplianceLUFactor() returns.
-   Columns are eliminated LU_BLOCK at a time, and taken off four others at once.
+   What an iteration spends its time in: sums of columns of W, and LU factors of a hundred rows or two, for which BLAS
+   and LAPACK are slow. Rows are not exchanged: what small pivots spoil shows in their ratio, which ComplianceLUFactor()
+   returns. Columns are eliminated LU_BLOCK at a time, and taken off four others at once.
 */
 #include "base/algebra/versions.h"
 #include "complianceimpl.h"

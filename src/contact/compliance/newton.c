@@ -106,8 +106,8 @@ static PetscErrorCode NewtonKeep(ContactCompliance c, const ComplianceMiss *miss
   PetscFunctionReturn(0);
 }
 
-/* How far friction is off the direction of slip, relative to the largest force: the natural map hardly feels the direction
-   of a slip that is short beside l */
+/* How far friction is off the direction of slip, relative to the largest force: the natural map hardly feels the
+   direction of a slip that is short beside l */
 static PetscReal NewtonDirection(ContactCompliance c, const ComplianceMiss *miss)
 {
   PetscReal off = 0;

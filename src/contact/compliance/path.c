@@ -1,9 +1,10 @@
 /*
-   The path of solutions of v = free + [(1 - t) W kappa + t I] l from t = 1, where no pair feels another and the solution is
-   the projection of -free on the cones, to t = 0. Solutions obey |l| <= |free| / least eigenvalue, whatever mu, since
-   friction only takes: where W is definite the path cannot leave, and it ends at t = 0, after folds perhaps (a homotopy;
-   E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, 2003, ch. 2). It is followed by arclength in
-   (l / |l|, x), t = 1 / (1 + exp(-x)), with Newton's method of newton.c on a system with one border more,
+   The path of solutions of v = free + [(1 - t) W kappa + t I] l from t = 1, where no pair feels another and the
+   solution is the projection of -free on the cones, to t = 0. Solutions obey |l| <= |free| / least eigenvalue, whatever
+   mu, since friction only takes: where W is definite the path cannot leave, and it ends at t = 0, after folds perhaps
+   (a homotopy; E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, 2003, ch. 2). It is followed
+   by arclength in (l / |l|, x), t = 1 / (1 + exp(-x)), with Newton's method of newton.c on a system with one border
+   more,
 
       [A       dv/dx] [dz]   [rhs           ]
       [t_l'P   t_x  ] [dx] = [-t . (y - y_p)]       y = (l, x), tangent (t_l, t_x), predicted y_p
@@ -12,8 +13,8 @@
    says, which stays along a path. From time to time t = 0 is tried from where the path is. It ends after PATH_STEPS
    steps, PATH_WORK, or with a step that is too short.
 
-   Runs that need it: `steep` of tests/cases/transient_reduced.toml (mu 2.2, which ends at 3.2e-5 s without), and scenes of
-   tests/unit/test_contact_compliance.c.
+   Runs that need it: `steep` of tests/cases/transient_reduced.toml (mu 2.2, which ends at 3.2e-5 s without), and scenes
+   of tests/unit/test_contact_compliance.c.
 */
 #include "complianceimpl.h"
 
@@ -81,8 +82,8 @@ static PetscErrorCode PathAccept(ContactCompliance c, CompliancePath *path, Pets
   PetscFunctionReturn(0);
 }
 
-/* At a kink, less than a few steps ahead, the path may turn back, and no plane across the old tangent meets it: the path
-   goes on from there along the piece beyond the kink. True where that does not point ahead any more */
+/* At a kink, less than a few steps ahead, the path may turn back, and no plane across the old tangent meets it: the
+   path goes on from there along the piece beyond the kink. True where that does not point ahead any more */
 static PetscErrorCode PathTurn(ContactCompliance c, CompliancePath *path, PetscReal step, CompliancePath *before,
                                PetscBool *turned)
 {
@@ -98,8 +99,8 @@ static PetscErrorCode PathTurn(ContactCompliance c, CompliancePath *path, PetscR
   PetscFunctionReturn(0);
 }
 
-/* The solution at t near 1, and the tangent towards smaller ones; where no pair carries there, as none penetrates without
-   forces, that is a solution at t = 0 as well */
+/* The solution at t near 1, and the tangent towards smaller ones; where no pair carries there, as none penetrates
+   without forces, that is a solution at t = 0 as well */
 static PetscErrorCode PathBegin(ContactCompliance c, CompliancePath *path, ComplianceMiss *miss, PetscBool *begun)
 {
   const PetscInt N     = 3 * c->n;
@@ -141,9 +142,9 @@ static PetscErrorCode PathTry(ContactCompliance c, const CompliancePath *path, C
   PetscFunctionReturn(0);
 }
 
-/* Where W is singular, from the end of the path: proximal points, solutions of v = free + W kappa l + t (I - W kappa)(l - l
-   before), each of which is as well-posed as the path, until l stays (R. T. Rockafellar, SIAM J. Control Optim. 14, 1976,
-   877) */
+/* Where W is singular, from the end of the path: proximal points, solutions of v = free + W kappa l + t (I - W kappa)(l
+   - l before), each of which is as well-posed as the path, until l stays (R. T. Rockafellar, SIAM J. Control Optim. 14,
+   1976, 877) */
 static PetscErrorCode PathPolish(ContactCompliance c, PetscReal *free, ComplianceMiss *miss)
 {
   const PetscInt N    = 3 * c->n;

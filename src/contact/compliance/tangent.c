@@ -1,6 +1,6 @@
 /*
-   Derivative of the forces of a solved step with respect to the motions without forces, the statuses staying what they are:
-   with l = P z + p0, w = Q z + q0, w = -a v of the closed pairs (linear.c)
+   Derivative of the forces of a solved step with respect to the motions without forces, the statuses staying what they
+   are: with l = P z + p0, w = Q z + q0, w = -a v of the closed pairs (linear.c)
 
       [Q + a W kappa P] dz = -a dv,     dl = P dz,     dlambda = kappa dl,
 

@@ -3,8 +3,8 @@
 
       mu(s) = max(0, mu + mu_slope (s - v)),
 
-   v the stated speed, to which mu belongs. Where it would fall below 0 it stays at 0, since friction never drives. At v it is mu
-   itself, which modes may have negative: the slave then slides against t.
+   v the stated speed, to which mu belongs. Where it would fall below 0 it stays at 0, since friction never drives. At v
+   it is mu itself, which modes may have negative: the slave then slides against t.
 */
 #pragma once
 
@@ -38,10 +38,18 @@ static PetscBool CoulombsVaries(const FrictionLaw *law)
 
 static const FrictionParameter coulombs_rows[] = {
   {{"-mu", "friction coefficient", NULL, QUANTITY_REAL, FRICTION_AT(0)},
-   .coefficient = PETSC_TRUE, .steady = PETSC_TRUE, .rest = PETSC_TRUE},
-  {{"-mu_slope", "its slope with the slip speed about the stated one", "s/m", QUANTITY_REAL, FRICTION_AT(1)}, .coefficient = PETSC_FALSE},
+   .coefficient = PETSC_TRUE,
+   .steady      = PETSC_TRUE,
+   .rest        = PETSC_TRUE},
+  {{"-mu_slope", "its slope with the slip speed about the stated one", "s/m", QUANTITY_REAL, FRICTION_AT(1)},
+   .coefficient = PETSC_FALSE},
 };
 
-static const FrictionKind coulombs_law = {
-  .name = "coulomb", .n = 2, .parameter = coulombs_rows, .about = PETSC_TRUE,
-  .mu = CoulombsMu, .slope = CoulombsSlope, .derive = CoulombsDerive, .varies = CoulombsVaries};
+static const FrictionKind coulombs_law = {.name      = "coulomb",
+                                          .n         = 2,
+                                          .parameter = coulombs_rows,
+                                          .about     = PETSC_TRUE,
+                                          .mu        = CoulombsMu,
+                                          .slope     = CoulombsSlope,
+                                          .derive    = CoulombsDerive,
+                                          .varies    = CoulombsVaries};

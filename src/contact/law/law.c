@@ -1,6 +1,6 @@
 /*
-   Friction laws: the table of them, and what other rooms ask of one (include/squeal/frictionlaw.h). A new law is a file like
-   coulombs.h, included here, and its row in the table.
+   Friction laws: the table of them, and what other rooms ask of one (include/squeal/frictionlaw.h). A new law is a file
+   like coulombs.h, included here, and its row in the table.
 */
 #include "coulombs.h"
 #include "statickinetic.h"
@@ -72,7 +72,8 @@ PetscBool FrictionIsValid(const FrictionLaw *law)
     const FrictionParameter *q = &KindOf(law)->parameter[j];
     const PetscReal          x = law->parameter[j];
 
-    if (PetscIsInfOrNanReal(x) || (q->coefficient && x < 0) || (!q->coefficient && q->row.bounded && x <= 0)) return PETSC_FALSE;
+    if (PetscIsInfOrNanReal(x) || (q->coefficient && x < 0) || (!q->coefficient && q->row.bounded && x <= 0))
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
@@ -142,10 +143,12 @@ static PetscErrorCode LawCheck(MPI_Comm comm, const char name[], const FrictionL
 
 PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law)
 {
-  const char         *word[N_KINDS + 1] = {NULL};
-  int                 chosen            = 0;
-  const Quantity      row   = {"-friction_law", "how friction depends on the slip speed", NULL, QUANTITY_WORD,
-                               .size = sizeof(chosen), .words = word};
+  const char    *word[N_KINDS + 1] = {NULL};
+  int            chosen            = 0;
+  const Quantity row               = {
+                  "-friction_law", "how friction depends on the slip speed", NULL, QUANTITY_WORD, .size = sizeof(chosen),
+                  .words = word,
+  };
   const QuantityTable table = {"Friction of contact", "frictionlaw.h", 1, &row};
 
   PetscFunctionBeginUser;
@@ -168,8 +171,8 @@ PetscErrorCode FrictionCheckNotNegative(MPI_Comm comm, const char name[], const 
   for (PetscInt j = 0; j < KindOf(law)->n; j++) {
     const FrictionParameter *q = &KindOf(law)->parameter[j];
 
-    PetscCheck(!q->coefficient || law->parameter[j] >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s %.6g must not be negative", name,
-               q->row.name + 1, (double)law->parameter[j]);
+    PetscCheck(!q->coefficient || law->parameter[j] >= 0, comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s %.6g must not be negative", name, q->row.name + 1, (double)law->parameter[j]);
   }
   PetscFunctionReturn(0);
 }
@@ -182,8 +185,8 @@ PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const Frictio
     const double             mu = (double)law->parameter[j];
 
     if (q->coefficient && PetscAbsReal(mu) > LARGEST_MU)
-      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n", name,
-                             q->row.name + 1, mu, LARGEST_MU, mu, mu / 100));
+      PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n",
+                             name, q->row.name + 1, mu, LARGEST_MU, mu, mu / 100));
   }
   PetscFunctionReturn(0);
 }
@@ -192,7 +195,8 @@ PetscErrorCode FrictionRefuseSlopes(MPI_Comm comm, const char name[], const Fric
 {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < KindOf(law)->n; j++)
-    if (!KindOf(law)->parameter[j].steady) PetscCall(OptionsRefuseOf(comm, name, KindOf(law)->parameter[j].row.name + 1, why));
+    if (!KindOf(law)->parameter[j].steady)
+      PetscCall(OptionsRefuseOf(comm, name, KindOf(law)->parameter[j].row.name + 1, why));
   PetscFunctionReturn(0);
 }
 

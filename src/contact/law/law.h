@@ -10,7 +10,7 @@ typedef struct {
   const FrictionParameter *parameter; /* [n] coefficients first */
   PetscBool                about;     /* given about the stated speed, at which mu is the same whatever that is */
   PetscReal (*mu)(const FrictionLaw *law, PetscReal s);
-  PetscReal (*slope)(const FrictionLaw *law, PetscReal s);                        /* mu', s/m */
+  PetscReal (*slope)(const FrictionLaw *law, PetscReal s);                         /* mu', s/m */
   void (*derive)(const FrictionLaw *law, PetscReal s, FrictionDerivative *result); /* at s, into a result of zeros */
   PetscBool (*varies)(const FrictionLaw *law);
   const char *(*remark)(const FrictionLaw *law); /* what is odd about the parameters, or NULL; NULL for none */

@@ -27,7 +27,8 @@ static PetscReal StaticKineticSlope(const FrictionLaw *law, PetscReal s)
 
 static void StaticKineticDerive(const FrictionLaw *law, PetscReal s, FrictionDerivative *d)
 {
-  const PetscReal e = StaticKineticDecay(law, s), s0 = law->parameter[2], fall = (law->parameter[0] - law->parameter[1]) * e;
+  const PetscReal e = StaticKineticDecay(law, s), s0 = law->parameter[2],
+                  fall = (law->parameter[0] - law->parameter[1]) * e;
 
   d->mu[0]     = e;
   d->mu[1]     = 1 - e;
@@ -46,21 +47,31 @@ static PetscBool StaticKineticVaries(const FrictionLaw *law)
 
 static const char *StaticKineticRemark(const FrictionLaw *law)
 {
-  if (law->parameter[0] == 0 && law->parameter[1] == 0) return "no friction: -..._mu_static and -..._mu_kinetic are zero or not given";
-  return law->parameter[1] > law->parameter[0] ? "kinetic friction is above static: it rises with the slip speed" : NULL;
+  if (law->parameter[0] == 0 && law->parameter[1] == 0)
+    return "no friction: -..._mu_static and -..._mu_kinetic are zero or not given";
+  return law->parameter[1] > law->parameter[0] ? "kinetic friction is above static: it rises with the slip speed"
+                                               : NULL;
 }
 
 static const FrictionParameter static_kinetic_rows[] = {
   {{"-mu_static", "friction coefficient at rest", NULL, QUANTITY_REAL, FRICTION_AT(0), QUANTITY_NOT_NEGATIVE},
-   .coefficient = PETSC_TRUE, .steady = PETSC_TRUE, .rest = PETSC_TRUE},
-  {{"-mu_kinetic", "friction coefficient far beyond the decay speed", NULL, QUANTITY_REAL, FRICTION_AT(1), QUANTITY_NOT_NEGATIVE},
-   .coefficient = PETSC_TRUE, .steady = PETSC_TRUE},
-  {{"-mu_decay_speed", "slip speed over which what static is above kinetic falls to 1/e", "m/s", QUANTITY_REAL, FRICTION_AT(2),
+   .coefficient = PETSC_TRUE,
+   .steady      = PETSC_TRUE,
+   .rest        = PETSC_TRUE},
+  {{"-mu_kinetic", "friction coefficient far beyond the decay speed", NULL, QUANTITY_REAL, FRICTION_AT(1),
     QUANTITY_NOT_NEGATIVE},
+   .coefficient = PETSC_TRUE,
+   .steady      = PETSC_TRUE},
+  {{"-mu_decay_speed", "slip speed over which what static is above kinetic falls to 1/e", "m/s", QUANTITY_REAL,
+    FRICTION_AT(2), QUANTITY_NOT_NEGATIVE},
    .steady = PETSC_TRUE},
 };
 
-static const FrictionKind static_kinetic_law = {
-  .name = "static_kinetic", .n = 3, .parameter = static_kinetic_rows,
-  .mu = StaticKineticMu, .slope = StaticKineticSlope, .derive = StaticKineticDerive, .varies = StaticKineticVaries,
-  .remark = StaticKineticRemark};
+static const FrictionKind static_kinetic_law = {.name      = "static_kinetic",
+                                                .n         = 3,
+                                                .parameter = static_kinetic_rows,
+                                                .mu        = StaticKineticMu,
+                                                .slope     = StaticKineticSlope,
+                                                .derive    = StaticKineticDerive,
+                                                .varies    = StaticKineticVaries,
+                                                .remark    = StaticKineticRemark};

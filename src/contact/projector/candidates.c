@@ -1,6 +1,6 @@
 /*
-   Candidates: the facets of the master that a slave may meet soon, those within a margin of it (contact/surface/search.c). Their
-   nodes and all slaves are the active nodes.
+   Candidates: the facets of the master that a slave may meet soon, those within a margin of it
+   (contact/surface/search.c). Their nodes and all slaves are the active nodes.
 
    A search is due when some slave has moved by half a margin, relative to the mean motion of the active nodes of the
    master and what these move against each other. Nodes that are no candidates are unseen in between, so that a few of

@@ -10,8 +10,8 @@
    guessed the last step best (record.c).
 
    The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}. To
-   v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two differ
-   by one step where a ramp changes it.
+   v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two
+   differ by one step where a ramp changes it.
 */
 #include "base/algebra/vec3.h"
 #include "base/algebra/versions.h"
@@ -96,8 +96,8 @@ static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
   pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
   if (last < 0) last = pair->slip;
   pair->slip_before = last;
-  law      = FrictionAt(&c->friction, pair->speed);
-  pair->mu = FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
+  law               = FrictionAt(&c->friction, pair->speed);
+  pair->mu          = FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
 /*
@@ -113,12 +113,7 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
   const ContactShape     shape = {.surface = m->surface, .node = m->node, .u = u, .live = m->live};
   const PetscReal       *X     = &p->nodes.x[3 * pair->slave];
   const PetscReal        x[3]  = {X[0] + d[0], X[1] + d[1], X[2] + d[2]};
-  ContactFoot            foot =
-                {
-                  pair->facet, {pair->natural[0], pair->natural[1]},
-                   PETSC_MAX_REAL, 0, 0
-  },
-              walk;
+  ContactFoot            foot  = {pair->facet, {pair->natural[0], pair->natural[1]}, PETSC_MAX_REAL, 0, 0}, walk;
 
   if (foot.facet >= 0) {
     ContactFootWalk(&shape, x, &foot);
@@ -244,12 +239,8 @@ INTO_VERSIONS void PairSetRow(const ContactProjector p, const ProjectorPair *pai
 /* Guess of the impulse in the frame of the master, N s: none where it would pull */
 INTO_VERSIONS void PairGuess(const ProjectorPair *pair, PetscInt order, PetscReal kick, PetscReal impulse[3])
 {
-  static const PetscReal factor[PROJECTOR_PAST][PROJECTOR_PAST] = {
-    {1, 0,  0},
-    {2, -1, 0},
-    {3, -3, 1}
-  };
-  PetscReal normal = 0;
+  static const PetscReal factor[PROJECTOR_PAST][PROJECTOR_PAST] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
+  PetscReal              normal                                 = 0;
 
   for (int d = 0; d < 3; d++) {
     impulse[d] = 0;

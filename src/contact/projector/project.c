@@ -278,8 +278,8 @@ INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, 
 }
 
 /* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
-   decrease, in the step before where this one has not shown it yet, or max_it are done; scale is the largest impulse, of
-   the step before or now */
+   decrease, in the step before where this one has not shown it yet, or max_it are done; scale is the largest impulse,
+   of the step before or now */
 static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale,
                                 ProjectorConvergence *c)
 {
@@ -307,7 +307,8 @@ void PairsSolve(ContactProjector p, ProjectorConvergence *c)
     if (n > 0) PairsSweep(p, n, before, &scale, c);
     residual = PairsCheck(p, &n, &c->worst);
     c->checks++;
-    c->residual  = residual == 0 ? 0 : residual / (scale + c->noise / PROJECTOR_RTOL);
-    c->converged = residual <= PROJECTOR_RTOL * scale + c->noise ? PETSC_TRUE : PETSC_FALSE; /* not where it is no number */
+    c->residual = residual == 0 ? 0 : residual / (scale + c->noise / PROJECTOR_RTOL);
+    /* not where it is no number */
+    c->converged = residual <= PROJECTOR_RTOL * scale + c->noise ? PETSC_TRUE : PETSC_FALSE;
   } while (!c->converged && c->sweeps < p->max_it && !PetscIsNanReal(residual));
 }

@@ -173,12 +173,12 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
   PetscCall(ShareReturn(&p->share, p->nodes.force, head, force));
   PetscCheck(!PetscIsNanReal(head[HEAD_RESIDUAL]), p->share.comm, PETSC_ERR_FP,
              "velocities at the contact surfaces are no numbers at %.6g s", (double)step->time);
-  PetscCheck(
-    head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
-    "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, %.6g, %.6g m; "
-    "raise -projector_max_it %" PetscInt_FMT,
-    (double)step->time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
-    (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
+  PetscCheck(head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
+             "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, "
+             "%.6g, %.6g m; "
+             "raise -projector_max_it %" PetscInt_FMT,
+             (double)step->time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS],
+             (double)head[HEAD_X], (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
   PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }
@@ -224,7 +224,8 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     const ContactInterface *c = &p->contact->interfaces[i];
 
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, ",
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, ",
                                      c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master));
     PetscCall(FrictionView(&c->friction, viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer, ", multipliers\n"));

@@ -40,8 +40,9 @@ typedef struct {
   PetscInt              n_seen, *seen; /* nodes of it that are active */
 } ProjectorMaster;
 
-#define PROJECTOR_RTOL 1e-10 /* natural map residual, relative to the largest impulse of the step before and of this one */
-#define PROJECTOR_PAST 3     /* steps of which forces are kept, for the guess of the next */
+/* natural map residual, relative to the largest impulse of the step before and of this one */
+#define PROJECTOR_RTOL 1e-10
+#define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
 
 /* A slave node and the point of the master that it faces */
 typedef struct {
@@ -66,8 +67,8 @@ typedef struct {
   PetscReal     weight[CONTACT_MAX_MASTER];
 } ProjectorPair;
 
-/* What Gauss-Seidel needs of a pair without coupling of its directions and with four nodes, close together; Cartesian, in
-   the frame of the master */
+/* What Gauss-Seidel needs of a pair without coupling of its directions and with four nodes, close together; Cartesian,
+   in the frame of the master */
 typedef struct {
   int              node[5]; /* of the facet, slave */
   ContactStatus    status;
@@ -185,7 +186,8 @@ PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector)
    all */
 PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share);
 PETSC_INTERN PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[]);
-/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root, and forces from there with head[SHARE_HEAD] */
+/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root, and forces from there with
+   head[SHARE_HEAD] */
 PETSC_INTERN PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[],
                                         PetscReal *const root[]);
 PETSC_INTERN PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD],
@@ -196,8 +198,8 @@ static inline PetscInt      ShareCountSent(const ProjectorShare *share)
 }
 PETSC_INTERN PetscErrorCode ShareDestroy(ProjectorShare *share);
 
-/* candidates.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present frames,
-   of time t */
+/* candidates.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present
+   frames, of time t */
 PETSC_INTERN PetscErrorCode ProjectorSearch(ContactProjector projector, PetscReal t, PetscReal reach,
                                             const PetscReal u[]);
 /* candidates.c - whether a slave has gone so far since the search that its candidates may soon not do any more */

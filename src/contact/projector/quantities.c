@@ -4,13 +4,15 @@
 static const char *const kinematics[] = {[PETSC_FALSE] = "prescribed", [PETSC_TRUE] = "turning", NULL};
 
 static const Quantity forces[] = {
-  {"-projector_max_it", "sweeps of Gauss-Seidel", NULL, QUANTITY_INT, QUANTITY_AT(struct _p_ContactProjector, max_it), .initial = 1000,
-   QUANTITY_POSITIVE},
+  {"-projector_max_it", "sweeps of Gauss-Seidel", NULL, QUANTITY_INT, QUANTITY_AT(struct _p_ContactProjector, max_it),
+   .initial = 1000, QUANTITY_POSITIVE},
 };
 static const Quantity sliding[] = {
-  {"-kinematics", "add the sliding velocity, or move the master", NULL, QUANTITY_WORD, QUANTITY_AT(ContactSliding, turning),
-   .words = kinematics},
+  {"-kinematics", "add the sliding velocity, or move the master", NULL, QUANTITY_WORD,
+   QUANTITY_AT(ContactSliding, turning), .words = kinematics},
 };
 
-const QuantityTable projector_quantities = {"Contact forces in dynamics", "projector.h", PETSC_STATIC_ARRAY_LENGTH(forces), forces};
-const QuantityTable sliding_quantities   = {"Sliding in time of contact", "projector.h", PETSC_STATIC_ARRAY_LENGTH(sliding), sliding};
+const QuantityTable projector_quantities = {"Contact forces in dynamics", "projector.h",
+                                            PETSC_STATIC_ARRAY_LENGTH(forces), forces};
+const QuantityTable sliding_quantities   = {"Sliding in time of contact", "projector.h",
+                                            PETSC_STATIC_ARRAY_LENGTH(sliding), sliding};

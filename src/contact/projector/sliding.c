@@ -50,11 +50,7 @@ PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Cont
 /* D = R' - I for a turn of the master by `angle`: -sin K + (1 - cos) K^2, K a = axis x a */
 static void FrameTurn(const PetscReal axis[3], PetscReal angle, PetscReal D[3][3])
 {
-  const PetscReal K[3][3] = {
-    {0,        -axis[2], axis[1] },
-    {axis[2],  0,        -axis[0]},
-    {-axis[1], axis[0],  0       }
-  };
+  const PetscReal K[3][3] = {{0, -axis[2], axis[1]}, {axis[2], 0, -axis[0]}, {-axis[1], axis[0], 0}};
   const PetscReal s = PetscSinReal(angle), half = PetscSinReal(0.5 * angle), c = 2 * half * half;
 
   for (int i = 0; i < 3; i++)

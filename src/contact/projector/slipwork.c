@@ -1,13 +1,13 @@
 /*
-   Friction by a second path, after a step from t_n to t_{n+1}: the slip s of each closed pair over the step from where its nodes
-   have come to, not from the velocities that its multiplier was found with,
+   Friction by a second path, after a step from t_n to t_{n+1}: the slip s of each closed pair over the step from where
+   its nodes have come to, not from the velocities that its multiplier was found with,
 
       s = P (d_s(t_{n+1}) - d_s(t_n) - sum_i w_i (u_i(t_{n+1}) - u_i(t_n))) + way t       (m)
 
-   P the projection on the tangent plane, d_s the displacement of the slave in the frame of the master, t and `way` direction and
-   length of a sliding that is prescribed. Coulomb's law with the coefficient of the interface asks
-   for the work mu lambda_n |s| (J); lambda_T . s is what the forces did. Where mu falls with speed, it is that of the slip
-   of v_{n-1/2}, from the velocities of the nodes, and of the slip before that, extrapolated to t_n (prepare.c).
+   P the projection on the tangent plane, d_s the displacement of the slave in the frame of the master, t and `way`
+   direction and length of a sliding that is prescribed. Coulomb's law with the coefficient of the interface asks
+   for the work mu lambda_n |s| (J); lambda_T . s is what the forces did. Where mu falls with speed, it is that of the
+   slip of v_{n-1/2}, from the velocities of the nodes, and of the slip before that, extrapolated to t_n (prepare.c).
 */
 #include "projectorimpl.h"
 #include "base/algebra/vec3.h"
@@ -60,15 +60,16 @@ static void PairMotion(ContactProjector p, const ProjectorPair *pair, const Slip
 
 static void SlipWorkAdd(ContactProjector p, const ProjectorPair *pair, const SlipStep *step, ContactSlipWork *work)
 {
-  const PetscReal         normal = pair->p[0] / step->kick, T[2] = {-pair->p[1] / step->kick, -pair->p[2] / step->kick};
-  const FrictionLaw       law = FrictionAt(&p->contact->interfaces[pair->interface].friction, pair->speed);
-  PetscReal               mu = FrictionSteady(&law), length, done, asked, allowed;
-  PairSlipped             slip;
+  const PetscReal   normal = pair->p[0] / step->kick, T[2] = {-pair->p[1] / step->kick, -pair->p[2] / step->kick};
+  const FrictionLaw law = FrictionAt(&p->contact->interfaces[pair->interface].friction, pair->speed);
+  PetscReal         mu  = FrictionSteady(&law), length, done, asked, allowed;
+  PairSlipped       slip;
 
   PairMotion(p, pair, step, &slip);
   length = hypot(slip.s[0], slip.s[1]);
   if (FrictionVaries(&law))
-    mu = FrictionMu(&law, PetscMax(0, 1.5 * hypot(slip.before[0], slip.before[1]) / step->dt - 0.5 * pair->slip_before));
+    mu =
+      FrictionMu(&law, PetscMax(0, 1.5 * hypot(slip.before[0], slip.before[1]) / step->dt - 0.5 * pair->slip_before));
   done    = T[0] * slip.s[0] + T[1] * slip.s[1];
   asked   = mu * normal * length;
   allowed = 2 * mu * normal * slip.noise + p->noise * length;

@@ -1,6 +1,7 @@
 /*
-   Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters (contact/surface/surface.h), and the
-   slaves. All is made once from the mesh as it is; every rank sees the lists, the root keeps what it needs.
+   Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters
+   (contact/surface/surface.h), and the slaves. All is made once from the mesh as it is; every rank sees the lists, the
+   root keeps what it needs.
 */
 #include "projectorimpl.h"
 #include "base/gather.h"
@@ -59,8 +60,7 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
   PetscCall(PetscMalloc1(n, &local));
   for (PetscInt i = 0; i < n; i++)
     local[i] = mesh->owned[vertex[i]] ? mesh->number[vertex[i]] : ~mesh->number[vertex[i]];
-  PetscCall(
-    ShareSetUp(p->contact->comm, n, local, share)); /* numbers of nodes for a while: negative where not owned */
+  PetscCall(ShareSetUp(p->contact->comm, n, local, share)); /* numbers of nodes for a while: negative where not owned */
   total = share->first[share->size];
   PetscCall(PetscMalloc1(total, unique));
   for (PetscInt i = 0; i < total; i++) (*unique)[i] = ShareNode(share, i);
@@ -82,8 +82,8 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
 /* Slaves of this rank of one interface, appended */
 static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt *n_slaves, Slave **slave)
 {
-  const Mesh     *mesh;
-  PetscInt        n, *v;
+  const Mesh *mesh;
+  PetscInt    n, *v;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));

@@ -23,8 +23,8 @@ static PetscReal BeyondBorder(const ContactFacet *f, const PetscReal natural[2])
   return beyond;
 }
 
-/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour; of two edges alike
-   that of the even number */
+/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour; of two edges
+   alike that of the even number */
 static PetscInt Neighbour(const ContactFacet *f, const PetscReal natural[2])
 {
   const FacetShape *shape = FacetShapeOf(f->n);

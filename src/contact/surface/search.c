@@ -1,7 +1,7 @@
 /*
    Search on a surface: bounding volumes of its facets, a tree halved along the longest side of each box, made once of
-   the surface at rest; the boxes are fitted to the places of the nodes from the leaves up. Facets near a point are those
-   whose boxes are within a margin of it; the nearest point is found by branch and bound.
+   the surface at rest; the boxes are fitted to the places of the nodes from the leaves up. Facets near a point are
+   those whose boxes are within a margin of it; the nearest point is found by branch and bound.
 */
 #include "contact/contactimpl.h"
 #include "kernels/contact/nearest.h"
@@ -189,10 +189,7 @@ void ContactFootNearest(const ContactSurface *s, const PetscReal x[3], ContactFo
         FacetProject(s->facet[s->order[i]].n, (const double(*)[3])s->facet[s->order[i]].x, x, natural);
 
       if (here >= foot->distance) continue;
-      *foot = (ContactFoot){
-        .facet = s->order[i], .natural = {natural[0], natural[1]},
-             .distance = here
-      };
+      *foot = (ContactFoot){.facet = s->order[i], .natural = {natural[0], natural[1]}, .distance = here};
     }
   }
 }

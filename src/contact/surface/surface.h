@@ -2,13 +2,13 @@
    Surface of a master: facets, their corners' normals, neighbours and bounding volumes. Private to contact/ and the
    projector, which find pairs on it with the same functions, at rest and at displacements.
 
-   The normal at a point of a facet is n = a / |a|, a = sum_i w_i a_i with the facet's own shape functions w_i, where a_i
-   (m^2) sums the area vectors of the facets around node i (kernels/contact/facet.h); on facets of second order a_i is divided by
-   its length, since those of corners and sides differ, which would leave n of first order. n is continuous across edges
-   and of second order in the size of the facets, where that of the facet itself jumps and is of first order; on facets
-   of second order it is of third order at least. tilt.c has its derivative.
-   A slave at x faces the point x(xi) of the facet to which x - x(xi) is parallel to n(xi). Every node of a slave face is
-   a slave, those between its corners too.
+   The normal at a point of a facet is n = a / |a|, a = sum_i w_i a_i with the facet's own shape functions w_i, where
+   a_i (m^2) sums the area vectors of the facets around node i (kernels/contact/facet.h); on facets of second order a_i
+   is divided by its length, since those of corners and sides differ, which would leave n of first order. n is
+   continuous across edges and of second order in the size of the facets, where that of the facet itself jumps and is of
+   first order; on facets of second order it is of third order at least. tilt.c has its derivative.
+   A slave at x faces the point x(xi) of the facet to which x - x(xi) is parallel to n(xi). Every node of a slave face
+   is a slave, those between its corners too.
 */
 #pragma once
 
@@ -125,8 +125,9 @@ PETSC_INTERN void ContactFootWalk(const ContactShape *shape, const PetscReal x[3
    sizes of the facet */
 PETSC_INTERN void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal deepest,
                                  ContactFoot *foot);
-/* foot.c - foot of a node on the surface at rest: the nearest point, and from there the facet whose normal leads to the node;
-   matching nodes meet exactly. Beyond the border it is the nearest point, and foot->across is more than what ContactEdge() allows */
+/* foot.c - foot of a node on the surface at rest: the nearest point, and from there the facet whose normal leads to the
+   node; matching nodes meet exactly. Beyond the border it is the nearest point, and foot->across is more than what
+   ContactEdge() allows */
 PETSC_INTERN void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot);
 /* foot.c - weights and n, t, b at natural coordinates, t along a vector; returns the length of its part across n, 0
    where it has none and t is any tangent */

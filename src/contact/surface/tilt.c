@@ -1,7 +1,7 @@
 /*
    Turning of the master's normal. The normal of a pair is n = a / |a|, a = sum_i w_i a_i, where a_i (m^2) sums the area
-   vectors of the facets around the master's node i (kernels/contact/facet.h) or, on facets of second order, is the unit vector
-   along that sum A_i. With displacements u of the surface
+   vectors of the facets around the master's node i (kernels/contact/facet.h) or, on facets of second order, is the unit
+   vector along that sum A_i. With displacements u of the surface
 
       delta A_i = sum_j u_j x c_ij,   delta a_i = delta A_i or (I - a_i a_i') delta A_i / |A_i|,
       delta n = (I - n n') sum_i w_i delta a_i / |a|,
@@ -91,8 +91,8 @@ static PetscErrorCode TurningNormalise(PetscInt n, const ContactFacet facet[], M
   PetscFunctionReturn(0);
 }
 
-/* Derivatives of the vectors a_i of a surface at its nodes, shape [3 nodes][unknowns]: row 3 v + d belongs to component d
-   of node v (global number) */
+/* Derivatives of the vectors a_i of a surface at its nodes, shape [3 nodes][unknowns]: row 3 v + d belongs to component
+   d of node v (global number) */
 static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turning)
 {
   const Mesh    *mesh;
@@ -123,7 +123,8 @@ static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turn
   PetscFunctionReturn(0);
 }
 
-/* sum_i w_i d . a_i / |a| for the pairs of an interface, d = t or b by its offset in ContactPair; other rows are empty */
+/* sum_i w_i d . a_i / |a| for the pairs of an interface, d = t or b by its offset in ContactPair; other rows are
+   empty */
 static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, size_t offset, PetscInt n_columns,
                                           Mat *P)
 {

@@ -39,12 +39,8 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
 {
   const PetscReal *u = &x[3 * i], *a = &rows->value[9 * rows->start[i]];
   const PetscInt *column = &rows->column[rows->start[i]], *const end = &rows->column[rows->start[i + 1]];
-  const StencilLanes own[3] = {
-    {u[0], u[0], u[0], u[0]},
-    {u[1], u[1], u[1], u[1]},
-    {u[2], u[2], u[2], u[2]}
-  };
-  StencilLanes sum[3];
+  const StencilLanes own[3] = {{u[0], u[0], u[0], u[0]}, {u[1], u[1], u[1], u[1]}, {u[2], u[2], u[2], u[2]}};
+  StencilLanes       sum[3];
 
   for (int j = 0; j < 3; j++) sum[j] = *(const StencilLanes *)&a[3 * j] * *(const StencilLanes *)u;
   while (++column < end) {

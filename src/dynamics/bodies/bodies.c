@@ -67,8 +67,8 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies)
 }
 
 static const char *const kernels[] = {[PETSC_FALSE] = "auto", [PETSC_TRUE] = "general", NULL};
-static const Quantity    kernel[]  = {{"-dynamics_kernel", "internal forces; general: one matrix of blocks for every body", NULL,
-                                       QUANTITY_WORD, QUANTITY_AT(struct _p_Bodies, no_sweep), .words = kernels}};
+static const Quantity kernel[] = {{"-dynamics_kernel", "internal forces; general: one matrix of blocks for every body",
+                                   NULL, QUANTITY_WORD, QUANTITY_AT(struct _p_Bodies, no_sweep), .words = kernels}};
 static const QuantityTable bodies_quantities = {"Bodies in time", "dynamics.h", 1, kernel};
 
 PetscErrorCode BodiesSetFromOptions(Bodies b)

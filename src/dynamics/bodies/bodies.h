@@ -77,7 +77,8 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies);
 @*/
 PetscErrorCode BodiesSetFromOptions(Bodies bodies);
 
-/*@ BodiesSetUp - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels from
+/*@ BodiesSetUp - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels
+   from
     the present values of the parameters of the operators. Collective. @*/
 PetscErrorCode BodiesSetUp(Bodies bodies, Operators operators);
 
@@ -88,23 +89,27 @@ PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
     component in the local basis. Same call on all ranks that have the node. @*/
 PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
 
-/*@ BodiesSetPoints - what the masses of points and ties need, after the last BodiesHold(); contact [n_contact] are the nodes
+/*@ BodiesSetPoints - what the masses of points and ties need, after the last BodiesHold(); contact [n_contact] are the
+   nodes
     that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of them, or a
     node that a motion drives; for a tie that has one of these, or one that a support holds. @*/
 PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
 
-/*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly, and at nodes of ties, by the motion next
+/*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly, and at nodes of ties, by the
+   motion next
     to it that these allow, after BodiesSetPoints(). Collective. @*/
 PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
 
-/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets and ties together, to f, N, which holds
+/*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets and ties together, to f, N,
+   which holds
     all others but those of contact, complete at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 
 /*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);
 
-/*@ BodiesGetElementForces - ku = K u of this rank's cells alone, element by element relative to the first node of each, springs,
+/*@ BodiesGetElementForces - ku = K u of this rank's cells alone, element by element relative to the first node of each,
+   springs,
     bushings and points included, N: what the kernels should have. Collective. @*/
 PetscErrorCode BodiesGetElementForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
 
@@ -116,8 +121,10 @@ PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscRea
     ku as it is (first step). The exchange of shared nodes overlaps with the work on the others. Collective. @*/
 PetscErrorCode BodiesAdvance(Bodies bodies, const BodiesStep *step, BodiesSums *sums);
 
-/*@ BodiesGetGroundForces - forces K u + C v of this rank's springs, dashpots, bushings and points, and of the damping of the bodies
-    as the last BodiesAdvance() had it, into g [layout n], N: what does not sum to zero within the bodies. Collective. @*/
+/*@ BodiesGetGroundForces - forces K u + C v of this rank's springs, dashpots, bushings and points, and of the damping
+   of the bodies
+    as the last BodiesAdvance() had it, into g [layout n], N: what does not sum to zero within the bodies. Collective.
+    @*/
 PetscErrorCode BodiesGetGroundForces(Bodies bodies, const PetscReal u[], PetscReal g[]);
 
 /*@ BodiesGetElementBound - largest omega^2 (1/s^2) of any single element with its own lumped mass, with stiffness

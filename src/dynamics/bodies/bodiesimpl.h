@@ -152,7 +152,8 @@ PETSC_INTERN PetscErrorCode BodiesCellsAddForces(Bodies bodies, const PetscReal 
 PETSC_INTERN PetscErrorCode BodiesFindSwept(Bodies bodies);
 PETSC_INTERN PetscErrorCode BodiesLayOut(Bodies bodies);
 
-/* sweptcolumn.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where not
+/* sweptcolumn.c - `mirrored` is whether the stencil describes the cells; the caller falls back on rows of blocks where
+   not
    */
 PETSC_INTERN PetscErrorCode SweptSetUp(Bodies bodies, SweptBody *swept, PetscBool *mirrored);
 
@@ -200,8 +201,8 @@ PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 /* What moves a local node besides its cells: bits */
 enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4 };
 
-/* points/tied.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark [n_nodes],
-   moves otherwise; forces in the place of those on their nodes, or motions */
+/* points/tied.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark
+   [n_nodes], moves otherwise; forces in the place of those on their nodes, or motions */
 PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, const unsigned char mark[]);
 PETSC_INTERN PetscErrorCode TiedApply(Bodies bodies, PetscBool forces, PetscReal x[]);
 PETSC_INTERN PetscErrorCode TiedDestroy(Tied *tied);

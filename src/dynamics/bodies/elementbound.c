@@ -18,7 +18,8 @@ static void BoundScale(const BodiesCell *cell, PetscReal a[])
     for (PetscInt j = 0; j < n; j++) a[n * i + j] = scale[i] * cell->stiffness[n * i + j] * scale[j];
 }
 
-/* Whether no eigenvalue of A is above a limit: then limit - A has a Cholesky factor, at a tenth of the eigenvalues' cost */
+/* Whether no eigenvalue of A is above a limit: then limit - A has a Cholesky factor, at a tenth of the eigenvalues'
+   cost */
 static PetscErrorCode BoundIsBelow(const BodiesCell *cell, PetscReal limit, PetscBool *below)
 {
   const PetscInt n = 3 * cell->n_nodes;

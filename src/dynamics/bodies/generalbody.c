@@ -26,8 +26,8 @@ static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
   PetscFunctionReturn(0);
 }
 
-/* Goes through the pairs of nodes of each cell: at[row] is raised by one for each, and tells its place in `column` where that is
-   not NULL */
+/* Goes through the pairs of nodes of each cell: at[row] is raised by one for each, and tells its place in `column`
+   where that is not NULL */
 static void NeighboursTake(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt at[], PetscInt column[])
 {
   for (PetscInt i = 0; i < cells->n; i++) {

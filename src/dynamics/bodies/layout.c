@@ -1,10 +1,10 @@
 /*
    Layout of the state vectors. A body has cylindrical components, on all ranks, where some rank finds its cells swept
    about an axis, no other one about another, and its supports can be said in them: along the axis, and in the plane
-   either both directions or none. About or along an axis that is none of x, y, z the components are along it, too, where
-   supports and motions hold all directions of a node or none. On each rank a body whose cells are swept there stands
-   line after line, padded so that blocks of nodes can be loaded with their neighbours; all other nodes follow node
-   after node, those that ranks share first.
+   either both directions or none. About or along an axis that is none of x, y, z the components are along it, too,
+   where supports and motions hold all directions of a node or none. On each rank a body whose cells are swept there
+   stands line after line, padded so that blocks of nodes can be loaded with their neighbours; all other nodes follow
+   node after node, those that ranks share first.
 */
 #include "bodiesimpl.h"
 #include "base/algebra/vec3.h"

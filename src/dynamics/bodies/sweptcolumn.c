@@ -1,8 +1,8 @@
 /*
-   Coefficients of the stencil of a swept body (kernels/element/stencil.h) from one cell of each column between four lines. A
-   cell between nodes k and k + 1 gives, for nodes of lines i and j, blocks of K_e at (k, k): A0 of the cells after the
-   node; (k + 1, k + 1): A0 of those before; (k, k + 1): A+; (k + 1, k): A-. They are summed over the columns, once more
-   with the beta of the parts for the damping, and tested for mirror symmetry.
+   Coefficients of the stencil of a swept body (kernels/element/stencil.h) from one cell of each column between four
+   lines. A cell between nodes k and k + 1 gives, for nodes of lines i and j, blocks of K_e at (k, k): A0 of the cells
+   after the node; (k + 1, k + 1): A0 of those before; (k, k + 1): A+; (k + 1, k): A-. They are summed over the columns,
+   once more with the beta of the parts for the damping, and tested for mirror symmetry.
 */
 #include "bodiesimpl.h"
 

@@ -81,8 +81,9 @@ PETSC_INTERN PetscErrorCode ExternalAdvance(External external, const ExternalSte
    it follows the power of the drives. Not collective. */
 PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[]);
 
-/* ExternalGetResultant - of loads, weight and impulses of the step that ExternalAdvance() began, N, by what the scene says
-   of them, not by their nodes; known = false where parts turn or points have a weight, which it does not know. Collective. */
+/* ExternalGetResultant - of loads, weight and impulses of the step that ExternalAdvance() began, N, by what the scene
+   says of them, not by their nodes; known = false where parts turn or points have a weight, which it does not know.
+   Collective. */
 PETSC_INTERN PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal force[3],
                                                  PetscBool *known);
 
@@ -100,8 +101,8 @@ typedef enum {
   LATE_NEVER    /* both, by an error: no restart goes on. Impulses alone */
 } LateJudge;
 
-/* ExternalCheckLate - impulses that are not before the last step of a run of steps dt to `end` (s), in which they act as a whole, and
-   loads and motions that do not begin before the end. Collective. */
+/* ExternalCheckLate - impulses that are not before the last step of a run of steps dt to `end` (s), in which they act
+   as a whole, and loads and motions that do not begin before the end. Collective. */
 PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge);
 
 /* ExternalCheckDelay - the same of something by its delay, s. Collective. */
@@ -118,8 +119,8 @@ PETSC_INTERN PetscErrorCode ExternalGetHit(External external, PetscInt i, Extern
 /* ExternalGetLoadFactor - the factor of load i of the scene at time t. Not collective. */
 PETSC_INTERN PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t);
 
-/* ExternalFindHit - the impulse i of the scene, due at `time` (s), and its node: local on one rank that has it, -1 on all
-   others; no ExternalSetUp() is needed. Collective. Errors: PETSC_ERR_USER_INPUT for a node that is held in its
+/* ExternalFindHit - the impulse i of the scene, due at `time` (s), and its node: local on one rank that has it, -1 on
+   all others; no ExternalSetUp() is needed. Collective. Errors: PETSC_ERR_USER_INPUT for a node that is held in its
    direction. */
 PETSC_INTERN PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, PetscInt *vertex);
 

@@ -1,7 +1,7 @@
 /*
-   What the scene prescribes for a time when the run is over. A restart may go on until it comes, so that for what a file
-   says there is a warning, after what a restart refuses. It is an error where the command line says it, before anything is solved,
-   or where nothing can go on.
+   What the scene prescribes for a time when the run is over. A restart may go on until it comes, so that for what a
+   file says there is a warning, after what a restart refuses. It is an error where the command line says it, before
+   anything is solved, or where nothing can go on.
 */
 #include "externalimpl.h"
 #include <squeal/options.h>

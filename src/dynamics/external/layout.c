@@ -1,5 +1,6 @@
 /*
-   What the kinds of External stand on: the vertices of a set, and the memory that a restart needs, one array in a fixed order.
+   What the kinds of External stand on: the vertices of a set, and the memory that a restart needs, one array in a fixed
+   order.
 */
 #include "externalimpl.h"
 

@@ -4,8 +4,8 @@
 #define IMPULSE(member) QUANTITY_AT(Impulse, member)
 
 static const Quantity impulse[] = {
-  {"-at", "place x,y,z whose nearest node is hit, m (required)", NULL, QUANTITY_REALS, IMPULSE(at), .given = offsetof(Impulse, has_at),
-   .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
+  {"-at", "place x,y,z whose nearest node is hit, m (required)", NULL, QUANTITY_REALS, IMPULSE(at),
+   .given = offsetof(Impulse, has_at), .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
   {"-part", "body of the node; any without it", NULL, QUANTITY_NAME, IMPULSE(part)},
   {"-impulse", "momentum in x,y,z (required); zeros for none", "N s", QUANTITY_REALS, IMPULSE(impulse),
    .given = offsetof(Impulse, has_impulse), .required = PETSC_TRUE, .why = "three values (N s), zeros for none"},
@@ -17,5 +17,5 @@ static const Quantity start[] = {
 
 static const QuantityTable impulses       = {"Impulse", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(impulse), impulse};
 const QuantityTable        start_velocity = {"Start of part", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(start), start};
-const QuantityList impulses_list = {"-impulses", "at nodes, each the prefix of its -at and -impulse", sizeof(Impulse), &impulses,
-                                    ImpulseCheck};
+const QuantityList impulses_list = {"-impulses", "at nodes, each the prefix of its -at and -impulse", sizeof(Impulse),
+                                    &impulses, ImpulseCheck};

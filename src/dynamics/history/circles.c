@@ -1,7 +1,7 @@
 /*
    circles.csv: displacement (m) of the nodes of the circles along their axis, a row as in transient.csv; and
-   circle_nodes.csv: where these nodes are. Angles are measured about the circle's axis from the contact, the mean of the
-   slaves' nodes, unless that lies on the axis itself.
+   circle_nodes.csv: where these nodes are. Angles are measured about the circle's axis from the contact, the mean of
+   the slaves' nodes, unless that lies on the axis itself.
 */
 #include "historyimpl.h"
 
@@ -65,9 +65,9 @@ PetscErrorCode HistoryWriteCircles(History history, const HistoryState *state)
 /* Mean of the nodes of all slaves, m; n = 0 for none */
 static PetscErrorCode CirclesFindContact(History history, PetscReal centre[3], PetscReal *n)
 {
-  PetscReal       sum[4] = {0, 0, 0, 0};
-  const Mesh     *mesh;
-  PetscInt        n_local, *vertex;
+  PetscReal   sum[4] = {0, 0, 0, 0};
+  const Mesh *mesh;
+  PetscInt    n_local, *vertex;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(history->source.model, &mesh));

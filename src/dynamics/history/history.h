@@ -1,6 +1,6 @@
 /*
-   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, circles.csv, the live line, and snapshots with
-   transient.xmf.
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, circles.csv, the live line, and
+   snapshots with transient.xmf.
 */
 #pragma once
 
@@ -64,8 +64,8 @@ PETSC_INTERN PetscErrorCode HistoryCreate(MPI_Comm comm, History *history);
 /* -dynamics_history_interval, -dynamics_pairs_interval, -dynamics_snapshot_interval, -dynamics_live */
 PETSC_INTERN PetscErrorCode HistorySetFromOptions(History history);
 
-/* Takes what is recorded, and rounds the intervals to whole steps dt (0 for not), the run to `end` at most. Collective. Errors:
-   PETSC_ERR_USER_INPUT for intervals of the command line that are longer, or without effect. */
+/* Takes what is recorded, and rounds the intervals to whole steps dt (0 for not), the run to `end` at most. Collective.
+   Errors: PETSC_ERR_USER_INPUT for intervals of the command line that are longer, or without effect. */
 PETSC_INTERN PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt);
 
 /* Takes filters (borrowed), for amplitudes.csv beside every row. Not collective. */

@@ -65,7 +65,8 @@ PETSC_INTERN PetscBool ScheduleIsDue(const Schedule *schedule, PetscReal t, Pets
 PETSC_INTERN PetscBool ScheduleMeet(Schedule *schedule, PetscReal t, PetscReal dt);
 PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept);
 
-/* schedule.c - the intervals of a run of steps dt (0 for not rounded) to `end`: errors as of HistorySetUp(). Collective. */
+/* schedule.c - the intervals of a run of steps dt (0 for not rounded) to `end`: errors as of HistorySetUp().
+   Collective. */
 PETSC_INTERN PetscErrorCode HistoryFit(History history, PetscReal end, PetscReal dt);
 
 /* history/row.c - header of transient.csv, which the caller frees, and a row */

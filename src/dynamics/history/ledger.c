@@ -143,11 +143,9 @@ PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt s
   const struct {
     const char *name;
     PetscReal   error;
-  } law[] = {
-    {"work of friction",   laws->friction },
-    {"change of momentum", laws->momentum },
-    {"K u of the kernels", laws->stiffness}
-  };
+  } law[]   = {{"work of friction", laws->friction},
+               {"change of momentum", laws->momentum},
+               {"K u of the kernels", laws->stiffness}};
   int worst = 0;
 
   PetscFunctionBeginUser;

@@ -6,7 +6,8 @@
 #include "dynamics/external/external.h"
 #include <squeal/projector.h>
 
-/* What the balance of energy cannot see, since it closes with any forces: the worst so far of what laws.h looks at, relative */
+/* What the balance of energy cannot see, since it closes with any forces: the worst so far of what laws.h looks at,
+   relative */
 typedef struct {
   PetscReal looks;            /* steps looked at */
   PetscReal stiffness;        /* K u kept by the kernels beside that of the elements */
@@ -73,11 +74,11 @@ PETSC_INTERN PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, P
 PETSC_INTERN PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *ledger, PetscReal fraction, PetscInt step,
                                         PetscReal time);
 
-/* Where contact acts as the mean force of a step, a pair that opens in it gives energy: whether that is more than a tenth of what all
-   others gave, J. LedgerJudgeContact raises PETSC_ERR_FP where it is; collective */
+/* Where contact acts as the mean force of a step, a pair that opens in it gives energy: whether that is more than a
+   tenth of what all others gave, J. LedgerJudgeContact raises PETSC_ERR_FP where it is; collective */
 PETSC_INTERN PetscBool      LedgerContactFeeds(PetscReal contact, PetscReal others);
 PETSC_INTERN PetscErrorCode LedgerJudgeContact(MPI_Comm comm, const Ledger *ledger, PetscInt step, PetscReal time);
 
-/* Raises PETSC_ERR_PLIB where a law does not hold to 1e-3, which is no rounding; moments miss what bodies have deformed, and are only
-   told. Collective. */
+/* Raises PETSC_ERR_PLIB where a law does not hold to 1e-3, which is no rounding; moments miss what bodies have
+   deformed, and are only told. Collective. */
 PETSC_INTERN PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt step, PetscReal time);

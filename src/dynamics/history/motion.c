@@ -1,6 +1,6 @@
 /*
-   Motion of a vertex at t_n: displacement (m), velocity (m/s) and acceleration (m/s^2). From state vectors, with the velocity before
-   at t_{n-1/2} and the forces f (N),
+   Motion of a vertex at t_n: displacement (m), velocity (m/s) and acceleration (m/s^2). From state vectors, with the
+   velocity before at t_{n-1/2} and the forces f (N),
 
       v_n = v_{n-1/2} + dt M^-1 (b f_n + (1/2 - b) f_{n-1}),   a_n = M^-1 f_n;
 

@@ -1,6 +1,7 @@
 /*
-   contact_pairs.csv: the state of each pair of slave node and master surface in time. Pairs are numbered by interface and place
-   of the slave at rest, in the order of static.csv, so that a pair keeps its number during the run and on any number of ranks.
+   contact_pairs.csv: the state of each pair of slave node and master surface in time. Pairs are numbered by interface
+   and place of the slave at rest, in the order of static.csv, so that a pair keeps its number during the run and on any
+   number of ranks.
 */
 #include "historyimpl.h"
 #include "base/gather.h"

@@ -1,7 +1,8 @@
 /*
    When something is recorded: at the multiples of an interval, each at the step nearest to it, which is the first with
    t >= k interval - dt / 2. Several multiples in one step are met together. Every rank computes the same from the
-   same t and dt. Intervals are rounded to whole steps, so that rows are equally spaced in time, and are the run at most.
+   same t and dt. Intervals are rounded to whole steps, so that rows are equally spaced in time, and are the run at
+   most.
 */
 #include "historyimpl.h"
 #include <squeal/options.h>
@@ -38,8 +39,8 @@ void ScheduleRestore(Schedule *schedule, const Schedule *kept)
   if (kept->interval <= 0) schedule->next = 0; /* nothing was met: at once */
 }
 
-/* An interval in whole steps; it is the run at most, to the last step at t, after whose start nothing would come. Raises an error
-   for a longer one of the command line */
+/* An interval in whole steps; it is the run at most, to the last step at t, after whose start nothing would come.
+   Raises an error for a longer one of the command line */
 static PetscErrorCode HistoryRound(MPI_Comm comm, const char option[], PetscReal t, PetscReal dt, Schedule *s)
 {
   char why[160];

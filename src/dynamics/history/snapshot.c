@@ -31,10 +31,7 @@ PetscErrorCode SnapshotWrite(History history, const HistoryState *state)
   PetscCall(PetscSNPrintf(title, sizeof(title), "step %" PetscInt_FMT ", t = %.6g ms", state->step,
                           (double)(1e3 * state->time)));
   PetscCall(ResultsFilmWrite(history->film, state->time, title, 2,
-                             (const ResultsNodal[]){
-                               {"displacement_m", 3, u},
-                               {"velocity_m_s",   3, v}
-  }));
+                             (const ResultsNodal[]){{"displacement_m", 3, u}, {"velocity_m_s", 3, v}}));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(0);
 }

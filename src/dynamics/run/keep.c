@@ -169,8 +169,8 @@ static PetscErrorCode KeptScalarsSet(Dynamics d, const KeptScalars *s)
   PetscFunctionReturn(0);
 }
 
-/* Arrays of the state vectors, and for b > 1/2 of the forces of the last two steps, else NULL: the next step needs those
-   of the last, the work of the integrator in the last one those before. Gets or restores them */
+/* Arrays of the state vectors, and for b > 1/2 of the forces of the last two steps, else NULL: the next step needs
+   those of the last, the work of the integrator in the last one those before. Gets or restores them */
 static PetscErrorCode KeptArraysAccess(Dynamics d, PetscBool get, PetscScalar *a[N_VECTORS])
 {
   Vec x[N_VECTORS] = {d->u, d->v};
@@ -180,16 +180,19 @@ static PetscErrorCode KeptArraysAccess(Dynamics d, PetscBool get, PetscScalar *a
   for (int i = 0; i < N_VECTORS; i++) {
     if (get) a[i] = NULL;
     if (i >= FORCE && !x[FORCE_OLD]) continue;
-    PetscCall(get ? VecGetArray(x[i], &a[i]) : VecRestoreArray(x[i], &a[i]));
+    if (get)
+      PetscCall(VecGetArray(x[i], &a[i]));
+    else
+      PetscCall(VecRestoreArray(x[i], &a[i]));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode DynamicsKeep(Dynamics d)
 {
-  JournalItem item[N_ITEMS];
-  PetscScalar   *arrays[N_VECTORS];
-  KeptScalars    scalars;
+  JournalItem  item[N_ITEMS];
+  PetscScalar *arrays[N_VECTORS];
+  KeptScalars  scalars;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_CHECKPOINT));
@@ -210,10 +213,10 @@ PetscErrorCode DynamicsKeep(Dynamics d)
 
 PetscErrorCode DynamicsGoOn(Dynamics d)
 {
-  JournalItem item[N_ITEMS];
-  PetscScalar   *arrays[N_VECTORS];
-  KeptScalars    scalars;
-  Fault          fault;
+  JournalItem  item[N_ITEMS];
+  PetscScalar *arrays[N_VECTORS];
+  KeptScalars  scalars;
+  Fault        fault;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsSumScene(d));
@@ -233,10 +236,10 @@ PetscErrorCode DynamicsGoOn(Dynamics d)
 
 PetscErrorCode DynamicsCheckEarlier(Dynamics d)
 {
-  char           part[PETSC_MAX_PATH_LEN];
-  const char    *dir;
-  PetscMPIInt    rank;
-  PetscBool      unfinished = PETSC_FALSE;
+  char        part[PETSC_MAX_PATH_LEN];
+  const char *dir;
+  PetscMPIInt rank;
+  PetscBool   unfinished = PETSC_FALSE;
   JournalKind kind;
 
   PetscFunctionBeginUser;
@@ -261,9 +264,9 @@ PetscErrorCode DynamicsCheckEarlier(Dynamics d)
 
 PetscErrorCode DynamicsForget(Dynamics d)
 {
-  char           path[PETSC_MAX_PATH_LEN];
-  const char    *dir;
-  PetscMPIInt    rank, error = 0;
+  char        path[PETSC_MAX_PATH_LEN];
+  const char *dir;
+  PetscMPIInt rank, error = 0;
   JournalKind kind;
 
   PetscFunctionBeginUser;

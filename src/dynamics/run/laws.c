@@ -1,6 +1,6 @@
 /*
-   Looks at the laws by second paths, see laws.h. A look begins with the forces of a step and ends when the step is made, before a
-   checkpoint is written, so that a run that goes on from there needs nothing of it.
+   Looks at the laws by second paths, see laws.h. A look begins with the forces of a step and ends when the step is
+   made, before a checkpoint is written, so that a run that goes on from there needs nothing of it.
 */
 #include "dynamics/dynamicsimpl.h"
 #include "base/algebra/vec3.h"
@@ -60,10 +60,8 @@ static PetscErrorCode LawsAreDue(Dynamics d, const CentralStep *step, PetscBool 
 /* Internal forces, which must be those of the ground: f = -K u - C v */
 static PetscErrorCode LawsLookAtBodies(Dynamics d, const PetscReal u[])
 {
-  Laws   *l      = &d->laws;
-  LawsSum ground = {
-    .size = {0, 0}
-  };
+  Laws      *l      = &d->laws;
+  LawsSum    ground = {.size = {0, 0}};
   PetscReal *g;
 
   PetscFunctionBeginUser;
@@ -83,10 +81,8 @@ PetscErrorCode DynamicsLookBegin(Dynamics d, const CentralStep *step, const Pets
   PetscFunctionBeginUser;
   PetscCall(LawsAreDue(d, step, &l->now));
   if (!l->now) PetscFunctionReturn(0);
-  l->internal = l->miss = l->before = (LawsSum){
-    .size = {0, 0}
-  };
-  l->kick = step->kick;
+  l->internal = l->miss = l->before = (LawsSum){.size = {0, 0}};
+  l->kick                           = step->kick;
   LawsAdd(d, f, NULL, &LAWS_ALL, 1, &l->internal);
   PetscCall(LawsLookAtBodies(d, u));
   PetscFunctionReturn(0);
@@ -94,10 +90,8 @@ PetscErrorCode DynamicsLookBegin(Dynamics d, const CentralStep *step, const Pets
 
 PetscErrorCode DynamicsLookAtLoads(Dynamics d, PetscReal time, const PetscReal f[])
 {
-  Laws   *l   = &d->laws;
-  LawsSum all = {
-    .size = {0, 0}
-  };
+  Laws       *l   = &d->laws;
+  LawsSum     all = {.size = {0, 0}};
   PetscReal   told[3];
   PetscMPIInt rank;
   PetscBool   known;
@@ -112,8 +106,8 @@ PetscErrorCode DynamicsLookAtLoads(Dynamics d, PetscReal time, const PetscReal f
   PetscFunctionReturn(0);
 }
 
-/* K u of the kernels beside that of the elements. What may be rounding: that of K u with the largest stiffness that the critical
-   step leaves to a mass, 4 m / dt^2 */
+/* K u of the kernels beside that of the elements. What may be rounding: that of K u with the largest stiffness that the
+   critical step leaves to a mass, 4 m / dt^2 */
 static PetscErrorCode LawsLookAtStiffness(Dynamics d, const PetscReal u[])
 {
   const Layout   *l         = d->layout;
@@ -196,8 +190,8 @@ static PetscErrorCode LawsLookAtFriction(Dynamics d, const PetscReal u[])
   PetscFunctionReturn(0);
 }
 
-/* Squares of what is rounded: forces of the largest stiffness that the critical step leaves to a mass, 4 m / dt^2, at u, and
-   changes of momentum M v / kick; N, N m */
+/* Squares of what is rounded: forces of the largest stiffness that the critical step leaves to a mass, 4 m / dt^2, at
+   u, and changes of momentum M v / kick; N, N m */
 static void LawsAddNoise(Dynamics d, const PetscReal u[], const PetscReal v[], PetscReal sum[2])
 {
   const Layout   *l         = d->layout;
@@ -219,10 +213,8 @@ static PetscErrorCode LawsEndMomentum(Dynamics d, const PetscReal u[], const Pet
 {
   Laws       *l     = &d->laws;
   LedgerLaws *laws  = &d->ledger.total.laws;
-  LawsSum     after = {
-        .size = {0, 0}
-  };
-  PetscReal sum[10], noise;
+  LawsSum     after = {.size = {0, 0}};
+  PetscReal   sum[10], noise;
 
   PetscFunctionBeginUser;
   LawsAdd(d, v, d->layout->total, &LAWS_FREE, 1, &after);

@@ -1,18 +1,23 @@
 /*
-   Laws (private to dynamics/) - looks at a few steps of a run by second paths. The balance of energy closes with any forces, since
-   the works in it are those of the forces that acted: a wrong friction coefficient or stiffness passes. Looked at are steps 10,
-   100, 1000, ..., the last one, and every -dynamics_check_interval steps. Errors, relative, beyond rounding:
+   Laws (private to dynamics/) - looks at a few steps of a run by second paths. The balance of energy closes with any
+   forces, since the works in it are those of the forces that acted: a wrong friction coefficient or stiffness passes.
+   Looked at are steps 10, 100, 1000, ..., the last one, and every -dynamics_check_interval steps. Errors, relative,
+   beyond rounding:
 
-      stiffness   the kernels' K u, which is summed up step by step, beside K_e u_e of all elements; of the largest force at a node
-      friction    work lambda_T . s beside mu lambda_n |s|, with the slip s from the places of the nodes (slipwork.c), of the
+      stiffness   the kernels' K u, which is summed up step by step, beside K_e u_e of all elements; of the largest
+      force at a node friction    work lambda_T . s beside mu lambda_n |s|, with the slip s from the places of the nodes
+      (slipwork.c), of the
                   latter; |lambda_T| - mu lambda_n, of lambda_n; heat in the ledger beside that of s
-      momentum    sum_i M_i (v_{n+1/2} - v_{n-1/2}) = kick (loads + weight + impulses + springs + supports + damping), contact and
+      momentum    sum_i M_i (v_{n+1/2} - v_{n-1/2}) = kick (loads + weight + impulses + springs + supports + damping),
+      contact and
                   internal forces being equal and opposite; of the sum of the sizes of all forces
-      moment      the same about the origin, with arms X of the undeformed bodies, for which K of a small rotation is 0; of contact
+      moment      the same about the origin, with arms X of the undeformed bodies, for which K of a small rotation is 0;
+      of contact
                   forces with arms X + u where slaves travel, since they act at one place on both bodies then
 
-   Springs, dashpots and bushings act on u and v as told, supports hold what acts on held directions. What acts as it acts: moments
-   of loads, damping, inertial forces of points and frames, and contact where a master moves in a frame of its own.
+   Springs, dashpots and bushings act on u and v as told, supports hold what acts on held directions. What acts as it
+   acts: moments of loads, damping, inertial forces of points and frames, and contact where a master moves in a frame of
+   its own.
 */
 #pragma once
 

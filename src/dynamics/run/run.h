@@ -1,6 +1,6 @@
 /*
-   Run (private to dynamics/ and to rooms that integrate the same scenes by other means) - what the options of a transient
-   ask for, and the histories that record it.
+   Run (private to dynamics/ and to rooms that integrate the same scenes by other means) - what the options of a
+   transient ask for, and the histories that record it.
 */
 #pragma once
 
@@ -31,35 +31,36 @@ typedef struct {
 } DynamicsRun;
 
 /* DynamicsGetRun - begins a run of the same scene that the caller integrates: step `dt` where -ts_dt does not say one,
-   DynamicsCheckEarlier() done. Collective. Errors: PETSC_ERR_USER_INPUT as of DynamicsSolve(), and for options that belong
-   to the explicit integrator alone, which `by` names as the option that leaves them without effect. */
+   DynamicsCheckEarlier() done. Collective. Errors: PETSC_ERR_USER_INPUT as of DynamicsSolve(), and for options that
+   belong to the explicit integrator alone, which `by` names as the option that leaves them without effect. */
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
-/* DynamicsSetEndless - the caller takes the scene and the step, and integrates nothing from a beginning to an end: none is asked for,
-   and the run's is 0. Not collective. */
+/* DynamicsSetEndless - the caller takes the scene and the step, and integrates nothing from a beginning to an end: none
+   is asked for, and the run's is 0. Not collective. */
 PETSC_INTERN PetscErrorCode DynamicsSetEndless(Dynamics dynamics);
 
-/* DynamicsCheckTimes - what comes after the end of a run of steps dt, s: ExternalCheckLate(), sliding that begins there, and an
-   interval of checkpoints that is longer than the run, an error of the command line. Collective. */
+/* DynamicsCheckTimes - what comes after the end of a run of steps dt, s: ExternalCheckLate(), sliding that begins
+   there, and an interval of checkpoints that is longer than the run, an error of the command line. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckTimes(Dynamics dynamics, PetscReal end, PetscReal dt);
 
 /* DynamicsGetStep - step and end of a run whose caller takes another `dt` where -ts_dt does not say one. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetStep(Dynamics dynamics, PetscReal dt, DynamicsRun *run);
 
-/* DynamicsGetShape - what -dynamics_shape adds to the start at the local nodes: displacements and velocities, [nodes][3], m
-   and m/s; zeros without. Collective. */
+/* DynamicsGetShape - what -dynamics_shape adds to the start at the local nodes: displacements and velocities,
+   [nodes][3], m and m/s; zeros without. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsGetShape(Dynamics dynamics, PetscReal u[], PetscReal v[]);
 
-/* DynamicsWriteImpulses - impulses.csv of a run that is over, and in words whether the response is linear: sums over the
-   interfaces, and when each impulse acted, s, negative where it did not. Collective. */
+/* DynamicsWriteImpulses - impulses.csv of a run that is over, and in words whether the response is linear: sums over
+   the interfaces, and when each impulse acted, s, negative where it did not. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsWriteImpulses(Dynamics dynamics, const ContactSums sums[], const PetscReal time[]);
 
-/* DynamicsAddRunChecksum - what a run must share with the one that it goes on with, but for what concerns the integrator. Collective. */
+/* DynamicsAddRunChecksum - what a run must share with the one that it goes on with, but for what concerns the
+   integrator. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsAddRunChecksum(Dynamics dynamics, Checksum checksum);
 
-/* DynamicsForget - takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing must go on from it
-   with these. Collective. */
+/* DynamicsForget - takes away the checkpoint of an earlier run, whose tables a run that starts anew replaces: nothing
+   must go on from it with these. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsForget(Dynamics dynamics);
 
 /* LedgerView - the balance in words, J */

@@ -11,10 +11,10 @@ static PetscErrorCode LawsView(const LedgerLaws *laws, PetscViewer viewer)
     const char *name;
     PetscReal   value;
   } line[] = {
-    {"work of friction beside mu N on the way slid",   laws->friction },
+    {"work of friction beside mu N on the way slid", laws->friction},
     {"K u of the kernels beside that of the elements", laws->stiffness},
-    {"change of momentum beside what acts",            laws->momentum },
-    {"of angular momentum",                            laws->moment   },
+    {"change of momentum beside what acts", laws->momentum},
+    {"of angular momentum", laws->moment},
   };
 
   PetscFunctionBeginUser;
@@ -32,14 +32,14 @@ PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
     const char *name;
     PetscReal   value;
   } line[] = {
-    {"kinetic",            l->kinetic   },
-    {"strain",             l->strain    },
-    {"work of loads",      l->external  },
-    {"work of friction",   l->friction  },
-    {"work of contact",    l->contact   },
-    {"work of damping",    l->damping   },
+    {"kinetic", l->kinetic},
+    {"strain", l->strain},
+    {"work of loads", l->external},
+    {"work of friction", l->friction},
+    {"work of contact", l->contact},
+    {"work of damping", l->damping},
     {"work of integrator", l->integrator},
-    {"heat of friction",   l->heat      },
+    {"heat of friction", l->heat},
   };
 
   PetscFunctionBeginUser;

@@ -28,8 +28,8 @@ typedef struct {
   PetscInt    mode;            /* number in modes.csv */
 } ShapeSource;
 
-/* start/file.c - lambda = sigma + i omega (1/s) of a mode from modes.csv in the folder, and mesh and shape from the file,
-   which the caller frees; what is wrong goes to the fault. Not collective. */
+/* start/file.c - lambda = sigma + i omega (1/s) of a mode from modes.csv in the folder, and mesh and shape from the
+   file, which the caller frees; what is wrong goes to the fault. Not collective. */
 PETSC_INTERN PetscErrorCode ShapeReadTable(const ShapeSource *source, PetscReal lambda[2], Fault *fault);
 PETSC_INTERN PetscErrorCode ShapeReadField(const ShapeSource *source, PetscReal omega, Shape *shape, Fault *fault);
 

@@ -49,14 +49,14 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real and
-   positive. Returns that component. */
+/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real
+   and positive. Returns that component. */
 static PetscErrorCode StartTurn(MPI_Comm comm, PetscInt n, PetscReal re[], PetscReal im[], PetscReal *largest)
 {
   struct {
     double size;
     int    rank;
-  } most = {0};
+  } most          = {0};
   double phase[2] = {1, 0};
 
   PetscFunctionBeginUser;

@@ -3,8 +3,8 @@
 
 #include "space.h"
 
-/* With Q0 = K - shift M undamped, the states p are vectors and S p = Q0^-1 M p; with damping Q0 = Q(shift), they are pairs
-   p, q and S [p; q] = [-Q0^-1 (g Q'(shift) p + g^2 M q); p], g = shift, so that
+/* With Q0 = K - shift M undamped, the states p are vectors and S p = Q0^-1 M p; with damping Q0 = Q(shift), they are
+   pairs p, q and S [p; q] = [-Q0^-1 (g Q'(shift) p + g^2 M q); p], g = shift, so that
 
       (Q0 - d M)^-1 b = (1 - d S)^-1 Q0^-1 b,   Q(shift + g d)^-1 b = first part of (1 - d S)^-1 [Q0^-1 b; 0].
 

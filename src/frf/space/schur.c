@@ -5,8 +5,8 @@
       damped     (T - w) y   = -w Z' [0; Q0^-1 b],         w = shift / (i omega - shift),  complex,
 
    the latter in real arithmetic T Y - Y B = R for the two columns of Y = [re y, im y] with B = [re w, im w; -im w, re
-   w]: both are what LAPACK's trsyl solves, at the cost of a product with T. Several frequencies are solved together, with
-   their B along the diagonal of a larger one.
+   w]: both are what LAPACK's trsyl solves, at the cost of a product with T. Several frequencies are solved together,
+   with their B along the diagonal of a larger one.
 */
 #include "schur.h"
 #include <slepcblaslapack.h>
@@ -57,16 +57,15 @@ static PetscErrorCode SchurReduce(FrfSchur *s, PetscReal Z[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends, FrfSchur *s)
+PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends,
+                              FrfSchur *s)
 {
   const PetscInt n = space->space.n;
   PetscReal     *Z;
 
   PetscFunctionBeginUser;
-  *s        = (FrfSchur){.n         = n,
-                         .shift     = shift,
-                         .n_outputs = ends->n_outputs,
-                         .damped    = space->pencil.C ? PETSC_TRUE : PETSC_FALSE};
+  *s = (FrfSchur){
+    .n = n, .shift = shift, .n_outputs = ends->n_outputs, .damped = space->pencil.C ? PETSC_TRUE : PETSC_FALSE};
   s->length = s->damped ? 2 * n : n;
   PetscCall(PetscCalloc1(s->length * s->length, &s->T));
   PetscCall(PetscCalloc4(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * FRF_BATCH * s->length, &s->x,

@@ -5,8 +5,8 @@
 
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
-/* S of krylov.h on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and outputs there. Its states are
-   [q; p] here, as in basis/companion.c. */
+/* S of krylov.h on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and outputs there. Its
+   states are [q; p] here, as in basis/companion.c. */
 typedef struct {
   PetscInt   n, length, n_outputs;
   PetscBool  damped;
@@ -25,10 +25,10 @@ typedef struct {
 } FrfEnds;
 
 /* rounded: with K + E in place of K */
-PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends,
-                                           FrfSchur *schur);
-/* H at n <= FRF_BATCH frequencies omega (rad/s): re[n][n_outputs], im[n][n_outputs]; *pole is the index of one that is a pole to
-   rounding, or -1 */
+PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift,
+                                           const FrfEnds *ends, FrfSchur *schur);
+/* H at n <= FRF_BATCH frequencies omega (rad/s): re[n][n_outputs], im[n][n_outputs]; *pole is the index of one that is
+   a pole to rounding, or -1 */
 PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscInt n, const PetscReal omega[], PetscReal re[],
                                             PetscReal im[], PetscInt *pole);
 PETSC_INTERN PetscErrorCode FrfSchurDestroy(FrfSchur *schur);

@@ -1,5 +1,6 @@
 /*
-   The space of Galerkin's method: vectors of length one, whatever they are, count alike, so that it is orthonormal without M.
+   The space of Galerkin's method: vectors of length one, whatever they are, count alike, so that it is orthonormal
+   without M.
 */
 #include "space.h"
 #include "solver/block/orthonormal.h"

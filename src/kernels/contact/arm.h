@@ -3,9 +3,9 @@
 
       u = sum_i w_i u_i + omega x g,   omega = sum_i [(h_i x n) (n . u_i) + n (n . (h_i x u_i)) / 2],
 
-   where h_i = grad_s w_i = w_i,xi a^1 + w_i,eta a^2 with a^1 = b x n / J, a^2 = n x a / J of the tangents a, b, and J n =
-   a x b. omega is the turning of the facet at xi: of rigid motions u_i = t + w x x_i it is w, on curved facets too, since
-   sum_i h_i x_i' is the identity of the tangent plane. Pure.
+   where h_i = grad_s w_i = w_i,xi a^1 + w_i,eta a^2 with a^1 = b x n / J, a^2 = n x a / J of the tangents a, b, and J n
+   = a x b. omega is the turning of the facet at xi: of rigid motions u_i = t + w x x_i it is w, on curved facets too,
+   since sum_i h_i x_i' is the identity of the tangent plane. Pure.
 */
 #pragma once
 

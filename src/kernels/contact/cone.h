@@ -35,11 +35,8 @@ static inline void ConePlaneSet(const double W[3][3], const double q[3], double 
   const double c[2] = {q[1] - W[1][0] * q[0] / W[0][0], q[2] - W[2][0] * q[0] / W[0][0]};
   const double x = cos(0.5 * atan2(S01, half)), y = sin(0.5 * atan2(S01, half));
 
-  *plane = (ConePlane){
-    .axis = {x,                   y                   },
-      .c = {x * c[0] + y * c[1], -y * c[0] + x * c[1]},
-      .pn0 = -q[0] / W[0][0], .mu = mu
-  };
+  *plane =
+    (ConePlane){.axis = {x, y}, .c = {x * c[0] + y * c[1], -y * c[0] + x * c[1]}, .pn0 = -q[0] / W[0][0], .mu = mu};
   plane->s[0] = 0.5 * (S00 + S11) + r;
   plane->s[1] = 0.5 * (S00 + S11) - r;
   plane->k[0] = -(x * W[1][0] + y * W[2][0]) / W[0][0];

@@ -17,10 +17,10 @@
 
    for any z in the plane, from slip without a direction of its own (alpha = 0) to the border of stick (alpha = 1).
 
-   With regularised friction (soft > 0) a pair slips by soft p before it gives way, s - soft p in the normal cone of C at p; p does not
-   change when it is written p = Proj_C(q), q = (1 - rho soft) p + rho s, rho = min(1, 1 / soft), which is Coulomb's law
-   for soft = 0, a function of s alone for soft >= 1. Stick is s = soft p, and slip has rho E and E - alpha (1 - rho
-   soft) E in the place of E and (1 - alpha) E. An open pair may pull: l_n = pull (w_n - g0) < 0.
+   With regularised friction (soft > 0) a pair slips by soft p before it gives way, s - soft p in the normal cone of C
+   at p; p does not change when it is written p = Proj_C(q), q = (1 - rho soft) p + rho s, rho = min(1, 1 / soft), which
+   is Coulomb's law for soft = 0, a function of s alone for soft >= 1. Stick is s = soft p, and slip has rho E and E -
+   alpha (1 - rho soft) E in the place of E and (1 - alpha) E. An open pair may pull: l_n = pull (w_n - g0) < 0.
 
    With a drag d < 1, a device of iterations, friction grows along the slip from q0 on, at which the law is linearised:
    p has d (e'q - |q0|) e more.
@@ -88,8 +88,9 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
     law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0] * along;
-    law->p0[1 + i] = -(pair->mu * law->p0[0] - pair->drag * length) * along * e[i] + fall * fmax(0, length - cone) * e[i];
-    law->q0[1 + i]   = pair->slip0[i];
+    law->p0[1 + i] =
+      -(pair->mu * law->p0[0] - pair->drag * length) * along * e[i] + fall * fmax(0, length - cone) * e[i];
+    law->q0[1 + i] = pair->slip0[i];
     for (int j = 0; j < 2; j++) {
       const double ee = e[i] * e[j], turn = alpha * ((i == j) - ee) + pair->drag * ee;
 

@@ -58,17 +58,8 @@ static inline void Square4Weights(double xi, double eta, double w[])
   w[3] = (1 - xi) * (1 + eta) / 4;
 }
 
-static const double square_node[FACET_NODES][2] = {
-  {-1, -1},
-  {1,  -1},
-  {1,  1 },
-  {-1, 1 },
-  {0,  -1},
-  {1,  0 },
-  {0,  1 },
-  {-1, 0 },
-  {0,  0 }
-};
+static const double square_node[FACET_NODES][2] = {{-1, -1}, {1, -1}, {1, 1},  {-1, 1}, {0, -1},
+                                                   {1, 0},   {0, 1},  {-1, 0}, {0, 0}};
 
 static inline void Square4Derivatives(double xi, double eta, double dw[][2])
 {
@@ -202,61 +193,26 @@ static inline void TriangleClamp(double at[2])
   at[1] = i == 0 ? 1 - L[1] : L[2];
 }
 
-static const double square_edge[4][3] = {
-  {-1, 0,  -1},
-  {-1, 1,  0 },
-  {-1, 0,  1 },
-  {-1, -1, 0 }
-};
+static const double square_edge[4][3] = {{-1, 0, -1}, {-1, 1, 0}, {-1, 0, 1}, {-1, -1, 0}};
 
-static const double triangle_edge[3][3] = {
-  {0,  0,  -2},
-  {-2, 2,  2 },
-  {0,  -2, 0 }
-};
+static const double triangle_edge[3][3] = {{0, 0, -2}, {-2, 2, 2}, {0, -2, 0}};
 
-static const double triangle_node[6][2] = {
-  {0,   0  },
-  {1,   0  },
-  {0,   1  },
-  {0.5, 0  },
-  {0.5, 0.5},
-  {0,   0.5}
-};
+static const double triangle_node[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
 
 static const double square4_point[4][3] = {
-  {-GAUSS2, -GAUSS2, 1},
-  {GAUSS2,  -GAUSS2, 1},
-  {-GAUSS2, GAUSS2,  1},
-  {GAUSS2,  GAUSS2,  1}
-};
+  {-GAUSS2, -GAUSS2, 1}, {GAUSS2, -GAUSS2, 1}, {-GAUSS2, GAUSS2, 1}, {GAUSS2, GAUSS2, 1}};
 
 static const double square9_point[9][3] = {
-  {-GAUSS3, -GAUSS3, 25 / 81.0},
-  {0,       -GAUSS3, 40 / 81.0},
-  {GAUSS3,  -GAUSS3, 25 / 81.0},
-  {-GAUSS3, 0,       40 / 81.0},
-  {0,       0,       64 / 81.0},
-  {GAUSS3,  0,       40 / 81.0},
-  {-GAUSS3, GAUSS3,  25 / 81.0},
-  {0,       GAUSS3,  40 / 81.0},
-  {GAUSS3,  GAUSS3,  25 / 81.0}
-};
+  {-GAUSS3, -GAUSS3, 25 / 81.0}, {0, -GAUSS3, 40 / 81.0}, {GAUSS3, -GAUSS3, 25 / 81.0},
+  {-GAUSS3, 0, 40 / 81.0},       {0, 0, 64 / 81.0},       {GAUSS3, 0, 40 / 81.0},
+  {-GAUSS3, GAUSS3, 25 / 81.0},  {0, GAUSS3, 40 / 81.0},  {GAUSS3, GAUSS3, 25 / 81.0}};
 
-static const double triangle1_point[1][3] = {
-  {1 / 3.0, 1 / 3.0, 0.5}
-};
+static const double triangle1_point[1][3] = {{1 / 3.0, 1 / 3.0, 0.5}};
 
 /* Radon's rule of degree 5 (quadrature.h) */
 static const double triangle7_point[7][3] = {
-  {1 / 3.0, 1 / 3.0, TRI_WM},
-  {TRI_A,   TRI_A,   TRI_WA},
-  {TRI_A1,  TRI_A,   TRI_WA},
-  {TRI_A,   TRI_A1,  TRI_WA},
-  {TRI_B,   TRI_B,   TRI_WB},
-  {TRI_B1,  TRI_B,   TRI_WB},
-  {TRI_B,   TRI_B1,  TRI_WB}
-};
+  {1 / 3.0, 1 / 3.0, TRI_WM}, {TRI_A, TRI_A, TRI_WA},  {TRI_A1, TRI_A, TRI_WA}, {TRI_A, TRI_A1, TRI_WA},
+  {TRI_B, TRI_B, TRI_WB},     {TRI_B1, TRI_B, TRI_WB}, {TRI_B, TRI_B1, TRI_WB}};
 
 #define SQUARE                                                                                                         \
   .n_corners = 4, .clamp = SquareClamp, .snap = SquareSnap, .node = square_node, .edge = square_edge, .area = 4
@@ -280,41 +236,35 @@ static const FacetShape facet_square4   = {SQUARE,
                                            .n_points    = 4,
                                            .low         = -3,
                                            .high        = 3};
-static const FacetShape facet_triangle6 = {
-  TRIANGLE,
-  .n           = 6,
-  .weights     = Triangle6Weights,
-  .derivatives = Triangle6Derivatives,
-  .point       = triangle7_point,
-  .n_points    = 7,
-  .low         = -0.5,
-  .high        = 1.5,
-  .lump        = {1 / 38.0, 8 / 57.0}
-};
-static const FacetShape facet_square8 = {
-  SQUARE,
-  .n           = 8,
-  .weights     = Square8Weights,
-  .derivatives = Square8Derivatives,
-  .point       = square9_point,
-  .n_points    = 9,
-  .low         = -2,
-  .high        = 2,
-  .lump        = {3 / 19.0, 16 / 19.0},
-  .hull        = {-0.75,    1        }
-};
-static const FacetShape facet_square9 = {
-  SQUARE,
-  .n           = 9,
-  .weights     = Square9Weights,
-  .derivatives = Square9Derivatives,
-  .point       = square9_point,
-  .n_points    = 9,
-  .low         = -2,
-  .high        = 2,
-  .lump        = {1 / 9.0, 4 / 9.0, 16 / 9.0},
-  .hull        = {0.25,    -1,      4       }
-};
+static const FacetShape facet_triangle6 = {TRIANGLE,
+                                           .n           = 6,
+                                           .weights     = Triangle6Weights,
+                                           .derivatives = Triangle6Derivatives,
+                                           .point       = triangle7_point,
+                                           .n_points    = 7,
+                                           .low         = -0.5,
+                                           .high        = 1.5,
+                                           .lump        = {1 / 38.0, 8 / 57.0}};
+static const FacetShape facet_square8   = {SQUARE,
+                                           .n           = 8,
+                                           .weights     = Square8Weights,
+                                           .derivatives = Square8Derivatives,
+                                           .point       = square9_point,
+                                           .n_points    = 9,
+                                           .low         = -2,
+                                           .high        = 2,
+                                           .lump        = {3 / 19.0, 16 / 19.0},
+                                           .hull        = {-0.75, 1}};
+static const FacetShape facet_square9   = {SQUARE,
+                                           .n           = 9,
+                                           .weights     = Square9Weights,
+                                           .derivatives = Square9Derivatives,
+                                           .point       = square9_point,
+                                           .n_points    = 9,
+                                           .low         = -2,
+                                           .high        = 2,
+                                           .lump        = {1 / 9.0, 4 / 9.0, 16 / 9.0},
+                                           .hull        = {0.25, -1, 4}};
 
 /* By the number of nodes */
 static const FacetShape *const facet_shapes[FACET_NODES + 1] = {

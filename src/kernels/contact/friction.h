@@ -1,8 +1,8 @@
 /*
    Coulomb friction at a pair: the disc of admissible friction and the natural map. Pure functions.
 
-   |z| <= mu p_n is the disc; the natural map p_T - Proj(z), z = p_T less a multiple of the slip, vanishes where friction
-   obeys the law.
+   |z| <= mu p_n is the disc; the natural map p_T - Proj(z), z = p_T less a multiple of the slip, vanishes where
+   friction obeys the law.
 */
 #pragma once
 

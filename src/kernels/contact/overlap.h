@@ -1,8 +1,9 @@
 /*
-   Area in which two facets lie over each other, seen along the normal of the first in its middle. Each is a fan of triangles from
-   its middle to its nodes around it (one triangle where it is one); those of sides that are curved lie on the chords of their
-   halves. Two triangles overlap in a convex polygon: one is cut by the lines of the other (I. E. Sutherland, G. W. Hodgman,
-   Reentrant polygon clipping, Communications of the ACM 17, 1974). Pure functions; lengths in m.
+   Area in which two facets lie over each other, seen along the normal of the first in its middle. Each is a fan of
+   triangles from its middle to its nodes around it (one triangle where it is one); those of sides that are curved lie
+   on the chords of their halves. Two triangles overlap in a convex polygon: one is cut by the lines of the other (I. E.
+   Sutherland, G. W. Hodgman, Reentrant polygon clipping, Communications of the ACM 17, 1974). Pure functions; lengths
+   in m.
 */
 #pragma once
 

@@ -4,8 +4,9 @@
       k_ab = int grad N_a . sigma . grad N_b dV   times the 3 x 3 identity   (N/m, symmetric; tension stiffens).
 
    sigma = C sym(H) is that of the static displacements u (m), H = sum_a u_a grad N_a over shape functions and bubbles
-   (kernels/element/stiffness.h). The amplitudes of the bubbles are those of equilibrium, alpha = -K_aa^-1 K_au u. The bubbles
-   carry stress but turn no fibre: their own geometric stiffness is left out, as is their mass (kernels/element/hex8.h).
+   (kernels/element/stiffness.h). The amplitudes of the bubbles are those of equilibrium, alpha = -K_aa^-1 K_au u. The
+   bubbles carry stress but turn no fibre: their own geometric stiffness is left out, as is their mass
+   (kernels/element/hex8.h).
 
    A rigid rotation, u_b = w x x_b, gives k u = w x f with f the nodal forces of sigma: exact for any shape, since the
    gradients of trilinear functions reproduce linear fields.

@@ -31,16 +31,8 @@
 #define HEX8_GAUSS   0.57735026918962576451         /* 1 / sqrt(3) */
 
 /* Signs of xi, eta, zeta at the nodes */
-static const double hex8_sign[HEX8_NODES][3] = {
-  {-1, -1, -1},
-  {+1, -1, -1},
-  {+1, +1, -1},
-  {-1, +1, -1},
-  {-1, -1, +1},
-  {+1, -1, +1},
-  {+1, +1, +1},
-  {-1, +1, +1}
-};
+static const double hex8_sign[HEX8_NODES][3] = {{-1, -1, -1}, {+1, -1, -1}, {+1, +1, -1}, {-1, +1, -1},
+                                                {-1, -1, +1}, {+1, -1, +1}, {+1, +1, +1}, {-1, +1, +1}};
 
 /* Integrals over an element; only the upper triangles (of 3 x 3 blocks for the gradients) are filled */
 typedef struct {

@@ -5,8 +5,8 @@
    With p_i -> q_i, i = 0..3, along the edges between the two faces, in the plane across the axis e: the angle phi of
    the turn is that from p_j - p_0 to q_j - q_0, j the farthest from 0, and its centre
       c = (p_0 + q_0)/2 + e x (q_0 - p_0) / (2 tan(phi/2)),
-   rounded to thirteen decimals of the size of the body, so that a centre at the origin is exactly there, and the cells of an
-   arc have the same centre whichever of them is asked. Lengths in m, angles in rad.
+   rounded to thirteen decimals of the size of the body, so that a centre at the origin is exactly there, and the cells
+   of an arc have the same centre whichever of them is asked. Lengths in m, angles in rad.
 
    An axis of any direction is that of the turn R with R (p_j - p_0) = q_j - q_0: with a = p_1 - p_0, b = p_2 - p_0,
    n = a x b, their images a', b', n', and the dual vectors A = b x n / n.n, B = n x a / n.n, N = n / n.n
@@ -29,10 +29,7 @@ typedef struct {
 
 /* Corners that edges join in the three directions of a hexahedron, bottom and top counter-clockwise */
 static const int motion_hex8_edge[MOTION_PAIRS][MOTION_EDGES][2] = {
-  {{0, 1}, {3, 2}, {4, 5}, {7, 6}},
-  {{0, 3}, {1, 2}, {4, 7}, {5, 6}},
-  {{0, 4}, {1, 5}, {2, 6}, {3, 7}}
-};
+  {{0, 1}, {3, 2}, {4, 5}, {7, 6}}, {{0, 3}, {1, 2}, {4, 7}, {5, 6}}, {{0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
 /* The point at the end of edge i in this direction */
 static inline const double *MotionPoint(const double x[8][3], int pair, int i, int end)

@@ -19,11 +19,7 @@
 #include "stiffness.h"
 
 /* The two axes of the constants that stand for pairs: 12, 13, 23 */
-static const int orthotropic_pair[3][2] = {
-  {0, 1},
-  {0, 2},
-  {1, 2}
-};
+static const int orthotropic_pair[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 
 /* D */
 static inline double OrthotropicDeterminant(const EngineeringConstants *e)

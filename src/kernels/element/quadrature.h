@@ -11,15 +11,13 @@
 #define TET_A 0.13819660112501051518
 #define TET_B 0.58541019662496845446
 
-static const double quadrature_tet4[4][4] = {
-  {TET_A, TET_A, TET_A, 1.0 / 24},
-  {TET_B, TET_A, TET_A, 1.0 / 24},
-  {TET_A, TET_B, TET_A, 1.0 / 24},
-  {TET_A, TET_A, TET_B, 1.0 / 24}
-};
+static const double quadrature_tet4[4][4] = {{TET_A, TET_A, TET_A, 1.0 / 24},
+                                             {TET_B, TET_A, TET_A, 1.0 / 24},
+                                             {TET_A, TET_B, TET_A, 1.0 / 24},
+                                             {TET_A, TET_A, TET_B, 1.0 / 24}};
 
-/* Tetrahedron, degree 5: a = (7 - sqrt 15) / 34, b = (7 + sqrt 15) / 34, 1 - 3 a, 1 - 3 b; edges c = (10 - 2 sqrt 15) / 40,
-   1/2 - c; weights (2665 +- 14 sqrt 15) / 226800, 5/567, and 8/405 in the middle */
+/* Tetrahedron, degree 5: a = (7 - sqrt 15) / 34, b = (7 + sqrt 15) / 34, 1 - 3 a, 1 - 3 b; edges c = (10 - 2 sqrt 15) /
+   40, 1/2 - c; weights (2665 +- 14 sqrt 15) / 226800, 5/567, and 8/405 in the middle */
 #define TET_C  0.09197107805272303279
 #define TET_C1 0.72408676584183090163
 #define TET_D  0.31979362782962990839
@@ -32,22 +30,11 @@ static const double quadrature_tet4[4][4] = {
 #define TET_WE 0.00881834215167548501
 
 static const double quadrature_tet15[15][4] = {
-  {0.25,   0.25,   0.25,   TET_WM},
-  {TET_C,  TET_C,  TET_C,  TET_WC},
-  {TET_C1, TET_C,  TET_C,  TET_WC},
-  {TET_C,  TET_C1, TET_C,  TET_WC},
-  {TET_C,  TET_C,  TET_C1, TET_WC},
-  {TET_D,  TET_D,  TET_D,  TET_WD},
-  {TET_D1, TET_D,  TET_D,  TET_WD},
-  {TET_D,  TET_D1, TET_D,  TET_WD},
-  {TET_D,  TET_D,  TET_D1, TET_WD},
-  {TET_E1, TET_E,  TET_E,  TET_WE},
-  {TET_E,  TET_E1, TET_E,  TET_WE},
-  {TET_E,  TET_E,  TET_E1, TET_WE},
-  {TET_E,  TET_E1, TET_E1, TET_WE},
-  {TET_E1, TET_E,  TET_E1, TET_WE},
-  {TET_E1, TET_E1, TET_E,  TET_WE}
-};
+  {0.25, 0.25, 0.25, TET_WM},      {TET_C, TET_C, TET_C, TET_WC},   {TET_C1, TET_C, TET_C, TET_WC},
+  {TET_C, TET_C1, TET_C, TET_WC},  {TET_C, TET_C, TET_C1, TET_WC},  {TET_D, TET_D, TET_D, TET_WD},
+  {TET_D1, TET_D, TET_D, TET_WD},  {TET_D, TET_D1, TET_D, TET_WD},  {TET_D, TET_D, TET_D1, TET_WD},
+  {TET_E1, TET_E, TET_E, TET_WE},  {TET_E, TET_E1, TET_E, TET_WE},  {TET_E, TET_E, TET_E1, TET_WE},
+  {TET_E, TET_E1, TET_E1, TET_WE}, {TET_E1, TET_E, TET_E1, TET_WE}, {TET_E1, TET_E1, TET_E, TET_WE}};
 
 #define GAUSS2 0.57735026918962576451 /* 1 / sqrt 3, weight 1: degree 3 */
 #define GAUSS3 0.77459666924148337704 /* sqrt(3/5), weights 5/9, 8/9, 5/9: degree 5 */
@@ -61,8 +48,8 @@ static const double quadrature_tet15[15][4] = {
 
 static const double quadrature_wedge6[6][4] = {WEDGE3(-GAUSS2, 1.0), WEDGE3(GAUSS2, 1.0)};
 
-/* Triangle, degree 5: a = (6 - sqrt 15) / 21, b = (6 + sqrt 15) / 21, 1 - 2 a, 1 - 2 b, weights (155 -+ sqrt 15) / 2400,
-   and 9/80 in the middle */
+/* Triangle, degree 5: a = (6 - sqrt 15) / 21, b = (6 + sqrt 15) / 21, 1 - 2 a, 1 - 2 b, weights (155 -+ sqrt 15) /
+   2400, and 9/80 in the middle */
 #define TRI_A  0.10128650732345633880
 #define TRI_A1 0.79742698535308732240
 #define TRI_B  0.47014206410511508977

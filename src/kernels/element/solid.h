@@ -7,10 +7,11 @@
    c_1 = t_2 x t_0, c_2 = t_0 x t_1 give grad N = sum_k c_k dN/dxi_k / j.
 
       K_ab = int grad N_a . C . grad N_b dV (N/m, stiffness.h),  M_ab = rho int N_a N_b dV (kg),
-      k_ab = int grad N_a . sigma . grad N_b dV times the 3 x 3 identity (N/m), sigma the stress of u (kernels/element/geometric.h)
+      k_ab = int grad N_a . sigma . grad N_b dV times the 3 x 3 identity (N/m), sigma the stress of u
+      (kernels/element/geometric.h)
 
-   Affine images of the reference are integrated exactly. Of any shape the volume and int grad N dV, hence the patch test,
-   are exact.
+   Affine images of the reference are integrated exactly. Of any shape the volume and int grad N dV, hence the patch
+   test, are exact.
 
    Reference: O. C. Zienkiewicz, R. L. Taylor, J. Z. Zhu, The Finite Element Method: Its Basis and Fundamentals, 6th
    ed., 2005, chapters 4 and 5.
@@ -53,8 +54,8 @@ static inline double SolidJacobian(int n, const double *x, const double *dN, dou
   return Vec3Dot(t, c);
 }
 
-/* Shape functions N[n], their gradients g[n][3] (1/m) and the volume (m^3) of quadrature point q; not positive where the
-   element is inverted: then g is not written */
+/* Shape functions N[n], their gradients g[n][3] (1/m) and the volume (m^3) of quadrature point q; not positive where
+   the element is inverted: then g is not written */
 static inline double SolidPoint(const Solid *s, const double *x, int q, double N[], double g[])
 {
   double dN[SOLID_MAX_DOFS], c[9], j;

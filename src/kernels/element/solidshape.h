@@ -7,8 +7,8 @@
       tet4      N = L_a, with L = 1 - r - s - t, r, s, t;    tet10     L_a (2 L_a - 1),  4 L_a L_b
       wedge6    L_a (1 + z z_a) / 2, with L = 1 - r - s, r, s
       wedge15   L_a (2 L_a - 1)(1 + z z_a) / 2 - L_a (1 - z^2) / 2,  2 L_a L_b (1 + z z_ab),  L_a (1 - z^2)
-      hex20     prod (1 + xi_k xi_ak) (sum xi_k xi_ak - 2) / 8,  and with the edge along k (1 - xi_k^2) prod (1 + ..) / 4
-      hex27     products of -x (1 - x) / 2, 1 - x^2, x (1 + x) / 2
+      hex20     prod (1 + xi_k xi_ak) (sum xi_k xi_ak - 2) / 8,  and with the edge along k (1 - xi_k^2) prod (1 + ..) /
+      4 hex27     products of -x (1 - x) / 2, 1 - x^2, x (1 + x) / 2
 
    Reference: O. C. Zienkiewicz, R. L. Taylor, J. Z. Zhu, The Finite Element Method: Its Basis and Fundamentals, 6th
    ed., 2005, chapter 4.
@@ -20,22 +20,10 @@
 #include "solid.h"
 
 /* Corners at the ends of the edges */
-static const unsigned char tet_edge[6][2] = {
-  {0, 1},
-  {1, 2},
-  {2, 0},
-  {0, 3},
-  {1, 3},
-  {2, 3}
-};
+static const unsigned char tet_edge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
 /* L_a of a tetrahedron and dL_a / d(r, s, t) */
-static const double tet_slope[4][3] = {
-  {-1, -1, -1},
-  {1,  0,  0 },
-  {0,  1,  0 },
-  {0,  0,  1 }
-};
+static const double tet_slope[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 static inline void Tet4Shape(const double xi[3], double N[], double dN[])
 {
@@ -71,11 +59,7 @@ static inline void WedgeProduct(double f, const double df[2], const double h[2],
 }
 
 /* Slopes of L = 1 - r - s, r, s */
-static const double triangle_slope[3][2] = {
-  {-1, -1},
-  {1,  0 },
-  {0,  1 }
-};
+static const double triangle_slope[3][2] = {{-1, -1}, {1, 0}, {0, 1}};
 
 static inline void Wedge6Shape(const double xi[3], double N[], double dN[])
 {
@@ -117,34 +101,9 @@ static inline void Wedge15Shape(const double xi[3], double N[], double dN[])
 
 /* Natural coordinates of the nodes of hexahedra */
 static const signed char hex_node[27][3] = {
-  {-1, -1, -1},
-  {1,  -1, -1},
-  {1,  1,  -1},
-  {-1, 1,  -1},
-  {-1, -1, 1 },
-  {1,  -1, 1 },
-  {1,  1,  1 },
-  {-1, 1,  1 },
-  {0,  -1, -1},
-  {1,  0,  -1},
-  {0,  1,  -1},
-  {-1, 0,  -1},
-  {0,  -1, 1 },
-  {1,  0,  1 },
-  {0,  1,  1 },
-  {-1, 0,  1 },
-  {-1, -1, 0 },
-  {1,  -1, 0 },
-  {1,  1,  0 },
-  {-1, 1,  0 },
-  {-1, 0,  0 },
-  {1,  0,  0 },
-  {0,  -1, 0 },
-  {0,  1,  0 },
-  {0,  0,  -1},
-  {0,  0,  1 },
-  {0,  0,  0 }
-};
+  {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},  {-1, 1, 1},  {0, -1, -1},
+  {1, 0, -1},   {0, 1, -1},  {-1, 0, -1}, {0, -1, 1},  {1, 0, 1},   {0, 1, 1},  {-1, 0, 1}, {-1, -1, 0}, {1, -1, 0},
+  {1, 1, 0},    {-1, 1, 0},  {-1, 0, 0},  {1, 0, 0},   {0, -1, 0},  {0, 1, 0},  {0, 0, -1}, {0, 0, 1},   {0, 0, 0}};
 
 /* Product of three factors f, and its slopes with their derivatives d */
 static inline void HexProduct(const double f[3], const double d[3], double *N, double dN[3])
@@ -189,35 +148,11 @@ static inline void Hex27Shape(const double xi[3], double N[], double dN[])
 }
 
 /* Twice the natural coordinates of the nodes of tetrahedra and wedges */
-static const signed char tet_node[10][3] = {
-  {0, 0, 0},
-  {2, 0, 0},
-  {0, 2, 0},
-  {0, 0, 2},
-  {1, 0, 0},
-  {1, 1, 0},
-  {0, 1, 0},
-  {0, 0, 1},
-  {1, 0, 1},
-  {0, 1, 1}
-};
-static const signed char wedge_node[15][3] = {
-  {0, 0, -2},
-  {2, 0, -2},
-  {0, 2, -2},
-  {0, 0, 2 },
-  {2, 0, 2 },
-  {0, 2, 2 },
-  {1, 0, -2},
-  {1, 1, -2},
-  {0, 1, -2},
-  {1, 0, 2 },
-  {1, 1, 2 },
-  {0, 1, 2 },
-  {0, 0, 0 },
-  {2, 0, 0 },
-  {0, 2, 0 }
-};
+static const signed char tet_node[10][3]   = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0},
+                                              {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+static const signed char wedge_node[15][3] = {{0, 0, -2}, {2, 0, -2}, {0, 2, -2}, {0, 0, 2},  {2, 0, 2},
+                                              {0, 2, 2},  {1, 0, -2}, {1, 1, -2}, {0, 1, -2}, {1, 0, 2},
+                                              {1, 1, 2},  {0, 1, 2},  {0, 0, 0},  {2, 0, 0},  {0, 2, 0}};
 
 static const Solid solid_tet4    = {4, 4, Tet4Shape, quadrature_tet4, 1.0 / 6, tet_node, 0.5};
 static const Solid solid_tet10   = {10, 15, Tet10Shape, quadrature_tet15, 1.0 / 6, tet_node, 0.5};

@@ -1,16 +1,16 @@
 /*
-   Spinning part in the fixed frame: an axisymmetric body turns at Omega (rad/s) about the unit vector e through the point
-   c, and u(x, t) is the displacement of the material that passes x, in components of the frame. With w = e x (x - c) its
-   steady velocity is Omega w, so that D/Dt = d/dt + Omega w . grad, and the acceleration of u is D^2 u / Dt^2:
+   Spinning part in the fixed frame: an axisymmetric body turns at Omega (rad/s) about the unit vector e through the
+   point c, and u(x, t) is the displacement of the material that passes x, in components of the frame. With w = e x (x -
+   c) its steady velocity is Omega w, so that D/Dt = d/dt + Omega w . grad, and the acceleration of u is D^2 u / Dt^2:
 
       int rho v . D^2 u / Dt^2 dV = v' M u'' + v' G u' - v' Q u,
 
       G_ab = 2 Omega int rho N_a (w . grad N_b) dV        gyroscopic, skew (N s/m)
       Q_ab = Omega^2 int rho (w . grad N_a)(w . grad N_b) dV   centrifugal, symmetric (N/m)
 
-   each times the 3 x 3 identity; by parts, since div w = 0 and w lies in the surface of the body. On a mesh, whose surface
-   is not quite round, G is taken as its skew part, Omega int rho (N_a w . grad N_b - N_b w . grad N_a) dV, which neither
-   gains nor loses energy. The steady load of the spin is, with r = (I - e e') (x - c),
+   each times the 3 x 3 identity; by parts, since div w = 0 and w lies in the surface of the body. On a mesh, whose
+   surface is not quite round, G is taken as its skew part, Omega int rho (N_a w . grad N_b - N_b w . grad N_a) dV,
+   which neither gains nor loses energy. The steady load of the spin is, with r = (I - e e') (x - c),
 
       f_a = Omega^2 int rho N_a r dV (N),
 
@@ -18,16 +18,16 @@
 
       M u'' + G u' + (K + K_sigma - Q) u = 0.
 
-   A wave exp(i (n theta + omega t)) of the turning frame has the frequency omega - n Omega here: waves that run with the
-   body are faster by n Omega, those against it slower. A rigid shift costs nothing: w . grad of it is zero. A rigid tilt
-   phi has no stiffness either, phi' K_sigma phi = phi' Q phi, and turns at Omega I_axis / I_across (nutation).
+   A wave exp(i (n theta + omega t)) of the turning frame has the frequency omega - n Omega here: waves that run with
+   the body are faster by n Omega, those against it slower. A rigid shift costs nothing: w . grad of it is zero. A rigid
+   tilt phi has no stiffness either, phi' K_sigma phi = phi' Q phi, and turns at Omega I_axis / I_across (nutation).
 
    Damping C = alpha M + beta K is taken in the frame, C u' in place of C (u' + Omega w . grad u). For a wave of the
-   frequency omega_0 in the turning body this is off by the factor 1 +- n Omega / omega_0, as the frequency in the frame is:
-   waves that run with the body are damped so much too strongly, those against it too weakly.
+   frequency omega_0 in the turning body this is off by the factor 1 +- n Omega / omega_0, as the frequency in the frame
+   is: waves that run with the body are damped so much too strongly, those against it too weakly.
 
-   Reference: U. Nackenhorst, The ALE-formulation of bodies in rolling contact, Computer Methods in Applied Mechanics and
-   Engineering 193 (2004) 4299-4322.
+   Reference: U. Nackenhorst, The ALE-formulation of bodies in rolling contact, Computer Methods in Applied Mechanics
+   and Engineering 193 (2004) 4299-4322.
 */
 #pragma once
 
@@ -55,7 +55,8 @@ static inline void SpinFlow(const SpinFrame *frame, const double x[3], double w[
   Vec3Cross(frame->axis, r, w);
 }
 
-/* Adds what a quadrature point of volume dV (m^3) gives, with shape functions N[n], flow[n] = w . grad N (-), and r (m) */
+/* Adds what a quadrature point of volume dV (m^3) gives, with shape functions N[n], flow[n] = w . grad N (-), and r
+   (m) */
 static inline void SpinAddPoint(int n, double dV, const double *N, const double *flow, const double r[3],
                                 SpinIntegrals *sum)
 {

@@ -15,11 +15,7 @@
 #include <squeal/elasticity.h>
 
 /* Place of component ij of a symmetric tensor in the order xx, yy, zz, yz, xz, xy */
-static const int stiffness_voigt[3][3] = {
-  {0, 5, 4},
-  {5, 1, 3},
-  {4, 3, 2}
-};
+static const int stiffness_voigt[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
 
 /* Blocks a <= b of n functions, isotropic */
 static inline void StiffnessIsotropic(int n, const Elasticity *material, const double *G, int ld, double *K)

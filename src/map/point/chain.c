@@ -1,6 +1,7 @@
 /*
-   A chain: a line of the map in one direction, point after point, each from the end of the one before, until its regime is known
-   (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is made anew.
+   A chain: a line of the map in one direction, point after point, each from the end of the one before, until its regime
+   is known (map.h), or a point alone. Runs on one rank, without messages. What a point begins with besides the state is
+   made anew.
 */
 #include "map/mapimpl.h"
 
@@ -46,7 +47,8 @@ PetscErrorCode MapMarchDestroy(MapMarch *march)
   PetscFunctionReturn(0);
 }
 
-/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after MapMarchLinearise() there */
+/* Growth of the fastest mode about the sliding state with the inertia of what the modes leave out; after
+   MapMarchLinearise() there */
 static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
 {
   MapFastest fastest;
@@ -95,7 +97,8 @@ static PetscErrorCode MarchPoint(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   if (*good) {
     PetscCall(MapTwinsBegin(w));
     PetscCall(MapMarchTry(w, row));
-  } else row->regime = MAP_UNKNOWN, row->end = MAP_FAILED, row->fault = MAP_NO_STATE;
+  } else
+    row->regime = MAP_UNKNOWN, row->end = MAP_FAILED, row->fault = MAP_NO_STATE;
   if (row->end == MAP_FAILED) *good = PETSC_FALSE;
   PetscCall(MapTwinsRun(w, &begin, row));
   PetscFunctionReturn(0);
@@ -111,10 +114,10 @@ void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
 
 PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
 {
-  Map       map  = w->map;
-  PetscBool good = PETSC_FALSE;
+  Map       map   = w->map;
+  PetscBool good  = PETSC_FALSE;
   PetscInt  first = 0;
-  MapKept   kept = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive};
+  MapKept   kept  = {&w->bodies->model, &w->state, w->n_twins, w->twin, &w->n_alive};
 
   PetscFunctionBeginUser;
   w->n_alive = 0;

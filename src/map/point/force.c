@@ -1,7 +1,7 @@
 /*
-   What forces are like: mean, rms about it, largest value, share without force; and their main line, the largest magnitude X_k
-   of the spectrum, squares summed over records one after the other, under Hann's window, from four periods in a record on,
-   between bins by
+   What forces are like: mean, rms about it, largest value, share without force; and their main line, the largest
+   magnitude X_k of the spectrum, squares summed over records one after the other, under Hann's window, from four
+   periods in a record on, between bins by
 
       f = (k + d) / (n dt),   d = (2 a - 1) / (a + 1),   a = X_{k+1} / X_k of the larger neighbour
 

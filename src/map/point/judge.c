@@ -1,11 +1,12 @@
 /*
-   What a transient is when it ends, and whether it has: windows that die out, settle or are steady (map.h), and its numbers.
+   What a transient is when it ends, and whether it has: windows that die out, settle or are steady (map.h), and its
+   numbers.
 */
 #include "map/mapimpl.h"
 
-#define MARCH_TINY     1e-9 /* of the mean force: a vibration that is rounding */
-#define MARCH_SMALL    0.01 /* of the mean force: a vibration that is small */
-#define MARCH_TREND    1.5  /* of the rms, from a quarter of the windows to the next: growth */
+#define MARCH_TINY  1e-9 /* of the mean force: a vibration that is rounding */
+#define MARCH_SMALL 0.01 /* of the mean force: a vibration that is small */
+#define MARCH_TREND 1.5  /* of the rms, from a quarter of the windows to the next: growth */
 
 PetscErrorCode MapMarchLinearise(MapMarch w, const ContactStatus status[], MapFastest *fastest)
 {
@@ -48,9 +49,9 @@ PetscErrorCode MapMarchDiesOut(MapMarch w, PetscBool *dies)
   PetscFunctionReturn(0);
 }
 
-/* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much beyond the one
-   before, or, where a mode grows, where it rises in each window of the last half, or where no pair changed its status there, so
-   that the motion is linear */
+/* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much
+   beyond the one before, or, where a mode grows, where it rises in each window of the last half, or where no pair
+   changed its status there, so that the motion is linear */
 static MapRegime MarchTrend(const MapMarch w)
 {
   const PetscInt   n      = w->n_windows;
@@ -109,4 +110,3 @@ void MapMarchJudge(MapMarch w, MapPoint *row)
     row->freq_error = PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
                                    MapForceLine(half, n, &w->slip[n * (last - half)], dt));
 }
-

@@ -1,6 +1,6 @@
 /*
-   The march of a point: steps in windows from where it begins, until its regime is known (map.h). An error of PETSc's that a motion
-   without solution or beyond numbers makes is an outcome of the point, not of the run.
+   The march of a point: steps in windows from where it begins, until its regime is known (map.h). An error of PETSc's
+   that a motion without solution or beyond numbers makes is an outcome of the point, not of the run.
 */
 #include "map/mapimpl.h"
 

@@ -1,7 +1,7 @@
 /*
-   What the eigenvalues lambda = sigma + i omega about the sliding state say of a point: the mode that grows fastest, the largest
-   growth over angular frequency, and all modes that grow. A real lambda above what rounding makes of a rigid mode is
-   divergence, of frequency 0; other real ones are overdamped or rigid modes and count for nothing.
+   What the eigenvalues lambda = sigma + i omega about the sliding state say of a point: the mode that grows fastest,
+   the largest growth over angular frequency, and all modes that grow. A real lambda above what rounding makes of a
+   rigid mode is divergence, of frequency 0; other real ones are overdamped or rigid modes and count for nothing.
 */
 #include "map/mapimpl.h"
 

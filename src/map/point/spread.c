@@ -1,8 +1,9 @@
 /*
-   What several transients of a point say of its amplitude together. The level of each is the mean square of its windows. That of
-   n transients differs from that of n others by sqrt(2 / n) times the spread of one, of which there are two estimates: between
-   the transients, with Student's t of n - 1, and within them, with the correlation of windows one after the other; the larger one
-   counts (batch means: C. Alexopoulos, A. F. Seila, Output data analysis, in: Handbook of Simulation, 1998).
+   What several transients of a point say of its amplitude together. The level of each is the mean square of its
+   windows. That of n transients differs from that of n others by sqrt(2 / n) times the spread of one, of which there
+   are two estimates: between the transients, with Student's t of n - 1, and within them, with the correlation of
+   windows one after the other; the larger one counts (batch means: C. Alexopoulos, A. F. Seila, Output data analysis,
+   in: Handbook of Simulation, 1998).
 */
 #include "map/mapimpl.h"
 
@@ -63,7 +64,7 @@ static PetscReal SpreadWithin(PetscInt n_runs, const PetscInt n[], PetscInt stri
 PetscReal MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride, const PetscReal rms[])
 {
   PetscReal mean[1 + MAP_MAX_TWINS] = {0}, all = 0, between, within;
-  PetscInt  freedom                 = 0;
+  PetscInt  freedom = 0;
 
   for (PetscInt k = 0; k < n_runs; k++) {
     freedom += n[k] - 1;
@@ -71,7 +72,7 @@ PetscReal MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], PetscInt stride,
     all += mean[k] / (PetscReal)n_runs;
   }
   between = MapSpreadOfMean(n_runs, mean);
-  within  = StudentT(PetscMax(1, freedom)) *
-           PetscSqrtReal(2 * SpreadWithin(n_runs, n, stride, rms, mean) / (PetscReal)n_runs);
+  within =
+    StudentT(PetscMax(1, freedom)) * PetscSqrtReal(2 * SpreadWithin(n_runs, n, stride, rms, mean) / (PetscReal)n_runs);
   return 0.5 * PetscMax(between, within) / all;
 }

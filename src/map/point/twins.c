@@ -1,11 +1,11 @@
 /*
-   What rounding changes of a point. Reduced bodies that were made on other numbers of ranks, or with other kernels of OpenBLAS,
-   differ by up to 2e-10, forces by what the contact laws hold to. A motion that loses contact may be chaotic: its amplitude is
-   then a sample of many, and which regime it ends in may be chance. A twin begins where the point does but for that, and its
-   friction is as much another; along a chain it goes on from its own ends. Where the first one ends as the point's own
-   transient did, rounding decides nothing. Where not, all twins are run, the others from x + c (x1 - x), with x where the point
-   begins, x1 its first twin, and small integers c: small differences obey linear laws. Where x1 has come far along a chain they do
-   not, and these are only other states about the point's; then
+   What rounding changes of a point. Reduced bodies that were made on other numbers of ranks, or with other kernels of
+   OpenBLAS, differ by up to 2e-10, forces by what the contact laws hold to. A motion that loses contact may be chaotic:
+   its amplitude is then a sample of many, and which regime it ends in may be chance. A twin begins where the point does
+   but for that, and its friction is as much another; along a chain it goes on from its own ends. Where the first one
+   ends as the point's own transient did, rounding decides nothing. Where not, all twins are run, the others from x + c
+   (x1 - x), with x where the point begins, x1 its first twin, and small integers c: small differences obey linear laws.
+   Where x1 has come far along a chain they do not, and these are only other states about the point's; then
 
      bistable   some are stable and some vibrate; the numbers are of those that vibrate
      otherwise  where they vibrate, the numbers are of all
@@ -28,8 +28,8 @@ PetscErrorCode MapTwinsCreate(MapMarch w)
   w->n_twins = n;
   PetscCall(ReducedStateCreate(model, &w->start));
   PetscCall(ReducedStateCreate(model, &w->next));
-  PetscCall(PetscCalloc7(n, &w->twin, model->n_pairs, &w->rest_known, model->n_pairs, &w->rest_friction, 1 + n, &w->run, 1 + n,
-                         &w->n_levels, (1 + n) * w->n_most, &w->level, (1 + n) * w->n_most, &w->sorted));
+  PetscCall(PetscCalloc7(n, &w->twin, model->n_pairs, &w->rest_known, model->n_pairs, &w->rest_friction, 1 + n, &w->run,
+                         1 + n, &w->n_levels, (1 + n) * w->n_most, &w->level, (1 + n) * w->n_most, &w->sorted));
   for (PetscInt k = 0; k < n; k++) PetscCall(ReducedStateCreate(model, &w->twin[k]));
   PetscFunctionReturn(0);
 }
@@ -78,7 +78,7 @@ static PetscErrorCode TwinBranch(MapMarch w, const ReducedState *from, PetscInt 
 static PetscErrorCode TwinFollow(MapMarch w, PetscInt k)
 {
   const ReducedModel *model = &w->bodies->model;
-  const PetscReal     c     = (PetscReal)(k % 2 ? -(k + 1) / 2 : k / 2 + 1), *x = w->start.eta;
+  const PetscReal     c = (PetscReal)(k % 2 ? -(k + 1) / 2 : k / 2 + 1), *x = w->start.eta;
   PetscReal          *y = w->twin[k].eta;
 
   PetscFunctionBeginUser;
@@ -137,7 +137,8 @@ static PetscErrorCode TwinRun(MapMarch w, PetscInt k, const MapPoint *begin, Map
 
 static PetscBool TwinVibrates(const MapPoint *run)
 {
-  return run->regime == MAP_CYCLE || run->regime == MAP_STICKING || run->regime == MAP_GROWTH ? PETSC_TRUE : PETSC_FALSE;
+  return run->regime == MAP_CYCLE || run->regime == MAP_STICKING || run->regime == MAP_GROWTH ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
 }
 
 /* Whether run k is another one than the point's own */
@@ -147,8 +148,9 @@ static PetscBool TwinDiffers(const MapMarch w, PetscInt k)
 
   if (a->regime != b->regime) return PETSC_TRUE;
   if (!TwinVibrates(a)) return PETSC_FALSE;
-  return a->end != b->end || a->steps != b->steps || PetscAbsReal(b->rms - a->rms) > TWIN_DIFFERS * a->rms ? PETSC_TRUE
-                                                                                                           : PETSC_FALSE;
+  return a->end != b->end || a->steps != b->steps || PetscAbsReal(b->rms - a->rms) > TWIN_DIFFERS * a->rms
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 /* Whether the point's own transient dies out, and is linear but for its impulses */
@@ -268,12 +270,15 @@ static PetscErrorCode TwinsJudge(MapMarch w, PetscBool differ, MapPoint *row)
     row->regime = MAP_BISTABLE;
     PetscCall(TwinsKeepLoud(w));
     PetscCall(TwinsAverage(w, row));
-  } else if (differ && row->n_loud) PetscCall(TwinsAverage(w, row));
-  else TwinsEnlarge(w, row);
+  } else if (differ && row->n_loud)
+    PetscCall(TwinsAverage(w, row));
+  else
+    TwinsEnlarge(w, row);
   PetscFunctionReturn(0);
 }
 
-/* Twins of a point that has not failed, the first one and, where it differs or they are under way, all; whether one differs */
+/* Twins of a point that has not failed, the first one and, where it differs or they are under way, all; whether one
+   differs */
 static PetscErrorCode TwinsMarch(MapMarch w, const MapPoint *begin, MapPoint *row, PetscBool *differ)
 {
   const PetscBool needless = TwinIsNeedless(w);
@@ -306,8 +311,10 @@ PetscErrorCode MapTwinsRun(MapMarch w, const MapPoint *begin, MapPoint *row)
   PetscFunctionBeginUser;
   w->n_runs = 0;
   TwinTake(w, &own, row);
-  if (w->n_runs) PetscCall(TwinsMarch(w, begin, row, &differ));
-  else w->n_alive = 0;
+  if (w->n_runs)
+    PetscCall(TwinsMarch(w, begin, row, &differ));
+  else
+    w->n_alive = 0;
   PetscCall(TwinsJudge(w, differ, row));
   PetscFunctionReturn(0);
 }

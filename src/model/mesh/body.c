@@ -234,7 +234,7 @@ static PetscErrorCode BodyAppendPlace(Model model, const PetscInt body[], PetscI
 
 PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[])
 {
-  const Mesh *mesh = &model->mesh;
+  const Mesh *mesh  = &model->mesh;
   PetscBool   piece = PETSC_FALSE;
   PetscInt    n     = 0;
   int        *bits;

@@ -1,6 +1,7 @@
 /*
-   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have a
-   positive Jacobian, and be so near to the origin that its coordinates have digits. Warnings of elements that are too stiff.
+   Checks of the undistributed mesh on rank 0, where cells still have the numbers of their source: every cell must have
+   a positive Jacobian, and be so near to the origin that its coordinates have digits. Warnings of elements that are too
+   stiff.
 */
 #include "model/modelimpl.h"
 
@@ -26,8 +27,8 @@ static PetscReal CellSmallest(const Element *element, const PetscReal x[], Petsc
   return least;
 }
 
-/* The largest relative rounding of an edge, that of the distance from the origin, eps |x|, over its length; writes a message
-   about its cell into text where it is too large */
+/* The largest relative rounding of an edge, that of the distance from the origin, eps |x|, over its length; writes a
+   message about its cell into text where it is too large */
 static PetscErrorCode FindFarCell(Model model, size_t size, char text[], PetscReal *rounding)
 {
   const Mesh *mesh = &model->mesh;

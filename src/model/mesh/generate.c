@@ -54,10 +54,8 @@ static PetscErrorCode RigRowLevels(MPI_Comm comm, const Rig *rig, PetscInt level
 /* The grids of the disc and of the block of pad and beam (empty without a pad) */
 static void RigGrids(const Rig *rig, StructuredGrid *disc, StructuredGrid *block)
 {
-  *disc = (StructuredGrid){
-    .cells = {rig->disc_nr,     rig->disc_ntheta, rig->disc_nz    },
-    .nodes = {rig->disc_nr + 1, rig->disc_ntheta, rig->disc_nz + 1}
-  };
+  *disc  = (StructuredGrid){.cells = {rig->disc_nr, rig->disc_ntheta, rig->disc_nz},
+                            .nodes = {rig->disc_nr + 1, rig->disc_ntheta, rig->disc_nz + 1}};
   *block = (StructuredGrid){.first_cell = StructuredGridCountCells(disc), .first_node = StructuredGridCountNodes(disc)};
   if (!rig->with_pad) return;
   for (PetscInt d = 0; d < 3; d++) {
@@ -69,17 +67,9 @@ static void RigGrids(const Rig *rig, StructuredGrid *disc, StructuredGrid *block
 /* Corners of the cells [cells][8] in the order of DMPlex */
 static PetscErrorCode StructuredGridFillCells(const StructuredGrid *g, PetscInt cells[])
 {
-  static const PetscInt corner[8][3] = {
-    {0, 0, 0},
-    {1, 0, 0},
-    {1, 1, 0},
-    {0, 1, 0},
-    {0, 0, 1},
-    {1, 0, 1},
-    {1, 1, 1},
-    {0, 1, 1}
-  };
-  const PetscInt n = StructuredGridCountCells(g);
+  static const PetscInt corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                        {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  const PetscInt        n            = StructuredGridCountCells(g);
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < n; c++) {
@@ -98,18 +88,16 @@ static PetscErrorCode StructuredGridFillCells(const StructuredGrid *g, PetscInt 
 /* Coordinates [nodes][3] (m) of the disc: the plane grid on nz + 1 levels, the uppermost at z = 0 */
 static void DiscFillNodes(const Rig *rig, const StructuredGrid *g, PetscReal x[])
 {
-  DiscGrid plane = {
-    .inner  = rig->disc_inner,
-    .outer  = rig->disc_outer,
-    .nr     = (int)rig->disc_nr,
-    .ntheta = (int)rig->disc_ntheta,
-    .patch  = rig->patch,
-    .centre = rig->pad_radius,
-    .size   = {rig->pad_size[0], rig->pad_size[1]},
-    .spread = rig->disc_spread,
-    .nx     = (int)rig->pad_n[0],
-    .ny     = (int)rig->pad_n[1]
-  };
+  DiscGrid plane = {.inner  = rig->disc_inner,
+                    .outer  = rig->disc_outer,
+                    .nr     = (int)rig->disc_nr,
+                    .ntheta = (int)rig->disc_ntheta,
+                    .patch  = rig->patch,
+                    .centre = rig->pad_radius,
+                    .size   = {rig->pad_size[0], rig->pad_size[1]},
+                    .spread = rig->disc_spread,
+                    .nx     = (int)rig->pad_n[0],
+                    .ny     = (int)rig->pad_n[1]};
 
   if (rig->patch) DiscGridGrade(&plane);
   for (PetscInt j = 0; j < g->nodes[1]; j++) {
@@ -163,15 +151,9 @@ static PetscErrorCode LabelCells(DM dm, const char name[], PetscInt first, Petsc
 /* Marks the faces between nodes of equal index `at` along an axis of the grid */
 static PetscErrorCode LabelSide(DM dm, const char name[], const StructuredGrid *g, PetscInt axis, PetscInt at)
 {
-  const PetscInt a = (axis + 1) % 3, b = (axis + 2) % 3,
-                 around[4][2] = {
-                   {0, 0},
-                   {1, 0},
-                   {1, 1},
-                   {0, 1}
-  };
-  PetscInt vStart;
-  DMLabel  label;
+  const PetscInt a = (axis + 1) % 3, b = (axis + 2) % 3, around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  PetscInt       vStart;
+  DMLabel        label;
 
   PetscFunctionBeginUser;
   PetscCall(DMGetLabel(dm, name, &label));

@@ -9,8 +9,8 @@ static PetscErrorCode SupportsFlag(Model model, PetscBool fixed[][3])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < model->scene.n_supports; i++) {
-    const Support  *support = &model->scene.supports[i];
-    PetscInt        n, *vertices;
+    const Support *support = &model->scene.supports[i];
+    PetscInt       n, *vertices;
 
     PetscCall(ModelGetSetNodes(model, support->set, &n, &vertices));
     for (PetscInt j = 0; j < n; j++)

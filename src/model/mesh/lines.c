@@ -1,7 +1,7 @@
 /*
    Lines along which the cells of a body are swept by an angle or along an axis: the motions that may have swept it are
-   those between opposite faces of its first cell, three at most (kernels/element/motion.h); swept.c tries them on all cells. An
-   axis that is none of x, y, z becomes the third one of a frame in which the same is asked.
+   those between opposite faces of its first cell, three at most (kernels/element/motion.h); swept.c tries them on all
+   cells. An axis that is none of x, y, z becomes the third one of a frame in which the same is asked.
 */
 #include "model/modelimpl.h"
 #include "swept.h"
@@ -112,8 +112,8 @@ static void LinesTurnTo(const PetscReal frame[9], PetscInt n, const PetscReal x[
     for (int d = 0; d < 3; d++) y[3 * i + d] = Vec3Dot(&frame[3 * d], &x[3 * i]);
 }
 
-/* The motion between two opposite faces of the first cell and the frame in which its axis is a coordinate; whether there
-   is one */
+/* The motion between two opposite faces of the first cell and the frame in which its axis is a coordinate; whether
+   there is one */
 static PetscBool PieceMotion(const Piece *piece, int pair, Motion *motion, PetscReal frame[9])
 {
   const PetscReal tolerance = LINES_TOLERANCE * piece->size;

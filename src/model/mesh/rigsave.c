@@ -90,11 +90,11 @@ static int RigFileMake(Model model, PetscInt n_surfaces, const ModelFaces faces[
 
 PetscErrorCode RigSave(Model model)
 {
-  const PetscInt  n_surfaces = model->rig.with_pad ? 4 : 2;
-  PetscInt        n_rows = 0, *rows = NULL;
-  PetscMPIInt     rank;
-  ModelFaces      faces[4];
-  int             failed = 0;
+  const PetscInt n_surfaces = model->rig.with_pad ? 4 : 2;
+  PetscInt       n_rows = 0, *rows = NULL;
+  PetscMPIInt    rank;
+  ModelFaces     faces[4];
+  int            failed = 0;
 
   PetscFunctionBeginUser;
   if (!model->rig.save[0]) PetscFunctionReturn(0);

@@ -4,8 +4,8 @@
 #include <squeal/model.h>
 #include "kernels/element/motion.h"
 
-/* Largest difference of coordinates that are meant to be equal, of the size of the body: rounding alone, since whether a
-   rank takes its piece of a body for swept must not show in the forces */
+/* Largest difference of coordinates that are meant to be equal, of the size of the body: rounding alone, since whether
+   a rank takes its piece of a body for swept must not show in the forces */
 #define LINES_TOLERANCE 1e-12
 #define LINES_CORNERS   8
 
@@ -19,6 +19,6 @@ typedef struct {
   PetscReal  size;    /* diagonal of the bounding box, m */
 } Piece;
 
-/* swept.c - the lines of a body that the motion sweeps, in the coordinates of both, hence without a frame and centre; NULL
-   where it does not. Not collective. */
+/* swept.c - the lines of a body that the motion sweeps, in the coordinates of both, hence without a frame and centre;
+   NULL where it does not. Not collective. */
 PETSC_INTERN PetscErrorCode SweptCreateLines(const Piece *piece, const Motion *motion, ModelLines **lines);

@@ -209,7 +209,10 @@ PetscErrorCode PartitionMesh(Model model)
   PetscCallMPI(MPI_Comm_size(model->comm, &size));
   if (size == 1) PetscFunctionReturn(0);
   PetscCall(ClustersCreate(model, &clusters));
-  PetscCall(model->keep_slabs ? SlabsFind(model, size, &clusters, &slabs) : TogetherFind(model, size, &clusters));
+  if (model->keep_slabs)
+    PetscCall(SlabsFind(model, size, &clusters, &slabs));
+  else
+    PetscCall(TogetherFind(model, size, &clusters));
   PetscCall(CellGraphCreate(model->dm, &clusters, &graph));
   n[0] = graph.n;
   n[1] = clusters.n_cells;

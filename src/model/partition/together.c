@@ -13,10 +13,8 @@ typedef struct {
   PetscReal lower[3], upper[3]; /* m */
 } TogetherBox;
 
-static const TogetherBox BOX_EMPTY = {
-  {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL},
-  {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}
-};
+static const TogetherBox BOX_EMPTY = {{PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL},
+                                      {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}};
 
 /* Widens a box to the nodes of a point */
 static PetscErrorCode BoxAddPoint(DM dm, PetscInt point, TogetherBox *box)

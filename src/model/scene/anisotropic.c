@@ -8,8 +8,8 @@
       -<part>_shear      | G_pz       | G_12,G_13,G_23
 
    nu_ij is the contraction along j for stress along i, so that nu_ij / E_i = nu_ji / E_j; p = 1 = 2, z = 3 and
-   G_p = E_p / (2 (1 + nu_p)). Axes by directions in x, y, z: 1 as it is given, 2 made orthogonal to it, 3 = 1 x 2; of the
-   transversely isotropic one axis 3 alone. Or by a cylinder: at the centre of each cell 1 is radial, 3 along the
+   G_p = E_p / (2 (1 + nu_p)). Axes by directions in x, y, z: 1 as it is given, 2 made orthogonal to it, 3 = 1 x 2; of
+   the transversely isotropic one axis 3 alone. Or by a cylinder: at the centre of each cell 1 is radial, 3 along the
    cylinder's axis, 2 = 3 x 1 circumferential. The conditions are those of kernels/element/orthotropic.h.
 */
 #include "model/modelimpl.h"
@@ -53,8 +53,8 @@ static PetscErrorCode AxesCheckGiven(MPI_Comm comm, const char name[], PetscInt 
              name);
   PetscCheck(n_young != 2 || bits == 1 << AXIS_3, comm, PETSC_ERR_USER_INPUT,
              "-%s_young with two values needs -%s_axis_3, across the isotropic plane, and no other axis", name, name);
-  PetscCheck(n_young != 3 || bits == (1 << AXIS_1 | 1 << AXIS_2) || bits == (1 << AXIS_CYLINDER | 1 << AXIS_CENTRE), comm,
-             PETSC_ERR_USER_INPUT,
+  PetscCheck(n_young != 3 || bits == (1 << AXIS_1 | 1 << AXIS_2) || bits == (1 << AXIS_CYLINDER | 1 << AXIS_CENTRE),
+             comm, PETSC_ERR_USER_INPUT,
              "-%s_young with three values needs either -%s_axis_1 and -%s_axis_2, or -%s_cylinder_axis and "
              "-%s_cylinder_centre, and no other axis",
              name, name, name, name, name);
@@ -114,20 +114,15 @@ static PetscErrorCode AxesSet(MPI_Comm comm, const char name[], const PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Raises an error that names the condition of a positive definite stiffness that fails, by the names of n = 2 or 3 moduli */
+/* Raises an error that names the condition of a positive definite stiffness that fails, by the names of n = 2 or 3
+   moduli */
 static PetscErrorCode ConstantsCheckDefinite(MPI_Comm comm, const char name[], PetscInt n,
                                              const EngineeringConstants *e)
 {
-  static const char *const axes[2][3] = {
-    {"p", "p", "z"},
-    {"1", "2", "3"}
-  };
-  static const char *const pairs[2][3] = {
-    {"p",  "pz", "pz"},
-    {"12", "13", "23"}
-  };
-  const char *const *axis = axes[n - 2], *const *pair = pairs[n - 2];
-  const double       determinant = OrthotropicDeterminant(e);
+  static const char *const axes[2][3]  = {{"p", "p", "z"}, {"1", "2", "3"}};
+  static const char *const pairs[2][3] = {{"p", "pz", "pz"}, {"12", "13", "23"}};
+  const char *const       *axis = axes[n - 2], *const *pair = pairs[n - 2];
+  const double             determinant = OrthotropicDeterminant(e);
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 3; i++)
@@ -198,8 +193,8 @@ PetscErrorCode AnisotropyView(Model model, const Anisotropy *a, PetscViewer view
   PetscCall(PetscViewerASCIIPrintf(viewer, "    %s: E %.6g, %.6g, %.6g %s, nu_12 %.6g, nu_13 %.6g, nu_23 %.6g, ",
                                    a->n == 2 ? "transversely isotropic" : "orthotropic", e->young[0], e->young[1],
                                    e->young[2], pascal, e->poisson[0], e->poisson[1], e->poisson[2]));
-  PetscCall(
-    PetscViewerASCIIPrintf(viewer, "G_12 %.6g, G_13 %.6g, G_23 %.6g %s\n", e->shear[0], e->shear[1], e->shear[2], pascal));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "G_12 %.6g, G_13 %.6g, G_23 %.6g %s\n", e->shear[0], e->shear[1],
+                                   e->shear[2], pascal));
   if (a->cylinder)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "    radial, circumferential, axial about %.6g, %.6g, %.6g through %.6g, %.6g, "

@@ -1,7 +1,7 @@
 /*
    Circles: nodes of a body at equal angles, whose motion along the circle's axis histories and responses record. Node k
-   of n is the one nearest to the place at the angle 2 pi k / n on the circle, from the axis + 1 towards axis + 2 (from x
-   towards y for z), on that side of the body where the circle lies: as far along the axis as any of its nodes at this
+   of n is the one nearest to the place at the angle 2 pi k / n on the circle, from the axis + 1 towards axis + 2 (from
+   x towards y for z), on that side of the body where the circle lies: as far along the axis as any of its nodes at this
    radius.
 */
 #include "model/modelimpl.h"
@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_NODES   1000
-#define NEAR         0.05 /* of the radius: default of -tolerance */
+#define MOST_NODES 1000
+#define NEAR       0.05 /* of the radius: default of -tolerance */
 
 /* The axis of words such as z+ */
 static PetscErrorCode CircleSetFace(MPI_Comm comm, Circle *c)
@@ -19,7 +19,8 @@ static PetscErrorCode CircleSetFace(MPI_Comm comm, Circle *c)
 
   PetscFunctionBeginUser;
   PetscCheck(axis && (c->face[1] == '+' || c->face[1] == '-') && !c->face[2], comm, PETSC_ERR_USER_INPUT,
-             "-%s_face '%s' must be x+, x-, y+, y-, z+ or z-: the side of the body on which the circle lies", c->name, c->face);
+             "-%s_face '%s' must be x+, x-, y+, y-, z+ or z-: the side of the body on which the circle lies", c->name,
+             c->face);
   c->axis = (int)(axis - "xyz");
   c->side = c->face[1] == '+' ? 1 : -1;
   PetscFunctionReturn(0);
@@ -33,7 +34,8 @@ PetscErrorCode CircleCheck(MPI_Comm comm, void *owner, void *record)
   (void)owner;
   PetscCall(CircleSetFace(comm, c));
   if (!c->has_tolerance) c->tolerance = NEAR * c->radius;
-  PetscCheck(c->radius > 0, comm, PETSC_ERR_USER_INPUT, "-%s_radius %.6g must be given: a positive length (m)", c->name, (double)c->radius);
+  PetscCheck(c->radius > 0, comm, PETSC_ERR_USER_INPUT, "-%s_radius %.6g must be given: a positive length (m)", c->name,
+             (double)c->radius);
   PetscCheck(c->n >= 3 && c->n <= MOST_NODES, comm, PETSC_ERR_USER_INPUT,
              "-%s_count %" PetscInt_FMT " must be given: nodes of the circle, 3 to %d", c->name, c->n, MOST_NODES);
   PetscCheck(c->tolerance > 0, comm, PETSC_ERR_USER_INPUT, "-%s_tolerance %.6g must be a positive length (m)", c->name,

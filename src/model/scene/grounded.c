@@ -1,7 +1,7 @@
 /*
    Grounded springs and dashpots: a stiffness (N/m) or a viscosity (N s/m) in x, y, z on a named set. At node v it is
-   the value times the share s_v (spread.c): at every node, in all, or per area of a surface. With the latter two a finer
-   mesh is as stiff as a coarse one.
+   the value times the share s_v (spread.c): at every node, in all, or per area of a surface. With the latter two a
+   finer mesh is as stiff as a coarse one.
 */
 #include "model/modelimpl.h"
 #include "base/algebra/vec3.h"
@@ -14,19 +14,19 @@ static PetscErrorCode GroundedSet(MPI_Comm comm, const QuantityTable *table, Gro
 
   PetscFunctionBeginUser;
   for (PetscInt s = SPREAD_EACH; s <= SPREAD_AREA; s++) {
-    PetscCheck(!g->given[s] || found < 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s and -%s_%s are given; give one of them", g->name,
-               row[PetscMax(found, 0)].name + 1, g->name, row[s].name + 1);
+    PetscCheck(!g->given[s] || found < 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s and -%s_%s are given; give one of them",
+               g->name, row[PetscMax(found, 0)].name + 1, g->name, row[s].name + 1);
     if (g->given[s]) found = s;
   }
-  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s, -%s_%s or -%s_%s must be given: three values, not all zero",
-             g->name, row[SPREAD_EACH].name + 1, g->name, row[SPREAD_TOTAL].name + 1, g->name,
-             row[SPREAD_AREA].name + 1);
+  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_%s, -%s_%s or -%s_%s must be given: three values, not all zero", g->name, row[SPREAD_EACH].name + 1,
+             g->name, row[SPREAD_TOTAL].name + 1, g->name, row[SPREAD_AREA].name + 1);
   g->spread   = (Spread)found;
   g->quantity = row[found].name + 1;
   g->unit     = row[found].unit;
   PetscCall(PetscArraycpy(g->value, g->asked[found], 3));
-  PetscCheck(Vec3Dot(g->value, g->value) > 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s must be given: three values, not all zero",
-             g->name, g->quantity);
+  PetscCheck(Vec3Dot(g->value, g->value) > 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_%s must be given: three values, not all zero", g->name, g->quantity);
   PetscFunctionReturn(0);
 }
 

@@ -10,8 +10,8 @@
 
    The nodes of a set that is joined rigidly move as one rigid body (operators/points/rigid.c).
 
-   J = [xx xy xz; xy yy yz; xz yz zz] with xy = -int x y dm is that of a body when its principal moments are not negative
-   and none exceeds the sum of the two others.
+   J = [xx xy xz; xy yy yz; xz yz zz] with xy = -int x y dm is that of a body when its principal moments are not
+   negative and none exceeds the sum of the two others.
 */
 #include "model/modelimpl.h"
 
@@ -43,9 +43,9 @@ PetscErrorCode JointCheck(MPI_Comm comm, void *owner, void *record)
 
 PetscErrorCode PointCheck(MPI_Comm comm, void *owner, void *record)
 {
-  Joint          *joint = record;
-  const PetscInt  n     = joint->n_inertia;
-  PetscReal       principal[3], axes[9], *J = joint->inertia;
+  Joint         *joint = record;
+  const PetscInt n     = joint->n_inertia;
+  PetscReal      principal[3], axes[9], *J = joint->inertia;
 
   PetscFunctionBeginUser;
   (void)owner;
@@ -185,7 +185,8 @@ PetscErrorCode JointFindPoint(Model model, const char load[], const char name[],
 }
 
 /* A line of three values where one is not zero */
-static PetscErrorCode JointViewThree(Model model, const char what[], const PetscReal v[3], const char unit[], PetscViewer viewer)
+static PetscErrorCode JointViewThree(Model model, const char what[], const PetscReal v[3], const char unit[],
+                                     PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnit(model, unit, &unit));
@@ -202,8 +203,8 @@ PetscErrorCode JointView(Model model, const Joint *j, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnit(model, "m", &metre));
   PetscCall(ModelGetUnit(model, "kg", &kilogram));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s%s%s at %.6g, %.6g, %.6g %s", j->is_point ? "point" : "bushing",
-                                   j->name, j->set[0], j->is_point ? "" : " and ",
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s%s%s at %.6g, %.6g, %.6g %s",
+                                   j->is_point ? "point" : "bushing", j->name, j->set[0], j->is_point ? "" : " and ",
                                    j->is_point    ? ""
                                    : j->set[1][0] ? j->set[1]
                                                   : "the ground",

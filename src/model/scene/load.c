@@ -39,8 +39,8 @@ PetscErrorCode LoadCheck(MPI_Comm comm, void *owner, void *record)
              "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
   PetscCheck(!load->is_pressure || !load->on_point, comm, PETSC_ERR_USER_INPUT,
              "-%s_pressure acts on a surface, -%s_set, and not on -%s_point", load->name, load->name, load->name);
-  PetscCheck(!load->is_pressure || load->pressure != 0, comm, PETSC_ERR_USER_INPUT, "-%s_pressure %.6g must be finite and not zero (Pa)",
-             load->name, (double)load->pressure);
+  PetscCheck(!load->is_pressure || load->pressure != 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_pressure %.6g must be finite and not zero (Pa)", load->name, (double)load->pressure);
   for (int d = 0; d < 3; d++) sum += PetscAbsReal(load->force[d]) + PetscAbsReal(load->moment[d]);
   PetscCheck(sum > 0 || load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force must be given: three values, not all zero (N); or -%s_pressure (Pa)", load->name, load->name);

@@ -1,6 +1,6 @@
 /*
-   Motions: displacements of named sets that are prescribed along some of the directions x, y, z. Where they are held, as
-   they are outside time, u = d there: these displacements are no unknowns, and K_fd d is a load on the free ones. A
+   Motions: displacements of named sets that are prescribed along some of the directions x, y, z. Where they are held,
+   as they are outside time, u = d there: these displacements are no unknowns, and K_fd d is a load on the free ones. A
    direction that a support fixes stays fixed.
 */
 #include "model/modelimpl.h"
@@ -21,7 +21,7 @@ PetscErrorCode MotionCheck(MPI_Comm comm, void *owner, void *record)
   PrescribedMotion *motion = record;
   const char *const word   = motion->word;
   const PetscBool   set    = motion->has_word;
-  const PetscReal *x = motion->displacement;
+  const PetscReal  *x      = motion->displacement;
 
   PetscFunctionBeginUser;
   (void)owner;

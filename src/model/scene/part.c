@@ -124,9 +124,11 @@ static PetscErrorCode CellNoteVolume(Model model, PetscInt cell, Fault *fault)
     if (own) continue;
     PetscCall(DMGetLabelValue(model->dm, name, cell, &value));
     if (value != 1) continue;
-    PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT, "the mesh has a volume %s that is not in -parts: name it there", name));
+    PetscCall(
+      FaultNote(fault, PETSC_ERR_USER_INPUT, "the mesh has a volume %s that is not in -parts: name it there", name));
   }
-  PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT, "the mesh has cells in no named volume, hence in none of the -parts: name all"));
+  PetscCall(FaultNote(fault, PETSC_ERR_USER_INPUT,
+                      "the mesh has cells in no named volume, hence in none of the -parts: name all"));
   PetscFunctionReturn(0);
 }
 
@@ -145,7 +147,8 @@ PetscErrorCode PartsFindCells(Model model, PetscInt cell_part[])
   for (PetscInt c = model->mesh.n_cells; c-- > 0;)
     if (cell_part[c] < 0) without = c;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &twice, 1, MPIU_INT, MPI_MAX, model->comm));
-  PetscCheck(twice < 0, model->comm, PETSC_ERR_USER_INPUT, "a cell belongs to two of the -parts; volumes must not overlap");
+  PetscCheck(twice < 0, model->comm, PETSC_ERR_USER_INPUT,
+             "a cell belongs to two of the -parts; volumes must not overlap");
   if (without >= 0) PetscCall(CellNoteVolume(model, without, &fault));
   PetscCall(FaultsRaise(model->comm, &fault));
   PetscFunctionReturn(0);

@@ -3,8 +3,8 @@
 
    Of several nodes at the same distance the one with the least x, then y, then z is taken, of coincident nodes that of
    the first part, then the least global number: the same place on any ranks. Of the ranks that share the node
-   the first records it. A place may lie off its node by half the diagonal of the part's bounding box, of the largest part
-   where none is named: what is farther is of other units or axes.
+   the first records it. A place may lie off its node by half the diagonal of the part's bounding box, of the largest
+   part where none is named: what is farther is of other units or axes.
 */
 #include "model/modelimpl.h"
 #include "base/gather.h"
@@ -34,17 +34,8 @@ PetscErrorCode ProbeCheck(MPI_Comm comm, void *owner, void *record)
 static int CandidateCompare(const void *a, const void *b)
 {
   const Candidate *x = a, *y = b;
-  const PetscReal  real[][2] = {
-     {x->distance, y->distance},
-     {x->x[0],     y->x[0]    },
-     {x->x[1],     y->x[1]    },
-     {x->x[2],     y->x[2]    }
-  };
-  const PetscInt integer[][2] = {
-    {x->part,   y->part  },
-    {x->number, y->number},
-    {x->rank,   y->rank  }
-  };
+  const PetscReal  real[][2] = {{x->distance, y->distance}, {x->x[0], y->x[0]}, {x->x[1], y->x[1]}, {x->x[2], y->x[2]}};
+  const PetscInt   integer[][2] = {{x->part, y->part}, {x->number, y->number}, {x->rank, y->rank}};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++)
     if (real[i][0] != real[i][1]) return real[i][0] < real[i][1] ? -1 : 1;
@@ -143,9 +134,7 @@ PetscErrorCode ProbesLocate(Model model)
 PetscErrorCode ModelFindNode(Model model, const char name[], const char part[], const PetscReal at[3], PetscInt *vertex)
 {
   char  own_name[256], part_name[256];
-  Probe probe = {
-    .name = own_name, .part = part_name, .at = {at[0], at[1], at[2]}
-  };
+  Probe probe = {.name = own_name, .part = part_name, .at = {at[0], at[1], at[2]}};
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(own_name, name, sizeof(own_name)));

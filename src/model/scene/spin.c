@@ -1,12 +1,12 @@
 /*
    Parts that spin about an axis of their own while the frame stays: -<part>_spin, rad/s, -<part>_spin_axis and
-   -<part>_spin_centre. What they add to the modes is in kernels/element/spin.h. That holds for bodies of revolution alone: their
-   first and second moments about the axis,
+   -<part>_spin_centre. What they add to the modes is in kernels/element/spin.h. That holds for bodies of revolution
+   alone: their first and second moments about the axis,
 
       s = int r dV,  S = int r r' dV,   r = (I - e e') (x - c),
 
-   are checked, s = 0 and S the same in all directions across the axis, and that the material turns into itself. A square
-   bar passes these. Its surface does not: the velocity Omega w, w = e x r, must lie in it,
+   are checked, s = 0 and S the same in all directions across the axis, and that the material turns into itself. A
+   square bar passes these. Its surface does not: the velocity Omega w, w = e x r, must lie in it,
 
       int |w . n| dA << int |w| |n - e e'n| dA    over the faces around the axis, ends across it left out.
 

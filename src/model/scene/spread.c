@@ -3,12 +3,12 @@
    shares A_v in it,
 
       each      s_v = 1,
-      in all    s_v = A_v / A on a surface, L_v / L on a curve of edges, 1 / n on other sets of n nodes; they add up to 1,
-      per area  s_v = A_v on a surface.
+      in all    s_v = A_v / A on a surface, L_v / L on a curve of edges, 1 / n on other sets of n nodes; they add up to
+      1, per area  s_v = A_v on a surface.
 
-   L_v (m) is the integral of N_v along the edges, straight between neighbouring nodes: halves of an edge, or by Simpson's
-   rule a sixth at its ends and two thirds in its middle. For loads A_v = int N_v dA, with the shape functions N_v of the
-   faces. Springs, dashpots and whatever else needs
+   L_v (m) is the integral of N_v along the edges, straight between neighbouring nodes: halves of an edge, or by
+   Simpson's rule a sixth at its ends and two thirds in its middle. For loads A_v = int N_v dA, with the shape functions
+   N_v of the faces. Springs, dashpots and whatever else needs
    shares above 0 has the positive ones of kernels/contact/facet.h; of faces of first order they are the same.
 */
 #include "model/modelimpl.h"

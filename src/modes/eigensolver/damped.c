@@ -4,7 +4,8 @@
    from low to high frequency, and a window is reached by converging all below it. Of each conjugate pair the one with
    omega > 0 is kept.
 
-   With C = beta K all of them lie on the circle |lambda + 1/beta| = 1/beta, and thousands of overdamped ones gather near
+   With C = beta K all of them lie on the circle |lambda + 1/beta| = 1/beta, and thousands of overdamped ones gather
+   near
    -1/beta. These must stay farther from the shift than the window's corners, sigma + i high: a shift of 0.3 high is the
    fastest where beta high is small, one of high where it is near one. Systems of few unknowns are solved by LAPACK
    (dampeddense.c).

@@ -1,16 +1,18 @@
 /*
-   Damped problem of few unknowns: all 2 n eigenvalues by LAPACK, on rank 0, whose answer all ranks take. TOAR would converge
-   most of them for those of a window amid overdamped ones, and breaks down in the whole space, where rounding decides.
-   Ranks without unknowns: dampedlayout.c.
+   Damped problem of few unknowns: all 2 n eigenvalues by LAPACK, on rank 0, whose answer all ranks take. TOAR would
+   converge most of them for those of a window amid overdamped ones, and breaks down in the whole space, where rounding
+   decides. Ranks without unknowns: dampedlayout.c.
 */
 #include "modes/modesimpl.h"
 #include "basis/pencil.h"
 
-#define DENSE_ALWAYS 200 /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
+#define DENSE_ALWAYS 200  /* unknowns up to which LAPACK takes about as long as TOAR's first eigenvalues */
 #define DENSE_DOUBLE 1e-7 /* of its size: an imaginary part that may be rounding */
-#define DENSE_MOST   400 /* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */
-#define DENSE_SHARE  4    /* many: one of so many */
-#define DENSE_OTHER  1.7  /* times the shift: the one of the transposed problem, which symmetric matrices leave the same otherwise */
+/* up to which it is taken where many are wanted, or TOAR does not end: a matrix of 800 x 800 */
+#define DENSE_MOST  400
+#define DENSE_SHARE 4 /* many: one of so many */
+/* times the shift: the one of the transposed problem, which symmetric matrices leave the same otherwise */
+#define DENSE_OTHER 1.7
 
 /* PEP does where it is asked for, but for few unknowns of which a rank has none */
 PetscErrorCode DampedIsDense(Modes modes, Mat K, PetscInt nev, int attempt, PetscBool *dense)
@@ -54,8 +56,8 @@ static PetscErrorCode DenseGather(Mat A, PetscBool transposed, PetscInt n, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Rounding makes of a double real eigenvalue, which critical damping has, a conjugate pair apart by the root of rounding: makes two
-   real ones of such a last one, both with the larger part of its vector */
+/* Rounding makes of a double real eigenvalue, which critical damping has, a conjugate pair apart by the root of
+   rounding: makes two real ones of such a last one, both with the larger part of its vector */
 static void DensePart(PetscInt n, PetscInt *m, PetscComplex lambda[], PetscComplex X[])
 {
   PetscComplex *x = &X[(*m - 1) * n], *twin = x + n;
@@ -119,13 +121,13 @@ PetscErrorCode DampedSolveDense(Modes modes, const PencilMatrices *matrices, con
 {
   const PetscReal circle[2] = {shift, window->count ? INFINITY : DampedRadius(window, shift, NULL)};
   const PetscReal at        = transposed ? DENSE_OTHER * shift : shift;
-  const MPI_Comm comm     = PetscObjectComm((PetscObject)matrices->K);
-  const Mat      of[3]    = {matrices->K, matrices->C, matrices->M};
-  DensePencil    pencil   = {.damped = PETSC_TRUE};
-  PetscReal    **dense[3] = {&pencil.K, &pencil.C, &pencil.M};
-  PetscComplex  *lambda, *X;
-  PetscInt       n, m = 0;
-  PetscMPIInt    rank, count;
+  const MPI_Comm  comm      = PetscObjectComm((PetscObject)matrices->K);
+  const Mat       of[3]     = {matrices->K, matrices->C, matrices->M};
+  DensePencil     pencil    = {.damped = PETSC_TRUE};
+  PetscReal     **dense[3]  = {&pencil.K, &pencil.C, &pencil.M};
+  PetscComplex   *lambda, *X;
+  PetscInt        n, m = 0;
+  PetscMPIInt     rank, count;
 
   PetscFunctionBeginUser;
   modes->dense = PETSC_TRUE;

@@ -1,19 +1,19 @@
 /*
-   Damped problem of which a rank has no unknowns, as one of a body that is held. PEP TOAR keeps the coefficients of its basis
-   on every rank, in a BV of type tensor whose local length is that of the vectors: where it is 0 SLEPc leaves the
-   coefficients as they are (BVScaleColumn and BVMultInPlace return at once), that rank takes other decisions, and the ranks wait
-   for each other. PEP is given the same rows in the same order in even shares.
+   Damped problem of which a rank has no unknowns, as one of a body that is held. PEP TOAR keeps the coefficients of its
+   basis on every rank, in a BV of type tensor whose local length is that of the vectors: where it is 0 SLEPc leaves the
+   coefficients as they are (BVScaleColumn and BVMultInPlace return at once), that rank takes other decisions, and the
+   ranks wait for each other. PEP is given the same rows in the same order in even shares.
 */
 #include "modes/modesimpl.h"
 
 /* K, C and M in even shares of the rows */
 static PetscErrorCode PencilSpread(const PencilMatrices *pencil, PencilMatrices *even)
 {
-  const Mat     from[3] = {pencil->K, pencil->C, pencil->M};
-  Mat          *to[3]   = {&even->K, &even->C, &even->M};
-  const MPI_Comm comm   = PetscObjectComm((PetscObject)pencil->K);
-  PetscInt      n, local = PETSC_DECIDE, last;
-  IS            rows;
+  const Mat      from[3] = {pencil->K, pencil->C, pencil->M};
+  Mat           *to[3]   = {&even->K, &even->C, &even->M};
+  const MPI_Comm comm    = PetscObjectComm((PetscObject)pencil->K);
+  PetscInt       n, local = PETSC_DECIDE, last;
+  IS             rows;
 
   PetscFunctionBeginUser;
   *even = (PencilMatrices){.symmetric = pencil->symmetric, .singular = pencil->singular};

@@ -11,11 +11,12 @@
 #include "solver/block/krylov.h"
 #include <complex.h>
 
-/* Eigenvalues so many times as far from the shift as the nearest are infinite where unknowns are without mass: rounding makes
-   them of the root of machine epsilon, with multipliers, whose infinite eigenvalues are defective */
+/* Eigenvalues so many times as far from the shift as the nearest are infinite where unknowns are without mass: rounding
+   makes them of the root of machine epsilon, with multipliers, whose infinite eigenvalues are defective */
 #define UNDAMPED_INFINITE 1e6
-#define UNDAMPED_CLEAN    1e4 /* the same up to which vectors keep half their digits, of which rounding takes the square */
-#define UNDAMPED_AWAY     100 /* farther below zero, times, where what is asked for is not nearer than that */
+/* the same up to which vectors keep half their digits, of which rounding takes the square */
+#define UNDAMPED_CLEAN 1e4
+#define UNDAMPED_AWAY  100 /* farther below zero, times, where what is asked for is not nearer than that */
 
 /* Where unknowns are without mass: takes out what rounding made of infinite eigenvalues */
 static PetscErrorCode UndampedDropInfinite(const Window *window, PetscReal shift, Spectrum *s)
@@ -26,7 +27,8 @@ static PetscErrorCode UndampedDropInfinite(const Window *window, PetscReal shift
   if (!window->known.singular) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < s->n; i++) nearest = PetscMin(nearest, SpectrumDistance(s, i, shift));
   for (PetscInt i = s->n; i-- > 0;)
-    if (SpectrumDistance(s, i, shift) > UNDAMPED_INFINITE * nearest || hypot(s->sigma[i], s->omega[i]) > window->known.most)
+    if (SpectrumDistance(s, i, shift) > UNDAMPED_INFINITE * nearest ||
+        hypot(s->sigma[i], s->omega[i]) > window->known.most)
       PetscCall(SpectrumRemove(s, i));
   PetscFunctionReturn(0);
 }
@@ -78,8 +80,8 @@ static PetscErrorCode UndampedStop(EPS eps, PetscInt its, PetscInt max_it, Petsc
   PetscFunctionReturn(0);
 }
 
-/* K' and M itself where it is known to be symmetric, else its transpose: formed, since products with blocks of vectors need
-   it */
+/* K' and M itself where it is known to be symmetric, else its transpose: formed, since products with blocks of vectors
+   need it */
 static PetscErrorCode UndampedTranspose(const PencilMatrices *pencil, Mat problem[2])
 {
   PetscBool known, symmetric;
@@ -150,8 +152,8 @@ static PetscErrorCode UndampedCreateSolver(const Undamped *u, PetscBool transpos
   PetscFunctionReturn(0);
 }
 
-/* With LDL' and an update one call solves for right and left blocks: the solver of the left problem goes along, from its
-   own start, and is kept */
+/* With LDL' and an update one call solves for right and left blocks: the solver of the left problem goes along, from
+   its own start, and is kept */
 static PetscErrorCode UndampedPair(const Undamped *u, PetscInt nev, EPS right, PetscBool *paired)
 {
   Modes modes = u->modes;
@@ -207,9 +209,9 @@ static PetscErrorCode UndampedSolveAbout(Modes modes, const PencilMatrices *penc
                                          ShiftInvert *si, PetscBool transposed, Spectrum *spectrum)
 {
   const Undamped u = {modes, pencil, window, si};
-  PetscInt       n, nev = window->extra + (window->count           ? window->count + window->count / 2
+  PetscInt       n, nev = window->extra + (window->count                 ? window->count + window->count / 2
                                            : window->known.expected >= 0 ? window->known.expected
-                                                                   : 40);
+                                                                         : 40);
   PetscBool      covered = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -251,8 +253,8 @@ static PetscBool UndampedLacks(const Window *window, PetscReal shift, const Spec
   return farthest > UNDAMPED_CLEAN * nearest ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* With unknowns without mass and an eigenvalue next to the shift, as a rigid mode is, others that were asked for may be as far
-   as infinite ones seem to be: a shift farther below zero has all finite ones nearer */
+/* With unknowns without mass and an eigenvalue next to the shift, as a rigid mode is, others that were asked for may be
+   as far as infinite ones seem to be: a shift farther below zero has all finite ones nearer */
 PetscErrorCode UndampedSolve(Modes modes, const PencilMatrices *pencil, const Window *window, ShiftInvert *si,
                              PetscBool transposed, Spectrum *spectrum)
 {

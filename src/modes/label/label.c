@@ -158,7 +158,8 @@ static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
   PetscFunctionReturn(0);
 }
 
-/* The part of -modes_disc; where nothing is said and no part is called disc, the only one that is by its name; else -1 */
+/* The part of -modes_disc; where nothing is said and no part is called disc, the only one that is by its name; else
+   -1 */
 static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *disc)
 {
   PetscInt  n = 0, by_name = -1;
@@ -178,8 +179,8 @@ static PetscErrorCode LabelsNameDisc(Modes modes, const Mesh *mesh, PetscInt *di
   PetscFunctionReturn(0);
 }
 
-/* The disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc. Points without parts may be
-   one */
+/* The disc's frame and fit; disc stays -1 where no part of that name exists or it is no disc. Points without parts may
+   be one */
 static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, const Mesh *mesh, Labels *l)
 {
   PetscReal centre[3];

@@ -1,8 +1,9 @@
 /*
-   Names of modes of matrices without parts: the unknown that moves most, that with the largest |x_k|^2. Rounding tells which basis of the
-   vectors of equal eigenvalues the solver finds, and which of two unknowns that move alike moves more. So a mode of several is
-   named by sum_j |x_jk|^2 over all of them, M-orthonormal, which is that of any basis: the first one after the largest,
-   the next one after the next largest; of unknowns that move alike the first one counts.
+   Names of modes of matrices without parts: the unknown that moves most, that with the largest |x_k|^2. Rounding tells
+   which basis of the vectors of equal eigenvalues the solver finds, and which of two unknowns that move alike moves
+   more. So a mode of several is named by sum_j |x_jk|^2 over all of them, M-orthonormal, which is that of any basis:
+   the first one after the largest, the next one after the next largest; of unknowns that move alike the first one
+   counts.
 */
 #include "modes/modesimpl.h"
 
@@ -61,7 +62,8 @@ PetscErrorCode ModesLabelUnknowns(Modes modes)
       PetscCall(AddSquares(modes->right.xi[end], work, size));
     }
     for (PetscInt j = i; j < end; j++) {
-      if (j - i < n_unknowns) PetscCall(FirstOfLargest(size, &at)); /* a defective eigenvalue has more modes than unknowns */
+      /* a defective eigenvalue has more modes than unknowns */
+      if (j - i < n_unknowns) PetscCall(FirstOfLargest(size, &at));
       PetscCall(PetscSNPrintf(modes->mode[j].label, sizeof(modes->mode[j].label), "u%" PetscInt_FMT, at + 1));
       PetscCall(VecSetValue(size, at, -1, INSERT_VALUES));
       PetscCall(VecAssemblyBegin(size));

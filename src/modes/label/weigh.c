@@ -1,6 +1,6 @@
 /*
-   Masses of nodes, by which shapes are weighed for their names (label.c): of the cells of a part, or of points the largest
-   diagonal entry of the mass matrix among their directions.
+   Masses of nodes, by which shapes are weighed for their names (label.c): of the cells of a part, or of points the
+   largest diagonal entry of the mass matrix among their directions.
 */
 #include "modes/modesimpl.h"
 

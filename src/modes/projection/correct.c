@@ -1,6 +1,6 @@
 /*
-   Residuals r = Q(lambda) x, s = Q(lambda)' y of the modes of a projection, all modes together, and vectors from it. See
-   project.c.
+   Residuals r = Q(lambda) x, s = Q(lambda)' y of the modes of a projection, all modes together, and vectors from it.
+   See project.c.
 */
 #include "projection.h"
 #include "base/events.h"
@@ -23,8 +23,8 @@ static PetscErrorCode SideCollect(const ProjectionModes *modes, PetscBool left, 
   PetscFunctionReturn(0);
 }
 
-/* Backward errors of the modes that are among the columns, those above the limit, from the norms of vectors and residuals;
-   tolerance[columns] = what may remain of a residual, infinite where nothing needs to be done */
+/* Backward errors of the modes that are among the columns, those above the limit, from the norms of vectors and
+   residuals; tolerance[columns] = what may remain of a residual, infinite where nothing needs to be done */
 static void SideMeasure(const Projection *p, PetscBool left, const ComplexColumns *c, const PetscReal *const norms[2],
                         ProjectionModes *modes, PetscReal tolerance[])
 {

@@ -1,12 +1,12 @@
 /*
-   The modes of a projection from its dense quadratic problem, all of them about the upper end of the window, or followed from
-   what they were.
+   The modes of a projection from its dense quadratic problem, all of them about the upper end of the window, or
+   followed from what they were.
 */
 #include "projection.h"
 
-#define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
-#define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
-#define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define FOLLOW_FAR  1e-3  /* relative change of lambda that is another mode's */
+#define FOLLOW_ONE  0.999 /* cosine of the angle of two vectors that are one */
+#define EDGE_POINTS 64    /* on each side of the window's edge, where kappa(lambda) is looked at */
 
 PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 {
@@ -149,8 +149,8 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
   if ((p->window->known.rigid && cabs(was) <= p->window->known.scale) ||
       (isfinite(modes->backward[0][i]) && isfinite(modes->backward[1][i])))
     PetscFunctionReturn(0);
-  PetscCall(
-    DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->space.n], &modes->vectors[1][i * p->space.n], found));
+  PetscCall(DensePencilFollow(dense, &modes->lambda[i], &modes->vectors[0][i * p->space.n],
+                              &modes->vectors[1][i * p->space.n], found));
   if (is_real) modes->lambda[i] = creal(modes->lambda[i]);
   if (!(cabs(modes->lambda[i] - was) <= FOLLOW_FAR * cabs(was))) *found = PETSC_FALSE;
   for (int side = 0; side < 2; side++) VectorTurn(p->space.n, is_real, &modes->vectors[side][i * p->space.n]);
@@ -160,13 +160,14 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
 /* All eigenvalues about the upper end of the window, those of rank 0 on all */
 static PetscErrorCode DenseSolveAll(const Projection *p, const DensePencil *dense, DenseShifted *w)
 {
-  const PetscReal high = PetscMax(p->window->high, p->window->target);
+  const PetscReal high     = PetscMax(p->window->high, p->window->target);
   PetscReal      *values[] = {&w->shift, NULL, NULL};
 
   PetscFunctionBeginUser;
   PetscCall(DenseShiftedSolve(dense, PetscMax(high, PetscSqrtReal(PetscAbsReal(p->si.shift))), w));
   values[1] = w->wr, values[2] = w->wi;
-  for (int i = 0; i < 3; i++) PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->N : 1), MPIU_REAL, 0, p->modes->comm));
+  for (int i = 0; i < 3; i++)
+    PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->N : 1), MPIU_REAL, 0, p->modes->comm));
   PetscFunctionReturn(0);
 }
 

@@ -1,12 +1,12 @@
 /*
-   Corrections Z = P^-1 B of residuals B = sigma R, P = K - s M, or P^-T of left ones. Residuals of many modes lie near few
-   directions: those of their singular value decomposition, each residual divided by what may remain of it, are solved for. With
-   K Z = B + s M Z, kappa and R = C - alpha M - beta K as in projection/fit.c,
+   Corrections Z = P^-1 B of residuals B = sigma R, P = K - s M, or P^-T of left ones. Residuals of many modes lie near
+   few directions: those of their singular value decomposition, each residual divided by what may remain of it, are
+   solved for. With K Z = B + s M Z, kappa and R = C - alpha M - beta K as in projection/fit.c,
 
       Q(lambda) Z = (1 + beta lambda) (B + (s - kappa) M Z) + lambda R Z,
 
-   so that M Z and R Z are what Galerkin's method finds next in the residuals; their directions are solved for as well, which
-   saves a round.
+   so that M Z and R Z are what Galerkin's method finds next in the residuals; their directions are solved for as well,
+   which saves a round.
 */
 #include "projection.h"
 #include "basis/residual.h"
@@ -14,9 +14,9 @@
 
 #define EXTEND_LATER                                                                                                   \
   10 /* times what may remain: directions of M Z and R Z shorter than this are left to the next round */
-#define EXTEND_DROP   0.1 /* of what may remain: directions of corrections that make less are left out */
+#define EXTEND_DROP   0.1  /* of what may remain: directions of corrections that make less are left out */
 #define EXTEND_FINER  0.01 /* times that, where all are */
-#define EXTEND_LEVELS 2   /* of corrections: of the residuals, and of what these leave */
+#define EXTEND_LEVELS 2    /* of corrections: of the residuals, and of what these leave */
 
 /* Residuals sigma B of one side */
 typedef struct {
@@ -122,7 +122,8 @@ static PetscErrorCode SideBegin(BV residuals, const PetscReal tolerance[], SideO
 }
 
 /* The corrections of both sides, each column as long as it matters, and their residuals, behind those that there are */
-static PetscErrorCode LevelTake(const Projection *p, PetscBool last, SideOfExtension side[2], BV *all, PetscReal *longest)
+static PetscErrorCode LevelTake(const Projection *p, PetscBool last, SideOfExtension side[2], BV *all,
+                                PetscReal *longest)
 {
   const PetscInt n[2] = {side[0].n, side[1].n}, m = n[0] + n[1];
   PetscInt       before = 0;

@@ -5,11 +5,12 @@
 
    The rest R = C - alpha M - beta K couples them, also with those beyond the basis. At lambda
 
-      Q(lambda) = (1 + beta lambda) (K - kappa M) + lambda R,   kappa(lambda) = -(lambda^2 + alpha lambda) / (1 + beta lambda),
+      Q(lambda) = (1 + beta lambda) (K - kappa M) + lambda R,   kappa(lambda) = -(lambda^2 + alpha lambda) / (1 + beta
+      lambda),
 
    and beyond the basis K - kappa M is regular. With G = (K - s M)^-1 lambda R / (1 + beta lambda) there and K - kappa M
-   about K - s M, I + t G stays regular for t in [0, 1] where the spectral radius of G is below one: as R grows from nothing
-   no eigenvalue comes into the window from beyond.
+   about K - s M, I + t G stays regular for t in [0, 1] where the spectral radius of G is below one: as R grows from
+   nothing no eigenvalue comes into the window from beyond.
 */
 #include "projection.h"
 #include "base/algebra/dense.h"

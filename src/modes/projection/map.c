@@ -3,8 +3,8 @@
 
       lambda^2 + (alpha + beta kappa) lambda + kappa = 0
 
-   for every undamped kappa. One pair of conjugates, or where damping keeps a mode from oscillating two real eigenvalues; a
-   rigid mode, kappa = 0, becomes 0 and -alpha, or with alpha = 0 a double zero that is listed once.
+   for every undamped kappa. One pair of conjugates, or where damping keeps a mode from oscillating two real
+   eigenvalues; a rigid mode, kappa = 0, becomes 0 and -alpha, or with alpha = 0 a double zero that is listed once.
 */
 #include "projection.h"
 

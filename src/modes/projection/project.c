@@ -1,18 +1,20 @@
 /*
-   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and some
-   beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's method
-   with one real basis V for both sides (two bases make the dense problem ill-conditioned) gives lambda, x, y with residuals
+   Damped problem Q(lambda) x = (lambda^2 M + lambda C + K) x = 0 by projection on the undamped modes of the window and
+   some beyond it, right and left ones, K x = kappa M x, found with one real factorisation P = K - s M. Galerkin's
+   method with one real basis V for both sides (two bases make the dense problem ill-conditioned) gives lambda, x, y
+   with residuals
 
       r = Q(lambda) x,   s = Q(lambda)' y,
 
-   and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step of
-   shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003). The
-   error of an eigenvalue is the product of those of its two vectors, hence left vectors need less. Where rounding lies is
-   not known beforehand: corrections that no longer add a direction to V have settled, too, within PROJECT_ROUNDING.
+   and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step
+   of shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003).
+   The error of an eigenvalue is the product of those of its two vectors, hence left vectors need less. Where rounding
+   lies is not known beforehand: corrections that no longer add a direction to V have settled, too, within
+   PROJECT_ROUNDING.
 
-   No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings none
-   from beyond them where its measure is below one (projection/fit.c). Where it is above DAMPING_WEAK the route is that of
-   damped.c.
+   No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings
+   none from beyond them where its measure is below one (projection/fit.c). Where it is above DAMPING_WEAK the route is
+   that of damped.c.
 */
 #include "projection.h"
 #include "base/process/memory.h"
@@ -58,14 +60,15 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
                                     PetscReal *reach, PetscBool *complete)
 {
   Spectrum       *right = &modes->right, *left = &modes->left_spectrum;
-  const PetscBool counted = undamped->symmetric && window->known.expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
-  Window          wide    = *window;
+  const PetscBool counted =
+    undamped->symmetric && window->known.expected >= 0 && !window->count ? PETSC_TRUE : PETSC_FALSE;
+  Window wide = *window;
 
   PetscFunctionBeginUser;
   PetscCall(ModesSolveRight(modes, undamped, window, si));
   window->route.counted = counted;
-  *reach          = right->reach;
-  *complete       = !counted || CountInBand(window, right) == window->known.expected ? PETSC_TRUE : PETSC_FALSE;
+  *reach                = right->reach;
+  *complete             = !counted || CountInBand(window, right) == window->known.expected ? PETSC_TRUE : PETSC_FALSE;
   if (!modes->left || counted) PetscFunctionReturn(0);
   PetscCall(UndampedSolve(modes, undamped, window, si, PETSC_TRUE, left));
   *reach = PetscMin(right->reach, left->reach);
@@ -119,8 +122,8 @@ static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *foun
                       "%" PetscInt_FMT " modes on %" PetscInt_FMT
                       " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
                       " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
-                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns, (double)p->window->route.beyond,
-                      (double)found->lambda_reach, (double)p->reach));
+                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns,
+                      (double)p->window->route.beyond, (double)found->lambda_reach, (double)p->reach));
   PetscFunctionReturn(0);
 }
 
@@ -192,8 +195,8 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   PetscFunctionReturn(0);
 }
 
-/* Undamped vectors in the basis, with what damping leaves of their residuals where there are others beyond them. Of each kind
-   of vectors one set is there at a time: new memory costs as much as products with it. */
+/* Undamped vectors in the basis, with what damping leaves of their residuals where there are others beyond them. Of
+   each kind of vectors one set is there at a time: new memory costs as much as products with it. */
 static PetscErrorCode AddModal(Projection *p, ModalBlock modal[2])
 {
   Modes modes = p->modes;
@@ -254,8 +257,12 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   PetscCall(ProjectionIsExact(p, &modes->right, &exact));
   if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO)
     *why = why_whole;
-  else
-    PetscCall(exact ? MapModes(p, window, why) : Project(p, modal, window, why));
+  else {
+    if (exact)
+      PetscCall(MapModes(p, window, why));
+    else
+      PetscCall(Project(p, modal, window, why));
+  }
   PetscCall(ModalBlocksDestroy(modal));
   PetscFunctionReturn(0);
 }

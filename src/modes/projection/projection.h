@@ -52,13 +52,13 @@ static inline Mat ProjectionMatrix(const Projection *p, int which, PetscBool tra
   return transposed ? p->space.term[which].transposed : matrix[which];
 }
 
-/* projection/start.c - blocks of both spectra, without C' x and M' x of left ones as yet; of conjugate pairs of kappa one vector is
-   enough */
+/* projection/start.c - blocks of both spectra, without C' x and M' x of left ones as yet; of conjugate pairs of kappa
+   one vector is enough */
 PETSC_INTERN PetscErrorCode ModalBlocksCreate(const Projection *p, const Spectrum *right, const Spectrum *left,
                                               ModalBlock modal[2]);
 PETSC_INTERN PetscErrorCode ModalBlocksDestroy(ModalBlock modal[2]);
-/* In place of C x what damping of first order leaves of the residuals of vectors of the window, r of right and s of left ones;
-   M x is destroyed */
+/* In place of C x what damping of first order leaves of the residuals of vectors of the window, r of right and s of
+   left ones; M x is destroyed */
 PETSC_INTERN PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectrum *right, const Spectrum *left,
                                               ModalBlock modal[2]);
 /* Adds P^-1 r and P^-T s of them to the basis; they are overwritten */
@@ -76,28 +76,28 @@ PETSC_INTERN PetscErrorCode ProjectionIsExact(const Projection *p, const Spectru
 PETSC_INTERN PetscErrorCode ProjectionIsZero(const Projection *p, const Spectrum *s, PetscInt i, PetscBool *zero);
 PETSC_INTERN PetscErrorCode ProjectionMap(const Projection *p, const Spectrum *from, Spectrum *to);
 
-/* projection/dense.c - whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in it, or
-   where V holds every mode */
+/* projection/dense.c - whether an eigenvalue belongs to the window: within its growth, or that of an undamped mode in
+   it, or where V holds every mode */
 PETSC_INTERN PetscBool ProjectionHas(const Projection *p, PetscComplex lambda);
-/* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away from
-   a target */
+/* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away
+   from a target */
 PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
 /* Eigenvalues of the dense model in the window */
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
 
-/* The modes on the basis that has grown since, each followed from what it was but for settled ones; followed = false where
-   one is lost or found twice */
+/* The modes on the basis that has grown since, each followed from what it was but for settled ones; followed = false
+   where one is lost or found twice */
 PETSC_INTERN PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *before, ProjectionModes *modes,
                                              PetscBool *followed);
 
-/* projection/extend.c - adds P^-1 r of the right residuals and P^-T s of the left ones to the basis, as few as span them
-   within the tolerances of their columns; either block may be NULL, they are overwritten. n_columns = how many, may be
-   NULL */
+/* projection/extend.c - adds P^-1 r of the right residuals and P^-T s of the left ones to the basis, as few as span
+   them within the tolerances of their columns; either block may be NULL, they are overwritten. n_columns = how many,
+   may be NULL */
 PETSC_INTERN PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const tolerance[2],
                                              PetscInt *n_columns);
-/* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the limits to the basis:
-   n_columns of them, 0 where all have settled */
+/* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the
+   limits to the basis: n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
 /* The vectors V x, or V y, as a spectrum */
 PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,

@@ -1,6 +1,6 @@
 /*
-   The undamped vectors of the window and the corrections that damping of first order adds to them. With X and Y the right and
-   left ones, E = Y'MX and F = Y'CX, which is diagonal where damping leaves the vectors as they are,
+   The undamped vectors of the window and the corrections that damping of first order adds to them. With X and Y the
+   right and left ones, E = Y'MX and F = Y'CX, which is diagonal where damping leaves the vectors as they are,
 
       lambda (C X - M X E^-1 F)   and   lambda (C'Y - M Y E^-T F')
 

@@ -1,19 +1,20 @@
 /*
-   Decays of rigid motions, real eigenvalues next to zero: a mass on a dashpot, lambda = -alpha. Rounding of K, which is as large
-   as its largest entries, moves them by machine epsilon x'|K| x / |y'C x|, per cents where damping is weak. The left null vectors Y,
-   Y'K = 0, know nothing of K: of every eigenvector with lambda != 0
+   Decays of rigid motions, real eigenvalues next to zero: a mass on a dashpot, lambda = -alpha. Rounding of K, which is
+   as large as its largest entries, moves them by machine epsilon x'|K| x / |y'C x|, per cents where damping is weak.
+   The left null vectors Y, Y'K = 0, know nothing of K: of every eigenvector with lambda != 0
 
       lambda Y'M x + Y'C x = 0,   lambda = - a.b / a.a,   a = Y'M x,  b = Y'C x,   Y'M Y = 1.
 
-   So lambda is corrected by it where a holds most of x. Rounding x'K x = kappa makes of 0 and -alpha the roots of lambda^2 + alpha lambda +
-   kappa = 0: a root that comes of -alpha is nearer to it than to 0.
+   So lambda is corrected by it where a holds most of x. Rounding x'K x = kappa makes of 0 and -alpha the roots of
+   lambda^2 + alpha lambda + kappa = 0: a root that comes of -alpha is nearer to it than to 0.
 */
 #include "modes/modesimpl.h"
 
-#define DECAY_RIGID 0.5   /* of |x| in M: a rigid motion */
-#define DECAY_MOST  0.9   /* of lambda: a larger correction is that of a zero */
-#define DECAY_ONE   1e-4  /* |b - alpha a| / |b|: both parts of x are of one decay, which rounding has made a pair of conjugates */
-#define DECAY_NULL  100   /* roundings of sum_i |K_ii| y_i^2, the most that y'K y of a null vector is */
+#define DECAY_RIGID 0.5 /* of |x| in M: a rigid motion */
+#define DECAY_MOST  0.9 /* of lambda: a larger correction is that of a zero */
+/* |b - alpha a| / |b|: both parts of x are of one decay, which rounding has made a pair of conjugates */
+#define DECAY_ONE  1e-4
+#define DECAY_NULL 100 /* roundings of sum_i |K_ii| y_i^2, the most that y'K y of a null vector is */
 
 /* What the left null vectors y [n] see of a pencil; work [2] */
 typedef struct {

@@ -1,14 +1,14 @@
 /*
-   Vectors of the rigid modes of a damped system, K x = 0. The quadratic eigensolver finds x from [x; lambda x] scaled by
-   its largest eigenvalues, which leaves little of it at lambda = 0. So these vectors are found apart, by inverse
+   Vectors of the rigid modes of a damped system, K x = 0. The quadratic eigensolver finds x from [x; lambda x] scaled
+   by its largest eigenvalues, which leaves little of it at lambda = 0. So these vectors are found apart, by inverse
    iteration on the undamped problem,
 
       (K - s M) x' = M x,   s = -(10 scale)^2 far below every elastic mode,
 
    which reduces what is elastic by |s| / omega^2 each time, and M-orthonormal. Left ones by the transposed problem. The
-   two zeros of a rigid mode have one vector: of those that were kept some may be the same. Rounding makes a conjugate pair of
-   two zeros, of which one is listed, or two real eigenvalues, so that the number of zeros found says nothing. Listed is one
-   for each vector of the null space, first of all.
+   two zeros of a rigid mode have one vector: of those that were kept some may be the same. Rounding makes a conjugate
+   pair of two zeros, of which one is listed, or two real eigenvalues, so that the number of zeros found says nothing.
+   Listed is one for each vector of the null space, first of all.
 */
 #include "modes/modesimpl.h"
 #include "base/algebra/dense.h"
@@ -45,7 +45,10 @@ static PetscErrorCode NullMeasure(Mat K, PetscBool transposed, PetscInt n, Vec x
   PetscFunctionBeginUser;
   PetscCall(MatNorm(K, NORM_FROBENIUS, &norm));
   for (PetscInt j = 0; j < n; j++) {
-    PetscCall(transposed ? MatMultTranspose(K, x[j], work) : MatMult(K, x[j], work));
+    if (transposed)
+      PetscCall(MatMultTranspose(K, x[j], work));
+    else
+      PetscCall(MatMult(K, x[j], work));
     PetscCall(VecNorm(work, NORM_2, &residual));
     PetscCall(VecNorm(x[j], NORM_2, &length));
     error[j] = residual / (norm * length);
@@ -57,11 +60,13 @@ PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Windo
 {
   PetscFunctionBeginUser;
   if (modes->null.ksp) PetscFunctionReturn(0);
-  PetscCall(ShiftInvertCreate(pencil, -PetscSqr(10 * window->known.scale), PETSC_FALSE, &modes->progress, &modes->null));
+  PetscCall(
+    ShiftInvertCreate(pencil, -PetscSqr(10 * window->known.scale), PETSC_FALSE, &modes->progress, &modes->null));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[], PetscReal error[])
+PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[],
+                           PetscReal error[])
 {
   PetscReal   worst = PETSC_MAX_REAL;
   PetscRandom random;
@@ -74,7 +79,10 @@ PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool 
   PetscCall(PetscRandomDestroy(&random));
   for (int step = 0; step < NULL_MAX_STEP && worst > NULL_ENOUGH; step++) {
     for (PetscInt j = 0; j < n; j++) {
-      PetscCall(transposed ? MatMultTranspose(pencil->M, x[j], work) : MatMult(pencil->M, x[j], work));
+      if (transposed)
+        PetscCall(MatMultTranspose(pencil->M, x[j], work));
+      else
+        PetscCall(MatMult(pencil->M, x[j], work));
       PetscCall(ShiftInvertSolve(&modes->null, transposed, work, x[j]));
       PetscCall(NullOrthonormalise(pencil->M, j, x, work));
     }
@@ -178,7 +186,8 @@ static PetscErrorCode NullList(Modes modes, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* How many of n vectors are of the null space of K, and of K' where there are left ones: motions that nothing resists */
+/* How many of n vectors are of the null space of K, and of K' where there are left ones: motions that nothing
+   resists */
 static PetscErrorCode NullCount(Modes modes, const PencilMatrices *pencil, PetscInt n, PetscInt *count)
 {
   PetscReal *error;

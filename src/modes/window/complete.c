@@ -1,16 +1,16 @@
 /*
-   What a solution says about its completeness. Without damping and friction the inertia of K - s M at the ends of the band
-   proves it. Else two independent searches are compared, those of right and of left vectors, which begin from different
-   starts on one shared factorisation a shift, and the frictionless, undamped count stands beside the modes found. There a mode is a pair of
-   eigenvalues lambda: conjugates, of which one is listed, or two real ones where damping keeps it from oscillating. A
-   rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
+   What a solution says about its completeness. Without damping and friction the inertia of K - s M at the ends of the
+   band proves it. Else two independent searches are compared, those of right and of left vectors, which begin from
+   different starts on one shared factorisation a shift, and the frictionless, undamped count stands beside the modes
+   found. There a mode is a pair of eigenvalues lambda: conjugates, of which one is listed, or two real ones where
+   damping keeps it from oscillating. A rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
 */
 #include "modes/modesimpl.h"
 
 #define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
 
-/* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero is one
-   mode with another zero, which is not listed, or with a decay; two decays are one mode */
+/* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero
+   is one mode with another zero, which is not listed, or with a decay; two decays are one mode */
 static void CountReal(Modes modes, PetscInt *rows, PetscInt *pairs, PetscInt *at_zero)
 {
   PetscInt decays = 0;
@@ -35,18 +35,18 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
   if (window->known.expected < 0 || window->count) PetscFunctionReturn(0);
   CountReal(modes, &rows, &pairs, &at_zero);
   if (at_zero && window->known.rigid)
-    PetscCall(PetscSNPrintf(zeros, sizeof(zeros), "; %" PetscInt_FMT " at zero, one for each motion that nothing resists, K x = 0",
-                            at_zero));
+    PetscCall(PetscSNPrintf(zeros, sizeof(zeros),
+                            "; %" PetscInt_FMT " at zero, one for each motion that nothing resists, K x = 0", at_zero));
   if (rows != pairs)
     PetscCall(PetscSNPrintf(real, sizeof(real),
-                            "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s",
-                            rows, pairs, pairs == 1 ? "" : "s"));
+                            "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s", rows,
+                            pairs, pairs == 1 ? "" : "s"));
   if (modes->n - rows + pairs != window->known.expected)
     PetscCall(PetscStrncpy(other, ", the others lie beyond that growth or have left the band", sizeof(other)));
   if (modes->n - rows + pairs > window->known.expected)
     PetscCall(PetscStrncpy(other, ", the others came into the band by friction, damping or spin", sizeof(other)));
-  PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s",
-                          zeros, real, window->known.expected, other));
+  PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s", zeros,
+                          real, window->known.expected, other));
   PetscFunctionReturn(0);
 }
 
@@ -58,9 +58,10 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
 
   PetscFunctionBeginUser;
   if (!window->route.counted)
-    PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
-                            "two independent searches of the undamped modes agree to %.1e", (double)window->route.worst));
-  PetscCall(PetscSNPrintf(text, size, "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
+    PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
+                            (double)window->route.worst));
+  PetscCall(PetscSNPrintf(text, size,
+                          "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
                           undamped, region, (double)window->route.beyond, rest));
   PetscFunctionReturn(0);
 }
@@ -91,27 +92,25 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   PetscCall(DescribeFrictionless(modes, window, frictionless, sizeof(frictionless)));
   PetscCall(DescribeRoute(window, modes->dense, route, sizeof(route)));
   if (window->known.most < INFINITY)
-    PetscCall(
-      PetscSNPrintf(massless, sizeof(massless),
-                    "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
-                    (double)window->known.most));
+    PetscCall(PetscSNPrintf(massless, sizeof(massless),
+                            "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
+                            (double)window->known.most));
   if (!window->count)
     PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
   if (window->route.proven && window->count)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
+    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
                             window->known.expected));
   else if (window->route.proven)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none is missing: inertia counts %" PetscInt_FMT " in the band",
+    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia counts %" PetscInt_FMT " in the band",
                             window->known.expected));
   else if (window->route.project && (modes->left || window->route.counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)
-    PetscCall(PetscSNPrintf(text, size,
-                            "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
-                            "transposes, to %.1e%s%s",
-                            (double)window->route.worst, region, frictionless));
+    PetscCall(
+      PetscSNPrintf(text, size,
+                    "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
+                    "transposes, to %.1e%s%s",
+                    (double)window->route.worst, region, frictionless));
   else if (modes->left)
     PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",
                             (double)window->route.worst, region, frictionless));
@@ -144,10 +143,11 @@ PetscErrorCode WindowCheckCount(Modes modes, const Window *window)
   if (!modes->has_band || window->known.expected < 0) PetscFunctionReturn(0);
   if (!modes->has_most) PetscCall(WindowDoubt(modes, window, sizeof(doubt), doubt));
   if (modes->most == 0 || window->known.expected <= (doubt[0] ? MODES_DOUBTED : modes->most)) PetscFunctionReturn(0);
-  if (window->known.below > 0) PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->known.below));
+  if (window->known.below > 0)
+    PetscCall(PetscSNPrintf(below, sizeof(below), " beside %" PetscInt_FMT " below it", window->known.below));
   SETERRQ(modes->comm, PETSC_ERR_USER_INPUT,
-          "-modes_band %.6g,%.6g holds %" PetscInt_FMT " modes%s%s%s; narrow the band (Hz), or give -modes_most %" PetscInt_FMT
-          " to compute them",
+          "-modes_band %.6g,%.6g holds %" PetscInt_FMT
+          " modes%s%s%s; narrow the band (Hz), or give -modes_most %" PetscInt_FMT " to compute them",
           (double)modes->band[0], (double)modes->band[1], window->known.expected, below, doubt[0] ? ": " : "", doubt,
           window->known.expected);
 }

@@ -1,7 +1,7 @@
 /*
-   Equal eigenvalues, as several free bodies have at zero and equal bodies at each of their frequencies. In exact arithmetic a
-   Krylov space of blocks of b vectors holds b vectors of one eigenvalue: what it has beyond these is rounding's, and right and
-   left spaces may lack the same ones.
+   Equal eigenvalues, as several free bodies have at zero and equal bodies at each of their frequencies. In exact
+   arithmetic a Krylov space of blocks of b vectors holds b vectors of one eigenvalue: what it has beyond these is
+   rounding's, and right and left spaces may lack the same ones.
 */
 #include "modes/modesimpl.h"
 

@@ -18,10 +18,10 @@ PetscReal DampedRadius(const Window *window, PetscReal shift, const Spectrum *fo
 }
 
 /* Without a target, or with one near zero, the shift lies below zero, where rigid modes may be. Rounding of an
-   eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 of the unknowns' own below leaves 1e-8
-   of these at worst. In a band it lies amid kappa, so that few modes outside are as near as those inside; where
-   the band begins at low frequencies, which there lose digits, at 0.3: on the default brake 0.25, 0.3, 0.35 take 288, 280, 272
-   solves, and right and left eigenvalues agree to 7e-11, 3e-11, 9e-11, with LU to 3e-11, 4e-11, 1e-9. */
+   eigenvalue there by its inverse, 1 / (kappa - shift), spoils the others by as much: 1e-8 of the unknowns' own below
+   leaves 1e-8 of these at worst. In a band it lies amid kappa, so that few modes outside are as near as those inside;
+   where the band begins at low frequencies, which there lose digits, at 0.3: on the default brake 0.25, 0.3, 0.35 take
+   288, 280, 272 solves, and right and left eigenvalues agree to 7e-11, 3e-11, 9e-11, with LU to 3e-11, 4e-11, 1e-9. */
 PetscReal UndampedShift(const Window *window)
 {
   const PetscReal low = window->low * window->low, high = window->high * window->high;

@@ -3,8 +3,8 @@
 
       part k: [e_k (1 - d), e_(k+1) (1 + d)],   e_k = f_1 + k (f_2 - f_1) / n,   d = 1e-3,
 
-   each with its own factorisation at the middle of its part in the plane of kappa and its own count by inertia. A seam is
-   cut in the middle of the widest gap between the modes of the strip, so that what rounding makes different in two
+   each with its own factorisation at the middle of its part in the plane of kappa and its own count by inertia. A seam
+   is cut in the middle of the widest gap between the modes of the strip, so that what rounding makes different in two
    solutions of one mode, and the members of a pair with one frequency, cannot be parted by it.
 */
 #include "modes/modesimpl.h"
@@ -27,7 +27,8 @@ PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Win
   PetscCheck(!window->count, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " needs a band: give -modes_band, or leave it out", n);
   PetscCheck(!pencil->C, modes->comm, PETSC_ERR_USER_INPUT,
-             "-modes_shifts %" PetscInt_FMT " is not offered with damping, whose modes one shift finds; leave it out", n);
+             "-modes_shifts %" PetscInt_FMT " is not offered with damping, whose modes one shift finds; leave it out",
+             n);
   PetscCheck(window->known.expected < 0 || n <= PetscMax(1, window->known.expected), modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_shifts %" PetscInt_FMT " must be at most %" PetscInt_FMT ", the modes in the band", n,
              window->known.expected);

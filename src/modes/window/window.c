@@ -1,12 +1,12 @@
 /*
    The window of the eigenvalues asked for. With a symmetric pencil without damping and friction the number of
-   eigenvalues kappa = omega^2 below s follows from the negative pivots of K - s M (solver/factor/inertia.c). It sizes the Krylov
-   space, and proves that no real mode is missing.
+   eigenvalues kappa = omega^2 below s follows from the negative pivots of K - s M (solver/factor/inertia.c). It sizes
+   the Krylov space, and proves that no real mode is missing.
 
-   Where unknowns are without mass, as multipliers of constraints are, rounding makes large eigenvalues of any sign of the
-   infinite ones, by the root of rounding at best: 1e8 times what is near the shift. So what is larger than 10 times the
-   band and the growth asked for is no mode then; of modes nearest to a target, what is larger than 100 times the unknowns'
-   own frequencies.
+   Where unknowns are without mass, as multipliers of constraints are, rounding makes large eigenvalues of any sign of
+   the infinite ones, by the root of rounding at best: 1e8 times what is near the shift. So what is larger than 10 times
+   the band and the growth asked for is no mode then; of modes nearest to a target, what is larger than 100 times the
+   unknowns' own frequencies.
 */
 #include "modes/modesimpl.h"
 
@@ -17,9 +17,9 @@
 #define MODES_MOST      10   /* of the band and of the growth: with unknowns without mass, what is larger is no mode */
 #define MODES_FINITE    1e7  /* of the scale: the same where no band is given */
 
-/* A frequency (rad/s) that is small beside all elastic modes: 1e-5 of the mean of the unknowns' own, w_i^2 = K_ii / M_ii,
-   weighted by M_ii, in which a stiff spring weighs no more than the mass at it. Rounding of K makes of a zero about
-   eps x'|K| x / x'M x: where x moves all alike, eps times the mean of w_i^2. Below some of these is zero. */
+/* A frequency (rad/s) that is small beside all elastic modes: 1e-5 of the mean of the unknowns' own, w_i^2 = K_ii /
+   M_ii, weighted by M_ii, in which a stiff spring weighs no more than the mass at it. Rounding of K makes of a zero
+   about eps x'|K| x / x'M x: where x moves all alike, eps times the mean of w_i^2. Below some of these is zero. */
 static PetscErrorCode WindowScale(const PencilMatrices *pencil, PetscReal *scale, PetscReal *zero)
 {
   PetscReal K, M, w;
@@ -52,7 +52,7 @@ static PetscErrorCode WindowFindMassless(Modes modes, const PencilMatrices *fric
   PetscCall(MassIsSingular(frictionless, &window->known.singular));
   if (!window->known.singular) PetscFunctionReturn(0);
   window->known.most = modes->has_band ? MODES_MOST * PetscMax(window->high, window->growth)
-                                 : PetscMax(MODES_FINITE * window->known.scale, MODES_MOST * window->target);
+                                       : PetscMax(MODES_FINITE * window->known.scale, MODES_MOST * window->target);
   if (!frictionless->symmetric) PetscFunctionReturn(0);
   PetscCall(ShiftInvertCountMassless(frictionless, window->known.most, &modes->counter, &window->known.massless));
   if (modes->has_band) PetscFunctionReturn(0);
@@ -74,8 +74,8 @@ static PetscErrorCode WindowCountBelow(Modes modes, const Window *window, PetscR
   PetscFunctionReturn(0);
 }
 
-/* Frictionless modes below the band. Where it begins within what rounding makes of zero, rigid modes belong to it, unless
-   all that is about zero is found below its end */
+/* Frictionless modes below the band. Where it begins within what rounding makes of zero, rigid modes belong to it,
+   unless all that is about zero is found below its end */
 static PetscErrorCode WindowCountLow(Modes modes, Window *window)
 {
   PetscReal zero  = window->known.zero;
@@ -115,17 +115,15 @@ PetscErrorCode WindowFind(Modes modes, Window *window)
   PencilMatrices  frictionless;
 
   PetscFunctionBeginUser;
-  *window = (Window){
-    .low      = low,
-    .high     = high,
-    .target   = 2 * PETSC_PI * modes->target,
-    .count    = modes->has_band ? 0 : modes->count,
-    .growth   = modes->growth > 0 ? modes->growth : 0.1 * high,
-    .edge     = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
-    .extra    = 6,
-    .known    = {.within = -1, .expected = -1, .finite = -1, .below = -1},
-    .route    = {.beyond = -1}
-  };
+  *window = (Window){.low    = low,
+                     .high   = high,
+                     .target = 2 * PETSC_PI * modes->target,
+                     .count  = modes->has_band ? 0 : modes->count,
+                     .growth = modes->growth > 0 ? modes->growth : 0.1 * high,
+                     .edge   = {low * (1 - MODES_EDGE), high * (1 + MODES_EDGE)},
+                     .extra  = 6,
+                     .known  = {.within = -1, .expected = -1, .finite = -1, .below = -1},
+                     .route  = {.beyond = -1}};
   PetscCall(PencilGetFrictionless(modes->pencil, &frictionless));
   PetscCall(WindowScale(&frictionless, &window->known.scale, &window->known.zero));
   PetscCall(WindowFindMassless(modes, &frictionless, window));
@@ -184,8 +182,8 @@ PetscErrorCode WindowReach(Modes modes, Window *window)
 }
 
 /* C = b K moves a mode omega of the undamped problem to a distance d from the real shift s with
-   d^2 = s^2 + (1 + b s) omega^2. Where many are farther than the window's corners, asking for as many eigenvalues as the
-   undamped problem has in the window would look for them among the overdamped ones, which hardly differ. */
+   d^2 = s^2 + (1 + b s) omega^2. Where many are farther than the window's corners, asking for as many eigenvalues as
+   the undamped problem has in the window would look for them among the overdamped ones, which hardly differ. */
 PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Window *window)
 {
   PetscReal K, C, shift, corner, omega;
@@ -196,9 +194,9 @@ PetscErrorCode WindowSetDamping(Modes modes, const PencilMatrices *pencil, Windo
   window->known.damping = K > 0 ? C / K : 0;
   if (window->known.expected < 0) PetscFunctionReturn(0);
   window->known.within = window->known.below + window->known.expected;
-  shift          = DampedShift(window);
-  corner         = hypot(window->high, shift + window->growth);
-  omega          = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->known.damping));
+  shift                = DampedShift(window);
+  corner               = hypot(window->high, shift + window->growth);
+  omega                = PetscSqrtReal((corner * corner - shift * shift) / (1 + shift * window->known.damping));
   if (omega < window->high) PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &omega, &window->known.within));
   PetscFunctionReturn(0);
 }
@@ -209,7 +207,8 @@ PetscErrorCode WindowCountRigid(Modes modes, Window *window, const Spectrum *s)
   PetscReal scale = window->known.scale;
 
   PetscFunctionBeginUser;
-  if (!s->n || PetscAbsReal(s->sigma[0]) > window->known.scale || s->omega[0] > window->known.scale || window->known.below < 0)
+  if (!s->n || PetscAbsReal(s->sigma[0]) > window->known.scale || s->omega[0] > window->known.scale ||
+      window->known.below < 0)
     PetscFunctionReturn(0);
   PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &scale, &window->known.rigid));
   PetscFunctionReturn(0);
@@ -246,8 +245,9 @@ PetscErrorCode WindowProve(Modes modes, Window *window, const Spectrum *s, Petsc
     PetscCall(WindowCountBelow(modes, window, MODES_AWAY, &high, &below_high));
     window->known.expected = below_high - below_low;
   }
-  *complete = s->n == window->known.expected || (window->count && window->known.expected >= s->n && s->n == window->count)
-                ? PETSC_TRUE
-                : PETSC_FALSE;
+  *complete =
+    s->n == window->known.expected || (window->count && window->known.expected >= s->n && s->n == window->count)
+      ? PETSC_TRUE
+      : PETSC_FALSE;
   PetscFunctionReturn(0);
 }

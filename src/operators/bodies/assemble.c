@@ -64,11 +64,7 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
     const char *name, *unit;
     PetscReal   value;
   } what[N_PART_PARAMETERS] = {
-    {"young",   "Pa",     p->young  },
-    {"density", "kg/m^3", p->density},
-    {"alpha",   "1/s",    p->alpha  },
-    {"beta",    "s",      p->beta   }
-  };
+    {"young", "Pa", p->young}, {"density", "kg/m^3", p->density}, {"alpha", "1/s", p->alpha}, {"beta", "s", p->beta}};
   PetscInt i[N_PART_PARAMETERS];
   Mat      K, M;
 

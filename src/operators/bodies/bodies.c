@@ -1,6 +1,6 @@
 /*
-   The bodies at a point p of the parameters, without contact: a vector of their unknowns, the material of a part, and K (N/m), M (kg),
-   C (N s/m) as sums of terms.
+   The bodies at a point p of the parameters, without contact: a vector of their unknowns, the material of a part, and K
+   (N/m), M (kg), C (N s/m) as sums of terms.
 */
 #include "operators/operatorsimpl.h"
 
@@ -37,8 +37,8 @@ PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat 
 {
   static const TermsSumKind kinds[N_BODIES_SUMS] = {
     [BODIES_K] = {OPERATORS_STIFFNESS, TERMS_SYMMETRIC, 1},
-    [BODIES_M] = {OPERATORS_MASS,      TERMS_SYMMETRIC, 1},
-    [BODIES_C] = {OPERATORS_DAMPING,   TERMS_SYMMETRIC, 1},
+    [BODIES_M] = {OPERATORS_MASS, TERMS_SYMMETRIC, 1},
+    [BODIES_C] = {OPERATORS_DAMPING, TERMS_SYMMETRIC, 1},
   };
   Mat *const wanted[N_BODIES_SUMS] = {K, M, C};
 

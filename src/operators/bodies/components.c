@@ -1,6 +1,6 @@
 /*
-   Terms of stiffnesses (N/m), dampings (N s/m) or masses that are given along x, y, z and spread over nodes by shares: one term where
-   the components that are given are equal, else one for each direction.
+   Terms of stiffnesses (N/m), dampings (N s/m) or masses that are given along x, y, z and spread over nodes by shares:
+   one term where the components that are given are equal, else one for each direction.
 */
 #include "operators/operatorsimpl.h"
 

@@ -1,8 +1,8 @@
 /*
-   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, and those of
-   bushings and points, at all nodes. Where supports hold a direction f is the force that they exert, as far as no load
-   acts there. Displacements are taken relative to the first node of each cell: a translation gives no force, while in
-   the assembled matrix its rounding resists like a spring of some 1e-16 of the stiffness.
+   Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, and those
+   of bushings and points, at all nodes. Where supports hold a direction f is the force that they exert, as far as no
+   load acts there. Displacements are taken relative to the first node of each cell: a translation gives no force, while
+   in the assembled matrix its rounding resists like a spring of some 1e-16 of the stiffness.
 */
 #include "operators/operatorsimpl.h"
 

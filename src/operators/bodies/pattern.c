@@ -1,6 +1,6 @@
 /*
-   Preallocation: couplings of the unknowns of two nodes of a common cell of one part; in a mass matrix those of the same
-   direction alone, a third, or where it is lumped the diagonal. Each rank counts, for every
+   Preallocation: couplings of the unknowns of two nodes of a common cell of one part; in a mass matrix those of the
+   same direction alone, a third, or where it is lumped the diagonal. Each rank counts, for every
    node that it has, the distinct neighbours through its own cells, apart by whether the neighbour's unknowns live
    with the row's owner; the counts are summed over the ranks that share the node. Neighbours that two ranks see count
    twice: an upper bound, exact in the interior, at a fifth of the time of DMCreateMatrix(), which walks the closure of

@@ -1,18 +1,18 @@
 /*
-   Terms of spinning parts, for pencils alone (kernels/element/spin.h has the equations): of each part, per unit density rho and
-   spin Omega,
+   Terms of spinning parts, for pencils alone (kernels/element/spin.h has the equations): of each part, per unit density
+   rho and spin Omega,
 
       C += Omega rho G,   K += Omega^2 rho (K_sigma - Q),
 
    sigma being the stress of the bodies under the steady load of this part's spin, u = K^-1 f, held by supports and
    springs but not by contacts, with the moduli of the scene: parameters on which it depends must keep these. With the
-   stiffness sum_t c_t A_t it depends on c_t where A_t u is not zero, but for the modulus of a part that alone carries f:
-   there u ~ 1 / E. Where nothing holds the bodies, f balances itself, and
+   stiffness sum_t c_t A_t it depends on c_t where A_t u is not zero, but for the modulus of a part that alone carries
+   f: there u ~ 1 / E. Where nothing holds the bodies, f balances itself, and
 
       (K + s M) u_k+1 = f + s M u_k
 
-   finds u but for a rigid motion, which has no stress. A mesh that is not quite round leaves a rigid part M R a in f, which
-   stays as it is from step to step: it makes no stress either, and is left out.
+   finds u but for a rigid motion, which has no stress. A mesh that is not quite round leaves a rigid part M R a in f,
+   which stays as it is from step to step: it makes no stress either, and is left out.
 */
 #include "operators/operatorsimpl.h"
 #include "kernels/element/spin.h"
@@ -32,7 +32,7 @@ PetscErrorCode OperatorsAddSpinParameters(Operators o)
   PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(PetscMalloc1(scene->n_parts, &o->spin_of_part));
   for (PetscInt part = 0; part < scene->n_parts; part++) {
-    const Part              *p = &scene->parts[part];
+    const Part              *p    = &scene->parts[part];
     const PetscReal          wave = PetscSqrtReal(p->young / p->density); /* m/s, along a rod */
     const OperatorsParameter q    = {.unit    = "rad/s",
                                      .value   = p->spin.rate,

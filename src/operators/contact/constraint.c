@@ -4,16 +4,16 @@
       right, N u = 0:            alpha = n . u_m
       left, (N - mu T) y = 0:    alpha = (n - mu t) . y_m + mu q1
    so that Zr = (I + G) E: E injects the kept unknowns and, at a slave, t q1 + b q2; G = n n' takes the part of alpha
-   that comes from the master. The left null space is affine in the friction coefficients mu_i of the interfaces, each at one
-   sliding speed or at several, between which those of the pairs are interpolated (frictionfactor.c); F_i and G_i have the pairs'
-   parts then,
+   that comes from the master. The left null space is affine in the friction coefficients mu_i of the interfaces, each
+   at one sliding speed or at several, between which those of the pairs are interpolated (frictionfactor.c); F_i and G_i
+   have the pairs' parts then,
 
       Zl = Zr + sum_i mu_i Zl_i,   Zl_i = F_i + G_i E,   F_i: n q1 at a slave,   G_i = -n t' from its master,
 
-   no master being slave of another pair. Displacements that follow others (dependents.c) are then filled in by P = Z E_d' of
-   these, E and E_d their injection: Zr = P (E + G P E), Zl_i = P (F_i + G_i P E). A becomes Zl' A Zr, and constraint
-   forces drop out: a term c A of all unknowns makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the pencil. Open
-   pairs are no constraints.
+   no master being slave of another pair. Displacements that follow others (dependents.c) are then filled in by P = Z
+   E_d' of these, E and E_d their injection: Zr = P (E + G P E), Zl_i = P (F_i + G_i P E). A becomes Zl' A Zr, and
+   constraint forces drop out: a term c A of all unknowns makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the
+   pencil. Open pairs are no constraints.
 */
 #include "operators/pencilimpl.h"
 
@@ -133,9 +133,10 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscFunctionReturn(0);
 }
 
-/* E (part NULL): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: part [n] times n in the columns
-   q1 */
-static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *E)
+/* E (part NULL): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: part [n] times n in the
+   columns q1 */
+static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[],
+                                      Mat *E)
 {
   const Operators o = pencil->operators;
   PetscInt        n_local, first, last, column, n_follow = 0;
@@ -171,7 +172,8 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
 }
 
 /* From each master node to the slave: G = n n' w_i (part NULL), or G_i = -part n t' w_i */
-static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *G)
+static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[],
+                                     Mat *G)
 {
   PetscInt n_local, n_entries = 0;
 
@@ -216,7 +218,8 @@ static PetscErrorCode NullSpaceFill(Operators o, Mat X, Mat *filled)
 }
 
 /* Zr = P (E + G P E) (part NULL), or Zl_i = P (F_i + G_i P E) of the parts [n] that pairs have in it */
-static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[], Mat *Z)
+static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[],
+                                      Mat *Z)
 {
   Mat F = pencil->E, G, PE, sum;
 

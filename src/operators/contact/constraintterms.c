@@ -1,5 +1,5 @@
-/* Terms of the pencil by projection on the null spaces of the contact constraint (constraint.c): c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of
-   a term c A of all unknowns */
+/* Terms of the pencil by projection on the null spaces of the contact constraint (constraint.c): c (Zr' A Zr) and c
+   mu_i (Zl_i' A Zr) of a term c A of all unknowns */
 #include "operators/pencilimpl.h"
 
 /* L' AZ; NULL where it is zero */
@@ -40,9 +40,9 @@ static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const 
 
     if (!image[i]) continue;
     PetscCall(TermsAdd(&pencil->projected, base->kind, image[i], i ? PETSC_FALSE : base->symmetric, 0, NULL));
-    term        = &pencil->projected.term[pencil->projected.n - 1];
-    term->scale = base->scale;
-    term->n     = n + (i ? 1 : 0);
+    term             = &pencil->projected.term[pencil->projected.n - 1];
+    term->scale      = base->scale;
+    term->n          = n + (i ? 1 : 0);
     term->constraint = i - 1;
     PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
                term->n);

@@ -3,9 +3,10 @@
 
       sum_t c_t(p) L_t' R_t = L' R,   L = [c_1 L_1; c_2 L_2; ...],   R = [R_1; R_2; ...]
 
-   so that what is symmetric can be factored by itself (solver/factor/lowrank.h). A row of L is the tangential displacement of
-   a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the area; c_t holds
-   k_n mu. Terms one after another with one L, as of friction at several speeds, have its rows once, with R = sum_t c_t / c_1 R_t.
+   so that what is symmetric can be factored by itself (solver/factor/lowrank.h). A row of L is the tangential
+   displacement of a pair (dimensionless), a row of R minus its normal displacement times the penalty per pair or the
+   area; c_t holds k_n mu. Terms one after another with one L, as of friction at several speeds, have its rows once,
+   with R = sum_t c_t / c_1 R_t.
 */
 #include "base/algebra/matrixadd.h"
 #include "operators/pencilimpl.h"
@@ -81,7 +82,8 @@ static PetscErrorCode RightCreate(const Terms *terms, const PetscReal p[], Petsc
   }
   PetscCall(MatDuplicate(terms->term[t].right, MAT_COPY_VALUES, R));
   for (PetscInt k = t + 1; k < end; k++)
-    PetscCall(MatAXPY(*R, OperatorsTermCoefficient(&terms->term[k], p) / c, terms->term[k].right, SAME_NONZERO_PATTERN));
+    PetscCall(
+      MatAXPY(*R, OperatorsTermCoefficient(&terms->term[k], p) / c, terms->term[k].right, SAME_NONZERO_PATTERN));
   PetscFunctionReturn(0);
 }
 
@@ -188,7 +190,12 @@ PetscErrorCode PencilRestore(Pencil pencil, PencilSum which)
   TermsSum *const even = &pencil->sum[PencilEven(pencil)], *const whole = &pencil->sum[PENCIL_K];
 
   PetscFunctionBeginUser;
-  if (!even->current) PetscCall(pencil->half ? AddMass(pencil, even) : AddFriction(pencil, -1, whole->A, even));
+  if (!even->current) {
+    if (pencil->half)
+      PetscCall(AddMass(pencil, even));
+    else
+      PetscCall(AddFriction(pencil, -1, whole->A, even));
+  }
   even->current = PETSC_TRUE;
   if (which != PENCIL_K) PetscFunctionReturn(0);
   PetscCall(AddFriction(pencil, 1, even->A, whole));

@@ -5,11 +5,11 @@
       K += k_t (T'T + B'B)                     pairs that stick, of an interface that holds by friction; also per area
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
    of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
-   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair. Where mu differs
-   from pair to pair, terms with mu or mu' stand once for each of several speeds k, with the pairs' parts L_k (frictionfactor.c). Only
-   closed pairs take part; those of a group g make terms of their own, with the parameter closed_g as one more factor.
-   Signs: slip velocity of the slave relative to the master is v t - d/dt (T u) t - d/dt (B u) b, friction on the master
-   acts along it, and internal forces stand on the left.
+   where the slip comes from a rotation, the angular velocity; B'B_w and T'T_w carry N0 / N and V / v of each pair.
+   Where mu differs from pair to pair, terms with mu or mu' stand once for each of several speeds k, with the pairs'
+   parts L_k (frictionfactor.c). Only closed pairs take part; those of a group g make terms of their own, with the
+   parameter closed_g as one more factor. Signs: slip velocity of the slave relative to the master is v t - d/dt (T u) t
+   - d/dt (B u) b, friction on the master acts along it, and internal forces stand on the left.
 */
 #include "operators/pencilimpl.h"
 #include "base/algebra/vec3.h"
@@ -85,7 +85,8 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, P
   PetscCall(VecGetOwnershipRange(across, &row, NULL));
   PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
   for (PetscInt i = 0; i < g->n; i++) {
-    const PetscReal own = pairs[g->pair[i]].speed, share = FrictionNodeShare(&g->q, k, own) * pencil->force[g->pair[i]] / g->total;
+    const PetscReal own   = pairs[g->pair[i]].speed,
+                    share = FrictionNodeShare(&g->q, k, own) * pencil->force[g->pair[i]] / g->total;
 
     PetscCall(VecSetValue(across, row + i, share * speed / own, INSERT_VALUES));
     PetscCall(VecSetValue(along, row + i, share, INSERT_VALUES));
@@ -161,7 +162,8 @@ static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, 
   for (PetscInt i = 0; i < g->n; i++) {
     const ContactPair *pair = &pairs[g->pair[i]];
 
-    PetscCall(VecSetValue(*weights, row + i, FrictionNodeShare(&g->q, k, pair->speed) * ContactPairStiffness(g->c, pair, 1),
+    PetscCall(VecSetValue(*weights, row + i,
+                          FrictionNodeShare(&g->q, k, pair->speed) * ContactPairStiffness(g->c, pair, 1),
                           INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(*weights));
@@ -263,7 +265,8 @@ PetscErrorCode PencilAddContact(Pencil pencil)
       PetscCall(MatGetSize(g.N, &n_rows, NULL));
       if (n_rows && c[i].law == CONTACT_PENALTY) PetscCall(PenaltyAdd(pencil, &g));
       if (n_rows && c[i].kt > 0) PetscCall(HoldAdd(pencil, &g));
-      for (PetscInt k = 0; k < g.q.n_nodes && n_rows && c[i].damping && g.total > 0; k++) PetscCall(DampingAdd(pencil, &g, k));
+      for (PetscInt k = 0; k < g.q.n_nodes && n_rows && c[i].damping && g.total > 0; k++)
+        PetscCall(DampingAdd(pencil, &g, k));
       PetscCall(FrictionGroupDestroy(&g));
     }
   PetscFunctionReturn(0);
@@ -281,8 +284,8 @@ static PetscErrorCode FrictionCheckDamps(MPI_Comm comm, const ContactInterface *
     PetscCheck(parameter[j].steady || c->friction.parameter[j] == 0, comm, PETSC_ERR_USER_INPUT,
                "-%s_%s does nothing without -%s_friction_damping", c->name, parameter[j].row.name + 1, c->name);
   PetscCheck(!c->slides || !FrictionVaries(&c->friction), comm, PETSC_ERR_USER_INPUT,
-             "friction of contact %s changes with the slip speed: give -%s_friction_damping, which damps with mu' N", c->name,
-             c->name);
+             "friction of contact %s changes with the slip speed: give -%s_friction_damping, which damps with mu' N",
+             c->name, c->name);
   PetscFunctionReturn(0);
 }
 
@@ -298,7 +301,8 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
   if (pencil->from_state && !n_closed) PetscFunctionReturn(0); /* the bodies alone */
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
   for (PetscInt i = 0; i < n; i++) {
-    PetscCheck(c[i].slides || ((!FrictionExists(&c[i].friction) || c[i].kt > 0) && !c[i].damping), pencil->comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(c[i].slides || ((!FrictionExists(&c[i].friction) || c[i].kt > 0) && !c[i].damping), pencil->comm,
+               PETSC_ERR_USER_INPUT,
                "contact %s: the sliding velocity vanishes in the surface at some pair; give -%s_slip x,y,z along the "
                "surface, or -%s_kt (N/m per pair) where it holds by friction",
                c[i].name, c[i].name, c[i].name);

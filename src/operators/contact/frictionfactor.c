@@ -1,23 +1,24 @@
 /*
-   Friction in the pencil: parameters of the contact, and mu and mu' of an interface at its sliding speed as factors of terms.
+   Friction in the pencil: parameters of the contact, and mu and mu' of an interface at its sliding speed as factors of
+   terms.
 
-   Where pairs slide at different speeds v, and the law knows the speed itself, mu differs from pair to pair. It is interpolated
-   between n Chebyshev points v_k of the speeds (L_k Lagrange's polynomials),
+   Where pairs slide at different speeds v, and the law knows the speed itself, mu differs from pair to pair. It is
+   interpolated between n Chebyshev points v_k of the speeds (L_k Lagrange's polynomials),
 
       mu(v) = sum_k L_k(v) mu(v_k),
 
-   so that K stays a sum of fixed matrices with functions of the parameters for coefficients. n is the least for which mu and
-   v mu' are right to FRICTION_RTOL of the largest mu, at the stated speeds and from an eighth to eight times of them: what laws are
-   scaled by is a speed. v_k go with the speed V of the interface, v_k = ratio_k V.
+   so that K stays a sum of fixed matrices with functions of the parameters for coefficients. n is the least for which
+   mu and v mu' are right to FRICTION_RTOL of the largest mu, at the stated speeds and from an eighth to eight times of
+   them: what laws are scaled by is a speed. v_k go with the speed V of the interface, v_k = ratio_k V.
 */
 #include "operators/pencilimpl.h"
 #include "base/algebra/vec3.h"
 #include <math.h>
 
-#define FRICTION_RTOL  1e-10
-#define FRICTION_MISS  1e-8 /* most at other parameters */
-#define FRICTION_NODES 32   /* at most */
-#define FRICTION_PLACES 101 /* at which mu is looked at */
+#define FRICTION_RTOL    1e-10
+#define FRICTION_MISS    1e-8 /* most at other parameters */
+#define FRICTION_NODES   32   /* at most */
+#define FRICTION_PLACES  101  /* at which mu is looked at */
 #define FRICTION_OCTAVES 3
 
 /* The law at p */
@@ -133,8 +134,8 @@ PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], cons
   PetscFunctionReturn(0);
 }
 
-/* Parameters of the law that modes read: of what slides those that decide mu, or with damping mu' alone; of what holds those
-   that decide mu at rest */
+/* Parameters of the law that modes read: of what slides those that decide mu, or with damping mu' alone; of what holds
+   those that decide mu at rest */
 static PetscErrorCode LawAddParameters(Operators o, const ContactInterface *c, PetscBool steady, InterfaceParameters *q)
 {
   const FrictionParameter *law;
@@ -168,14 +169,14 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     {c->law == CONTACT_PENALTY,
      c->per_area ? "kn_per_area" : "kn",
      {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
-     &q->kn   },
+     &q->kn},
     {c->kt > 0,
      c->kt_per_area ? "kt_per_area" : "kt",
      {.unit = c->kt_per_area ? "N/m^3" : "N/m", .value = c->kt},
-     &q->kt   },
-    {c->damping,            "force",    {.unit = "N", .value = c->force, .closed = PETSC_TRUE}, &q->force},
-    {moves && turning > 0,  "rotation", {.unit = "rad/s", .value = turning},                    &q->speed},
-    {moves && turning <= 0, "speed",    {.unit = "m/s", .value = c->speed},                     &q->speed},
+     &q->kt},
+    {c->damping, "force", {.unit = "N", .value = c->force, .closed = PETSC_TRUE}, &q->force},
+    {moves && turning > 0, "rotation", {.unit = "rad/s", .value = turning}, &q->speed},
+    {moves && turning <= 0, "speed", {.unit = "m/s", .value = c->speed}, &q->speed},
   };
 
   PetscFunctionBeginUser;
@@ -183,7 +184,8 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
   for (int j = 0; j < FRICTION_PARAMETERS; j++) q->law[j] = -1;
   if (c->slides) PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(what); i++) {
-    if (i == 2 && !c->slides && c->kt > 0 && FrictionExists(&c->friction)) PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));
+    if (i == 2 && !c->slides && c->kt > 0 && FrictionExists(&c->friction))
+      PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));
     if (i == 2 && c->damping) PetscCall(LawAddParameters(o, c, PETSC_FALSE, q));
     if (what[i].there) PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
   }
@@ -223,7 +225,8 @@ static PetscReal NodesMiss(const OperatorsFriction node[], PetscInt n, const Pet
 }
 
 /* The fewest nodes that serve, for the ratios of all pairs */
-static PetscErrorCode NodesChoose(Operators o, const ContactInterface *c, const PetscReal range[2], InterfaceParameters *q)
+static PetscErrorCode NodesChoose(Operators o, const ContactInterface *c, const PetscReal range[2],
+                                  InterfaceParameters *q)
 {
   PetscReal miss = INFINITY;
 
@@ -235,10 +238,11 @@ static PetscErrorCode NodesChoose(Operators o, const ContactInterface *c, const 
     for (int m = -FRICTION_OCTAVES; m <= FRICTION_OCTAVES; m++)
       miss = PetscMax(miss, NodesMiss(q->node, n, range, ldexp(q->stated, m)));
   }
-  PetscCheck(miss <= FRICTION_RTOL, o->comm, PETSC_ERR_SUP,
-             "contact %s: pairs slide at %.6g to %.6g m/s, over which friction changes too much for modes: to %.1e of it by %d "
-             "speeds; take the contact apart by radius",
-             c->name, (double)(range[0] * q->stated), (double)(range[1] * q->stated), (double)miss, FRICTION_NODES);
+  PetscCheck(
+    miss <= FRICTION_RTOL, o->comm, PETSC_ERR_SUP,
+    "contact %s: pairs slide at %.6g to %.6g m/s, over which friction changes too much for modes: to %.1e of it by %d "
+    "speeds; take the contact apart by radius",
+    c->name, (double)(range[0] * q->stated), (double)(range[1] * q->stated), (double)miss, FRICTION_NODES);
   PetscFunctionReturn(0);
 }
 
@@ -260,7 +264,8 @@ PetscErrorCode OperatorsCheckFriction(Operators o, const PetscReal p[])
     node[0].law = FactorLaw(&q->node[0], p);
     miss        = NodesMiss(node, q->n_nodes, q->range, q->speed >= 0 ? p[q->speed] : q->stated);
     PetscCheck(miss <= FRICTION_MISS, o->comm, PETSC_ERR_USER_INPUT,
-               "contact %s: friction at these parameters is known to %.1e of it alone, between the speeds that the scene needs; write "
+               "contact %s: friction at these parameters is known to %.1e of it alone, between the speeds that the "
+               "scene needs; write "
                "the scene with a speed or decay speed nearer to them",
                c[i].name, (double)miss);
   }
@@ -268,7 +273,8 @@ PetscErrorCode OperatorsCheckFriction(Operators o, const PetscReal p[])
 }
 
 /* Speeds at which mu is a factor */
-static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const ContactInterface *c, InterfaceParameters *q)
+static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const ContactInterface *c,
+                                        InterfaceParameters *q)
 {
   PetscReal         *range = q->range;
   PetscInt           n, n_all;
@@ -289,10 +295,12 @@ static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const C
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, o->comm));
   range[0]   = -range[0];
   q->n_nodes = 1;
-  q->node[0] = (OperatorsFriction){.law = c->friction, .speed = FrictionNeedsSpeed(&c->friction) ? q->speed : -1, .ratio = range[1]};
+  q->node[0] = (OperatorsFriction){
+    .law = c->friction, .speed = FrictionNeedsSpeed(&c->friction) ? q->speed : -1, .ratio = range[1]};
   q->node[0].law.speed = q->stated * range[1];
   PetscCall(PetscArraycpy(q->node[0].parameter, q->law, FRICTION_PARAMETERS));
-  if (FrictionNeedsSpeed(&c->friction) && range[1] - range[0] > PETSC_SMALL * range[1]) PetscCall(NodesChoose(o, c, range, q));
+  if (FrictionNeedsSpeed(&c->friction) && range[1] - range[0] > PETSC_SMALL * range[1])
+    PetscCall(NodesChoose(o, c, range, q));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
-   Rows of the closed pairs in the unknowns of a pencil, of the factors of K = K_even + left' right: those of all unknowns
-   times Zr.
+   Rows of the closed pairs in the unknowns of a pencil, of the factors of K = K_even + left' right: those of all
+   unknowns times Zr.
 */
 #include "operators/pencilimpl.h"
 

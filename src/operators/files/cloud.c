@@ -1,6 +1,6 @@
 /*
-   Points of matrices without a mesh (nodetable.c) as a mesh whose cells are points, so that shapes are written and named as
-   those of a mesh are. Ranks share the nodes, whichever unknowns they have.
+   Points of matrices without a mesh (nodetable.c) as a mesh whose cells are points, so that shapes are written and
+   named as those of a mesh are. Ranks share the nodes, whichever unknowns they have.
 */
 #include "nodetable.h"
 

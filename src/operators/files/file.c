@@ -1,7 +1,7 @@
 /*
    Matrices without a mesh: PETSc binary files (MatLoad) or dense lists in the options, rows one after another. Each is
-   one term, H with the coefficient contact_mu; matrixterm.c has those of the list -terms. K, M and C count as terms that
-   are there without friction, symmetric or not.
+   one term, H with the coefficient contact_mu; matrixterm.c has those of the list -terms. K, M and C count as terms
+   that are there without friction, symmetric or not.
 */
 #include "base/file.h"
 #include "matrixterm.h"
@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char *const letters[N_OPERATORS]  = {"k", "m", "c", "h"};
-PetscErrorCode OperatorsLoadFromOptions(Operators o)
+static const char *const letters[N_OPERATORS] = {"k", "m", "c", "h"};
+PetscErrorCode           OperatorsLoadFromOptions(Operators o)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(o->comm, &operators_matrices, o));
@@ -225,8 +225,14 @@ PetscErrorCode PencilSave(Pencil pencil)
     parts = (PencilParts){.K = m.K, .M = m.M, .C = m.C};
   PetscCall(PencilSaveObject(o, "K", (PetscObject)parts.K));
   PetscCall(PencilSaveObject(o, "M", (PetscObject)parts.M));
-  PetscCall(parts.C ? PencilSaveObject(o, "C", (PetscObject)parts.C) : PencilRemoveObject(o, "C"));
-  PetscCall(parts.H ? PencilSaveObject(o, "H", (PetscObject)parts.H) : PencilRemoveObject(o, "H"));
+  if (parts.C)
+    PetscCall(PencilSaveObject(o, "C", (PetscObject)parts.C));
+  else
+    PetscCall(PencilRemoveObject(o, "C"));
+  if (parts.H)
+    PetscCall(PencilSaveObject(o, "H", (PetscObject)parts.H));
+  else
+    PetscCall(PencilRemoveObject(o, "H"));
   PetscCall(PencilRemoveObject(o, "F"));
   PetscFunctionReturn(0);
 }

@@ -155,7 +155,8 @@ static PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const 
 
 #define MASS_ROUNDING 1e-10 /* of the diagonal: what is smaller, of the mass along a direction, is none */
 
-/* How many eigenvalues of a symmetric matrix M + shift diag(M) are negative or zero: signs of the pivots of L D L' (J. J. Sylvester) */
+/* How many eigenvalues of a symmetric matrix M + shift diag(M) are negative or zero: signs of the pivots of L D L' (J.
+   J. Sylvester) */
 static PetscErrorCode MassCountPivots(Mat S, Vec diagonal, PetscReal shift, PetscInt *bad)
 {
   MatFactorInfo info;

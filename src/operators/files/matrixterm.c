@@ -1,8 +1,8 @@
 /*
    Named matrices (matrixtermoptions.c) as terms. One that is not symmetric is a term that comes with friction: the
    symmetric ones of K and M are the frictionless system, by which modes are counted and with which sweeps begin. Where
-   these alone are no system, since no stiffness is symmetric or a mass is not, none of this holds, and all terms count as
-   unsymmetric ones that are there without friction.
+   these alone are no system, since no stiffness is symmetric or a mass is not, none of this holds, and all terms count
+   as unsymmetric ones that are there without friction.
 */
 #include "matrixterm.h"
 #include "operators/pencilimpl.h"

@@ -27,8 +27,8 @@ typedef struct _p_MatrixTerm {
   PetscBool even; /* A is symmetric */
 } MatrixTerm;
 
-/* matrixterm.c - whether |a_ij - a_ji| <= MATRIX_SYMMETRIC |A|, one answer for all ranks: what MatIsSymmetric() finds outside
-   of the diagonal blocks it tells each rank by itself. Collective */
+/* matrixterm.c - whether |a_ij - a_ji| <= MATRIX_SYMMETRIC |A|, one answer for all ranks: what MatIsSymmetric() finds
+   outside of the diagonal blocks it tells each rank by itself. Collective */
 PETSC_INTERN PetscErrorCode MatrixIsSymmetric(Mat A, PetscBool *symmetric);
 
 /* matrixterm.c - the parameters and terms; what they are made with, but for the entries; frees the list */

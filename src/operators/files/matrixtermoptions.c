@@ -19,10 +19,10 @@
 /* Factors of the coefficient: how many, their names and powers */
 static PetscErrorCode MatrixTermSetFactors(MPI_Comm comm, void *owner, void *record)
 {
-  MatrixTerm *term     = record;
+  MatrixTerm    *term     = record;
   const PetscInt n_powers = term->n_powers;
-  char        option[256], **words;
-  int         n = 0;
+  char           option[256], **words;
+  int            n = 0;
 
   PetscFunctionBeginUser;
   (void)owner;
@@ -59,9 +59,8 @@ static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
              term->name, term->name);
   PetscCheck((int)term->kind < 3, comm, PETSC_ERR_USER_INPUT, "-%s_kind is missing: give stiffness, damping or mass",
              term->name);
-  PetscCheck(term->scale != 0 && PetscAbsReal(term->scale) <= MATRIX_LARGEST, comm,
-             PETSC_ERR_USER_INPUT, "-%s_scale %.6g must not be zero, and of at most 1e60", term->name,
-             (double)term->scale);
+  PetscCheck(term->scale != 0 && PetscAbsReal(term->scale) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
+             "-%s_scale %.6g must not be zero, and of at most 1e60", term->name, (double)term->scale);
   PetscFunctionReturn(0);
 }
 
@@ -97,8 +96,8 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
 
 PetscErrorCode MatrixTermsSetFromOptions(Operators o)
 {
-  const QuantityList list = {"-terms", "matrices from files, each the prefix of its -file and -kind", sizeof(MatrixTerm),
-                             &operators_term, MatrixTermSetFactors};
+  const QuantityList list = {"-terms", "matrices from files, each the prefix of its -file and -kind",
+                             sizeof(MatrixTerm), &operators_term, MatrixTermSetFactors};
   PetscBool          help, all;
 
   PetscFunctionBeginUser;

@@ -1,7 +1,7 @@
 /*
-   Scaled multipliers of loaded matrices. With a constraint b'u = 0 whose entries are near one the matrices of another program have
-   rows of 1 beside stiffnesses k of 1e9 N/m, and in a vector the multiplier, which is a force, is 1e9 times the displacements:
-   these are lost in rounding. In
+   Scaled multipliers of loaded matrices. With a constraint b'u = 0 whose entries are near one the matrices of another
+   program have rows of 1 beside stiffnesses k of 1e9 N/m, and in a vector the multiplier, which is a force, is 1e9
+   times the displacements: these are lost in rounding. In
 
       u = Z q,   Z = diag(d),   d_j = min(k / max_i |K_ij|, sqrt(k / |K_jj|)) for an unknown j without mass, else 1,
 

@@ -3,8 +3,8 @@
 
       unknown,node,direction,x,y,z[,part]
 
-   unknown from 1, direction 1 to 3 along x, y, z (others, such as rotations, have no shape), place of the node in m. Unknowns
-   may be left out. Columns stand in any order; further ones are left unread.
+   unknown from 1, direction 1 to 3 along x, y, z (others, such as rotations, have no shape), place of the node in m.
+   Unknowns may be left out. Columns stand in any order; further ones are left unread.
 */
 #include "nodetable.h"
 #include "base/file.h"

@@ -32,8 +32,8 @@ struct _p_Cloud {
   char          **part;
 };
 
-/* nodetable.c - reads the table of n_unknowns; the caller frees row. Collective. Errors: PETSC_ERR_FILE_UNEXPECTED with the
-   line */
+/* nodetable.c - reads the table of n_unknowns; the caller frees row. Collective. Errors: PETSC_ERR_FILE_UNEXPECTED with
+   the line */
 PETSC_INTERN PetscErrorCode NodeTableRead(MPI_Comm comm, const char file[], PetscInt n_unknowns, NodeTable *table);
 
 /* cloud.c - the points of -operators_nodes, once the matrices are there */

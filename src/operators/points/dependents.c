@@ -5,8 +5,8 @@
       u = D u + E q = Z q,   Z = E + D E + D^2 E + ...,
 
    which ends since no chain of followers comes back to where it began. Pencils are projected on Z, symmetric ones stay
-   symmetric; forces that Z'f = 0 leaves are those that hold the followers. A displacement that follows none but held ones
-   is 0.
+   symmetric; forces that Z'f = 0 leaves are those that hold the followers. A displacement that follows none but held
+   ones is 0.
 */
 #include "dependents.h"
 

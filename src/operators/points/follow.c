@@ -1,5 +1,6 @@
 /*
-   Which displacements follow others, and by which rows of D (dependents.c): a list claims an unknown, then gives its row.
+   Which displacements follow others, and by which rows of D (dependents.c): a list claims an unknown, then gives its
+   row.
 */
 #include "dependents.h"
 

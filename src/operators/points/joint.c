@@ -171,17 +171,13 @@ static PetscErrorCode PointAddMass(Operators o, const Joint *joint, PetscInt *in
 /* Parameters and terms of one bushing or point */
 static PetscErrorCode OperatorsAddJoint(Operators o, const Joint *j, JointParameters *index)
 {
-  const JointHalf half[2] = {
-    {j, 0},
-    {j, 3}
-  };
-  const char *const cause = j->is_point ? "point" : "bushing";
+  const JointHalf   half[2]       = {{j, 0}, {j, 3}};
+  const char *const cause         = j->is_point ? "point" : "bushing";
   const Components  components[4] = {
-    {OPERATORS_STIFFNESS, cause, j->name, "stiffness",      "N/m",       &j->stiffness[0], JointHalfCreate, &half[0]},
-    {OPERATORS_STIFFNESS, cause, j->name, "turn_stiffness", "N m/rad",   &j->stiffness[3], JointHalfCreate, &half[1]},
-    {OPERATORS_DAMPING,   cause, j->name, "viscosity",      "N s/m",     &j->viscosity[0], JointHalfCreate, &half[0]},
-    {OPERATORS_DAMPING,   cause, j->name, "turn_viscosity", "N m s/rad", &j->viscosity[3], JointHalfCreate, &half[1]}
-  };
+     {OPERATORS_STIFFNESS, cause, j->name, "stiffness", "N/m", &j->stiffness[0], JointHalfCreate, &half[0]},
+     {OPERATORS_STIFFNESS, cause, j->name, "turn_stiffness", "N m/rad", &j->stiffness[3], JointHalfCreate, &half[1]},
+     {OPERATORS_DAMPING, cause, j->name, "viscosity", "N s/m", &j->viscosity[0], JointHalfCreate, &half[0]},
+     {OPERATORS_DAMPING, cause, j->name, "turn_viscosity", "N m s/rad", &j->viscosity[3], JointHalfCreate, &half[1]}};
   PetscInt *const to[4] = {&index->stiffness[0], &index->stiffness[3], &index->viscosity[0], &index->viscosity[3]};
 
   PetscFunctionBeginUser;

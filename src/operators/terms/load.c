@@ -4,7 +4,8 @@
 
       f = (p_F / |F|) f_F + (p_M / |M|) f_M    (N),
 
-   with f_F, f_M, F, M of the scene. No matrix of the bodies depends on them: pencils do through the sliding state alone.
+   with f_F, f_M, F, M of the scene. No matrix of the bodies depends on them: pencils do through the sliding state
+   alone.
 */
 #include "operators/operatorsimpl.h"
 #include "base/algebra/vec3.h"

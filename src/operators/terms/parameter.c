@@ -39,10 +39,11 @@ PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *q, PetscR
              (double)value, (double)q->upper);
   PetscCheck((q->internal || value < q->upper) && !PetscIsNanReal(value), comm, PETSC_ERR_USER_INPUT,
              "%s %.6g%s%s must be a finite number", q->name, (double)value, space, q->unit);
-  PetscCheck(q->fastest == 0 || PetscAbsReal(value) <= q->fastest, comm, PETSC_ERR_USER_INPUT,
-             "%s %.6g rad/s must be at most %.6g rad/s: beyond, the part moves faster than waves in it, and centrifugal "
-             "forces strain it by more than its length; is it another unit? 1 rev/min is 0.10472 rad/s",
-             q->name, (double)value, (double)q->fastest);
+  PetscCheck(
+    q->fastest == 0 || PetscAbsReal(value) <= q->fastest, comm, PETSC_ERR_USER_INPUT,
+    "%s %.6g rad/s must be at most %.6g rad/s: beyond, the part moves faster than waves in it, and centrifugal "
+    "forces strain it by more than its length; is it another unit? 1 rev/min is 0.10472 rad/s",
+    q->name, (double)value, (double)q->fastest);
   PetscCheck(value > q->lower || (q->closed && value == q->lower), comm, PETSC_ERR_USER_INPUT,
              "%s %.6g%s%s must %s %.6g", q->name, (double)value, space, q->unit, q->closed ? "be at least" : "exceed",
              (double)q->lower);

@@ -4,8 +4,8 @@
 
       dc/dp_j = sum over factors i of p_j:  scale power_i p_j^(power_i - 1) prod_{k != i} p_k^power_k
 
-   where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides. A factor may also be
-   mu or mu' of an interface (frictionfactor.c), a function of several parameters.
+   where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides. A factor
+   may also be mu or mu' of an interface (frictionfactor.c), a function of several parameters.
 */
 #include "terms.h"
 
@@ -26,7 +26,9 @@ PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool s
   term->symmetric  = symmetric;
   term->scale      = 1;
   term->constraint = -1;
-  term->cause_kind = kind == OPERATORS_STIFFNESS ? "stiffness matrix" : kind == OPERATORS_DAMPING ? "damping matrix" : "mass matrix";
+  term->cause_kind = kind == OPERATORS_STIFFNESS ? "stiffness matrix"
+                     : kind == OPERATORS_DAMPING ? "damping matrix"
+                                                 : "mass matrix";
   term->n          = n;
   for (PetscInt i = 0; i < n; i++) {
     term->factor[i].parameter = parameter[i];

@@ -31,14 +31,16 @@ typedef struct {
    kinds, are zero at p */
 PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A, PetscBool symmetric, PetscInt n,
                                      const PetscInt parameter[]);
-/* Names what the last term may make modes grow by: kind, and the option <owner>_<what>, or <what> alone where owner is NULL */
+/* Names what the last term may make modes grow by: kind, and the option <owner>_<what>, or <what> alone where owner is
+   NULL */
 PETSC_INTERN PetscErrorCode TermsSetCause(Terms *terms, const char kind[], const char owner[], const char what[]);
 /* Gives the factors of the last term powers that are not 1 */
 PETSC_INTERN PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[]);
 /* Tells that the last term is left' right */
 PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
 /* Makes factor i of the last term the friction coefficient, or its slope */
-PETSC_INTERN PetscErrorCode TermsSetFriction(Terms *terms, PetscInt i, const OperatorsFriction *friction, PetscBool slope);
+PETSC_INTERN PetscErrorCode TermsSetFriction(Terms *terms, PetscInt i, const OperatorsFriction *friction,
+                                             PetscBool slope);
 PETSC_INTERN PetscErrorCode TermsAppend(Terms *terms, const Terms *more);
 PETSC_INTERN PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[]);
 PETSC_INTERN PetscErrorCode TermsDestroy(Terms *terms);
@@ -47,7 +49,8 @@ PETSC_INTERN PetscErrorCode TermsRelease(Terms *terms);
 /* friction.c - scale L' W R with W = diag(weights), or the identity where weights is NULL */
 PETSC_INTERN PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A);
 
-/* frictionfactor.c - mu, or mu', at p; its derivative by a parameter, 0 where it does not depend on it; whether it does */
+/* frictionfactor.c - mu, or mu', at p; its derivative by a parameter, 0 where it does not depend on it; whether it
+   does */
 PETSC_INTERN PetscReal FrictionFactorValue(const OperatorsFriction *friction, PetscBool slope, const PetscReal p[]);
 PETSC_INTERN PetscReal FrictionFactorDerivative(const OperatorsFriction *friction, PetscBool slope, const PetscReal p[],
                                                 PetscInt parameter);
@@ -71,8 +74,8 @@ typedef struct {
   PetscReal          *p; /* [n] */
 } Parameters;
 
-/* parameter.c - adds the parameter <owner>_<what> with the unit, value, limits and marks of `like`, upper INFINITY where
-   it is 0; raises the error for a value outside its limits */
+/* parameter.c - adds the parameter <owner>_<what> with the unit, value, limits and marks of `like`, upper INFINITY
+   where it is 0; raises the error for a value outside its limits */
 PETSC_INTERN PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const char what[],
                                           const OperatorsParameter *like, PetscInt *index);
 PETSC_INTERN PetscInt       ParametersFind(const Parameters *parameters, const char name[]); /* index, or -1 */

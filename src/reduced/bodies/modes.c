@@ -1,8 +1,10 @@
 /*
-   Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open and
-   without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C = Phi'C Phi.
+   Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open
+   and without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C =
+   Phi'C Phi.
 
-   Of bodies that a parameter has changed a little those modes are taken, as many, that resemble the ones of another reduction.
+   Of bodies that a parameter has changed a little those modes are taken, as many, that resemble the ones of another
+   reduction.
 */
 #include "reduced/reducedimpl.h"
 #include "reduced/parameter.h"

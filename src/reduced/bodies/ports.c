@@ -1,7 +1,7 @@
 /*
-   Ports as vectors V of all unknowns: of a pair the force on its slave along n, t and b, with the opposite on the master,
-   so that V'u is what opens the gap and the slip of the slave; of a load its forces; of a probe 1 N along x, y, z. Impulses J
-   act on the modes alone, as Phi'J.
+   Ports as vectors V of all unknowns: of a pair the force on its slave along n, t and b, with the opposite on the
+   master, so that V'u is what opens the gap and the slip of the slave; of a load its forces; of a probe 1 N along x, y,
+   z. Impulses J act on the modes alone, as Phi'J.
 */
 #include "reduced/reducedimpl.h"
 

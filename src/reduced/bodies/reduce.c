@@ -1,5 +1,6 @@
 /*
-   Reduction of the bodies of a run: modes below the cut-off, ports, pairs, the residual; again at another cut-off or other parameters.
+   Reduction of the bodies of a run: modes below the cut-off, ports, pairs, the residual; again at another cut-off or
+   other parameters.
 */
 #include "reduced/reducedimpl.h"
 

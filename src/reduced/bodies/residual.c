@@ -1,8 +1,9 @@
 /*
-   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the modes
-   before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free show by
-   rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most. Where displacements follow others,
-   u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
+   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the
+   modes before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free
+   show by rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most. Where displacements
+   follow others, u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is
+   of all unknowns.
 */
 #include "reduced/reducedimpl.h"
 #include "base/process/memory.h"
@@ -73,7 +74,8 @@ static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat 
   PetscFunctionReturn(0);
 }
 
-/* Columns first .. of A [N] from X: V'X, rows of pairs of this rank; of the others, where N has them, the sum over all */
+/* Columns first .. of A [N] from X: V'X, rows of pairs of this rank; of the others, where N has them, the sum over
+   all */
 static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt N, PetscReal A[])
 {
   const PetscInt     n_others = N - 3 * r->model.n_pairs;
@@ -151,7 +153,8 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for dense matrices of the pairs, on each rank, that this machine does not hold, or PetscInt does not count */
+/* Raises an error for dense matrices of the pairs, on each rank, that this machine does not hold, or PetscInt does not
+   count */
 static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
 {
   const double N = r->model.n_ports, n = 3 * (double)r->model.n_pairs,

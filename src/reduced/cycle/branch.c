@@ -1,8 +1,8 @@
 /*
-   The branch of cycles through the one that was found, both ways by pseudo-arclength (solver/shooting/shooting.h), through folds, until
-   the parameter leaves its range, the vibration vanishes or no further cycle is found. Distances are those of (eta, rate)
-   over their rms in a vibration that is told before, of T over itself and of the parameter over its range. Where dp/ds changes its
-   sign between two cycles the fold is looked for.
+   The branch of cycles through the one that was found, both ways by pseudo-arclength (solver/shooting/shooting.h),
+   through folds, until the parameter leaves its range, the vibration vanishes or no further cycle is found. Distances
+   are those of (eta, rate) over their rms in a vibration that is told before, of T over itself and of the parameter
+   over its range. Where dp/ds changes its sign between two cycles the fold is looked for.
 */
 #include "cycleimpl.h"
 

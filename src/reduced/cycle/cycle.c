@@ -31,7 +31,8 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(c->comm, &cycle_quantities, c));
   PetscCheck(c->steps == 0 || (c->steps >= 7 && c->steps % 2), c->comm, PETSC_ERR_USER_INPUT,
-             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 or more, or 0 for those of the transient", c->steps);
+             "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 or more, or 0 for those of the transient",
+             c->steps);
   PetscCall(CycleCheckBranch(c));
   PetscFunctionReturn(0);
 }
@@ -73,7 +74,8 @@ PetscErrorCode CycleSetParameter(LimitCycle c)
   if (!c->parameter[0]) PetscFunctionReturn(0);
   c->shooting.span  = c->range[1] - c->range[0];
   c->shooting.least = PETSC_SMALL * c->range[1];
-  if (c->varied.kind == REDUCED_FRICTION && !c->varied.open) c->shooting.least = PetscMax(c->varied.least, -PETSC_MAX_REAL);
+  if (c->varied.kind == REDUCED_FRICTION && !c->varied.open)
+    c->shooting.least = PetscMax(c->varied.least, -PETSC_MAX_REAL);
   c->flow.varied = &c->varied;
   c->flow.value  = c->varied.value;
   if (c->varied.kind != REDUCED_BODY) PetscFunctionReturn(0);
@@ -225,11 +227,17 @@ PetscErrorCode CycleSolve(LimitCycle c, Results results)
   PetscCheck(asked, c->comm, PETSC_ERR_USER_INPUT, CYCLE_BY " needs -dynamics_model reduced");
   c->results = results;
   PetscCall(CycleFindParameter(c));
-  PetscCall(c->from_mode ? CycleReduce(c, results) : ReducedIntegrate(c->reduced, results));
+  if (c->from_mode)
+    PetscCall(CycleReduce(c, results));
+  else
+    PetscCall(ReducedIntegrate(c->reduced, results));
   PetscCall(CycleFlowCreate(c->reduced, &c->flow));
   n = c->flow.n;
   PetscCall(PetscCalloc2(n, &at.x, n * n, &at.M));
-  PetscCall(c->from_mode ? CycleFindOnset(c, &at) : CycleFind(c, &at));
+  if (c->from_mode)
+    PetscCall(CycleFindOnset(c, &at));
+  else
+    PetscCall(CycleFind(c, &at));
   PetscCall(PetscFree2(at.x, at.M));
   PetscFunctionReturn(0);
 }

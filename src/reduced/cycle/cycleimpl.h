@@ -38,17 +38,17 @@ typedef struct {
 
 /* A reduced model under constant loads and sliding; x is in coordinates of the scene */
 typedef struct {
-  ReducedModel           *model;           /* borrowed; what is varied changes in it */
-  const ReducedParameter *varied;          /* borrowed; NULL for none */
-  CycleFamily            *family;          /* its models, where it changes the bodies */
-  PetscReal               value;           /* of the parameter in the model */
-  PetscInt               *interface;       /* [n_pairs] */
-  PetscReal              *loads;           /* [n_loads] factors */
-  FrictionLaw            *stated;          /* [n_pairs] of the scene */
-  PetscReal              *share;           /* [n_pairs] of the speed that is prescribed as sliding: 1 after ramps */
-  PetscReal              *way;             /* [n_pairs] in a step, m */
-  PetscInt                n_steps, n;      /* in a period; unknowns of the state */
-  PetscInt                first, n_looked; /* ports of the probes */
+  ReducedModel           *model;             /* borrowed; what is varied changes in it */
+  const ReducedParameter *varied;            /* borrowed; NULL for none */
+  CycleFamily            *family;            /* its models, where it changes the bodies */
+  PetscReal               value;             /* of the parameter in the model */
+  PetscInt               *interface;         /* [n_pairs] */
+  PetscReal              *loads;             /* [n_loads] factors */
+  FrictionLaw            *stated;            /* [n_pairs] of the scene */
+  PetscReal              *share;             /* [n_pairs] of the speed that is prescribed as sliding: 1 after ramps */
+  PetscReal              *way;               /* [n_pairs] in a step, m */
+  PetscInt                n_steps, n;        /* in a period; unknowns of the state */
+  PetscInt                first, n_looked;   /* ports of the probes */
   PetscReal               contact, friction; /* works in a period that is measured, J */
   PetscReal              *force; /* [n_steps] normal force after each, N; NULL but while a cycle is measured */
   PetscReal              *shown; /* [n_steps][3][n_looked] displacement, residual part of it, velocity of the modes */
@@ -110,8 +110,8 @@ struct _p_LimitCycle {
 /* quantities.c - rows of the options */
 extern const QuantityTable cycle_quantities;
 
-/* family.c - the models, p [parameters] and others `beside` them, or NULL, borrowed; whether there is one at a value; that at it; eta
-   of columns `stride` apart from the scene's coordinates to those of the model, or back */
+/* family.c - the models, p [parameters] and others `beside` them, or NULL, borrowed; whether there is one at a value;
+   that at it; eta of columns `stride` apart from the scene's coordinates to those of the model, or back */
 PETSC_INTERN PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter,
                                               const PetscReal range[2], PetscReal p[], const CycleFamily *beside,
                                               CycleFamily **family);
@@ -121,11 +121,12 @@ PETSC_INTERN PetscErrorCode CycleFamilyTurn(const CycleFamily *family, PetscBool
                                             PetscInt stride, PetscReal X[]);
 PETSC_INTERN PetscErrorCode CycleFamilyDestroy(CycleFamily **family);
 
-/* memory.c - shows what `most` of its models take, with those beside it, and raises the error where there is less. Collective */
+/* memory.c - shows what `most` of its models take, with those beside it, and raises the error where there is less.
+   Collective */
 PETSC_INTERN PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *family, PetscInt most);
 
-/* flow.c - the model of a run, loads and sliding constant from its time on; the state of a run as x; Phi, M (ShootingFlow); the
-   parameter in the model */
+/* flow.c - the model of a run, loads and sliding constant from its time on; the state of a run as x; Phi, M
+   (ShootingFlow); the parameter in the model */
 PETSC_INTERN PetscErrorCode CycleFlowCreate(ReducedRun reduced, CycleFlow *flow);
 PETSC_INTERN PetscErrorCode CycleFlowPack(const CycleFlow *flow, const ReducedState *state, PetscReal x[]);
 PETSC_INTERN PetscErrorCode CycleFlowSetValue(CycleFlow *flow, PetscReal value);
@@ -137,12 +138,13 @@ PETSC_INTERN PetscErrorCode CycleFlowDestroy(CycleFlow *flow);
 PETSC_INTERN PetscErrorCode CycleFlowMeasure(CycleFlow *flow, const ShootingCycle *cycle, CycleMeasure *measure,
                                              CycleProbe probe[]);
 
-/* guess.c - period and state at the end of the run, and the sizes of what changes: rms of eta, of rates and of forces */
+/* guess.c - period and state at the end of the run, and the sizes of what changes: rms of eta, of rates and of
+   forces */
 PETSC_INTERN PetscErrorCode CycleGuess(LimitCycle cycle, ShootingCycle *guess);
 PETSC_INTERN PetscErrorCode CycleSetSizes(LimitCycle cycle, const PetscReal size[3]);
 
-/* onset.c - where a mode of the sliding state becomes unstable, and the cycle of an amplitude that begins there; the direction
-   from rest to it */
+/* onset.c - where a mode of the sliding state becomes unstable, and the cycle of an amplitude that begins there; the
+   direction from rest to it */
 PETSC_INTERN PetscErrorCode CycleBegin(LimitCycle cycle, ShootingCycle *at, ShootingTangent *growing);
 
 /* cycle.c - the parameter in the flow, and models over it; how shooting goes about it; the cycle in numbers, with its
@@ -152,25 +154,26 @@ PETSC_INTERN PetscErrorCode CycleSetShooting(LimitCycle cycle, PetscReal period)
 PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
 PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace *fold, PetscReal error);
 
-/* refine.c - the same cycle with other steps, for its errors; of a fold, whose parameter is a result, the one at the same distance
-   `along` the branch */
+/* refine.c - the same cycle with other steps, for its errors; of a fold, whose parameter is a result, the one at the
+   same distance `along` the branch */
 PETSC_INTERN PetscErrorCode CycleRefine(LimitCycle cycle, const ShootingCycle *at, const ShootingTangent *along,
                                         CyclePoint *point);
 
-/* higher.c - the same flow on bodies with 2.25 times the cut-off, after CycleSetSizes(); the cycle there that a cycle is near, `along`
-   as for CycleRefine(): of a fold the change of the parameter adds to its error */
+/* higher.c - the same flow on bodies with 2.25 times the cut-off, after CycleSetSizes(); the cycle there that a cycle
+   is near, `along` as for CycleRefine(): of a fold the change of the parameter adds to its error */
 PETSC_INTERN PetscErrorCode CycleHigherCreate(LimitCycle cycle, CycleHigher *higher);
 PETSC_INTERN PetscErrorCode CycleHigherLook(CycleHigher higher, const ShootingCycle *at, const ShootingTangent *along,
                                             CyclePoint *point);
 PETSC_INTERN PetscErrorCode CycleHigherDestroy(CycleHigher *higher);
 
-/* branch.c - the branch, in order, through the one cycle that was taken; `growing`: the direction along it that is gone last,
-   NULL for rising values */
+/* branch.c - the branch, in order, through the one cycle that was taken; `growing`: the direction along it that is gone
+   last, NULL for rising values */
 PETSC_INTERN PetscErrorCode CycleFollow(LimitCycle cycle, const ShootingCycle *start, const ShootingTangent *growing);
 
-/* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over where
-   steps begin, and that of the largest multiplier by the steps; the class of a cycle that was found to `rtol`: stable, unstable,
-   numerical where its error leaves that open, unverified where the error is not known, and why that is, NULL for the first two */
+/* write.c - all tables as they are by now; the error of a number beside that of twice the steps and the spread over
+   where steps begin, and that of the largest multiplier by the steps; the class of a cycle that was found to `rtol`:
+   stable, unstable, numerical where its error leaves that open, unverified where the error is not known, and why that
+   is, NULL for the first two */
 PETSC_INTERN PetscErrorCode CycleWrite(LimitCycle cycle);
 PETSC_INTERN PetscReal      CycleError(PetscReal found, PetscReal finer, PetscReal spread);
 PETSC_INTERN PetscReal      CycleMultiplierError(const CyclePoint *point);

@@ -1,20 +1,22 @@
 /*
-   Reduced models over a parameter p of the bodies (a modulus, a density, stiffness of springs, damping). The bodies are reduced at
-   the Chebyshev points of a range, with as many modes as in the scene, and what lies between is interpolated (parametric reduction
-   by interpolation of matrices: H. Panzer, J. Mohring, R. Eid, B. Lohmann, at - Automatisierungstechnik 58, 2010, 475). Modes Phi_k at p_k
-   have signs, an order and among equal frequencies directions of their own: coordinates eta of the scene's modes Phi become
+   Reduced models over a parameter p of the bodies (a modulus, a density, stiffness of springs, damping). The bodies are
+   reduced at the Chebyshev points of a range, with as many modes as in the scene, and what lies between is interpolated
+   (parametric reduction by interpolation of matrices: H. Panzer, J. Mohring, R. Eid, B. Lohmann, at -
+   Automatisierungstechnik 58, 2010, 475). Modes Phi_k at p_k have signs, an order and among equal frequencies
+   directions of their own: coordinates eta of the scene's modes Phi become
 
-      eta_k = T_k eta,    T_k the orthogonal polar factor of Phi_k'M_k Phi,    so that Phi_k T_k is as near to Phi as can be,
+      eta_k = T_k eta,    T_k the orthogonal polar factor of Phi_k'M_k Phi,    so that Phi_k T_k is as near to Phi as
+      can be,
 
    and with them smooth functions of t are
 
       K_k = T_k'Omega_k^2 T_k,   T_k'C_k T_k,   P_k T_k,   W_k,   Cm_k T_k,   Cx_k.
 
-   t in [-1, 1] is linear in log p, in which what goes with p or 1 / p converges fastest, or in p where the range begins at 0. At p
-   K = Q Omega^2 Q' has the modes of the model again, of which the coordinates are Q'eta.
+   t in [-1, 1] is linear in log p, in which what goes with p or 1 / p converges fastest, or in p where the range begins
+   at 0. At p K = Q Omega^2 Q' has the modes of the model again, of which the coordinates are Q'eta.
 
-   5 points become 9 and 17 of them until the last coefficients of the Chebyshev series fall below FAMILY_RTOL of the largest
-   entry, those of K_ij below FAMILY_RTOL omega_i omega_j: what the series leaves out is smaller.
+   5 points become 9 and 17 of them until the last coefficients of the Chebyshev series fall below FAMILY_RTOL of the
+   largest entry, those of K_ij below FAMILY_RTOL omega_i omega_j: what the series leaves out is smaller.
 */
 #include "cycleimpl.h"
 #include <petsctime.h>
@@ -179,8 +181,8 @@ static PetscReal FamilyLast(const CycleFamily *f, int part, PetscInt i, PetscRea
   return PetscMax(PetscAbsReal(c[0]), PetscAbsReal(c[1]));
 }
 
-/* Of K_ij over omega_i omega_j of the scene, so that no frequency is off by more, however far below the cut-off; modes that are
-   rigid count as the lowest one that is not */
+/* Of K_ij over omega_i omega_j of the scene, so that no frequency is off by more, however far below the cut-off; modes
+   that are rigid count as the lowest one that is not */
 static PetscReal FamilyStiffnessError(const CycleFamily *f)
 {
   const ReducedModel *scene = &f->scene->model;

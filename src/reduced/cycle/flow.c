@@ -1,7 +1,8 @@
 /*
-   The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q), and its
-   derivative M, the product of those of the steps (step/tangent.c). A step whose contact laws have no solution ends the period:
-   Phi is then infinite, which no cycle comes from: INFINITY, not the large number PETSC_INFINITY, two of which have no difference.
+   The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q),
+   and its derivative M, the product of those of the steps (step/tangent.c). A step whose contact laws have no solution
+   ends the period: Phi is then infinite, which no cycle comes from: INFINITY, not the large number PETSC_INFINITY, two
+   of which have no difference.
 */
 #include "cycleimpl.h"
 
@@ -133,7 +134,8 @@ static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal valu
   PetscFunctionReturn(0);
 }
 
-/* The normal force after step k, and what probes show: displacement, of it that of the residual, and velocity of the modes */
+/* The normal force after step k, and what probes show: displacement, of it that of the residual, and velocity of the
+   modes */
 static void FlowLook(CycleFlow *f, PetscInt k)
 {
   const ReducedModel *model = f->model;

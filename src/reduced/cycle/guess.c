@@ -1,6 +1,7 @@
 /*
-   The guess of a cycle: the motion goes on from the end of the transient; the first time at which it comes back to where it
-   began, as near as ever in the window, is the period. Distances are those of (eta, rate), each over its rms about the mean.
+   The guess of a cycle: the motion goes on from the end of the transient; the first time at which it comes back to
+   where it began, as near as ever in the window, is the period. Distances are those of (eta, rate), each over its rms
+   about the mean.
 */
 #include "cycleimpl.h"
 
@@ -119,7 +120,8 @@ static PetscReal WindowReturn(const GuessWindow *w, PetscReal *nearest)
   return found;
 }
 
-/* Free directions: rigid motions of the bodies that change no gap, nothing but slip being felt of them; unit length in S x */
+/* Free directions: rigid motions of the bodies that change no gap, nothing but slip being felt of them; unit length in
+   S x */
 static PetscErrorCode GuessSetFree(LimitCycle c)
 {
   const ReducedModel *model = &c->reduced->model;

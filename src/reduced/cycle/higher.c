@@ -1,7 +1,7 @@
 /*
-   The error of the reduction: cycles on bodies that keep the modes below 2.25 times the cut-off. A state eta of the modes Phi is
-   near T eta of the others Phi_h, T = Phi_h'M Phi; forces of the pairs are the same. From there Newton's method goes on
-   with as many steps. What lies above the higher cut-off is in no difference.
+   The error of the reduction: cycles on bodies that keep the modes below 2.25 times the cut-off. A state eta of the
+   modes Phi is near T eta of the others Phi_h, T = Phi_h'M Phi; forces of the pairs are the same. From there Newton's
+   method goes on with as many steps. What lies above the higher cut-off is in no difference.
 */
 #include "cycleimpl.h"
 
@@ -81,7 +81,10 @@ PetscErrorCode CycleHigherLook(CycleHigher h, const ShootingCycle *at, const Sho
   if (along) HigherTake(h, along->x, h->along.x);
   h->along.period = along ? along->period : 0;
   h->along.value  = along ? along->value : 0;
-  PetscCall(along ? ShootingAdvance(&c->shooting, 0, &h->along, here) : ShootingSolve(&c->shooting, here));
+  if (along)
+    PetscCall(ShootingAdvance(&c->shooting, 0, &h->along, here));
+  else
+    PetscCall(ShootingSolve(&c->shooting, here));
   point->has_higher = here->converged;
   if (!here->converged) PetscFunctionReturn(0);
   PetscCall(CycleFlowMeasure(&c->flow, here, &point->higher, NULL));

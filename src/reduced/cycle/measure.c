@@ -39,8 +39,8 @@ static void PeriodMeasure(const CycleFlow *f, PetscReal period, CycleMeasure *m)
   }
 }
 
-/* Adds the rate of the residual to the velocities, and takes a drift along a free direction out of the displacements u, at the port
-   whose values begin there */
+/* Adds the rate of the residual to the velocities, and takes a drift along a free direction out of the displacements u,
+   at the port whose values begin there */
 static void PortComplete(const CycleFlow *f, PetscReal u[])
 {
   const PetscInt n = f->n_steps, stride = 3 * f->n_looked;

@@ -1,17 +1,17 @@
 /*
-   Where the branch begins: at the value of the parameter at which a mode v, sigma + i omega, of the sliding state x_0 becomes unstable
-   (Hopf bifurcation). The growth of the fastest mode is looked at over the range and its zero next to the value of the scene
-   bracketed. Cycles of small amplitude a near it are
+   Where the branch begins: at the value of the parameter at which a mode v, sigma + i omega, of the sliding state x_0
+   becomes unstable (Hopf bifurcation). The growth of the fastest mode is looked at over the range and its zero next to
+   the value of the scene bracketed. Cycles of small amplitude a near it are
 
       x = x_0 + a Re(v exp(i omega t)),    T = 2 pi / omega,
 
-   with the phase of v at which the normal forces of the pairs are largest, the root of the sum of their squares, at t = 0, and its
-   sign by that of the pair of the largest, later pairs counting up to twice as much: the phase of an eigensolver hangs on the signs
-   of the bodies' modes, hence on ranks, and tells where the steps lie. From there Newton's method goes on at that amplitude: the
-   plane of pseudo-arclength is normal to v, and the parameter is left free.
-   While all pairs stay closed and slide the motion is linear, and the parameter that of the onset whatever a; it moves when
-   pairs begin to open. Amplitude 1 is that at which normal forces of the pairs change by as much as they are at rest, in the root
-   of the sum of their squares.
+   with the phase of v at which the normal forces of the pairs are largest, the root of the sum of their squares, at t =
+   0, and its sign by that of the pair of the largest, later pairs counting up to twice as much: the phase of an
+   eigensolver hangs on the signs of the bodies' modes, hence on ranks, and tells where the steps lie. From there
+   Newton's method goes on at that amplitude: the plane of pseudo-arclength is normal to v, and the parameter is left
+   free. While all pairs stay closed and slide the motion is linear, and the parameter that of the onset whatever a; it
+   moves when pairs begin to open. Amplitude 1 is that at which normal forces of the pairs change by as much as they are
+   at rest, in the root of the sum of their squares.
 */
 #include "cycleimpl.h"
 
@@ -56,8 +56,8 @@ static PetscErrorCode OnsetGrowth(LimitCycle c, PetscReal value, OnsetLook *look
   PetscFunctionReturn(0);
 }
 
-/* Two values next to that of the scene between which growth changes its sign; how many of those that are looked at have a sliding
-   state; the least and largest growth of modes that oscillate there */
+/* Two values next to that of the scene between which growth changes its sign; how many of those that are looked at have
+   a sliding state; the least and largest growth of modes that oscillate there */
 static PetscErrorCode HopfBracket(LimitCycle c, OnsetLook *look, PetscReal at[2], PetscReal growth[2],
                                   PetscInt *n_found, PetscReal span[2])
 {
@@ -166,7 +166,8 @@ static void OnsetSizes(const ReducedModel *model, const OnsetLook *look, PetscRe
   for (int i = 0; i < 3; i++) size[i] = scale * PetscSqrtReal(0.5 * square[i]);
 }
 
-/* Cosine and sine of the phase at which the normal forces p of the mode are largest: the half of the argument of sum p^2 conjugate */
+/* Cosine and sine of the phase at which the normal forces p of the mode are largest: the half of the argument of sum
+   p^2 conjugate */
 static void OnsetPhase(const OnsetLook *look, PetscInt n_pairs, PetscReal turn[2])
 {
   PetscReal square[2] = {0, 0}, largest = 0, phase, sign = 1;

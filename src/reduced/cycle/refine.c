@@ -1,9 +1,10 @@
 /*
    The errors of a cycle, by the same one with other steps: twice as many, and as many that begin elsewhere.
 
-   Steps in which pairs open and close are off by where in the step that happens, so that the cycle of N steps, its period above all,
-   depends on where in the motion the steps lie: x(theta), T(theta), theta the shift in time, with the period T / N in theta (cycle.h).
-   The spread is found from two further places, a third of a step apart, which no part that goes as cos(2 pi theta N / T) can hide from.
+   Steps in which pairs open and close are off by where in the step that happens, so that the cycle of N steps, its
+   period above all, depends on where in the motion the steps lie: x(theta), T(theta), theta the shift in time, with the
+   period T / N in theta (cycle.h). The spread is found from two further places, a third of a step apart, which no part
+   that goes as cos(2 pi theta N / T) can hide from.
 */
 #include "cycleimpl.h"
 
@@ -60,7 +61,10 @@ static PetscErrorCode CycleSolveAgain(LimitCycle c, const ShootingTangent *along
   PetscFunctionBeginUser;
   cycle->converged = PETSC_FALSE;
   if (PetscIsInfOrNanReal(cycle->x[0])) PetscFunctionReturn(0);
-  PetscCall(along ? ShootingAdvance(&c->shooting, 0, along, cycle) : ShootingSolve(&c->shooting, cycle));
+  if (along)
+    PetscCall(ShootingAdvance(&c->shooting, 0, along, cycle));
+  else
+    PetscCall(ShootingSolve(&c->shooting, cycle));
   PetscFunctionReturn(0);
 }
 

@@ -1,8 +1,8 @@
 /* Tables of cycles, written anew with each one, so that a run that ends early leaves all that it has found */
 #include "cycleimpl.h"
 
-/* A number of second order in the step is off by 4/3 of its difference to twice the steps, one of first order by twice that; and
-   by what it owes to the place of the steps */
+/* A number of second order in the step is off by 4/3 of its difference to twice the steps, one of first order by twice
+   that; and by what it owes to the place of the steps */
 #define ERROR_SECOND_ORDER (4.0 / 3)
 #define ERROR_FIRST_ORDER  2
 
@@ -25,8 +25,8 @@ PetscReal CycleError(PetscReal found, PetscReal finer, PetscReal spread)
   return ERROR_SECOND_ORDER * PetscAbsReal(found - finer) + spread;
 }
 
-/* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first order, which both
-   differences tell */
+/* Of the modulus of the largest multiplier: pairs that open and close between two steps leave multipliers of first
+   order, which both differences tell */
 PetscReal CycleMultiplierError(const CyclePoint *p)
 {
   const PetscReal finer = PetscAbsReal(CycleMultiplier(&p->stability) - CycleMultiplier(&p->finer_stability));

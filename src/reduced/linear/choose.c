@@ -1,7 +1,7 @@
 /*
    Cut-off and step. What -dynamics_cutoff and -ts_dt leave open is begun with what the band of interest tells, and then
-   chosen such that growth of the unstable modes in that band is off by -dynamics_growth_rtol at most in the run: one half of it
-   for the reduction, by a higher cut-off, one half for the step, whose error falls with its square.
+   chosen such that growth of the unstable modes in that band is off by -dynamics_growth_rtol at most in the run: one
+   half of it for the reduction, by a higher cut-off, one half for the step, whose error falls with its square.
 */
 #include "reduced/reducedimpl.h"
 
@@ -51,8 +51,8 @@ static PetscErrorCode ChooseCheck(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Growth of the unstable modes beside that of the mesh, and with the inertia of what the cut-off leaves out: where no mesh is
-   compared but -dynamics_growth_rtol is given, that is what it may be off by */
+/* Growth of the unstable modes beside that of the mesh, and with the inertia of what the cut-off leaves out: where no
+   mesh is compared but -dynamics_growth_rtol is given, that is what it may be off by */
 static PetscErrorCode ChooseJudge(ReducedRun r)
 {
   PetscReal off;

@@ -1,7 +1,7 @@
 /*
-   The error of the reduction before the run: eigenvalues of the reduced model about the sliding state, as they are and as the
-   steps see them (warp.c), beside those of the mesh in -modes_band, with the same pairs closed. All have friction damping, as
-   Coulomb's law in time does.
+   The error of the reduction before the run: eigenvalues of the reduced model about the sliding state, as they are and
+   as the steps see them (warp.c), beside those of the mesh in -modes_band, with the same pairs closed. All have
+   friction damping, as Coulomb's law in time does.
 */
 #include "reduced/reducedimpl.h"
 #include "base/gather.h"

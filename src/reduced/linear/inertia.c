@@ -1,6 +1,7 @@
 /*
-   The error of the cut-off without the mesh: the modes that grow about the sliding state of the reduced model, as they are and with
-   the inertia of what the cut-off leaves out (linear.c). It knows all modes below the cut-off, where compare.c knows those in
+   The error of the cut-off without the mesh: the modes that grow about the sliding state of the reduced model, as they
+   are and with the inertia of what the cut-off leaves out (linear.c). It knows all modes below the cut-off, where
+   compare.c knows those in
    -modes_band. Told before the run where one is far off, since a transient that squeals there is of another brake.
 */
 #include "reduced/reducedimpl.h"
@@ -29,8 +30,8 @@ static int InertiaFaster(const void *a, const void *b)
   return (most < other) - (most > other);
 }
 
-/* All modes below the cut-off that grow without that inertia, or with it, fastest first; z [2][2][2 m] growth and frequency,
-   without and with */
+/* All modes below the cut-off that grow without that inertia, or with it, fastest first; z [2][2][2 m] growth and
+   frequency, without and with */
 static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
 {
   const PetscInt n = 2 * r->model.m;

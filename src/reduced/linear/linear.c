@@ -1,18 +1,20 @@
 /*
    The reduced model about steady sliding: pairs that are closed stay so and slide along t, so that their forces are
-   lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of these and
-   S = (N W E)^-1 N P, without damping lambda_n = -S eta. With it, to first order in the damping of the residual,
+   lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of
+   these and S = (N W E)^-1 N P, without damping lambda_n = -S eta. With it, to first order in the damping of the
+   residual,
 
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
 
-   What the modes leave out has in e^(s t) the compliance sum phi phi' / (omega^2 + s^2), to first order W - s^2 Mx, exact
-   in all modes above the cut-off but for (omega / their own frequency)^2 of itself:
+   What the modes leave out has in e^(s t) the compliance sum phi phi' / (omega^2 + s^2), to first order W - s^2 Mx,
+   exact in all modes above the cut-off but for (omega / their own frequency)^2 of itself:
 
       lambda_n = -S eta + (N W E)^-1 N Mx E lambda_n'',   so that eta'' gets the mass 1 + P'E (N W E)^-1 N Mx E S.
 
-   Friction turns against the direction of the slip velocity v t + (r_t', r_b'): to first order its change is -mu' lambda_n r_t' along
-   t and -mu lambda_n r_b' / v along b, dampers between the bodies (the residual moves 1e-4 as fast and is left out there).
+   Friction turns against the direction of the slip velocity v t + (r_t', r_b'): to first order its change is -mu'
+   lambda_n r_t' along t and -mu lambda_n r_b' / v along b, dampers between the bodies (the residual moves 1e-4 as fast
+   and is left out there).
 */
 #include "reduced/reducedimpl.h"
 
@@ -154,8 +156,8 @@ static PetscErrorCode QuadraticEigen(PetscInt m, PetscReal *const system[2], Pet
   PetscFunctionReturn(0);
 }
 
-/* C += d L R of a damper d (N s/m) at a port: its displacement R eta, modal force L of a force there, both with the gaps of the
-   closed pairs kept: R = P_i - W_i E S, L = P_i' - P'E (N W E)^-1 N W_i */
+/* C += d L R of a damper d (N s/m) at a port: its displacement R eta, modal force L of a force there, both with the
+   gaps of the closed pairs kept: R = P_i - W_i E S, L = P_i' - P'E (N W E)^-1 N W_i */
 static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d, PetscReal C[])
 {
   const ReducedModel *model = c->model;
@@ -266,8 +268,9 @@ PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* The state of a mode of which z = (eta, rate): lambda_n = -S eta + T rate, lambda = e lambda_n. Forces are without those that
-   friction itself damps with, which the eigenvalue and z know of: they are a guess of the cycle, and its size */
+/* The state of a mode of which z = (eta, rate): lambda_n = -S eta + T rate, lambda = e lambda_n. Forces are without
+   those that friction itself damps with, which the eigenvalue and z know of: they are a guess of the cycle, and its
+   size */
 static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedState *mode)
 {
   const PetscInt m = c->model->m;

@@ -1,12 +1,12 @@
 /*
-   The reduced model about steady sliding as steps of length dt see it, in closed form. In a step mean forces act on modes that answer
-   exactly, residual and laws know means and differences. For what changes by e^(s dt) from step to step, (difference / dt) / mean =
-   z = (2 / dt) tanh(s dt / 2), and a mode, x = omega dt / 2, answers by
+   The reduced model about steady sliding as steps of length dt see it, in closed form. In a step mean forces act on
+   modes that answer exactly, residual and laws know means and differences. For what changes by e^(s dt) from step to
+   step, (difference / dt) / mean = z = (2 / dt) tanh(s dt / 2), and a mode, x = omega dt / 2, answers by
 
       (omega^2 + c (x / sin x)^2 z + (x / tan x)^2 z^2) eta = P'lambda     (in c to first order, else exact)
 
-   so that the model with these masses and dampers has the eigenvalues z, from which s follows. To leading order modes answer too
-   weakly by (omega dt)^2 / 6, omega that of the motion, where the compliance W does not.
+   so that the model with these masses and dampers has the eigenvalues z, from which s follows. To leading order modes
+   answer too weakly by (omega dt)^2 / 6, omega that of the motion, where the compliance W does not.
 */
 #include "reduced/reducedimpl.h"
 #include <complex.h>

@@ -1,5 +1,6 @@
 /*
-   The sliding state of a reduced model: eta and lambda_n of the closed pairs (N, E, mu as in linear.c, f the factors of the loads)
+   The sliding state of a reduced model: eta and lambda_n of the closed pairs (N, E, mu as in linear.c, f the factors of
+   the loads)
 
       Omega^2 eta - P'E lambda_n = P_l' f,      N P eta + N W E lambda_n = -g0 - N W_l f,
 

@@ -72,8 +72,7 @@ static void ReducedListModel(ReducedRun r, PetscInt n_own, PetscScalar modes[], 
 }
 
 /* The state */
-static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal status[],
-                             JournalItem item[KEPT_N_ITEMS])
+static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal status[], JournalItem item[KEPT_N_ITEMS])
 {
   const PetscInt m = r->model.m, n = r->model.n_pairs, N = r->model.n_ports;
 
@@ -95,7 +94,7 @@ static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal st
 PetscErrorCode ReducedKeep(ReducedRun r)
 {
   ReducedScalars scalars = {(PetscReal)r->step, r->dt, r->state.time, r->n_its, r->kkt, r->ledger};
-  JournalItem item[KEPT_N_ITEMS];
+  JournalItem    item[KEPT_N_ITEMS];
   PetscReal     *status;
   PetscScalar   *modes;
   PetscInt       n_own;
@@ -138,7 +137,7 @@ PetscErrorCode ReducedGoOn(ReducedRun r)
 {
   ReducedScalars scalars;
   Fault          fault;
-  JournalItem item[KEPT_N_ITEMS];
+  JournalItem    item[KEPT_N_ITEMS];
   PetscReal     *status;
   PetscScalar   *modes;
   PetscInt       n_own;

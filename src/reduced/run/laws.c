@@ -1,8 +1,9 @@
 /*
-   Friction of a step by a second path (dynamics/run/laws.h): the slip s of each pair from its places before and after, by the
-   coordinates of the modes and the forces on the residual, u = P eta + W q (m), not from the step's own account; Coulomb's law with
-   the interface's coefficient asks for lambda_T . s = mu lambda_n |s| (J). The laws hold to REDUCED_RTOL of what displacements are made
-   of, |P| |eta| + |W| |q|, beside which rounding is small and the slip of a pair that sticks is nothing.
+   Friction of a step by a second path (dynamics/run/laws.h): the slip s of each pair from its places before and after,
+   by the coordinates of the modes and the forces on the residual, u = P eta + W q (m), not from the step's own account;
+   Coulomb's law with the interface's coefficient asks for lambda_T . s = mu lambda_n |s| (J). The laws hold to
+   REDUCED_RTOL of what displacements are made of, |P| |eta| + |W| |q|, beside which rounding is small and the slip of a
+   pair that sticks is nothing.
 */
 #include "reduced/reducedimpl.h"
 
@@ -32,8 +33,7 @@ static PetscReal LookSize(const ReducedRun r, PetscInt port)
   PetscReal           size  = 0;
 
   for (PetscInt k = 0; k < model->m; k++) size += PetscAbsReal(model->P[k + model->m * port] * r->state.eta[k]);
-  for (PetscInt i = 0; i < model->n_ports; i++)
-    size += PetscAbsReal(model->W[i + model->n_ports * port] * r->shown[i]);
+  for (PetscInt i = 0; i < model->n_ports; i++) size += PetscAbsReal(model->W[i + model->n_ports * port] * r->shown[i]);
   return size;
 }
 

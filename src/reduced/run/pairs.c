@@ -1,6 +1,6 @@
 /*
-   Pairs of all ranks, the same on each: gaps and friction of the model, and after a step their states, the sums over each
-   interface and the residuals of the laws.
+   Pairs of all ranks, the same on each: gaps and friction of the model, and after a step their states, the sums over
+   each interface and the residuals of the laws.
 */
 #include "reduced/reducedimpl.h"
 #include "base/gather.h"
@@ -23,7 +23,8 @@ static PetscErrorCode ReducedFindSize(ReducedRun r, PetscReal *size)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a pair that no force can open: both bodies are held along its normal, and its row of G is zero */
+/* Raises the error for a pair that no force can open: both bodies are held along its normal, and its row of G is
+   zero */
 static PetscErrorCode ReducedCheckHeld(ReducedRun r)
 {
   PetscInt                row, held = r->model.n_pairs;
@@ -86,13 +87,11 @@ static void PairSetState(ReducedRun r, PetscInt i)
 {
   const PetscReal *p = &r->state.p[3 * i];
 
-  r->pairs[i] = (ContactState){
-    .status   = r->state.status[i],
-    .gap      = r->model.gap[i] + r->state.y[3 * i],
-    .slip     = {r->report.slip[2 * i], r->report.slip[2 * i + 1]},
-    .lambda_n = p[0],
-    .lambda_t = {-p[1],                 -p[2]                    }
-  };
+  r->pairs[i] = (ContactState){.status   = r->state.status[i],
+                               .gap      = r->model.gap[i] + r->state.y[3 * i],
+                               .slip     = {r->report.slip[2 * i], r->report.slip[2 * i + 1]},
+                               .lambda_n = p[0],
+                               .lambda_t = {-p[1], -p[2]}};
 }
 
 /* Works, forces and numbers of the pairs of interface k */

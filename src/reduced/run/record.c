@@ -1,5 +1,6 @@
 /*
-   What is recorded at t_n: the ledger (residual part included), rows of the histories, fields that are lifted to the mesh,
+   What is recorded at t_n: the ledger (residual part included), rows of the histories, fields that are lifted to the
+   mesh,
 
       u = Phi eta + X p (q in place of lambda),   v = Phi eta' + X p',   at probes a = Phi eta''
       p' = (3 p_n - 4 p_{n-1} + p_{n-2}) / (2 dt)

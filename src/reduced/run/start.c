@@ -1,9 +1,9 @@
 /*
-   The state at t = 0: at rest with the velocities of the parts, or the sliding state (statics.h) with its contact forces; on top of
-   either the shape of a mode. Nodal values v become coordinates by Phi'M v; of what no mode below the cut-off moves, the
-   residual keeps no velocity: a motion is refused whose v'M v the modes do not hold, by Parseval |Phi'M v|^2 of it. Where
-   displacements follow others, u = Z q, v is that motion of theirs which is nearest in M, as in transients of the mesh:
-   Z (Z'M Z)^-1 Z'M v, which has the same coordinates.
+   The state at t = 0: at rest with the velocities of the parts, or the sliding state (statics.h) with its contact
+   forces; on top of either the shape of a mode. Nodal values v become coordinates by Phi'M v; of what no mode below the
+   cut-off moves, the residual keeps no velocity: a motion is refused whose v'M v the modes do not hold, by Parseval
+   |Phi'M v|^2 of it. Where displacements follow others, u = Z q, v is that motion of theirs which is nearest in M, as
+   in transients of the mesh: Z (Z'M Z)^-1 Z'M v, which has the same coordinates.
 */
 #include "reduced/reducedimpl.h"
 #include "base/gather.h"
@@ -27,7 +27,10 @@ static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
   PetscCall(MatMult(M, x, Mx));
   PetscCall(MatCreateVecs(pencil.M, &y, &f));
   PetscCall(PencilProjectForce(r->bodies, PETSC_FALSE, Mx, f));
-  PetscCall(Z ? MassSolve(pencil.M, f, y, "the motion of tied bodies nearest to that of the start") : VecCopy(x, y));
+  if (Z)
+    PetscCall(MassSolve(pencil.M, f, y, "the motion of tied bodies nearest to that of the start"));
+  else
+    PetscCall(VecCopy(x, y));
   PetscCall(VecDot(f, y, &product));
   PetscCall(VecDestroy(&Mx));
   PetscCall(VecDestroy(&f));
@@ -61,8 +64,8 @@ static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[],
   PetscFunctionReturn(0);
 }
 
-/* The same of nodal values [nodes][3]; share = what the modes hold of their square, 0 where all are zero. Raises the error
-   where that is too little */
+/* The same of nodal values [nodes][3]; share = what the modes hold of their square, 0 where all are zero. Raises the
+   error where that is too little */
 static PetscErrorCode StartProjectNodal(ReducedRun r, const char what[], const PetscReal nodal[],
                                         PetscReal coordinates[], PetscReal *share)
 {
@@ -161,8 +164,8 @@ static PetscErrorCode StartShape(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Forces of the pairs that obey the laws at the start, on the compliance of the residual, with slip along what is prescribed:
-   those that are there are the guess. Without it the first step would be of first order */
+/* Forces of the pairs that obey the laws at the start, on the compliance of the residual, with slip along what is
+   prescribed: those that are there are the guess. Without it the first step would be of first order */
 static PetscErrorCode StartLaws(ReducedRun r)
 {
   const ReducedModel  *model = &r->model;

@@ -1,8 +1,9 @@
 /*
-   The error of a run after it, on request: the same run with half the step, and with 2.25 times the cut-off, whose normal forces
-   f' at the times of the steps are put beside those of the run, f. Where an instability has grown into a cycle, phases
-   drift and the difference says little; then the level of the vibration and the time without contact are the answer. Where
-   the cycle does not repeat itself these scatter: a standard error is told from equal pieces of the time, of both runs together.
+   The error of a run after it, on request: the same run with half the step, and with 2.25 times the cut-off, whose
+   normal forces f' at the times of the steps are put beside those of the run, f. Where an instability has grown into a
+   cycle, phases drift and the difference says little; then the level of the vibration and the time without contact are
+   the answer. Where the cycle does not repeat itself these scatter: a standard error is told from equal pieces of the
+   time, of both runs together.
 */
 #include "reduced/reducedimpl.h"
 

@@ -1,6 +1,6 @@
 /*
-   What a reduced run says when it is over: size and cut-off with why, the comparison with the mesh, steps and cost, laws,
-   energy.
+   What a reduced run says when it is over: size and cut-off with why, the comparison with the mesh, steps and cost,
+   laws, energy.
 */
 #include "reduced/reducedimpl.h"
 

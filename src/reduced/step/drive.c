@@ -1,7 +1,7 @@
 /*
-   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses. One at T
-   between two times of the run acts at both, in the shares max(0, 1 - |T - t_n| / dt), so that its mean time is T: all at
-   one of them would shift the phase of what it starts by up to omega dt.
+   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses. One at
+   T between two times of the run acts at both, in the shares max(0, 1 - |T - t_n| / dt), so that its mean time is T:
+   all at one of them would shift the phase of what it starts by up to omega dt.
 */
 #include "reduced/reducedimpl.h"
 

@@ -1,17 +1,18 @@
 /*
-   What the damping of the residual adds (reduced.h). With F that of the coordinates, eta_{n+1} = e - G q_{n+1} + F P' lambda_{n+1} / 2,
+   What the damping of the residual adds (reduced.h). With F that of the coordinates, eta_{n+1} = e - G q_{n+1} + F P'
+   lambda_{n+1} / 2,
 
-      q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G / dt)^-1,
-      G = F Cm / dt
+      q_{n+1} = H (W lambda_{n+1} / 2 - Cm' F P' lambda_{n+1} / (2 dt) + what is known),   H = (W / 2 + Cx / dt - Cm'G /
+      dt)^-1, G = F Cm / dt
 
-   of which the step needs H W and H Cm'. Pairs give way in fewer directions than they have where both sides are held in one, or
-   where more slaves than nodes of the master meet: forces z then move nothing, W z = Cx z = Cm z = P z = 0, and q is sought on ports of
-   which the rows of the others are combinations. H is the inverse there. Forces that differ by such z move
-   the same, and nothing tells them apart. On the others q is lambda_{n+1}: else a step would keep what it began with, and a
-   cycle would be one of many.
+   of which the step needs H W and H Cm'. Pairs give way in fewer directions than they have where both sides are held in
+   one, or where more slaves than nodes of the master meet: forces z then move nothing, W z = Cx z = Cm z = P z = 0, and
+   q is sought on ports of which the rows of the others are combinations. H is the inverse there. Forces that differ by
+   such z move the same, and nothing tells them apart. On the others q is lambda_{n+1}: else a step would keep what it
+   began with, and a cycle would be one of many.
 
-   W must be regular in all directions in which pairs give way, which are those of P and W together: mean forces on bodies that
-   give way by their modes alone hold back what alternates from step to step by nothing, and it grows
+   W must be regular in all directions in which pairs give way, which are those of P and W together: mean forces on
+   bodies that give way by their modes alone hold back what alternates from step to step by nothing, and it grows
 */
 #include "reduced/reducedimpl.h"
 #include <petscblaslapack.h>
@@ -19,7 +20,8 @@
 /* Of the largest diagonal: what is below is rounding, as of ContactComplianceCheckDefinite() */
 #define RESIDUAL_RANK_RTOL 1e-10
 
-/* Directions in which the pairs give way, by modes or by what these leave out: the rank of W + P'P, each over its largest diagonal */
+/* Directions in which the pairs give way, by modes or by what these leave out: the rank of W + P'P, each over its
+   largest diagonal */
 static PetscErrorCode StepperCountDirections(const ReducedModel *model, PetscReal tolerance, PetscInt *directions)
 {
   const PetscInt n = 3 * model->n_pairs, m = model->m;

@@ -1,6 +1,6 @@
 /*
-   One step of the reduced model (reduced.h) and its account of energy: first with lambda_{n+1} = 0, which gives the free
-   displacements of the pairs, then lambda_{n+1} from the laws, then with it.
+   One step of the reduced model (reduced.h) and its account of energy: first with lambda_{n+1} = 0, which gives the
+   free displacements of the pairs, then lambda_{n+1} from the laws, then with it.
 */
 #include "reduced/reducedimpl.h"
 #include <petscblaslapack.h>
@@ -92,8 +92,8 @@ static void StepperDrag(ReducedStepper s)
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] += s->product[k];
 }
 
-/* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n) / dt = W
-   mean(lambda). `next` holds the answer without dq, then with it */
+/* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n)
+   / dt = W mean(lambda). `next` holds the answer without dq, then with it */
 static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
@@ -138,7 +138,8 @@ static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const P
   }
 }
 
-/* lambda_{n+1} joins what the step has without it: z(dt), q_{n+1}, and where works are asked for the forces g on the modes */
+/* lambda_{n+1} joins what the step has without it: z(dt), q_{n+1}, and where works are asked for the forces g on the
+   modes */
 static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
 {
   const ReducedModel *model = s->model;
@@ -218,9 +219,9 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   PetscFunctionReturn(0);
 }
 
-/* Heat of a pair's friction in a step, J: its slip s (m) along -p, p the friction at t_{n+1}, for which Coulomb's law holds
-   together with s, so that p . s <= 0; times the mean of |p| and of |last| at t_n (N), second order in the step. None of a
-   pair that is open at t_{n+1}, nor of one that sticks beyond the rounding of s */
+/* Heat of a pair's friction in a step, J: its slip s (m) along -p, p the friction at t_{n+1}, for which Coulomb's law
+   holds together with s, so that p . s <= 0; times the mean of |p| and of |last| at t_n (N), second order in the step.
+   None of a pair that is open at t_{n+1}, nor of one that sticks beyond the rounding of s */
 static PetscReal FrictionHeat(const PetscReal p[2], const PetscReal last[2], const PetscReal s[2])
 {
   const PetscReal size = hypot(p[0], p[1]);
@@ -249,7 +250,8 @@ static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport 
   }
 }
 
-/* Work of the loads, J: mean . (change of their displacements), less what only lambda - q makes of a load that changes */
+/* Work of the loads, J: mean . (change of their displacements), less what only lambda - q makes of a load that
+   changes */
 static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
 {
   const ReducedModel *model = s->model;

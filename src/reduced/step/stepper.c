@@ -1,11 +1,13 @@
 /*
-   The matrices of a step, exact for forces g on the modes that stay constant in it. z = (eta, rate) obeys z' = A z + (0, g):
+   The matrices of a step, exact for forces g on the modes that stay constant in it. z = (eta, rate) obeys z' = A z +
+   (0, g):
 
       z(dt) = E z + F g,   [E F; 0 I] = exp(dt [A (0 I)'; 0 0]),     A = [0 I; -Omega^2 -C]
 
-   so that overdamped and almost rigid modes need no formula of their own. Rates are divided by the highest angular frequency,
-   which balances A. Damping takes int rate'C rate dt, with x = (z, g) the form x'Q x (C. F. Van Loan, IEEE Trans. Automat.
-   Contr. 23, 1978) in a part h = dt / 2^k that is short, since exp(-h B') grows, and then k times over twice the time:
+   so that overdamped and almost rigid modes need no formula of their own. Rates are divided by the highest angular
+   frequency, which balances A. Damping takes int rate'C rate dt, with x = (z, g) the form x'Q x (C. F. Van Loan, IEEE
+   Trans. Automat. Contr. 23, 1978) in a part h = dt / 2^k that is short, since exp(-h B') grows, and then k times over
+   twice the time:
 
       exp(h [-B' S; 0 B]) = [. G; 0 X],   Q = X'G,     B = [A (0 I)'; 0 0],  S = diag(0, C, 0)
       Q(2 h) = Q + X'Q X,   X(2 h) = X X.
@@ -170,8 +172,8 @@ static PetscErrorCode StepperSetForces(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2. G and R hold F P / 2
-   and H D / 2 */
+/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2. G and R hold F P
+   / 2 and H D / 2 */
 static PetscErrorCode StepperSetCompliance(ReducedStepper s)
 {
   const ReducedModel *model = s->model;

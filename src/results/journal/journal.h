@@ -1,6 +1,6 @@
 /*
-   Journal (private to the rooms that write results) - what a run that is stopped goes on from: files of named arrays of all ranks,
-   each with the checksum of the scene, so that nothing damaged and nothing of another run is taken.
+   Journal (private to the rooms that write results) - what a run that is stopped goes on from: files of named arrays of
+   all ranks, each with the checksum of the scene, so that nothing damaged and nothing of another run is taken.
 */
 #pragma once
 
@@ -29,18 +29,20 @@ typedef struct {
 } Journal;
 
 /*
-   JournalWrite - writes file `name` in the folder of the results under a temporary name, flushes it to the disk and renames
-   it, so that at any moment the last complete one is there. Collective. Errors: PETSC_ERR_FILE_WRITE with the file and the
-   reason (no space left on device); the last good one is kept.
+   JournalWrite - writes file `name` in the folder of the results under a temporary name, flushes it to the disk and
+   renames it, so that at any moment the last complete one is there. Collective. Errors: PETSC_ERR_FILE_WRITE with the
+   file and the reason (no space left on device); the last good one is kept.
 */
-PETSC_INTERN PetscErrorCode JournalWrite(const Journal *journal, const char name[], PetscInt n, const JournalItem item[]);
+PETSC_INTERN PetscErrorCode JournalWrite(const Journal *journal, const char name[], PetscInt n,
+                                         const JournalItem item[]);
 
-/* JournalKeep - the same for a run that can do without: where it fails there is a warning, and kept is false. Collective. */
+/* JournalKeep - the same for a run that can do without: where it fails there is a warning, and kept is false.
+   Collective. */
 PETSC_INTERN PetscErrorCode JournalKeep(const Journal *journal, const char name[], PetscInt n, const JournalItem item[],
                                         PetscBool *kept);
 
-/* Whether the n-th piece of work is to be kept, whose file holds all before it: up to 100 each, then as often as one in a hundred
-   comes, so that the writing grows as n log n and a kill loses a hundredth */
+/* Whether the n-th piece of work is to be kept, whose file holds all before it: up to 100 each, then as often as one in
+   a hundred comes, so that the writing grows as n log n and a kill loses a hundredth */
 static inline PetscBool JournalIsDue(PetscInt n)
 {
   return n <= 100 || n % (n / 100) == 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -48,14 +50,15 @@ static inline PetscBool JournalIsDue(PetscInt n)
 
 /*
    JournalRead - reads it back; items in the same order. Nothing is read where there is a fault, the same on all ranks.
-   PETSC_ERR_FILE_OPEN: there is no file, or it cannot be opened; PETSC_ERR_FILE_READ: it is truncated or damaged (length,
-   checksum), PETSC_ERR_FILE_UNEXPECTED: it is of another version, number of ranks, or scene: what differs is said. Collective.
+   PETSC_ERR_FILE_OPEN: there is no file, or it cannot be opened; PETSC_ERR_FILE_READ: it is truncated or damaged
+   (length, checksum), PETSC_ERR_FILE_UNEXPECTED: it is of another version, number of ranks, or scene: what differs is
+   said. Collective.
 */
 PETSC_INTERN PetscErrorCode JournalRead(const Journal *journal, const char name[], PetscInt n, JournalItem item[],
                                         Fault *fault);
 
-/* JournalWarn - of a file that is there and that some of the ranks of `comm` have a fault with a warning says why it is not taken, and
-   ends as `then`. Collective on `comm`, which may be larger than the journal's. */
+/* JournalWarn - of a file that is there and that some of the ranks of `comm` have a fault with a warning says why it is
+   not taken, and ends as `then`. Collective on `comm`, which may be larger than the journal's. */
 PETSC_INTERN PetscErrorCode JournalWarn(const Journal *journal, MPI_Comm comm, const char name[], const char then[],
                                         Fault *fault, PetscBool *taken);
 
@@ -63,8 +66,8 @@ PETSC_INTERN PetscErrorCode JournalWarn(const Journal *journal, MPI_Comm comm, c
 PETSC_INTERN PetscErrorCode JournalTake(const Journal *journal, const char name[], const char then[], PetscInt n,
                                         JournalItem item[], PetscBool *taken);
 
-/* What bears the name in the folder of the results: nothing, a file of somebody else, or one that begins as squeal's do.
-   Collective. */
+/* What bears the name in the folder of the results: nothing, a file of somebody else, or one that begins as squeal's
+   do. Collective. */
 typedef enum { JOURNAL_NONE, JOURNAL_FOREIGN, JOURNAL_OURS } JournalKind;
 PETSC_INTERN PetscErrorCode JournalFind(MPI_Comm comm, Results results, const char name[], JournalKind *kind);
 

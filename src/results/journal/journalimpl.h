@@ -49,7 +49,7 @@ static inline uint64_t JournalHeadSum(const JournalHead *head)
   uint64_t       sum;
 
   ((JournalHead *)head)->checksum = 0;
-  sum                                = ChecksumBytes(CHECKSUM_BEGIN, head, head->size);
+  sum                             = ChecksumBytes(CHECKSUM_BEGIN, head, head->size);
   ((JournalHead *)head)->checksum = kept;
   return sum;
 }

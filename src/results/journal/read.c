@@ -12,11 +12,11 @@
 
 /* A file that is being read, and what is wrong with it */
 typedef struct {
-  const Journal  *journal;
-  char            name[PETSC_MAX_PATH_LEN];
-  int             fd;
-  JournalHead *head; /* with parts, names and table behind it; NULL until read */
-  Fault           fault;
+  const Journal *journal;
+  char           name[PETSC_MAX_PATH_LEN];
+  int            fd;
+  JournalHead   *head; /* with parts, names and table behind it; NULL until read */
+  Fault          fault;
 } JournalReader;
 
 /* Keep what is wrong with the file, printf-like: it is damaged, or of another program, run or model */
@@ -85,8 +85,8 @@ static PetscErrorCode ReaderCheckKind(JournalReader *reader, const JournalHead *
 /* Reads the head with names and table on this rank, and checks it in itself */
 static PetscErrorCode ReaderReadHead(JournalReader *reader)
 {
-  struct stat    status;
-  uint64_t       length;
+  struct stat status;
+  uint64_t    length;
   JournalHead head = {.size = 0};
 
   PetscFunctionBeginUser;
@@ -132,7 +132,7 @@ static PetscErrorCode ReaderCheckRun(JournalReader *reader, PetscMPIInt size)
 static PetscErrorCode ReaderCheckScene(JournalReader *reader, Checksum scene)
 {
   const JournalHead *h = reader->head;
-  char                  names[256];
+  char               names[256];
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -142,12 +142,11 @@ static PetscErrorCode ReaderCheckScene(JournalReader *reader, Checksum scene)
 }
 
 /* Checks names of the items, and their lengths on this rank */
-static PetscErrorCode ReaderCheckItems(JournalReader *reader, PetscMPIInt rank, PetscInt n,
-                                       const JournalItem item[])
+static PetscErrorCode ReaderCheckItems(JournalReader *reader, PetscMPIInt rank, PetscInt n, const JournalItem item[])
 {
   const JournalHead *h = reader->head;
-  const uint64_t       *row;
-  char                  name[JOURNAL_NAME];
+  const uint64_t    *row;
+  char               name[JOURNAL_NAME];
 
   PetscFunctionBeginUser;
   if (reader->fault.code) PetscFunctionReturn(0);
@@ -172,7 +171,7 @@ static PetscErrorCode ReaderCheckItems(JournalReader *reader, PetscMPIInt rank, 
 static PetscErrorCode ReaderFindValues(JournalReader *reader, PetscMPIInt rank, uint64_t *begin, uint64_t *size)
 {
   const JournalHead *h = reader->head;
-  uint64_t              at, end = 0;
+  uint64_t           at, end = 0;
 
   PetscFunctionBeginUser;
   *begin = *size = 0;
@@ -212,8 +211,7 @@ static PetscErrorCode ReaderReadValues(JournalReader *reader, PetscMPIInt rank, 
 }
 
 /* Hands the values to the items */
-static PetscErrorCode JournalFillItems(const uint64_t row[], const PetscReal values[], PetscInt n,
-                                          JournalItem item[])
+static PetscErrorCode JournalFillItems(const uint64_t row[], const PetscReal values[], PetscInt n, JournalItem item[])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; values += row[i++]) {

@@ -13,13 +13,13 @@
 
 /* Head, parts, names and the table of all ranks, complete on rank 0, where row [n + 1] of each rank is gathered */
 static PetscErrorCode JournalHeadCreate(MPI_Comm comm, Checksum scene, PetscInt n, const JournalItem item[],
-                                           uint64_t row[], JournalHead **head)
+                                        uint64_t row[], JournalHead **head)
 {
   const ChecksumPart *parts;
   PetscInt            n_parts;
   PetscMPIInt         size, width;
   uint64_t            n_values = 0;
-  JournalHead     *h;
+  JournalHead        *h;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -28,12 +28,12 @@ static PetscErrorCode JournalHeadCreate(MPI_Comm comm, Checksum scene, PetscInt 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_values, 1, MPI_UINT64_T, MPI_SUM, comm));
   PetscCall(ChecksumGetParts(scene, &n_parts, &parts));
   JournalHead begin = {.magic     = JOURNAL_MAGIC,
-                          .order     = JOURNAL_ORDER,
-                          .version   = JOURNAL_VERSION,
-                          .real_size = sizeof(PetscReal),
-                          .n_ranks   = (uint64_t)size,
-                          .n_items   = (uint64_t)n,
-                          .n_parts   = (uint64_t)n_parts};
+                       .order     = JOURNAL_ORDER,
+                       .version   = JOURNAL_VERSION,
+                       .real_size = sizeof(PetscReal),
+                       .n_ranks   = (uint64_t)size,
+                       .n_items   = (uint64_t)n,
+                       .n_parts   = (uint64_t)n_parts};
 
   begin.size  = JournalHeadSize(&begin);
   begin.total = begin.size + sizeof(PetscReal) * n_values;
@@ -66,7 +66,8 @@ PetscErrorCode JournalWrite(const Journal *journal, const char name[], PetscInt 
   }
   PetscCall(JournalHeadCreate(journal->comm, journal->scene, n, item, row, &head));
   piece[0] = (ResultsPiece){head, rank == 0 ? (size_t)head->size : 0};
-  failure  = ResultsBinaryWrite(journal->results, journal->comm, name, journal->run ? PETSC_FALSE : PETSC_TRUE, n + 1, piece);
+  failure =
+    ResultsBinaryWrite(journal->results, journal->comm, name, journal->run ? PETSC_FALSE : PETSC_TRUE, n + 1, piece);
   PetscCall(PetscFree(head));
   PetscCall(PetscFree2(row, piece));
   PetscCall(failure);
@@ -87,7 +88,7 @@ PetscErrorCode JournalKeep(const Journal *journal, const char name[], PetscInt n
   *kept = failure ? PETSC_FALSE : PETSC_TRUE;
   if (*kept) PetscFunctionReturn(0);
   PetscCall(ResultsGetDirectory(journal->results, &dir));
-  PetscCall(PetscFPrintf(journal->comm, stderr, "squeal: warning: cannot write '%s/%s'; a killed %s will begin anew\n", dir,
-                         name, journal->run));
+  PetscCall(PetscFPrintf(journal->comm, stderr, "squeal: warning: cannot write '%s/%s'; a killed %s will begin anew\n",
+                         dir, name, journal->run));
   PetscFunctionReturn(0);
 }

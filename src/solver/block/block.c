@@ -1,8 +1,8 @@
 /*
    Solves with many right-hand sides at once. PETSc hands the array of a dense matrix to MUMPS as it is and MUMPS takes
-   each column to begin where the one before ends, so columns that lie apart in memory (leading dimension above the local
-   rows, as in the matrices of BVGetMat() since SLEPc 3.20) would be answered wrongly without a word. They are copied
-   here. What a library does otherwise than assumed shows in the check of trial.c, which every block passes.
+   each column to begin where the one before ends, so columns that lie apart in memory (leading dimension above the
+   local rows, as in the matrices of BVGetMat() since SLEPc 3.20) would be answered wrongly without a word. They are
+   copied here. What a library does otherwise than assumed shows in the check of trial.c, which every block passes.
 */
 #include "base/events.h"
 #include "solver/factor/lowrank.h"
@@ -117,7 +117,10 @@ static PetscErrorCode BlockApplyFactor(Mat F, PetscBool transposed, Mat B, Mat X
   PetscCall(BlockPack(B, PETSC_TRUE, &right));
   PetscCall(BlockPack(X, PETSC_FALSE, &answer));
   PetscCall(BlockWiden(F, right));
-  PetscCall(transposed ? MatMatSolveTranspose(F, right, answer) : MatMatSolve(F, right, answer));
+  if (transposed)
+    PetscCall(MatMatSolveTranspose(F, right, answer));
+  else
+    PetscCall(MatMatSolve(F, right, answer));
   PetscCall(BlockCount(right));
   if (answer != X) PetscCall(MatCopy(answer, X, SAME_NONZERO_PATTERN));
   PetscCall(MatDestroy(&right));
@@ -155,7 +158,10 @@ static PetscErrorCode BlockSolve(KSP ksp, PetscBool transposed, Mat B, Mat X)
 
   PetscFunctionBeginUser;
   PetscCall(BlockGetFactor(ksp, &F));
-  PetscCall(F ? BlockApplyFactor(F, transposed, B, X) : BlockApplyColumns(ksp, transposed, B, X));
+  if (F)
+    PetscCall(BlockApplyFactor(F, transposed, B, X));
+  else
+    PetscCall(BlockApplyColumns(ksp, transposed, B, X));
   PetscFunctionReturn(0);
 }
 
@@ -229,7 +235,10 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
   PetscCall(EventBegin(EVENT_SOLVE));
   PetscCall(TrialSums(si, PETSC_FALSE, n_right, B, b));
   if (si->update) PetscCall(MatCopy(B, X, SAME_NONZERO_PATTERN));
-  PetscCall(si->update ? LowRankApply(si->update, n_right, X) : BlockSolve(si->ksp, transposed, B, X));
+  if (si->update)
+    PetscCall(LowRankApply(si->update, n_right, X));
+  else
+    PetscCall(BlockSolve(si->ksp, transposed, B, X));
   PetscCall(TrialSums(si, PETSC_TRUE, n_right, X, x));
   PetscCall(TrialCheck(si, n_right, n, b, x));
   PetscCall(EventEnd(EVENT_SOLVE));

@@ -1,11 +1,11 @@
 /*
-   Iteration of the block eigensolver, see block/krylov.h. The decomposition is in block/space.c. At every look the projected
-   problem G is brought to sorted Schur form T = Q' G Q, and eigenpairs of T, (theta, x = Q s), converge in order by the
-   residual |B x|, B the last rows of G. A full space is restarted: converged Schur vectors are locked, and most of the
-   others stay.
+   Iteration of the block eigensolver, see block/krylov.h. The decomposition is in block/space.c. At every look the
+   projected problem G is brought to sorted Schur form T = Q' G Q, and eigenpairs of T, (theta, x = Q s), converge in
+   order by the residual |B x|, B the last rows of G. A full space is restarted: converged Schur vectors are locked, and
+   most of the others stay.
 
-   A look costs about as much as a few solves. The next one is taken where the residuals, which fall faster and faster, would
-   arrive at the tolerance if they went on as between the last two looks, or before.
+   A look costs about as much as a few solves. The next one is taken where the residuals, which fall faster and faster,
+   would arrive at the tolerance if they went on as between the last two looks, or before.
 */
 #include "iterate.h"
 
@@ -44,8 +44,8 @@ static PetscErrorCode BlockKrylovProject(EPS eps, PetscInt locked)
   PetscFunctionReturn(0);
 }
 
-/* Residual of eigenpair k and of its conjugate, *next - 1. Where the space is closed it is rounding of what is largest in
-   it, so that a small eigenvalue converges when the larger ones are locked. */
+/* Residual of eigenpair k and of its conjugate, *next - 1. Where the space is closed it is rounding of what is largest
+   in it, so that a small eigenvalue converges when the larger ones are locked. */
 static PetscErrorCode BlockKrylovResidual(EPS eps, PetscInt locked, PetscInt k, PetscInt *next, PetscReal *residual)
 {
   const BlockSpace *s      = &((EPS_BlockKrylov *)eps->data)->space;

@@ -5,14 +5,15 @@
 #include "iterate.h"
 #include "solver/factor/shiftinvert.h"
 
-/* Right-hand sides that are solved at once: vectors in a block, or in both blocks where two problems are solved together. On
-   the default brake (36,453 unknowns, 51 modes with friction, right and left) blocks of 1, 4, 8, 16 take 238, 296, 392, 560
-   solves, with LU of 20, 6.6, 4.1, 3.1 ms */
+/* Right-hand sides that are solved at once: vectors in a block, or in both blocks where two problems are solved
+   together. On the default brake (36,453 unknowns, 51 modes with friction, right and left) blocks of 1, 4, 8, 16 take
+   238, 296, 392, 560 solves, with LU of 20, 6.6, 4.1, 3.1 ms */
 #define BLOCK 8
 
-/* Sizes of the block and of the space: at a restart there must be room for the eigenvalues asked for and two blocks. Chosen,
-   the space holds whole blocks, a third as many vectors again as are asked for and three blocks. On the default brake, with 57
-   asked for, in blocks of 4, 80, 88, 96, 104 columns take 296, 288, 284, 284 solves, and a column of both spaces takes 0.6 MB */
+/* Sizes of the block and of the space: at a restart there must be room for the eigenvalues asked for and two blocks.
+   Chosen, the space holds whole blocks, a third as many vectors again as are asked for and three blocks. On the default
+   brake, with 57 asked for, in blocks of 4, 80, 88, 96, 104 columns take 296, 288, 284, 284 solves, and a column of
+   both spaces takes 0.6 MB */
 static PetscErrorCode BlockKrylovSizes(EPS eps)
 {
   EPS_BlockKrylov *ctx    = eps->data;

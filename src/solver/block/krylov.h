@@ -13,20 +13,20 @@
    solves with many right-hand sides. An iteration fills the space once. It ends with EPS_DIVERGED_BREAKDOWN where there
    are no more finite eigenvalues.
 
-   BlockKrylovSetReach() ends a solution as soon as all out to a distance from the target have converged, though these be
-   less than were asked for. BlockKrylovSetOther() solves K x = kappa M x and K' y = kappa M' y at once: two spaces that
-   have nothing in common but the calls in which their systems are solved, with twice as many right-hand sides.
+   BlockKrylovSetReach() ends a solution as soon as all out to a distance from the target have converged, though these
+   be less than were asked for. BlockKrylovSetOther() solves K x = kappa M x and K' y = kappa M' y at once: two spaces
+   that have nothing in common but the calls in which their systems are solved, with twice as many right-hand sides.
 
-   Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, or 4 of each of two problems at
-   once, less in a smaller space or problem); all of EPS but balancing, regions, two-sided, true residuals, and orders other
-   than by magnitude. */
+   Options: -eps_blockkrylovschur_size b: vectors in a block, at most the unknowns (0: 8, or 4 of each of two problems
+   at once, less in a smaller space or problem); all of EPS but balancing, regions, two-sided, true residuals, and
+   orders other than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
 
 /* Vectors in a block of a solver that is set up, 1 for another type */
 PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);
 
-/* At least so many vectors in a block, where none are asked for by option: as many equal eigenvalues as a block has vectors are
-   found for certain, more of them by rounding alone. Not collective. */
+/* At least so many vectors in a block, where none are asked for by option: as many equal eigenvalues as a block has
+   vectors are found for certain, more of them by rounding alone. Not collective. */
 PETSC_INTERN PetscErrorCode BlockKrylovSetLeast(EPS eps, PetscInt least);
 
 /* The solution ends where all that lies within the distance from the target has converged: the next Ritz value is known
@@ -43,8 +43,8 @@ PETSC_INTERN PetscErrorCode BlockKrylovTakeVector(EPS eps, PetscInt i, PetscBool
 /* X := A^-1 X for the first n_right columns and A^-T X for the others */
 typedef PetscErrorCode (*BlockKrylovSolve)(void *ctx, PetscInt n_right, Mat X);
 
-/* EPSSolve(right) lets the space of `left`, of the transposed problem, grow along with its own: `left` is as far then as
-   its own EPSSolve() finds it, which must follow. Both are of this type, generalised problems of the same target by
+/* EPSSolve(right) lets the space of `left`, of the transposed problem, grow along with its own: `left` is as far then
+   as its own EPSSolve() finds it, which must follow. Both are of this type, generalised problems of the same target by
    shift-and-invert; nothing is done else, paired says so. Collective. */
 PETSC_INTERN PetscErrorCode BlockKrylovSetOther(EPS right, EPS left, BlockKrylovSolve solve, void *ctx,
                                                 PetscBool *paired);

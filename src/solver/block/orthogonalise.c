@@ -1,21 +1,22 @@
 /*
    A block W = V C + Q R, orthogonalised against a basis V and in itself so that the factors hold to rounding, as a
-   Krylov decomposition needs them. In passes of matrix-matrix products (A. Stathopoulos, K. Wu, SIAM J. Sci. Comput. 23,
-   2002)
+   Krylov decomposition needs them. In passes of matrix-matrix products (A. Stathopoulos, K. Wu, SIAM J. Sci. Comput.
+   23, 2002)
 
       C' = V' M W,   G = W' M W - C'' C' = S (U D U') S,   W := (W - V C') T,   T = S^-1 U D^-1/2,
 
       C := C + C' R,   R := T^-1 R,   T^-1 = D^1/2 U' S,
 
-   with S the square root of the diagonal of G and D not below rounding, which it is where V holds all of the block: T is always
-   regular, so what one pass does not resolve the next one does. A row of R is the size of its direction. Without M a pass measures
-   what the next one needs while it has V at hand (panel.h).
+   with S the square root of the diagonal of G and D not below rounding, which it is where V holds all of the block: T
+   is always regular, so what one pass does not resolve the next one does. A row of R is the size of its direction.
+   Without M a pass measures what the next one needs while it has V at hand (panel.h).
 
-   A block that was measured to be nearly orthonormal may be left so: W = V C + Q R holds for any Q, and what the next block loses
-   by it, times |C| beside R, is measured again.
+   A block that was measured to be nearly orthonormal may be left so: W = V C + Q R holds for any Q, and what the next
+   block loses by it, times |C| beside R, is measured again.
 
-   Rounding in G, epsilon times W' M W, is as much beside one in the new block as its largest entry beside S S D. Where that is
-   little enough for those who know V' M V, a pass is the last one. A loose V is projected on by C' = (V'MV)^-1 V' M W.
+   Rounding in G, epsilon times W' M W, is as much beside one in the new block as its largest entry beside S S D. Where
+   that is little enough for those who know V' M V, a pass is the last one. A loose V is projected on by C' = (V'MV)^-1
+   V' M W.
 */
 #include "base/algebra/dense.h"
 #include "orthonormal.h"
@@ -127,8 +128,8 @@ static PetscErrorCode PassProject(PetscInt n, const PetscReal gram[], BlockPass 
   PetscFunctionReturn(0);
 }
 
-/* S and S^-1 G S^-1 of G = W' M W - C'' C', which takes the place of W' M W in T; lost = the largest part of a square by which
-   it shrinks to that of S */
+/* S and S^-1 G S^-1 of G = W' M W - C'' C', which takes the place of W' M W in T; lost = the largest part of a square
+   by which it shrinks to that of S */
 static void PassReduce(PetscInt n, PetscBool first, const PetscScalar products[], BlockPass *pass, PetscReal *lost)
 {
   const PetscInt           m     = pass->m;
@@ -281,8 +282,9 @@ static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPas
   PetscFunctionReturn(0);
 }
 
-/* Leaves out columns that are rounding before they are made directions with the help of others, as with a singular M those are of
-   which it knows nothing: their parts beyond it would grow from pass to pass. A loose V is taken as orthonormal here */
+/* Leaves out columns that are rounding before they are made directions with the help of others, as with a singular M
+   those are of which it knows nothing: their parts beyond it would grow from pass to pass. A loose V is taken as
+   orthonormal here */
 static PetscErrorCode PassForget(PetscInt n, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;
@@ -316,13 +318,26 @@ static PetscBool PassIsNear(PetscInt n, const BlockPass *pass, PetscReal enough)
 static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;
-  if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
+  if (!pass->measured) {
+    if (M)
+      PetscCall(PassMeasureMass(V, n, M, W, pass));
+    else
+      PetscCall(PassMeasure(V, n, W, pass));
+  }
   PetscCall(PassForget(n, W, factors, pass));
   if (!pass->m) PetscFunctionReturn(0);
-  if (!pass->measured) PetscCall(M ? PassMeasureMass(V, n, M, W, pass) : PassMeasure(V, n, W, pass));
+  if (!pass->measured) {
+    if (M)
+      PetscCall(PassMeasureMass(V, n, M, W, pass));
+    else
+      PetscCall(PassMeasure(V, n, W, pass));
+  }
   PetscCall(PassDecompose(PetscObjectComm((PetscObject)W), n, factors, pass));
   PassAccumulate(n, pass, factors);
-  PetscCall(M ? PassApplyMass(V, n, W, pass) : PassApply(V, n, W, pass));
+  if (M)
+    PetscCall(PassApplyMass(V, n, W, pass));
+  else
+    PetscCall(PassApply(V, n, W, pass));
   if (pass->measured && PassIsNear(n, pass, factors->enough)) pass->clean = PETSC_TRUE;
   PetscCall(PassTrim(n, W, factors, pass));
   PetscFunctionReturn(0);

@@ -31,11 +31,9 @@ INTO_VERSIONS ColumnPair SlicePair(const Slice *s, PetscInt k)
   const PetscScalar *const v    = s->v;
   const size_t             d    = (size_t)s->stride;
 
-  return (ColumnPair){
-    v + k * d,
-    v + PetscMin(k + 1, last) * d,
-    {v + PetscMin(k + PANEL_AHEAD, last) * d, v + PetscMin(k + 1 + PANEL_AHEAD, last) * d}
-  };
+  return (ColumnPair){v + k * d,
+                      v + PetscMin(k + 1, last) * d,
+                      {v + PetscMin(k + PANEL_AHEAD, last) * d, v + PetscMin(k + 1 + PANEL_AHEAD, last) * d}};
 }
 
 /* w -= V c for four columns w, PANEL_ROWS apart; c [n][4] */

@@ -1,9 +1,9 @@
 /*
    Products of sparse matrices with many vectors at once, Y = A X. PETSc's MatMatMult() takes the vectors column by
    column, four at a time, and fetches an entry of each from another place in memory; here up to BLOCK_WIDTH of them lie
-   side by side, so that one entry of A meets as many neighbours. The three rows of a node go together, STRIP columns at a
-   time: their entries are still in the first cache when the next STRIP columns follow. The sums of a row are in the order
-   of MatMult().
+   side by side, so that one entry of A meets as many neighbours. The three rows of a node go together, STRIP columns at
+   a time: their entries are still in the first cache when the next STRIP columns follow. The sums of a row are in the
+   order of MatMult().
 */
 #include "base/algebra/versions.h"
 #include "orthonormal.h"
@@ -18,8 +18,8 @@
 
 typedef PetscScalar BlockLanes __attribute__((vector_size(64), aligned(8), may_alias));
 
-/* Columns 0 .. m - 1 of x side by side, [n][width], zeros where there are fewer; of PACK_STEP rows, which are a line of the cache
-   in each column, one row after the other */
+/* Columns 0 .. m - 1 of x side by side, [n][width], zeros where there are fewer; of PACK_STEP rows, which are a line of
+   the cache in each column, one row after the other */
 INTO_VERSIONS void ColumnsPackWidth(PetscInt n, PetscInt m, PetscInt width, PetscInt stride, const PetscScalar x[],
                                     PetscScalar packed[])
 {
@@ -84,8 +84,8 @@ INTO_VERSIONS void GroupTimes(const Rows *rows, RowGroup group, PetscInt width, 
     StripTimes(rows, group, width, strip, &packed[first], &products[first]);
 }
 
-/* Whether rows i .. i + ROWS_TOGETHER - 1 are as long as one another; alike: they have the same columns, as those of a node
-   have in a stiffness */
+/* Whether rows i .. i + ROWS_TOGETHER - 1 are as long as one another; alike: they have the same columns, as those of a
+   node have in a stiffness */
 INTO_VERSIONS PetscBool RowsMatch(const Rows *rows, PetscInt i, PetscBool *alike)
 {
   const PetscInt *ia = rows->ia, *ja = rows->ja;

@@ -1,13 +1,15 @@
 /*
-   The block Krylov decomposition, see block/space.h. Whatever is added to V is orthogonalised against all of it, so that G
-   may be full, and a random block may join at any time: its rows in G are zero. Op V = V G + Q B holds to rounding for any V (G. W.
-   Stewart, SIAM J. Matrix Anal. Appl. 23, 2002), so that fewer digits of orthogonality will do.
+   The block Krylov decomposition, see block/space.h. Whatever is added to V is orthogonalised against all of it, so
+   that G may be full, and a random block may join at any time: its rows in G are zero. Op V = V G + Q B holds to
+   rounding for any V (G. W. Stewart, SIAM J. Matrix Anal. Appl. 23, 2002), so that fewer digits of orthogonality will
+   do.
 */
 #include "space.h"
 #include "orthonormal.h"
 
-/* How far a basis may be from orthonormal. Left at that, the next block loses some 30 times as much. On the default brake 1e-8, 1e-10,
-   1e-12 spare 62, 45, 17 of 72 second passes; with 1e-8 eigenvalues of 1e-8 of the largest lose digits where a space is closed */
+/* How far a basis may be from orthonormal. Left at that, the next block loses some 30 times as much. On the default
+   brake 1e-8, 1e-10, 1e-12 spare 62, 45, 17 of 72 second passes; with 1e-8 eigenvalues of 1e-8 of the largest lose
+   digits where a space is closed */
 #define SEMI      1e-10
 #define VANISHED  4e-15 /* a direction that rounding made, beside its block: left out of the decomposition */
 #define EXHAUSTED 1e-12 /* the same of what Op makes of random vectors: there are no further directions */
@@ -51,8 +53,8 @@ static PetscErrorCode SpaceAppend(BlockSpace *s, PetscInt n, PetscReal drop, Pet
   PetscFunctionReturn(0);
 }
 
-/* Random directions in the range of Op, of those that V has not, up to n of them: what Op makes of a random block that is
-   orthogonal to V, so that what V has does not hide them */
+/* Random directions in the range of Op, of those that V has not, up to n of them: what Op makes of a random block that
+   is orthogonal to V, so that what V has does not hide them */
 static PetscErrorCode SpaceAppendRandom(BlockSpace *s, PetscInt n, PetscInt *rank)
 {
   const PetscInt first = s->m + s->p;
@@ -140,7 +142,8 @@ static PetscErrorCode ColumnsMultiply(Mat M, PetscInt first, PetscInt n, Mat X)
   PetscFunctionReturn(0);
 }
 
-/* X = the last blocks of both times the matrices of their right-hand sides; a matrix that is that of both is read once */
+/* X = the last blocks of both times the matrices of their right-hand sides; a matrix that is that of both is read
+   once */
 static PetscErrorCode SpacesMultiply(const BlockSpace *right, const BlockSpace *left, Mat X)
 {
   Mat M, Mt;

@@ -21,16 +21,16 @@ typedef struct {
 } BlockSpace;
 
 PETSC_INTERN PetscErrorCode BlockSpaceCreate(ST st, BV V, Mat M, PetscInt ncv, PetscInt block, BlockSpace *space);
-/* Begins the space, or goes on with the first m columns alone, which Op must leave among themselves, with a random block
-   in the range of Op. p is less than the block where there are not so many directions more, at last 0. */
+/* Begins the space, or goes on with the first m columns alone, which Op must leave among themselves, with a random
+   block in the range of Op. p is less than the block where there are not so many directions more, at last 0. */
 PETSC_INTERN PetscErrorCode BlockSpaceStart(BlockSpace *space);
 /* Applies Op to the last block: m grows by p. Directions that ended are replaced by random ones. */
 PETSC_INTERN PetscErrorCode BlockSpaceExtend(BlockSpace *space);
 /* The same of the spaces of K x = kappa M x and of K' y = kappa M' y by shift-and-invert, with one call of solve */
 PETSC_INTERN PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKrylovSolve solve,
                                                  void *ctx);
-/* V := V_m Q and T = Q' G Q of `converged` + `kept` columns, of which the first `locked` are as they were and the converged
-   are not coupled to the last block any more */
+/* V := V_m Q and T = Q' G Q of `converged` + `kept` columns, of which the first `locked` are as they were and the
+   converged are not coupled to the last block any more */
 PETSC_INTERN PetscErrorCode BlockSpaceRestart(BlockSpace *space, PetscInt locked, PetscInt converged, PetscInt kept,
                                               Mat Q, Mat T);
 /* |B x|, B the last p rows of G: the residual of x, |x| = 1, of length m, in the basis */

@@ -1,11 +1,12 @@
 /*
    Whether solutions are those of the systems that were given, for all columns of a block at the price of a few dot
-   products (R. Freivalds, Probabilistic machines can use less running time, IFIP Congress 1977). For a vector w at random
+   products (R. Freivalds, Probabilistic machines can use less running time, IFIP Congress 1977). For a vector w at
+   random
 
       w'(A x - b) = (A' w)'x - w'b
 
-   is zero for a solution, and for another vector zero by chance alone. A' w, and A w for the transposed problem, are made
-   once for a factorisation. What is measured is the difference beside |A' w| |x| + |w| |b|: 1e-16 is usual.
+   is zero for a solution, and for another vector zero by chance alone. A' w, and A w for the transposed problem, are
+   made once for a factorisation. What is measured is the difference beside |A' w| |x| + |w| |b|: 1e-16 is usual.
 */
 #include "solver/factor/lowrank.h"
 #include "solver/factor/shiftinvert.h"

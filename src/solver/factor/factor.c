@@ -1,7 +1,7 @@
 /*
    The matrix of a shift and its factors: K - s M, or with damping K + s C + s^2 M, by a KSP with the user's -st_ksp_*,
-   -st_pc_*, -st_mat_mumps_* options. At another shift, and for other values of the same pattern, the matrix is formed in
-   place and the analysis serves again.
+   -st_pc_*, -st_mat_mumps_* options. At another shift, and for other values of the same pattern, the matrix is formed
+   in place and the analysis serves again.
 */
 #include "shiftinvert.h"
 #include "base/algebra/matrixadd.h"
@@ -33,8 +33,8 @@ PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatric
   PetscFunctionReturn(0);
 }
 
-/* A += c X, in place where the pattern of A has that of X. Also for c = 0 the pattern becomes that of both, since the same
-   matrix serves at other shifts; MatAXPY() does nothing then. */
+/* A += c X, in place where the pattern of A has that of X. Also for c = 0 the pattern becomes that of both, since the
+   same matrix serves at other shifts; MatAXPY() does nothing then. */
 static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, Mat A)
 {
   PetscBool added;
@@ -50,15 +50,12 @@ static PetscErrorCode ShiftInvertAdd(PetscReal c, Mat X, MatStructure pattern, M
   PetscFunctionReturn(0);
 }
 
-/* The upper half of K - s M, whose values the factorisation then takes where they are; NULL where it is not wanted or the
-   user has a solver of his own */
+/* The upper half of K - s M, whose values the factorisation then takes where they are; NULL where it is not wanted or
+   the user has a solver of his own */
 static PetscErrorCode ShiftInvertHalf(const ShiftInvert *si, const PencilMatrices *pencil, Mat *A)
 {
   static const char *const given[][2] = {
-    {"-ksp_type",                  KSPPREONLY    },
-    {"-pc_type",                   PCCHOLESKY    },
-    {"-pc_factor_mat_solver_type", MATSOLVERMUMPS}
-  };
+    {"-ksp_type", KSPPREONLY}, {"-pc_type", PCCHOLESKY}, {"-pc_factor_mat_solver_type", MATSOLVERMUMPS}};
   const Mat K    = ShiftInvertStiffness(si, pencil);
   PetscBool fits = si->even && si->halves && !pencil->C ? PETSC_TRUE : PETSC_FALSE, is, said;
   char      value[64];

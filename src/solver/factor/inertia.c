@@ -1,10 +1,10 @@
 /*
-   Counting modes by inertia. The eigenvalues kappa = omega^2 of K x = kappa M x, M positive semidefinite, are real, and the
-   negative pivots nu(s) of K - s M grow with s by one at each (Sylvester's law of inertia; B. N. Parlett, The Symmetric
-   Eigenvalue Problem, SIAM 1998, sect. 3.3). So nu(s_2) - nu(s_1) of them lie between s_1 and s_2.
+   Counting modes by inertia. The eigenvalues kappa = omega^2 of K x = kappa M x, M positive semidefinite, are real, and
+   the negative pivots nu(s) of K - s M grow with s by one at each (Sylvester's law of inertia; B. N. Parlett, The
+   Symmetric Eigenvalue Problem, SIAM 1998, sect. 3.3). So nu(s_2) - nu(s_1) of them lie between s_1 and s_2.
 
-   With M positive definite nu(-infinity) = 0. Unknowns without mass change that: each multiplier of a constraint brings a
-   negative pivot at every s, since [A B'; B 0] has as many as B has rows beside those of A on B x = 0, and so does an
+   With M positive definite nu(-infinity) = 0. Unknowns without mass change that: each multiplier of a constraint brings
+   a negative pivot at every s, since [A B'; B 0] has as many as B has rows beside those of A on B x = 0, and so does an
    unknown without mass and with negative stiffness. They stand for infinite eigenvalues and are no modes. They are
    counted at s = -most^2, below every mode that does not grow faster than `most`.
 */

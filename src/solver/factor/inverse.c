@@ -1,8 +1,8 @@
 /*
    Entries of the inverse of the matrix that is factored, a_ij = e_i' A^-1 e_j for some rows i and columns j, by MUMPS
-   (ICNTL(30)): of each substitution it goes through the parts of the factors alone that lie between these unknowns and the
-   root of the elimination tree (P. Amestoy, I. Duff, J.-Y. L'Excellent, Y. Robert, F.-H. Rouet, B. Ucar, On computing
-   inverse entries of a sparse matrix in an out-of-core environment, SIAM J. Sci. Comput. 34, 2012).
+   (ICNTL(30)): of each substitution it goes through the parts of the factors alone that lie between these unknowns and
+   the root of the elimination tree (P. Amestoy, I. Duff, J.-Y. L'Excellent, Y. Robert, F.-H. Rouet, B. Ucar, On
+   computing inverse entries of a sparse matrix in an out-of-core environment, SIAM J. Sci. Comput. 34, 2012).
 */
 #include "lowrank.h"
 #include "shiftinvert.h"

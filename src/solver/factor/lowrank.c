@@ -124,7 +124,10 @@ static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscI
   b = (Panel){n_local, m, stride_b, NULL};
   PetscCall(MatDenseGetArrayRead(u->Y, (const PetscScalar **)&y.a));
   PetscCall(MatDenseGetArray(B, &b.a));
-  PetscCall(subtract ? PanelUpdate(&y, c, NULL, &b, NULL, NULL) : PanelProduct(&y, &b, c));
+  if (subtract)
+    PetscCall(PanelUpdate(&y, c, NULL, &b, NULL, NULL));
+  else
+    PetscCall(PanelProduct(&y, &b, c));
   PetscCall(MatDenseRestoreArray(B, &b.a));
   PetscCall(MatDenseRestoreArrayRead(u->Y, (const PetscScalar **)&y.a));
   if (!subtract) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c, (PetscMPIInt)(u->p * m), MPIU_SCALAR, MPIU_SUM, u->comm));
@@ -172,7 +175,10 @@ static PetscErrorCode LowRankExtend(LowRank *u, PetscInt first, PetscInt m, Pets
     PetscCall(MatDenseGetSubMatrix(u->Y, PETSC_DECIDE, PETSC_DECIDE, first, first + m, &X));
   else
     PetscCall(DenseLike(u->R, PETSC_FALSE, m, &X));
-  PetscCall(u->solve_rows ? SolveSparse(u, first, m, X) : SolveDense(u, first, m, X));
+  if (u->solve_rows)
+    PetscCall(SolveSparse(u, first, m, X));
+  else
+    PetscCall(SolveDense(u, first, m, X));
   PetscCall(PairsOf(u->L, X, p, m, c));
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < p; i++) u->C[i * p + first + j] = c[j * p + i] + (i == first + j ? 1 : 0);
@@ -299,7 +305,10 @@ PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat X)
   PetscCall(PetscMalloc1(u->p * m, &c));
   right = (Side){PETSC_FALSE, 0, n_right, c};
   left  = (Side){PETSC_TRUE, n_right, m - n_right, c + n_right * u->p};
-  PetscCall(u->Y ? ApplyStored(u, &right, &left, X) : ApplyTwice(u, &right, &left, X));
+  if (u->Y)
+    PetscCall(ApplyStored(u, &right, &left, X));
+  else
+    PetscCall(ApplyTwice(u, &right, &left, X));
   PetscCall(PetscFree(c));
   PetscFunctionReturn(0);
 }

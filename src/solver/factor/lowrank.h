@@ -8,8 +8,8 @@ typedef PetscErrorCode (*LowRankSolve)(void *ctx, Mat X);
 /* X = A^-1 B with B' sparse */
 typedef PetscErrorCode (*LowRankSolveRows)(void *ctx, Mat rows, Mat X);
 
-/* Entries of A^-1 of some rows and columns, both ascending and the same on every rank: a [n_columns][n_rows], filled on the
-   first rank */
+/* Entries of A^-1 of some rows and columns, both ascending and the same on every rank: a [n_columns][n_rows], filled on
+   the first rank */
 typedef struct InverseBlock {
   PetscInt        n_rows, n_columns;
   const PetscInt *row, *column;
@@ -30,8 +30,8 @@ typedef struct LowRank {
   void            *ctx;        /* of all three */
 } LowRank;
 
-/* Makes the update u, whose solve, solve_rows, inverse and ctx are set, from p solves, or from entries of A^-1. With `store` Y is
-   kept. singular: A + L' R is (A is not). Collective. */
+/* Makes the update u, whose solve, solve_rows, inverse and ctx are set, from p solves, or from entries of A^-1. With
+   `store` Y is kept. singular: A + L' R is (A is not). Collective. */
 PETSC_INTERN PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular);
 /* X := (A + L' R)^-1 X for the first n_right columns, and with its transpose for the others. Collective. */
 PETSC_INTERN PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat X);

@@ -1,6 +1,6 @@
 /*
-   Solutions with a mass matrix, of a face or of bodies. By its diagonal it is as well conditioned as that of one element,
-   whatever the mesh.
+   Solutions with a mass matrix, of a face or of bodies. By its diagonal it is as well conditioned as that of one
+   element, whatever the mesh.
 */
 #include "masssolve.h"
 #include <petscksp.h>

@@ -1,7 +1,7 @@
 /*
-   What need not be there any more once a symmetric matrix has been factored. MUMPS has a copy of A = K_even - s M, or works
-   on the values of its upper half: in the first case products with A are made from K, M and the pairs, in the other those
-   with K from A,
+   What need not be there any more once a symmetric matrix has been factored. MUMPS has a copy of A = K_even - s M, or
+   works on the values of its upper half: in the first case products with A are made from K, M and the pairs, in the
+   other those with K from A,
 
       A x = K x - left' right x - s M x,   K x = A x + left' right x + s M x.
 */
@@ -21,11 +21,17 @@ static PetscErrorCode ShiftedApply(Mat B, PetscBool transposed, Vec x, Vec y)
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(B, &shifted));
-  PetscCall(transposed ? MatMultTranspose(shifted->M, x, y) : MatMult(shifted->M, x, y));
+  if (transposed)
+    PetscCall(MatMultTranspose(shifted->M, x, y));
+  else
+    PetscCall(MatMult(shifted->M, x, y));
   PetscCall(VecScale(y, shifted->s));
   if (shifted->left) PetscCall(LowRankMultAdd(&(LowRank){.L = shifted->left, .R = shifted->right}, transposed, x, y));
   PetscCall(VecScale(y, shifted->c));
-  PetscCall(transposed ? MatMultTransposeAdd(shifted->A, x, y, y) : MatMultAdd(shifted->A, x, y, y));
+  if (transposed)
+    PetscCall(MatMultTransposeAdd(shifted->A, x, y, y));
+  else
+    PetscCall(MatMultAdd(shifted->A, x, y, y));
   PetscFunctionReturn(0);
 }
 

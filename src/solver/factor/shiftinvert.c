@@ -11,21 +11,23 @@
 #include "base/events.h"
 #include "lowrank.h"
 
-#define UPDATE_STIFF 1e2  /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
-#define UPDATE_ROOM  0.8  /* of the memory that is free: vectors that take more beside the factors are not kept */
-#define UPDATE_SLOW  1.5  /* flops of the solves that make it beside those that LU takes more: LU from here on */
-#define UPDATE_DENSE 700  /* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
-#define UPDATE_KEPT  2.5  /* pairs for each right-hand side that is expected: the memory of more vectors is not worth their time */
+#define UPDATE_STIFF 1e2 /* k_n mu of a pair beside the (geometric) mean of the bodies' stiffnesses: LU from here on */
+#define UPDATE_ROOM  0.8 /* of the memory that is free: vectors that take more beside the factors are not kept */
+#define UPDATE_SLOW  1.5 /* flops of the solves that make it beside those that LU takes more: LU from here on */
+/* flops of LDL' per entry; from here on they run faster than a solve's, as the root of this */
+#define UPDATE_DENSE 700
+/* pairs for each right-hand side that is expected: the memory of more vectors is not worth their time */
+#define UPDATE_KEPT  2.5
 #define UPDATE_SHARE 0.75 /* of the entries of LDL': vectors of an update that take no more are kept */
 
 PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal shift)
 {
   PetscFunctionBeginUser;
-  PetscCheck(
-    regular, comm, PETSC_ERR_MAT_LU_ZRPVT,
-    "the problem is singular at every shift near %.6g: a part without mass, an unknown without stiffness and mass, or a "
-    "constraint that follows from others",
-    (double)shift);
+  PetscCheck(regular, comm, PETSC_ERR_MAT_LU_ZRPVT,
+             "the problem is singular at every shift near %.6g: a part without mass, an unknown without stiffness and "
+             "mass, or a "
+             "constraint that follows from others",
+             (double)shift);
   PetscFunctionReturn(0);
 }
 
@@ -70,12 +72,12 @@ static PetscErrorCode UpdateFits(const PencilMatrices *pencil, const ShiftInvert
   PetscFunctionReturn(0);
 }
 
-/* Why LU is better than LDL' and an update of p vectors, NULL where it is not. LU has twice the entries e of LDL' and takes
-   twice the flops F to make; a solve takes 4 e flops with either. So an update costs 4 e p flops and LU F. In small fronts both
-   run about as fast, and afterwards the update saves some, since it solves for right and left vectors at once; fronts that are
-   denser, F / e, make a factorisation faster and no solve. Processor time of the update over that of LU, three scenes: 0.97 with
-   4 e p / F = 1.22 and F / e = 395, 1.04 with 1.35 and 670, 1.15 to 1.25 with 1.14 and 1550 (scripts/bench/choices). Where the
-   vectors are not kept every solve is two. */
+/* Why LU is better than LDL' and an update of p vectors, NULL where it is not. LU has twice the entries e of LDL' and
+   takes twice the flops F to make; a solve takes 4 e flops with either. So an update costs 4 e p flops and LU F. In
+   small fronts both run about as fast, and afterwards the update saves some, since it solves for right and left vectors
+   at once; fronts that are denser, F / e, make a factorisation faster and no solve. Processor time of the update over
+   that of LU, three scenes: 0.97 with 4 e p / F = 1.22 and F / e = 395, 1.04 with 1.35 and 670, 1.15 to 1.25 with 1.14
+   and 1550 (scripts/bench/choices). Where the vectors are not kept every solve is two. */
 static const char *UpdateIsWorse(const FactorCost *cost, double p, PetscBool fits)
 {
   PetscReal rate;
@@ -215,7 +217,10 @@ PetscErrorCode ShiftInvertSolve(const ShiftInvert *si, PetscBool transposed, Vec
     PetscCall(UpdateSolve(si, transposed, b, x));
     PetscFunctionReturn(0);
   }
-  PetscCall(transposed ? KSPSolveTranspose(si->ksp, b, x) : KSPSolve(si->ksp, b, x));
+  if (transposed)
+    PetscCall(KSPSolveTranspose(si->ksp, b, x));
+  else
+    PetscCall(KSPSolve(si->ksp, b, x));
   PetscCall(KSPGetConvergedReason(si->ksp, &reason));
   PetscCheck(reason >= 0, si->comm, PETSC_ERR_NOT_CONVERGED,
              "the linear solver failed (%s): see -st_ksp_type, -st_ksp_rtol and -st_ksp_max_it, or leave them out",

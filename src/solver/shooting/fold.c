@@ -4,7 +4,8 @@
 #define FOLD_MAX_IT 12
 #define FOLD_RTOL   1e-4 /* of the slope dp/ds between the two cycles: the parameter is off by the square of that */
 
-/* The cycle at a distance from `start` along `along`, and the branch's direction there; found is false where there is none */
+/* The cycle at a distance from `start` along `along`, and the branch's direction there; found is false where there is
+   none */
 static PetscErrorCode FoldTry(const Shooting *s, PetscReal step, const ShootingCycle *start,
                               const ShootingTangent *along, ShootingPlace *at, PetscBool *found)
 {

@@ -259,7 +259,8 @@ PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const Shooting
   PetscFunctionReturn(0);
 }
 
-/* The check of the derivative: central difference of the flow from the cycles a little earlier and later, each with its own period */
+/* The check of the derivative: central difference of the flow from the cycles a little earlier and later, each with its
+   own period */
 static PetscErrorCode ShotCheckDerivative(ShootingWork *w, const ShootingCycle *c, ShootingPhase *phase)
 {
   const Shooting *s      = w->s;

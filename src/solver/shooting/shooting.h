@@ -7,32 +7,34 @@
       Phi(x, T, p) = x,     c . (x - x0) = 0,     c = S^2 dPhi/dT at the guess x0, S diagonal: the phase.
 
    Newton's equations, with M = dPhi/dx, f = dPhi/dT, g = dPhi/dp and a third row that fixes p, or the distance along a
-   branch with the tangent t = (t_x, t_T, t_p) at y = (x, T, p) predicted (pseudo-arclength; H. B. Keller, Applications of
-   Bifurcation Theory, 1977, 359):
+   branch with the tangent t = (t_x, t_T, t_p) at y = (x, T, p) predicted (pseudo-arclength; H. B. Keller, Applications
+   of Bifurcation Theory, 1977, 359):
 
       [M - I    f    g  ] [dx]   [x - Phi                 ]
       [c        0    0  ] [dT] = [-c . (x - x0)           ]
       [t_x S^2 ..       ] [dp]   [-<t, y - y_predicted>   ]
 
-   Where the flow is the same after any shift along e (a body that nothing holds along a flat contact), M e = e for every motion, and
-   Phi = x is asked for but for a drift d e, a further unknown; S^2 e . dx = 0.
+   Where the flow is the same after any shift along e (a body that nothing holds along a flat contact), M e = e for
+   every motion, and Phi = x is asked for but for a drift d e, a further unknown; S^2 e . dx = 0.
 
-   f and g are central differences of the flow. Eigenvalues of M (Floquet multipliers) tell stability: one is that of the
-   phase, and the cycle is stable where all others lie inside the unit circle.
+   f and g are central differences of the flow. Eigenvalues of M (Floquet multipliers) tell stability: one is that of
+   the phase, and the cycle is stable where all others lie inside the unit circle.
 
-   A flow made of N steps of length T / N breaks the symmetry in time where a force has a kink within a step. Cycles are then a curve
-   x(theta), T(theta), theta the shift of the steps against the motion, with (' = d/dtheta)
+   A flow made of N steps of length T / N breaks the symmetry in time where a force has a kink within a step. Cycles are
+   then a curve x(theta), T(theta), theta the shift of the steps against the motion, with (' = d/dtheta)
 
       (M - I) x' + f T' = 0,     c . x' = c . f:     Newton's matrix gives x' and T',
 
    and for every left vector l of M with its eigenvalue m, (m - 1) l . x' = -T' l . f. Hence
 
-   * the eigenvalue of M for the phase is 1 - T' (l . f) / (l . x'), 1 - T' nearly. It is 1 only where T is stationary: a property of
+   * the eigenvalue of M for the phase is 1 - T' (l . f) / (l . x'), 1 - T' nearly. It is 1 only where T is stationary:
+   a property of
      M and of where the cycle begins, which no tolerance moves;
    * the other vectors have next to no part in x' (of the order of T' times that in f), by which the phase's is told;
-   * the return map whose period goes with the phase, x -> Phi(x, T(theta(x)), p), keeps the whole curve, and its multiplier of
-     the phase is 1, as that of a flow in continuous time. With theta that of the phase's left vector, theta' = l / (l . x'), its
-     derivative is M + f T' l' / (l . x'): it has the vectors and the eigenvalues of M but for that one.
+   * the return map whose period goes with the phase, x -> Phi(x, T(theta(x)), p), keeps the whole curve, and its
+   multiplier of
+     the phase is 1, as that of a flow in continuous time. With theta that of the phase's left vector, theta' = l / (l .
+     x'), its derivative is M + f T' l' / (l . x'): it has the vectors and the eigenvalues of M but for that one.
 */
 #pragma once
 
@@ -85,8 +87,9 @@ typedef struct {
 typedef struct {
   PetscReal *x;     /* [n] dx/dtheta, the caller's */
   PetscReal  slope; /* dT/dtheta */
-  PetscReal  check; /* part along x' of the flow's own M x' + f T', by differences: 1 where M and f are those of the flow, cycle or not */
-  PetscBool  known; /* false where the flow fails next to the cycle, or Newton's matrix is singular */
+  /* part along x' of the flow's own M x' + f T', by differences: 1 where M and f are those of the flow, cycle or not */
+  PetscReal check;
+  PetscBool known; /* false where the flow fails next to the cycle, or Newton's matrix is singular */
 } ShootingPhase;
 
 typedef struct {
@@ -96,15 +99,16 @@ typedef struct {
   PetscReal worst; /* modulus of the largest, if the phase's is another one that has as large a part in that motion */
 } ShootingStability;
 
-/* What a branch does at a cycle: it goes on along a tangent; it splits, Newton's matrix is singular; the flow fails next to
-   the cycle, at another period or parameter, and has no derivative there */
+/* What a branch does at a cycle: it goes on along a tangent; it splits, Newton's matrix is singular; the flow fails
+   next to the cycle, at another period or parameter, and has no derivative there */
 typedef enum { SHOOTING_ALONG, SHOOTING_SPLITS, SHOOTING_NO_DERIVATIVE } ShootingDirection;
 
 /*@ ShootingSolve - the cycle near a guess, at its value of the parameter. Not collective. That it does not converge is
     told by `converged`; then x is where the iteration stopped, which may be further off than the guess. @*/
 PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
 
-/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps, by Newton's matrix, and what the flow
+/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps, by Newton's matrix, and what
+   the flow
     says of that matrix. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase);
 
@@ -112,12 +116,14 @@ PETSC_INTERN PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCy
 PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle,
                                                  ShootingStability *stability);
 
-/*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then p
+/*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then
+   p
     grows) goes on; where there is none the tangent stays. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
                                                ShootingDirection *direction);
 
-/*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there is
+/*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there
+   is
     none (converged is then false). Folds are passed. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const ShootingTangent *tangent,
                                             ShootingCycle *cycle);
@@ -126,8 +132,8 @@ PETSC_INTERN PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, c
 PETSC_INTERN PetscErrorCode ShootingCopy(PetscInt n, const ShootingCycle *from, ShootingCycle *to);
 
 /*@
-   ShootingFindFold - where the parameter turns back between a place of a branch and the one `step` further, dp/ds = 0, by regula
-   falsi on that slope. Not collective.
+   ShootingFindFold - where the parameter turns back between a place of a branch and the one `step` further, dp/ds = 0,
+   by regula falsi on that slope. Not collective.
 
    Input Parameters:
 +  start  - a place

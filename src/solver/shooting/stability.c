@@ -48,8 +48,9 @@ static PetscReal StabilityPart(const Shooting *s, const Multipliers *m, PetscInt
   return PetscAbsComplex(StabilityDot(n, l, im, v, NULL)) / self * PetscSqrtReal(length / size);
 }
 
-/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion v along the cycle. Where others
-   have about as much part in it (at a fold two vectors become one) the nearest to 1 is taken; how many there are */
+/* Which of the eigenvalues is that of the phase, -1 for none: its vector makes most of the motion v along the cycle.
+   Where others have about as much part in it (at a fold two vectors become one) the nearest to 1 is taken; how many
+   there are */
 static PetscErrorCode StabilityFindPhase(const Shooting *s, const PetscReal v[], const Multipliers *m, PetscInt *phase,
                                          PetscInt *n_candidates)
 {
@@ -96,10 +97,7 @@ PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycl
   Multipliers    m;
 
   PetscFunctionBeginUser;
-  *stability = (ShootingStability){
-    .phase = {NAN, NAN},
-      .slope = NAN, .check = NAN
-  };
+  *stability = (ShootingStability){.phase = {NAN, NAN}, .slope = NAN, .check = NAN};
   PetscCall(PetscMalloc6(n * n, &m.A, n, &m.re, n, &m.im, n * n, &m.left, n * n, &m.right, n, &phase.x));
   PetscCall(PetscArraycpy(m.A, cycle->M, n * n));
   PetscCall(DenseEigen(n, m.A, m.re, m.im, m.left, m.right));

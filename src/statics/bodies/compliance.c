@@ -4,8 +4,9 @@
 
       K_a u = f - G'(l - kappa w) + S' D l,   K_a = K + kappa G'G + pins,
 
-   where K_a can be factored although contact alone holds a body. Where displacements follow others, u = Z q, K_a^-1 stands
-   for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter. Multiplied by G, with forces l / kappa (m):
+   where K_a can be factored although contact alone holds a body. Where displacements follow others, u = Z q, K_a^-1
+   stands for Z (Z'K_a Z)^-1 Z' everywhere, which forces of that constraint do not enter. Multiplied by G, with forces l
+   / kappa (m):
 
       w + (W - V D) l - W w = G K_a^-1 f,   W = kappa G K_a^-1 G',   V = kappa G K_a^-1 S'.
 

@@ -105,10 +105,7 @@ static PetscErrorCode UnknownFind(Operators operators, PetscInt unknown, Unknown
   Model       model;
 
   PetscFunctionBeginUser;
-  *place = (UnknownPlace){
-    .x = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL},
-      .direction = -1, .part = -1
-  };
+  *place = (UnknownPlace){.x = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL}, .direction = -1, .part = -1};
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(ModelGetComm(model, &comm));
   PetscCall(ModelGetMesh(model, &mesh));

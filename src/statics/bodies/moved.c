@@ -33,9 +33,7 @@ static PetscErrorCode MovedVerticesGather(MPI_Comm comm, const Mesh *mesh, Petsc
     const PetscReal *d = &mesh->prescribed[3 * v];
 
     if (!mesh->owned[v] || Vec3Dot(d, d) == 0) continue;
-    here[n_here++] = (MovedVertex){
-      mesh->number[v], {d[0], d[1], d[2]}
-    };
+    here[n_here++] = (MovedVertex){mesh->number[v], {d[0], d[1], d[2]}};
   }
   PetscCall(GatherRecords(comm, n_here, sizeof(MovedVertex), here, n, all));
   PetscCall(PetscFree(here));

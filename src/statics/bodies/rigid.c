@@ -1,7 +1,8 @@
 /*
    Rigid motions that nothing resists. The candidates are the six rigid motions of every body, made orthonormal in
-   diag(A); a combination r of them is free when r'A r + |r - Z E'r|^2 vanishes, A = K + kappa G'G: no support, no spring and
-   no pair resists it, and what follows others (ties, points that are joined rigidly) does so. The norm is that of diag(A).
+   diag(A); a combination r of them is free when r'A r + |r - Z E'r|^2 vanishes, A = K + kappa G'G: no support, no
+   spring and no pair resists it, and what follows others (ties, points that are joined rigidly) does so. The norm is
+   that of diag(A).
 */
 #include "statics/staticsimpl.h"
 #include "base/algebra/dense.h"
@@ -88,11 +89,17 @@ static PetscErrorCode RigidOrthonormalise(Mat M, Vec weights, PetscInt n, const 
   PetscCall(VecDuplicate(r, &image));
   for (int pass = 0; pass < 3; pass++) {
     for (PetscInt i = 0; i < n && pass; i++) {
-      PetscCall(M ? MatMult(M, r, image) : VecPointwiseMult(image, weights, r));
+      if (M)
+        PetscCall(MatMult(M, r, image));
+      else
+        PetscCall(VecPointwiseMult(image, weights, r));
       PetscCall(VecDot(image, before[i], &dot));
       PetscCall(VecAXPY(r, -dot, before[i]));
     }
-    PetscCall(M ? MatMult(M, r, image) : VecPointwiseMult(image, weights, r));
+    if (M)
+      PetscCall(MatMult(M, r, image));
+    else
+      PetscCall(VecPointwiseMult(image, weights, r));
     PetscCall(VecDot(image, r, &dot));
     norm[pass ? 1 : 0] = PetscSqrtReal(PetscMax(0, PetscRealPart(dot)));
   }

@@ -48,9 +48,9 @@ static PetscErrorCode PressureSpread(Model model, const char set[], const PetscR
    several surfaces the last one counts, with its normal and area */
 static PetscErrorCode PressureSet(Model model, const char set[], const PetscScalar force[], PetscReal pressure[])
 {
-  const Mesh     *mesh;
-  PetscInt        n, *v;
-  PetscReal      *normals, *along, *spread;
+  const Mesh *mesh;
+  PetscInt    n, *v;
+  PetscReal  *normals, *along, *spread;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
@@ -113,11 +113,7 @@ PetscErrorCode StaticsWriteFields(Statics s, Results results)
   PetscCall(VecGetArrayRead(force, &f));
   PetscCall(ResultsFieldWriteNodal(
     field, "static equilibrium", 3,
-    (const ResultsNodal[]){
-      {"displacement_m",      3, u       },
-      {"contact_force_n",     3, f       },
-      {"contact_pressure_pa", 1, pressure}
-  }));
+    (const ResultsNodal[]){{"displacement_m", 3, u}, {"contact_force_n", 3, f}, {"contact_pressure_pa", 1, pressure}}));
   PetscCall(VecRestoreArrayRead(force, &f));
   PetscCall(VecRestoreArrayRead(displacement, &u));
   PetscCall(ResultsFieldClose(&field));

@@ -1,10 +1,11 @@
 /*
-   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of a node
+   Who carries the loads: reactions of supports, motions and springs, loads, and contact forces. At a held direction of
+   a node
 
       reaction = sum K_e u_e + k u - load - contact force,
 
-   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e. What is
-   left at nodes that ties make follow others acts on these.
+   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e.
+   What is left at nodes that ties make follow others acts on these.
    Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points and loads sum to zero;
    reactions.csv lists them all.
 */

@@ -4,8 +4,8 @@
 #include "statics/staticsimpl.h"
 #include "base/algebra/vec3.h"
 
-/* One interface: pairs, forces, and where the normal force acts. Friction about an axis may cancel as a vector: then its
-   sum over the pairs and its moment say what it does */
+/* One interface: pairs, forces, and where the normal force acts. Friction about an axis may cancel as a vector: then
+   its sum over the pairs and its moment say what it does */
 static PetscErrorCode InterfaceView(Model model, const ContactInterface *c, const StaticsResultant *r,
                                     PetscViewer viewer)
 {
@@ -39,8 +39,8 @@ PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
                                      "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",
                                      s->n_free, s->n_free > 1 ? "s" : "", s->n_free > 1 ? "are" : "is"));
   PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "equilibrium to %.2g of the load after %" PetscInt_FMT " iteration%s and %" PetscInt_FMT
-                                   " factorisation%s of the bodies\n",
+                                   "equilibrium to %.2g of the load after %" PetscInt_FMT
+                                   " iteration%s and %" PetscInt_FMT " factorisation%s of the bodies\n",
                                    (double)s->equilibrium, s->n_it, s->n_it == 1 ? "" : "s", s->n_factored,
                                    s->n_factored == 1 ? "" : "s"));
   if (s->view_kkt) PetscCall(ContactViewKKT(&s->kkt, viewer));

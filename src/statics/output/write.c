@@ -92,8 +92,7 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
       i + 1, (double)r->x[0], (double)r->x[1], (double)r->x[2], (double)q->gap, (double)q->lambda_n,
       (double)q->lambda_t[0], ContactStatusNames[q->status], s->rows.interface[r->interface].name,
       (double)q->lambda_t[1], (double)r->area, (double)r->pressure, (double)q->slip[0], (double)q->slip[1],
-      (double)r->t[0], (double)r->t[1], (double)r->t[2], (double)r->n[0],
-      (double)r->n[1], (double)r->n[2]));
+      (double)r->t[0], (double)r->t[1], (double)r->t[2], (double)r->n[0], (double)r->n[1], (double)r->n[2]));
   }
   PetscCall(ResultsTableClose(&table));
   PetscCall(PetscFree(record));

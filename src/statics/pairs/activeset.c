@@ -1,12 +1,14 @@
 /*
    Primal-dual active set on the laws of the pairs, a semismooth Newton method: the status of every pair makes its law
    linear; one small system gives all forces and displacements; they decide the next status. Without Coulomb pairs it
-   ends exactly when no status changes. What is smaller than ACTIVE_ROUNDING of the largest displacement decides nothing.
+   ends exactly when no status changes. What is smaller than ACTIVE_ROUNDING of the largest displacement decides
+   nothing.
 */
 #include "statics/staticsimpl.h"
 
 #define ACTIVE_ROUNDING 1e-13
-#define FEW             1000 /* rows up to which single changes with friction, and small steps of it, are worth the time */
+/* rows up to which single changes with friction, and small steps of it, are worth the time */
+#define FEW             1000
 #define SLIPPING        1e-12 /* residual of Coulomb's law at convergence, relative */
 #define EXACT           1e-13 /* of GMRES */
 #define ROUGH           1e-6  /* of GMRES while statuses still change */
@@ -20,7 +22,8 @@
 typedef enum { CHANGE_ALL, CHANGE_WORST, CHANGE_LAST } StatusChange;
 
 /* Where the laws are linear, all change as long as fewer and fewer are wrong, or SAFEGUARD_TRIES times more; else the
-   last: finite where there is one solution for any loads (J. J. Judice, F. M. Pires, Comput. Oper. Res. 21, 1994, 587) */
+   last: finite where there is one solution for any loads (J. J. Judice, F. M. Pires, Comput. Oper. Res. 21, 1994,
+   587) */
 typedef struct {
   PetscBool sure, linear;
   PetscInt  least, tries;
@@ -153,10 +156,7 @@ static PetscErrorCode StatusFindWrong(const Active *a, PetscBool last, PetscInt 
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(a->rows->comm, &rank));
-  *one = (WrongPair){
-    .most = {-1, rank},
-      .pair = -1
-  };
+  *one     = (WrongPair){.most = {-1, rank}, .pair = -1};
   *n_wrong = 0;
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
     ContactStatus   next;

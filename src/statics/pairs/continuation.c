@@ -1,8 +1,8 @@
 /*
    What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: with
    Coulomb's law by continuation in a regularisation of friction (soften.c), which begins as soon as more pairs become
-   wrong from one iteration to the next, since going round costs more; where it fails the active set is asked to its end;
-   statuses of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per
+   wrong from one iteration to the next, since going round costs more; where it fails the active set is asked to its
+   end; statuses of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per
    iteration; then all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with
    half the step after a failure.
    Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the wrong sign
@@ -25,7 +25,8 @@ static PetscErrorCode Restart(Active *a)
   PetscFunctionReturn(0);
 }
 
-/* Statuses by pivoting where laws are linear and the problem dense, confirmed by the iteration; else by changing fewer */
+/* Statuses by pivoting where laws are linear and the problem dense, confirmed by the iteration; else by changing
+   fewer */
 static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
 {
   PetscBool found = PETSC_FALSE;
@@ -43,9 +44,9 @@ static PetscErrorCode IterateSurely(Active *a, ActiveOutcome *outcome)
   PetscFunctionReturn(0);
 }
 
-/* Why friction could not be raised further: whether the bodies jam at the whole of it. Pairs that obey Coulomb's law may
-   slip anywhere without friction: where it could not be raised at all, a jam is the word of rounding, and what the first
-   iteration ended with is told instead. */
+/* Why friction could not be raised further: whether the bodies jam at the whole of it. Pairs that obey Coulomb's law
+   may slip anywhere without friction: where it could not be raised at all, a jam is the word of rounding, and what the
+   first iteration ended with is told instead. */
 static PetscErrorCode RaiseOutcome(Active *a, ActiveOutcome *outcome)
 {
   PetscFunctionBeginUser;

@@ -1,5 +1,6 @@
 /*
-   The sign of the determinant of the small system where that is not dense. With w = G u, l = P z and w = Q z of all pairs
+   The sign of the determinant of the small system where that is not dense. With w = G u, l = P z and w = Q z of all
+   pairs
 
       | K_a   kappa (G'(P - Q) - S' D P) | | u |
       | -G                 Q             | | z |

@@ -6,12 +6,12 @@
 
       l = M g + q,   M = B^-1 A,   q = B^-1 (rhs - A g0),   A = I - W,   B = A / k + W - V D,   0 <= l, 0 <= g, l g = 0.
 
-   Pairs of Coulomb's law can be pivoted without friction only: their tangential rows have l = 0, so that B has the columns
-   of A there for w, and nothing is complementary to them.
+   Pairs of Coulomb's law can be pivoted without friction only: their tangential rows have l = 0, so that B has the
+   columns of A there for w, and nothing is complementary to them.
 
-   The tableau l - M g - e z0 = q, e = (1, ..., 1), begins with the largest z0 that makes all forces positive; whenever a
-   variable leaves the basis its complement enters, until z0 leaves. Ties are broken lexicographically by the columns of
-   l, so that no basis comes twice. A column without positive entry is a ray: no equilibrium is found.
+   The tableau l - M g - e z0 = q, e = (1, ..., 1), begins with the largest z0 that makes all forces positive; whenever
+   a variable leaves the basis its complement enters, until z0 leaves. Ties are broken lexicographically by the columns
+   of l, so that no basis comes twice. A column without positive entry is a ray: no equilibrium is found.
 */
 #include "statics/staticsimpl.h"
 #include "base/gather.h"

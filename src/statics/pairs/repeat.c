@@ -1,7 +1,7 @@
 /*
    Whether the active set goes round in a circle. What a status of all pairs leads to is fixed where their laws are
-   linear, so that one that repeats is a cycle; with Coulomb pairs in slip, whose laws change with the iterate, only where
-   forces and displacements repeat too.
+   linear, so that one that repeats is a cycle; with Coulomb pairs in slip, whose laws change with the iterate, only
+   where forces and displacements repeat too.
 */
 #include "statics/staticsimpl.h"
 

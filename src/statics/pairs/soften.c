@@ -1,27 +1,28 @@
 /*
-   Equilibrium with Coulomb's law by continuation in a regularisation of friction and contact: a pair slips by soft p under
-   friction p before it gives way, and an open one pulls with a force in proportion to its gap (kernels/contact/coulomb.h), so that
-   no body ever floats. While the regularisation is strong, friction is small wherever slip is. It is lowered in steps, each
-   begun from the equilibrium before it, until the laws themselves settle.
+   Equilibrium with Coulomb's law by continuation in a regularisation of friction and contact: a pair slips by soft p
+   under friction p before it gives way, and an open one pulls with a force in proportion to its gap
+   (kernels/contact/coulomb.h), so that no body ever floats. While the regularisation is strong, friction is small
+   wherever slip is. It is lowered in steps, each begun from the equilibrium before it, until the laws themselves
+   settle.
 
    At each softness Newton's method is made global by a line search: equilibrium is linear and holds all the way once a
    whole step was made, so that the residual of the laws alone decides how far to go (M. Hintermueller, K. Ito, K.
    Kunisch, SIAM J. Optim. 13, 2002, 865, for the active set as Newton's method).
 
    Cost: at most log(SOFTEST / HARDEST) / log(LAST_FACTOR) = 1246 softnesses are reached, 387 with LARGE_FACTOR in large
-   problems; each with a step that failed before it and a try of the laws themselves, and each of these tries solves at most
-   max_it small systems, those with drag among them.
+   problems; each with a step that failed before it and a try of the laws themselves, and each of these tries solves at
+   most max_it small systems, those with drag among them.
 */
 #include "statics/staticsimpl.h"
 
-#define SOFTEST       1e4  /* softness that begins, over 1 / kappa */
-#define PULL          1e-5 /* of an open pair over the softness */
-#define HARD          4.0  /* softness from which on Coulomb's law itself is tried */
+#define SOFTEST       1e4   /* softness that begins, over 1 / kappa */
+#define PULL          1e-5  /* of an open pair over the softness */
+#define HARD          4.0   /* softness from which on Coulomb's law itself is tried */
 #define HARDEST       1e-12 /* softness that is rounding */
-#define MOST_FACTOR   1e4  /* of the softness from step to step: at most, at first, and at last */
+#define MOST_FACTOR   1e4   /* of the softness from step to step: at most, at first, and at last */
 #define FIRST_FACTOR  16.0
 #define LAST_FACTOR   1.03
-#define LARGE_FACTOR  1.1 /* at last in large problems */
+#define LARGE_FACTOR  1.1  /* at last in large problems */
 #define DESCENT       1e-4 /* of the residual along a step */
 #define SHORTEST_STEP (1.0 / 65536)
 #define ENOUGH        1e-10 /* residual of the laws, relative to the largest force */

@@ -1,7 +1,7 @@
 /*
    How much of the loads on rigid motions forces of the pairs can balance: minimise |push - sum_p rate_p' l_p| over all
-   forces l_p that pair p can carry, l_n >= 0 with l_t = mu l_n where it slides, |l_t| <= mu l_n else. What is left obeys
-   rate_p . left in the polar of each cone, and left . push = |left|^2 (J. J. Moreau's decomposition).
+   forces l_p that pair p can carry, l_n >= 0 with l_t = mu l_n where it slides, |l_t| <= mu l_n else. What is left
+   obeys rate_p . left in the polar of each cone, and left . push = |left|^2 (J. J. Moreau's decomposition).
 
    Non-negative least squares (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23) on edges of the
    cones, each made when it is the one that helps most.
@@ -82,7 +82,8 @@ static PetscErrorCode EdgeSetFit(EdgeSet *e, const PetscReal push[])
   PetscFunctionReturn(0);
 }
 
-/* Forces on the way to the target, as far as none is negative; what is zero there leaves. Whether the target is reached. */
+/* Forces on the way to the target, as far as none is negative; what is zero there leaves. Whether the target is
+   reached. */
 static PetscBool EdgeSetMove(EdgeSet *e)
 {
   PetscReal part = 1;

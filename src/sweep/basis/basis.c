@@ -1,5 +1,6 @@
 /*
-   The reduced basis: its first vectors make the model, others tell its error; what rounding in the stiffness terms does to it.
+   The reduced basis: its first vectors make the model, others tell its error; what rounding in the stiffness terms does
+   to it.
 */
 #include "basis.h"
 #include "base/events.h"
@@ -17,10 +18,10 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   basis->pencil = pencil;
   PetscCall(PencilGetFrictionless(pencil, &frictionless));
   PetscCall(MassIsSingular(&frictionless, &singular)); /* of which vectors orthonormal in M hold nothing */
-  PetscCheck(
-    !singular, comm, PETSC_ERR_SUP,
-    "unknowns or directions have no mass (multipliers, nodes without inertia, a mass of fewer points): sweeps on a basis "
-    "are not offered with them; give -sweep_method full");
+  PetscCheck(!singular, comm, PETSC_ERR_SUP,
+             "unknowns or directions have no mass (multipliers, nodes without inertia, a mass of fewer points): sweeps "
+             "on a basis "
+             "are not offered with them; give -sweep_method full");
   PetscCall(MatDuplicate(frictionless.M, MAT_COPY_VALUES, &basis->M));
   PetscCall(MatSetOption(basis->M, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(SubspaceCreate(basis->M, basis->M, 0, &basis->space));

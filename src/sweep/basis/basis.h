@@ -11,12 +11,12 @@
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {
-  MPI_Comm   comm;
-  Pencil     pencil;
-  Mat        M;
-  Subspace   space;
-  Reduced    reduced; /* of its terms */
-  PetscInt   n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
+  MPI_Comm comm;
+  Pencil   pencil;
+  Mat      M;
+  Subspace space;
+  Reduced  reduced;                               /* of its terms */
+  PetscInt n_blocks, block_end[BASIS_MAX_BLOCKS]; /* vectors after each BasisAdd() */
 } Basis;
 
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis);
@@ -41,6 +41,6 @@ PetscErrorCode BasisDestroy(Basis *basis);
 /* fill.c - all unit vectors, for a small system; whole = whether the basis now is the whole space, which the mass
    matrix must allow */
 PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole);
-/* The n_modes real modes nearest to the shift, (rad/s)^2, of the undamped system at the pencil's present point, with the
-   symmetric part of its friction or without friction. PETSC_ERR_NOT_CONVERGED where fewer are found. */
+/* The n_modes real modes nearest to the shift, (rad/s)^2, of the undamped system at the pencil's present point, with
+   the symmetric part of its friction or without friction. PETSC_ERR_NOT_CONVERGED where fewer are found. */
 PetscErrorCode BasisFillReal(Basis *basis, PetscBool friction, PetscInt n_modes, PetscReal shift, Progress *progress);

@@ -89,7 +89,8 @@ static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscBool is_real = !damped && cimag(modes->lambda[i] * modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE;
 
-    if (ModeCounts(modes, i, damped)) PetscCall(ComplexColumnsAdd(c, modes->lambda[i], is_real, &vectors[i * modes->size]));
+    if (ModeCounts(modes, i, damped))
+      PetscCall(ComplexColumnsAdd(c, modes->lambda[i], is_real, &vectors[i * modes->size]));
   }
   PetscFunctionReturn(0);
 }

@@ -27,9 +27,9 @@ PetscErrorCode CorrectionFactor(Pencil pencil, const PetscReal p[], const Reduce
 PetscErrorCode CorrectionDestroy(Correction *correction);
 /* Moves to other values p: the pencil is made for them, the factorisation stays */
 PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *correction);
-/* How well the factorisation serves p: the largest over the least ratio of a coefficient of the stiffness at p and where
-   it was factored, one at the same point, not finite where a term comes, goes, or changes its sign. The eigenvalues of
-   P^-1 K(p), P factored below all of them and without friction, lie between those two ratios. */
+/* How well the factorisation serves p: the largest over the least ratio of a coefficient of the stiffness at p and
+   where it was factored, one at the same point, not finite where a term comes, goes, or changes its sign. The
+   eigenvalues of P^-1 K(p), P factored below all of them and without friction, lie between those two ratios. */
 PetscReal CorrectionSpread(const Correction *correction, const Reduced *reduced, const PetscReal p[]);
 /* Adds the residuals of modes at the point that the pencil is at */
 PetscErrorCode CorrectionCollect(const Correction *correction, const ReducedModes *modes, CorrectionSides sides,
@@ -42,7 +42,7 @@ PetscErrorCode CorrectionApply(const Correction *correction, PetscReal drop, Bas
 PetscErrorCode CorrectionDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes);
 
 /* Frictionless modes in the window (from zero on where its lower end is below half of the upper one) by Sylvester's law
-   of inertia with the pencil at p, and by the basis; the two are equal where the basis holds every mode. Both are -1 where the
-   matrices cannot be made frictionless. */
+   of inertia with the pencil at p, and by the basis; the two are equal where the basis holds every mode. Both are -1
+   where the matrices cannot be made frictionless. */
 PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window,
                                ShiftInvert *counter, PetscInt *full, PetscInt *by_basis);

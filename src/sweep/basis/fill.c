@@ -1,13 +1,14 @@
 /*
-   Bases that need no choice of points: all unit vectors, for a small system, and, for comparison, the lowest real modes at
-   one point, as complex modes of brakes usually are projected. They are those of the undamped system, either with the
-   symmetric part of the stiffness K + mu H (Abaqus 2024, Analysis, "Complex Eigenvalue Extraction": "the eigenmodes of the
-   undamped system with the symmetrized stiffness matrix must be extracted"), or without friction,
+   Bases that need no choice of points: all unit vectors, for a small system, and, for comparison, the lowest real modes
+   at one point, as complex modes of brakes usually are projected. They are those of the undamped system, either with
+   the symmetric part of the stiffness K + mu H (Abaqus 2024, Analysis, "Complex Eigenvalue Extraction": "the eigenmodes
+   of the undamped system with the symmetrized stiffness matrix must be extracted"), or without friction,
 
       (K + mu (H + H')/2) x = kappa M x      or      K x = kappa M x
 
-   The symmetric part of one pair, k_n (N'N - mu (T'N + N'T)/2), has a negative eigenvalue, about -k_n mu^2 / 4: a pair stiffer
-   than the bodies is an obstacle to other directions than N. No estimate of the error of the projection is to be had.
+   The symmetric part of one pair, k_n (N'N - mu (T'N + N'T)/2), has a negative eigenvalue, about -k_n mu^2 / 4: a pair
+   stiffer than the bodies is an obstacle to other directions than N. No estimate of the error of the projection is to
+   be had.
 */
 #include "basis.h"
 #include "solver/factor/shiftinvert.h"

@@ -10,10 +10,10 @@
    elsewhere), and no point does by the estimate with all corrections so far (points.c).
 
    Corrections of one point tell little of the error at others. Before it ends, the points farthest from all others are
-   therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on. Of two
-   points alone both are full solutions, which say nothing of what lies between: there the middle is looked at. Where few
-   points differ, as those of a load that changes contact statuses, the last full solution itself is looked at too: its
-   corrections end at rtol.
+   therefore looked at with the factors of the last one, a block solve each, which estimates the error from then on. Of
+   two points alone both are full solutions, which say nothing of what lies between: there the middle is looked at.
+   Where few points differ, as those of a load that changes contact statuses, the last full solution itself is looked at
+   too: its corrections end at rtol.
 */
 #include "greedywork.h"
 
@@ -108,8 +108,9 @@ static PetscErrorCode PointsStatuses(const GreedyWork *run, PetscInt *n)
   PetscFunctionReturn(0);
 }
 
-/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; then at the
-   last full solution itself, whose corrections ended at rtol and left short vectors out; NULL for nowhere more */
+/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; then
+   at the last full solution itself, whose corrections ended at rtol and left short vectors out; NULL for nowhere
+   more */
 static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const PetscReal middle[], PetscBool *own)
 {
   PetscReal farthest;
@@ -122,8 +123,8 @@ static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const Pet
   return run->greedy->sample[run->first].p;
 }
 
-/* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and close at
-   every status: what one lacks says little of another */
+/* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and close
+   at every status: what one lacks says little of another */
 static PetscErrorCode PointsLook(GreedyWork *run)
 {
   Greedy *const   g         = run->greedy;

@@ -23,15 +23,16 @@ typedef struct {
   PetscReal          rtol;
   PetscInt           max_samples;
   PetscInt           n_samples;
-  GreedySample      *sample;     /* [max_samples] */
-  PetscReal          worst;      /* largest estimated relative error at all points when it ended */
-  PetscReal          last;       /* estimate at the last point before it was taken in */
-  PetscReal          fall;       /* slowest fall of an estimate by a step of corrections so far; 0: none was seen */
-  PetscReal          reach;      /* largest |sigma| that corrections follow, 1/s, where a full solution has more than asked for; else 0 */
-  PetscInt           n_passed;   /* points in a row that needed nothing */
-  PetscBool          looked;     /* at other points since the last full solution */
-  Correction         correction; /* the last factors, kept for what comes after */
-  Progress          *progress;
+  GreedySample      *sample; /* [max_samples] */
+  PetscReal          worst;  /* largest estimated relative error at all points when it ended */
+  PetscReal          last;   /* estimate at the last point before it was taken in */
+  PetscReal          fall;   /* slowest fall of an estimate by a step of corrections so far; 0: none was seen */
+  /* largest |sigma| that corrections follow, 1/s, where a full solution has more than asked for; else 0 */
+  PetscReal  reach;
+  PetscInt   n_passed;   /* points in a row that needed nothing */
+  PetscBool  looked;     /* at other points since the last full solution */
+  Correction correction; /* the last factors, kept for what comes after */
+  Progress  *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */
   void *keep_ctx;
 } Greedy;

@@ -5,7 +5,7 @@
 
 /* Asked where corrections are made, beside rtol: a tenth of what POINTS_MARGIN leaves of it at other points */
 #define SAFE         (1. / 30)
-#define SETTLED      (0.3 * SAFE)         /* beside rtol: a mode that needs no more corrections at this point */
+#define SETTLED      (0.3 * SAFE) /* beside rtol: a mode that needs no more corrections at this point */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
 
@@ -49,7 +49,8 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
   PetscCall(PencilSetParameters(run->basis->pencil, p));
   PetscCall(SampleModes(run, wide));
   PetscCall(ModesGet(run->greedy->modes, &n, &mode));
-  for (PetscInt i = 0; i < n; i++) /* what lies beyond the growth asked for is followed by corrections like the others */
+  /* what lies beyond the growth asked for is followed by corrections like the others */
+  for (PetscInt i = 0; i < n; i++)
     if (PetscAbsReal(mode[i].sigma) > run->greedy->window.growth)
       run->greedy->reach = PetscMax(run->greedy->reach, (1 + SAMPLE_REACH) * PetscAbsReal(mode[i].sigma));
   run->guarded.growth = PetscMax(run->guarded.growth, run->greedy->reach);

@@ -1,7 +1,8 @@
 /*
-   Points on the reduced model with errors. The errors handed on are POINTS_MARGIN times those of estimate.c, which see what
-   the added vectors tell and no more: over 4,326 eigenvalues of scripts/study/errors the true error is at most 0.46 of what
-   is handed on. While the model is the same, only vectors that tell its error being added, solutions serve again.
+   Points on the reduced model with errors. The errors handed on are POINTS_MARGIN times those of estimate.c, which see
+   what the added vectors tell and no more: over 4,326 eigenvalues of scripts/study/errors the true error is at most
+   0.46 of what is handed on. While the model is the same, only vectors that tell its error being added, solutions serve
+   again.
 */
 #include "points.h"
 

@@ -1,6 +1,6 @@
 /*
-   The eigenvalues of a dense problem that belong to a window, rigid ones once. What is solved, and what rounding does to it,
-   is described in basis/companion.c.
+   The eigenvalues of a dense problem that belong to a window, rigid ones once. What is solved, and what rounding does
+   to it, is described in basis/companion.c.
 */
 #include "eigen.h"
 #include "base/events.h"
@@ -35,8 +35,8 @@ PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex 
 }
 
 /* Whether lambda is zero within rounding: of K, here and on the mesh, and of the shifted solution */
-static PetscErrorCode IsRigid(const DenseShifted *w, const PetscReal E[], PetscComplex lambda,
-                              const PetscComplex x[], PetscBool *rigid)
+static PetscErrorCode IsRigid(const DenseShifted *w, const PetscReal E[], PetscComplex lambda, const PetscComplex x[],
+                              PetscBool *rigid)
 {
   const PetscInt  n      = w->n;
   const PetscReal square = cabs(lambda) * cabs(lambda), own = PETSC_MACHINE_EPSILON * w->shift * w->shift;
@@ -86,8 +86,8 @@ static PetscErrorCode RigidOnce(PetscInt n_rigid, ReducedModes *modes)
   PetscFunctionReturn(0);
 }
 
-/* Indices list [N] of the eigenvalues that belong to the window, rigid ones in front; lambda [N] of all; how many there are, and
-   how many of them are rigid */
+/* Indices list [N] of the eigenvalues that belong to the window, rigid ones in front; lambda [N] of all; how many there
+   are, and how many of them are rigid */
 static PetscErrorCode List(const DenseShifted *w, const PetscReal E[], const ReducedWindow *window, PetscInt list[],
                            PetscComplex lambda[], PetscInt count[2])
 {

@@ -1,7 +1,7 @@
 /*
    Errors of the eigenvalues of the reduced model, estimated from vectors Z of the basis [V Z] that the model does not
-   use. Z is first made free of couplings to V at a real shift (complement.c), right Z_r = Z - V T and left Z_l = Z - V T'.
-   With Q in blocks, elimination of the coordinates of Z leaves on V the exact
+   use. Z is first made free of couplings to V at a real shift (complement.c), right Z_r = Z - V T and left Z_l = Z - V
+   T'. With Q in blocks, elimination of the coordinates of Z leaves on V the exact
 
       Q_eff(lambda) = Q_vv - Q_vz Q_zz^-1 Q_zv,   Q_vz = V^T Q Z_r,  Q_zv = Z_l^T Q V,  Q_zz = Z_l^T Q Z_r.
 
@@ -11,12 +11,12 @@
       0 = y^T Q_eff(lambda + d) x = d y^T Q_vv'(lambda) x - s^T Q_zz^-1 r + higher orders,
       d = s^T Q_zz(lambda)^-1 r / (y^T Q'(lambda) x),    y^T Q' x = 2 lambda y^T D x.
 
-   Higher orders are small as Q_vz Q_zz^-1 Q_zv is small beside Q_vv on all of V, which takes the vectors Z_r and Z_l: of
-   plain Z the couplings between stiff vectors are as large as their stiffness, and the first order alone was up to 300 times
-   too small.
-   This is the customary y^T (residual) / (y^T Q' x) with the left vector improved in Z_l, [y; -Q_zz^-T s]: with the left
-   vector of the model itself it is zero, since the residual is orthogonal to V (Galerkin). It is of second order, the
-   product of the errors of the right and the left vector, and it estimates what Z adds: what lies outside [V Z] it
+   Higher orders are small as Q_vz Q_zz^-1 Q_zv is small beside Q_vv on all of V, which takes the vectors Z_r and Z_l:
+   of plain Z the couplings between stiff vectors are as large as their stiffness, and the first order alone was up to
+   300 times too small.
+   This is the customary y^T (residual) / (y^T Q' x) with the left vector improved in Z_l, [y; -Q_zz^-T s]: with the
+   left vector of the model itself it is zero, since the residual is orthogonal to V (Galerkin). It is of second order,
+   the product of the errors of the right and the left vector, and it estimates what Z adds: what lies outside [V Z] it
    cannot see. Without damping Q = K - kappa M is linear in kappa = -lambda^2, and
 
       d kappa = -s^T Q_zz^-1 r / (y^T M x),    d lambda = -d kappa / (lambda_new + lambda).

@@ -17,7 +17,8 @@ typedef struct {
 /* complement.c - makes what lies beyond V, free of couplings to it at the real shift h, rad/s */
 PetscErrorCode EstimateComplement(Estimate *e, PetscReal h);
 
-/* estimate.c - r [m][n_z] = (Z - V T')^T Q(lambda) V x (left false) or (Z - V T)^T Q(lambda)^T V x of m vectors x [m][n_v] */
+/* estimate.c - r [m][n_z] = (Z - V T')^T Q(lambda) V x (left false) or (Z - V T)^T Q(lambda)^T V x of m vectors x
+   [m][n_v] */
 PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
                               const PetscComplex x[], PetscComplex r[]);
 /* r := Q(lambda)^-1 r of the complement, [m][n_z]; singular where lambda is an eigenvalue of it */

@@ -1,6 +1,7 @@
 /*
-   Whether the mass stays positive definite over the points: M(p) = sum_t c_t(p) A_t of given terms need not. On the mesh this is
-   checked at the full solutions alone; here at every point, of V' M(p) V, which is all that the basis holds of it.
+   Whether the mass stays positive definite over the points: M(p) = sum_t c_t(p) A_t of given terms need not. On the
+   mesh this is checked at the full solutions alone; here at every point, of V' M(p) V, which is all that the basis
+   holds of it.
 */
 #include "reduced.h"
 #include <petscblaslapack.h>
@@ -12,7 +13,8 @@ static PetscBool MassDepends(const Reduced *reduced, PetscInt parameter)
   for (PetscInt t = 0; t < reduced->n_terms; t++) {
     const OperatorsTerm *term = &reduced->term[t];
 
-    if (term->kind == OPERATORS_MASS && (parameter < 0 ? term->n > 0 : OperatorsTermDepends(term, parameter))) return PETSC_TRUE;
+    if (term->kind == OPERATORS_MASS && (parameter < 0 ? term->n > 0 : OperatorsTermDepends(term, parameter)))
+      return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }

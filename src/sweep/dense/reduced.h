@@ -20,8 +20,8 @@ typedef struct {
                                           rounding in the dense matrices */
 } Reduced;
 
-/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s; and with rtol > 0 those of larger |sigma| that the basis
-   happens to have: whose estimated error is at most rtol |lambda| */
+/* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s; and with rtol > 0 those of larger |sigma|
+   that the basis happens to have: whose estimated error is at most rtol |lambda| */
 typedef struct {
   PetscReal low, high, growth, rtol;
 } ReducedWindow;
@@ -61,8 +61,8 @@ PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
 PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
 
-/* mass.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite; no mass that
-   depends on parameters: nothing to do */
+/* mass.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite; no
+   mass that depends on parameters: nothing to do */
 PetscErrorCode ReducedCheckMass(const Reduced *reduced, const PetscReal p[], const PetscReal Ms[]);
 
 /* Whether a damping term has a coefficient that is not zero */
@@ -71,8 +71,8 @@ PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[]);
 /* Labels cluster [n] = first member: puts j and all of its cluster into the cluster of i */
 void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[]);
 
-/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effects on kappa, times |y^T D x|, of m modes with vectors
-   X, Y [m][n]; marks the modes that are zero within it */
+/* rounding.c - E [n_used * n_used] of the mesh's rounding; its effects on kappa, times |y^T D x|, of m modes with
+   vectors X, Y [m][n]; marks the modes that are zero within it */
 #define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
 #define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
 void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);

@@ -1,6 +1,6 @@
 /*
-   The vectors of a point of a sweep in full as coordinates in an orthonormal basis that they share with those of the point
-   before, and the pencil between the vectors of this basis.
+   The vectors of a point of a sweep in full as coordinates in an orthonormal basis that they share with those of the
+   point before, and the pencil between the vectors of this basis.
 */
 #include "follow.h"
 #include "base/algebra/dense.h"
@@ -45,8 +45,8 @@ static void TakeCoordinates(PetscInt size, const PetscScalar H[], const PetscInt
     x[r] = CMPLX(H[column[0] * size + r], column[1] < 0 ? 0 : H[column[1] * size + r]);
 }
 
-/* V = [V0, Q], orthonormal, of n0 vectors and what the columns hold beyond them, which they are replaced by; H [.][size] are
-   their coordinates, size that of V */
+/* V = [V0, Q], orthonormal, of n0 vectors and what the columns hold beyond them, which they are replaced by; H
+   [.][size] are their coordinates, size that of V */
 static PetscErrorCode BasisJoin(BV V0, PetscInt n0, BV block, BV *V, PetscScalar **H, PetscInt *size)
 {
   PetscInt     m, n;

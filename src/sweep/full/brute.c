@@ -97,7 +97,8 @@ PetscErrorCode SweepBrute(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Largest distance of a full eigenvalue in the window from the nearest reduced one, relative, and the frequency where it is */
+/* Largest distance of a full eigenvalue in the window from the nearest reduced one, relative, and the frequency where
+   it is */
 static PetscReal LargestDistance(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced,
                                  PetscReal *omega)
 {
@@ -135,7 +136,8 @@ static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const R
   }
 }
 
-/* How many modes each solution has of those that both must have, how many grow, and the largest error that the full one states */
+/* How many modes each solution has of those that both must have, how many grow, and the largest error that the full one
+   states */
 static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
 {
   const PetscReal growth = sweep->window.growth;
@@ -156,12 +158,12 @@ static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const Re
   }
 }
 
-/* Compares the two at the point of the check, by what both must have: growth and decay as asked for, |sigma|; the reduced window is
-   a little wider, for modes on its edge */
+/* Compares the two at the point of the check, by what both must have: growth and decay as asked for, |sigma|; the
+   reduced window is a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
 {
   const PetscReal     growth = sweep->window.growth;
-  const ReducedWindow wide   = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), growth * (1 + 1e-3), 0};
+  const ReducedWindow wide = {sweep->window.low * (1 - 1e-3), sweep->window.high * (1 + 1e-3), growth * (1 + 1e-3), 0};
   const Mode         *full;
   ReducedModes        reduced;
   PetscReal          *p;

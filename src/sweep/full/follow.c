@@ -1,10 +1,10 @@
 /*
    Branches of a sweep in full. Of each point the vectors are kept until the next one is solved, right and left ones, as
-   coordinates in an orthonormal basis of what they span. The vectors of the next point extend that basis, and the pencil of
-   that point between the vectors of the basis is a reduced model and, at these modes, without error: on it they are matched
-   as at any step of track/ (TrackStep()). The products of the earlier point have the damping that it has there, on which
-   those of real eigenvalues depend altogether, but the mass of the later one. In a grid each line begins at the first point
-   of the line before.
+   coordinates in an orthonormal basis of what they span. The vectors of the next point extend that basis, and the
+   pencil of that point between the vectors of the basis is a reduced model and, at these modes, without error: on it
+   they are matched as at any step of track/ (TrackStep()). The products of the earlier point have the damping that it
+   has there, on which those of real eigenvalues depend altogether, but the mass of the later one. In a grid each line
+   begins at the first point of the line before.
 
    All vectors are those of all unknowns, since which of them an exact constraint eliminates may change from point to
    point.
@@ -15,16 +15,14 @@
 static PetscErrorCode PointStepFrom(Sweep sweep, StepKind kind, const Reduced *reduced, const FollowPoint *from,
                                     FollowPoint *point)
 {
-  PointStep step = {
-    .kind       = kind,
-    .window     = &sweep->window,
-    .p          = {(PetscReal[]){0, 1}, (PetscReal[]){1, 0}},
-    .a          = {from->value, &from->modes, from->branch},
-    .b          = {point->value, &point->modes, point->branch},
-    .before     = &from->memory,
-    .after      = &point->memory,
-    .n_branches = sweep->n_branches
-  };
+  PointStep step = {.kind       = kind,
+                    .window     = &sweep->window,
+                    .p          = {(PetscReal[]){0, 1}, (PetscReal[]){1, 0}},
+                    .a          = {from->value, &from->modes, from->branch},
+                    .b          = {point->value, &point->modes, point->branch},
+                    .before     = &from->memory,
+                    .after      = &point->memory,
+                    .n_branches = sweep->n_branches};
 
   PetscFunctionBeginUser;
   PetscCall(TrackStep(reduced, &step, &sweep->events));

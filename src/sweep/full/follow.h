@@ -23,8 +23,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode FollowTake(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow);
 PETSC_INTERN PetscErrorCode FollowDestroy(Follow *follow);
 
-/* full/basis.c - the modes that were found, as a line keeps them, with the vectors of the eigensolver; their basis is that
-   of a point before (NULL: none), extended. Collective, like all that follow. */
+/* full/basis.c - the modes that were found, as a line keeps them, with the vectors of the eigensolver; their basis is
+   that of a point before (NULL: none), extended. Collective, like all that follow. */
 PETSC_INTERN PetscErrorCode FollowRead(Sweep sweep, const FollowPoint *from, const ReducedModes *found,
                                        FollowPoint *point);
 /* The same modes in a basis of size vectors, that begins with theirs or, with U [size][their size], is V U */
@@ -36,8 +36,8 @@ PETSC_INTERN PetscErrorCode FollowModelDestroy(Reduced *reduced);
 /* full/keep.c - a point behind others in a pack, or out of it into a new one, with its vectors beside it */
 PETSC_INTERN PetscErrorCode FollowPointMove(MPI_Comm comm, JournalPack *pack, FollowPoint *point, JournalItem *vectors);
 
-/* keptpoints.c - goes on from what is kept of a sweep in full, or on real modes: all but the places; then place i of a line, as long as
-   it is one of these; keeps the sweep after place i. Collective. */
+/* keptpoints.c - goes on from what is kept of a sweep in full, or on real modes: all but the places; then place i of a
+   line, as long as it is one of these; keeps the sweep after place i. Collective. */
 PETSC_INTERN PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow);
 PETSC_INTERN PetscErrorCode SweepTakePlace(Sweep sweep, PetscInt i, LinePoints *points, PetscBool *taken);
 PETSC_INTERN PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follow *follow);

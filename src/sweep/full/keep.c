@@ -1,6 +1,6 @@
 /*
-   A point from which the branches of a sweep in full go on, as arrays of a file and back: its modes and those it remembers in
-   coordinates of its vectors, its damping row by row, and the vectors.
+   A point from which the branches of a sweep in full go on, as arrays of a file and back: its modes and those it
+   remembers in coordinates of its vectors, its damping row by row, and the vectors.
 */
 #include "follow.h"
 
@@ -127,7 +127,8 @@ PetscErrorCode FollowPointMove(MPI_Comm comm, JournalPack *pack, FollowPoint *po
   n = h.size * h.n_local;
   if (pack->write) PetscCall(PetscMalloc1(n, &vectors->values));
   if (pack->write) vectors->n = n;
-  PetscCheck(pack->write || (pack->good && vectors->n == n), PETSC_COMM_SELF, PETSC_ERR_PLIB, "a kept point lacks vectors");
+  PetscCheck(pack->write || (pack->good && vectors->n == n), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "a kept point lacks vectors");
   PetscCall(SweepVectorsMove(point->vectors, 0, h.size, pack->write ? PETSC_FALSE : PETSC_TRUE, vectors->values));
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,8 @@
 /*
-   What a killed sweep in full, or on real modes, goes on from: sweep_restart_000, written anew after each place, with the modes of all
-   places so far and how many branches and events there were after each; in full also the contact statuses and the points from which
-   branches go on. What is taken up goes through the same functions as what is solved, so that the tables are the same.
+   What a killed sweep in full, or on real modes, goes on from: sweep_restart_000, written anew after each place, with
+   the modes of all places so far and how many branches and events there were after each; in full also the contact
+   statuses and the points from which branches go on. What is taken up goes through the same functions as what is
+   solved, so that the tables are the same.
 */
 #include "follow.h"
 #include "base/process/interrupt.h"
@@ -112,7 +113,8 @@ PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follo
   PetscCall(JournalPackDestroy(&pack));
   sweep->places.good = kept; /* else it goes on without */
   if (kept)
-    InterruptSays("%d of %d points are kept, with which the same command goes on", (int)h.n_places, (int)sweep->grid.n_places);
+    InterruptSays("%d of %d points are kept, with which the same command goes on", (int)h.n_places,
+                  (int)sweep->grid.n_places);
   PetscFunctionReturn(0);
 }
 
@@ -128,14 +130,12 @@ PetscErrorCode SweepTakePlace(Sweep sweep, PetscInt i, LinePoints *points, Petsc
 
 PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow)
 {
-  JournalItem item[N_KEPT_ITEMS] = {
-    [ITEM_PLACES] = {"places",                     -1, NULL},
-    [ITEM_STATE]  = {"state",                      -1, NULL},
-    [ITEM_BEFORE] = {"vectors",                    -1, NULL},
-    [ITEM_FIRST]  = {"vectors of the line before", -1, NULL}
-  };
-  JournalPack pack = {.good = PETSC_TRUE};
-  StateHeader h = {0};
+  JournalItem item[N_KEPT_ITEMS] = {[ITEM_PLACES] = {"places", -1, NULL},
+                                    [ITEM_STATE]  = {"state", -1, NULL},
+                                    [ITEM_BEFORE] = {"vectors", -1, NULL},
+                                    [ITEM_FIRST]  = {"vectors of the line before", -1, NULL}};
+  JournalPack pack               = {.good = PETSC_TRUE};
+  StateHeader h                  = {0};
   char        name[64];
   PetscBool   taken;
 
@@ -149,13 +149,15 @@ PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow)
   pack.word = item[ITEM_STATE].values;
   pack.n    = item[ITEM_STATE].n;
   PetscCall(StateMove(sweep, &h, &pack, item, follow));
-  sweep->places = (JournalPack){item[ITEM_PLACES].values, item[ITEM_PLACES].n, item[ITEM_PLACES].n, 0, PETSC_FALSE, PETSC_TRUE};
+  sweep->places =
+    (JournalPack){item[ITEM_PLACES].values, item[ITEM_PLACES].n, item[ITEM_PLACES].n, 0, PETSC_FALSE, PETSC_TRUE};
   sweep->n_kept = h.n_places;
   PetscCall(JournalPackDestroy(&pack));
   PetscCall(PetscFree(item[ITEM_BEFORE].values));
   PetscCall(PetscFree(item[ITEM_FIRST].values));
-  PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " of %" PetscInt_FMT " points kept in %s\n", h.n_places,
-                        sweep->grid.n_places, sweep->folder));
-  InterruptSays("%d of %d points are kept, with which the same command goes on", (int)h.n_places, (int)sweep->grid.n_places);
+  PetscCall(PetscPrintf(sweep->comm, "going on with %" PetscInt_FMT " of %" PetscInt_FMT " points kept in %s\n",
+                        h.n_places, sweep->grid.n_places, sweep->folder));
+  InterruptSays("%d of %d points are kept, with which the same command goes on", (int)h.n_places,
+                (int)sweep->grid.n_places);
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,7 @@
 /*
-   Projection on real modes, for comparison with other programs: at each point the pencil is projected on real modes of that
-   point (basis/fill.c), as a deck for each value does it. Nothing joins two points: there are no branches and no onsets.
+   Projection on real modes, for comparison with other programs: at each point the pencil is projected on real modes of
+   that point (basis/fill.c), as a deck for each value does it. Nothing joins two points: there are no branches and no
+   onsets.
 */
 #include "follow.h"
 

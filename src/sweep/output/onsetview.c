@@ -65,12 +65,11 @@ static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParamete
       sweep->label[event->branch[0]].text, (double)(event->omega / (2 * PETSC_PI)), event->above ? "above" : "below"));
   else
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.*g %s +- %.1e, %.2f Hz, %s%s\n",
-                                     event->by_damping ? by_damping[event->kind] : kinds[event->kind],
-                                     parameter->name, OnsetDigits(sweep), (double)event->critical, parameter->unit,
-                                     (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
-                                     sweep->label[event->branch[0]].text,
-                                     sweep->is_confirmed[e]        ? ""
-                                     : event->jumps                ? " (modes change places there: give more values between)"
+                                     event->by_damping ? by_damping[event->kind] : kinds[event->kind], parameter->name,
+                                     OnsetDigits(sweep), (double)event->critical, parameter->unit, (double)event->error,
+                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
+                                     sweep->is_confirmed[e] ? ""
+                                     : event->jumps         ? " (modes change places there: give more values between)"
                                      : sweep->method == SWEEP_FULL ? " (between two points)"
                                                                    : " (not confirmed on the full problem)"));
   PetscFunctionReturn(0);

@@ -250,27 +250,46 @@ static PetscErrorCode TableWrite(Sweep sweep, Results results, const SweepTable 
   PetscFunctionReturn(0);
 }
 
-static const SweepTable point_table = {"sweep",
-                                       "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,"
-                                       "class,error_hz,condition,onset_distance,n_closed,jump",
-                                       PointRows};
-static const SweepTable parameter_table = {"parameters", "parameter,value,unit,swept,link", ParameterRows};
-static const SweepTable onset_table     = {"onsets",
-                                           "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
-                                           "confirmed,value_2",
-                                           OnsetRows};
-static const SweepTable check_table     = {"verify",
-                                           "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,"
-                                           "true_error,error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio",
-                                           CheckRows};
-static const SweepTable risk_table      = {"robustness",
-                                           "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,"
-                                           "unstable_combinations,combinations",
-                                           RiskRows};
-static const SweepTable sensitivity_table = {"sensitivities",
-                                             "point,value,branch,freq_hz,parameter,freq_hz_per_unit,"
-                                             "growth_rad_s_per_unit,freq_hz_per_percent,growth_rad_s_per_percent",
-                                             SensitivityRows};
+static const SweepTable point_table = {
+  "sweep",
+  "point,value,branch,freq_hz,growth_rad_s,error_estimate,unstable,label,value_2,"
+  "class,error_hz,condition,onset_distance,n_closed,jump",
+  PointRows,
+};
+
+static const SweepTable parameter_table = {
+  "parameters",
+  "parameter,value,unit,swept,link",
+  ParameterRows,
+};
+
+static const SweepTable onset_table = {
+  "onsets",
+  "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
+  "confirmed,value_2",
+  OnsetRows,
+};
+
+static const SweepTable check_table = {
+  "verify",
+  "value,value_2,modes_full,modes_reduced,unstable_full,unstable_reduced,"
+  "true_error,error_estimate,freq_hz,full_error,modes_beyond_error,worst_ratio",
+  CheckRows,
+};
+
+static const SweepTable risk_table = {
+  "robustness",
+  "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,"
+  "unstable_combinations,combinations",
+  RiskRows,
+};
+
+static const SweepTable sensitivity_table = {
+  "sensitivities",
+  "point,value,branch,freq_hz,parameter,freq_hz_per_unit,"
+  "growth_rad_s_per_unit,freq_hz_per_percent,growth_rad_s_per_percent",
+  SensitivityRows,
+};
 
 PetscErrorCode SweepWrite(Sweep sweep, Results results)
 {

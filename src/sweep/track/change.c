@@ -31,18 +31,16 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 /* Event between two points of mode i, which is unstable at this one */
 static BranchEvent EventOf(const ModeFrame *frame, PetscInt i, const ModeFrame *other)
 {
-  return (BranchEvent){
-    .lambda   = frame->modes.lambda[i],
-    .omega    = cimag(frame->modes.lambda[i]),
-    .lower    = PetscMin(frame->value, other->value),
-    .upper    = PetscMax(frame->value, other->value),
-    .critical = frame->value,
-    .branch   = {frame->branch[i], EventPartner(frame, i)}
-  };
+  return (BranchEvent){.lambda   = frame->modes.lambda[i],
+                       .omega    = cimag(frame->modes.lambda[i]),
+                       .lower    = PetscMin(frame->value, other->value),
+                       .upper    = PetscMax(frame->value, other->value),
+                       .critical = frame->value,
+                       .branch   = {frame->branch[i], EventPartner(frame, i)}};
 }
 
-/* Whether most of the growth of mode i comes from damping, not from an unsymmetric stiffness through which two modes feed each
-   other. With x^H M x = 1 the imaginary part of x^H Q(sigma + i omega) x = 0 is
+/* Whether most of the growth of mode i comes from damping, not from an unsymmetric stiffness through which two modes
+   feed each other. With x^H M x = 1 the imaginary part of x^H Q(sigma + i omega) x = 0 is
 
       2 sigma omega = P - omega c,   P = -Im x^H K x,   c = Re x^H C x,
 

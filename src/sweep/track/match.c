@@ -20,8 +20,8 @@
 #define SMALL   0.3
 #define BESIDE  0.4
 #define LOST    0.7
-#define PLACE   0.1 /* score for keeping the place in the order of frequency */
-#define LEAST   0.1 /* score below which modes of an uncertain component are not matched */
+#define PLACE   0.1   /* score for keeping the place in the order of frequency */
+#define LEAST   0.1   /* score below which modes of an uncertain component are not matched */
 #define ROUNDED 1e-12 /* of an eigenvalue */
 
 /* strength[i, j] of all modes */
@@ -171,8 +171,8 @@ PetscErrorCode MatchCreate(const ModeFrame *a, const ModeFrame *b, const Reduced
   PetscFunctionReturn(0);
 }
 
-/* Place of mode i in its component by ascending order[]; among equals the less stable is first, and of modes that rounding or their
-   errors alone part, the earlier one */
+/* Place of mode i in its component by ascending order[]; among equals the less stable is first, and of modes that
+   rounding or their errors alone part, the earlier one */
 static PetscInt ComponentPlace(const ReducedModes *modes, const PetscInt component[], const PetscReal order[],
                                PetscInt i)
 {

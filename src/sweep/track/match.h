@@ -13,8 +13,9 @@ typedef struct {
   PetscInt  *clusters_a, *clusters_b;   /* [n_components] clusters of a, b in each */
   PetscBool *certain;                   /* [n_components] */
   PetscBool  all_certain;
-  PetscReal  least; /* modes of an uncertain component are assigned when they alone reach this strength; 0: as scores say */
-  PetscInt  *from;  /* [nb] mode of a or -1; MatchAssign() */
+  /* modes of an uncertain component are assigned when they alone reach this strength; 0: as scores say */
+  PetscReal least;
+  PetscInt *from; /* [nb] mode of a or -1; MatchAssign() */
 } Match;
 
 /* match.c - window (may be NULL): a mode without partner is certain only when it left or entered the window */

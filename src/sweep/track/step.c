@@ -1,11 +1,11 @@
 /*
-   Steps between two points with nothing solved in between: across a change of contact status, from one line of a grid to
-   the next, and between the points of a sweep in full. A match that is not certain is none, but for one by more than half
-   across a change of status, which no point in between would make certain.
+   Steps between two points with nothing solved in between: across a change of contact status, from one line of a grid
+   to the next, and between the points of a sweep in full. A match that is not certain is none, but for one by more than
+   half across a change of status, which no point in between would make certain.
 
    Onsets of such a step lie where g of onset.c, known at both ends from the eigenvalues alone, is zero on the straight
-   line between them: -d of a pair without damping, -kappa of one mode, the growth with damping. The error is the distance
-   to the farther end, so that both ends are within it.
+   line between them: -d of a pair without damping, -kappa of one mode, the growth with damping. The error is the
+   distance to the farther end, so that both ends are within it.
 */
 #include "branch.h"
 #include "change.h"
@@ -118,8 +118,8 @@ static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member
   return n > 1 ? -creal(square) : -*m;
 }
 
-/* Where the event of mode i, unstable at u and not at s, lies: its zero of g, or half way where to [modes of u], the modes of
-   s, does not tell the ends (NULL: none) */
+/* Where the event of mode i, unstable at u and not at s, lies: its zero of g, or half way where to [modes of u], the
+   modes of s, does not tell the ends (NULL: none) */
 static PetscErrorCode StepPlace(const ModeFrame *u, const ModeFrame *s, PetscInt i, const PetscInt to[],
                                 BranchEvent *event)
 {
@@ -158,8 +158,8 @@ static PetscBool ComponentIsStable(const ModeFrame *f, const PetscInt component[
   return n > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Onsets seen from u, some of whose modes are unstable while what they come from at s is not: along a branch, to [modes of u]
-   = mode of s, and of modes that only together are those of the other point, half way */
+/* Onsets seen from u, some of whose modes are unstable while what they come from at s is not: along a branch, to [modes
+   of u] = mode of s, and of modes that only together are those of the other point, half way */
 static PetscErrorCode StepOnsets(const ModeFrame *u, const PetscInt component[], const ModeFrame *s,
                                  const PetscInt component_s[], const PetscInt to[], BranchEvents *events)
 {

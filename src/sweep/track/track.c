@@ -31,7 +31,10 @@ static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeF
     const PetscBool at_a = i >= 0 ? ReducedModeIsUnstable(&a->modes, i) : PETSC_FALSE;
 
     if (i < 0 || at_a == ReducedModeIsUnstable(&b->modes, j)) continue;
-    PetscCall(at_a ? ChangeAdd(a, i, b, tracker->events) : ChangeAdd(b, j, a, tracker->events));
+    if (at_a)
+      PetscCall(ChangeAdd(a, i, b, tracker->events));
+    else
+      PetscCall(ChangeAdd(b, j, a, tracker->events));
   }
   PetscFunctionReturn(0);
 }

@@ -21,12 +21,13 @@ typedef struct {
   PetscReal       omega;        /* rad/s at the critical value */
   PetscReal       error;        /* estimated error of the critical value, in its unit */
   PetscBool       found;
-  PetscBool       jumps;                /* modes change places in the bracket: critical is its middle, error half of it, omega of lambda */
-  PetscBool       by_damping;           /* of a lock-in or lock-out: damping changes its sign, no two modes coalesce */
-  PetscBool       above;                /* of a jump: unstable at upper */
-  PetscInt        place;                /* of the grid, whose other parameters hold; set by the caller */
-  PetscInt        n_solved, n_followed; /* reduced eigenproblems, and single modes followed, so far */
-  PetscInt        n_corrected;          /* corrections on the full problem, counted by the caller */
+  /* modes change places in the bracket: critical is its middle, error half of it, omega of lambda */
+  PetscBool jumps;
+  PetscBool by_damping;           /* of a lock-in or lock-out: damping changes its sign, no two modes coalesce */
+  PetscBool above;                /* of a jump: unstable at upper */
+  PetscInt  place;                /* of the grid, whose other parameters hold; set by the caller */
+  PetscInt  n_solved, n_followed; /* reduced eigenproblems, and single modes followed, so far */
+  PetscInt  n_corrected;          /* corrections on the full problem, counted by the caller */
 } BranchEvent;
 
 typedef struct {
@@ -57,8 +58,8 @@ void BranchLineSet(const BranchLine *line, PetscReal value, PetscReal p[]);
    grows. Where the match of two neighbouring points is ambiguous the interval is halved by further ReducedSolve(). */
 PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const ReducedModes modes[], PetscInt *branch[],
                          PetscInt *n_branches, BranchEvents *events);
-/* step.c - match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1; certain =
-   whether no match is ambiguous */
+/* step.c - match of the modes of two points a, b that may differ in any parameter: from[i of b] = mode of a or -1;
+   certain = whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain);
 /* Modes of two points a, b on the two sides of a change of contact status: branches of b that are certainly
@@ -66,8 +67,8 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
    only. p = all parameters at b */
 PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const BranchPoint *a, BranchPoint *b,
                          BranchEvents *events);
-/* Vectors of branches whose modes cannot be told from others at a point, from before they joined them; made with room for
-   all modes and n = 0 */
+/* Vectors of branches whose modes cannot be told from others at a point, from before they joined them; made with room
+   for all modes and n = 0 */
 typedef struct {
   ReducedModes modes;
   PetscInt    *branch;
@@ -87,8 +88,8 @@ typedef struct {
   PetscInt             n_broken; /* branches that end at a since the step is too large to tell where they go on */
 } PointStep;
 
-/* Branches of b from those of a, new ones from n_branches on, and events of the kind, where nothing is solved between the
-   points. The place of an onset is interpolated; its error reaches both points. What is uncertain ends. */
+/* Branches of b from those of a, new ones from n_branches on, and events of the kind, where nothing is solved between
+   the points. The place of an onset is interpolated; its error reaches both points. What is uncertain ends. */
 PetscErrorCode TrackStep(const Reduced *reduced, PointStep *step, BranchEvents *events);
 /* change.c */
 PetscErrorCode BranchEventsDestroy(BranchEvents *events);

@@ -1,5 +1,6 @@
 /*
-   The linear system of chord.c: its indices in the frames of their pairs, the factors of a base set, and what borders them.
+   The linear system of chord.c: its indices in the frames of their pairs, the factors of a base set, and what borders
+   them.
 */
 #include "base/algebra/versions.h"
 #include "contact/compliance/complianceimpl.h"
@@ -89,7 +90,8 @@ static inline PetscInt ChordMost(PetscInt m)
   return PetscMax(CHORD_LEAST, m / CHORD_SHARE);
 }
 
-/* Room for a base of m indices, one at least, and its borders: of a base of none PetscMalloc() makes V NULL, as where it is full */
+/* Room for a base of m indices, one at least, and its borders: of a base of none PetscMalloc() makes V NULL, as where
+   it is full */
 static PetscErrorCode ChordReserve(ContactCompliance c)
 {
   ComplianceChord *h = &c->chord;

@@ -1,25 +1,26 @@
 /*
-   Newton's method with factors that stay from step to step. Indices of a pair, in its frame (n, x, e), e near the direction of its slip
-   and x across it, each with a force dz and the row that this is found from,
+   Newton's method with factors that stay from step to step. Indices of a pair, in its frame (n, x, e), e near the
+   direction of its slip and x across it, each with a force dz and the row that this is found from,
 
       0  n        l = (1, -mu e) dz     v_n = 0                    closed
       1  across   l = x dz              v_x + c l_x = 0            slips, c = |v_T| / (mu l_n)
       2  across   l = x dz              v_x = 0                    sticks
       3  along    l = e dz              v_e = 0                    sticks
 
-   of which the second says that friction is along the slip, v_T = -c l_T. With frame, mu and c held, the matrix A of a set of indices is
-   that of W kappa in these directions, c on its diagonal, and statuses change the set alone. LU factors of a base set serve
-   all near it: indices that join (B) and that leave (D) border it,
+   of which the second says that friction is along the slip, v_T = -c l_T. With frame, mu and c held, the matrix A of a
+   set of indices is that of W kappa in these directions, c on its diagonal, and statuses change the set alone. LU
+   factors of a base set serve all near it: indices that join (B) and that leave (D) border it,
 
       [A0   A_0B  E_D] [x0 ]   [b0 ]
       [A_B0 A_BB  0  ] [x_B] = [b_B]      solved by the Schur complement on A0, of as many rows as indices changed
       [E_D' 0     0  ] [y  ]   [0  ]
 
-   (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dz = -v, the present c in
-   place of the one held; then friction of sliding pairs is put on their cones. A pair whose c is beyond COMPLIANCE_WEAK carries next to
-   nothing and has no index 1: its friction is turned to where it slides at the present v. What c, e and mu have changed since makes an
-   iteration contract less; mix.c makes up for some of it, and factors are renewed where they cost more iterations than new ones take time.
-   Where that does not converge, newton.c follows.
+   (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dz = -v,
+   the present c in place of the one held; then friction of sliding pairs is put on their cones. A pair whose c is
+   beyond COMPLIANCE_WEAK carries next to nothing and has no index 1: its friction is turned to where it slides at the
+   present v. What c, e and mu have changed since makes an iteration contract less; mix.c makes up for some of it, and
+   factors are renewed where they cost more iterations than new ones take time. Where that does not converge, newton.c
+   follows.
 */
 #include "contact/compliance/complianceimpl.h"
 
@@ -45,8 +46,8 @@ static void ChordPut(ContactCompliance c, PetscInt p, const PetscReal l[3])
   }
 }
 
-/* New statuses, true where there are any; a pair that opens loses its force at once, and one that starts to slide has the
-   friction of its cone */
+/* New statuses, true where there are any; a pair that opens loses its force at once, and one that starts to slide has
+   the friction of its cone */
 static PetscBool ChordChoose(ContactCompliance c)
 {
   PetscBool changed = PETSC_FALSE;
@@ -107,8 +108,8 @@ static void ChordTake(ContactCompliance c, const PetscReal dz[])
   }
 }
 
-/* Whether new factors, after which one or two iterations are enough, take less time than the iterations that are left at the rate of the
-   last one */
+/* Whether new factors, after which one or two iterations are enough, take less time than the iterations that are left
+   at the rate of the last one */
 static PetscBool ChordIsWorth(const ContactCompliance c, const ComplianceMiss *miss, PetscReal last)
 {
   const PetscReal goal = c->rtol * miss->scale + miss->noise, rate = miss->largest / last;
@@ -119,8 +120,8 @@ static PetscBool ChordIsWorth(const ContactCompliance c, const ComplianceMiss *m
            : PETSC_FALSE;
 }
 
-/* Factors for the present statuses, renewed where the border is too large or that is worth it; *good = false where there are none, and
-   where dual.c costs less than new ones */
+/* Factors for the present statuses, renewed where the border is too large or that is worth it; *good = false where
+   there are none, and where dual.c costs less than new ones */
 static PetscErrorCode ChordPrepare(ContactCompliance c, PetscBool worth, PetscInt *renewals, PetscInt *slow,
                                    PetscBool *good)
 {

@@ -1,8 +1,8 @@
 /*
-   Acceleration of l = G(l) (D. G. Anderson, J. ACM 12, 1965, 547): of the differences of x and of f = G(x) - x, the combination
-   is taken that would make f least if G were linear. A few motions of all pairs together are what G converges slowly in, or
-   not at all; as many differences take them out. Differences of f are kept as an orthonormal basis B, with those of
-   G(x) that belong to them, S: f loses B B'f, and G(x) becomes G(x) - S B'f.
+   Acceleration of l = G(l) (D. G. Anderson, J. ACM 12, 1965, 547): of the differences of x and of f = G(x) - x, the
+   combination is taken that would make f least if G were linear. A few motions of all pairs together are what G
+   converges slowly in, or not at all; as many differences take them out. Differences of f are kept as an orthonormal
+   basis B, with those of G(x) that belong to them, S: f loses B B'f, and G(x) becomes G(x) - S B'f.
 */
 #include "contact/compliance/complianceimpl.h"
 

@@ -5,9 +5,9 @@
       (D + B'W B)^-1 f = D^-1 (f - B' X B D^-1 f),   X = W (I + S W)^-1,   S = B D^-1 B',
 
    the integrator, which divides by D, needs no more than the inertial forces -B' X B D^-1 f of the points beside f.
-   Held directions have D^-1 = 0: those of supports do not move, and others are refused. The critical step is found with D
-   alone: D + B'W B is larger, hence that step smaller than it might be. The work of the inertial forces is, by central
-   differences exactly, what the kinetic energy 1/2 q'W q of the points loses.
+   Held directions have D^-1 = 0: those of supports do not move, and others are refused. The critical step is found with
+   D alone: D + B'W B is larger, hence that step smaller than it might be. The work of the inertial forces is, by
+   central differences exactly, what the kinetic energy 1/2 q'W q of the points loses.
 */
 #include "dynamics/bodies/bodiesimpl.h"
 #include "base/algebra/dense.h"
@@ -30,7 +30,8 @@ static PetscErrorCode NodesMark(Bodies b, PetscInt n_contact, const PetscInt con
   PetscFunctionReturn(0);
 }
 
-/* Whether a motion drives direction i % 3 of node i / 3 of a joint: it has no mass of its own, and no support holds it */
+/* Whether a motion drives direction i % 3 of node i / 3 of a joint: it has no mass of its own, and no support holds
+   it */
 static PetscBool NodeIsDriven(Bodies b, const BodyJoint *joint, PetscInt i)
 {
   const PetscInt v = joint->vertex[i / 3];

@@ -1,16 +1,18 @@
 /*
-   Ties in time: the nodes x of a tie follow its masters q, x = T q (contact/tie.c). With the lumped masses D of all of them
+   Ties in time: the nodes x of a tie follow its masters q, x = T q (contact/tie.c). With the lumped masses D of all of
+   them
 
       a = T (T'D T)^-1 T'f,
 
-   so that forces D a in the place of f make the integrator, which divides by D, keep what follows in place to rounding, as at
-   points that are joined rigidly (points/rigid.c). Every rank has all of them and does the same, from the forces of all ranks:
-   copies stay bitwise equal. Displacements and velocities at the start are replaced by the nearest in D.
+   so that forces D a in the place of f make the integrator, which divides by D, keep what follows in place to rounding,
+   as at points that are joined rigidly (points/rigid.c). Every rank has all of them and does the same, from the forces
+   of all ranks: copies stay bitwise equal. Displacements and velocities at the start are replaced by the nearest in D.
 */
 #include "dynamics/bodies/bodiesimpl.h"
 #include "base/gather.h"
 
-/* The nodes of all links, ascending: global numbers, and where they are here; places of slaves and masters among them */
+/* The nodes of all links, ascending: global numbers, and where they are here; places of slaves and masters among
+   them */
 static PetscErrorCode TiedFindNodes(Bodies b, PetscInt n_links, const ContactLink links[], Tied *t, PetscInt slave[],
                                     PetscInt master[])
 {

@@ -18,21 +18,14 @@ static const unsigned char at_hex[]   = {1,  2,   4,  8,   16, 32,  64, 128, 3, 
                                          68, 136, 48, 144, 96, 192, 15, 51,  153, 102, 204, 240, 255};
 
 static const GmshShape shapes[] = {
-  {15, 0, 1, 1,  DM_POLYTOPE_POINT,         NULL    },
-  {1,  1, 2, 2,  DM_POLYTOPE_SEGMENT,       NULL    },
-  {2,  2, 3, 3,  DM_POLYTOPE_TRIANGLE,      NULL    },
-  {3,  2, 4, 4,  DM_POLYTOPE_QUADRILATERAL, NULL    },
-  {4,  3, 4, 4,  DM_POLYTOPE_TETRAHEDRON,   at_tet  },
-  {5,  3, 8, 8,  DM_POLYTOPE_HEXAHEDRON,    at_hex  },
-  {6,  3, 6, 6,  DM_POLYTOPE_TRI_PRISM,     at_prism},
-  {8,  1, 2, 3,  DM_POLYTOPE_SEGMENT,       NULL    },
-  {9,  2, 3, 6,  DM_POLYTOPE_TRIANGLE,      NULL    },
-  {16, 2, 4, 8,  DM_POLYTOPE_QUADRILATERAL, NULL    },
-  {10, 2, 4, 9,  DM_POLYTOPE_QUADRILATERAL, NULL    },
-  {11, 3, 4, 10, DM_POLYTOPE_TETRAHEDRON,   at_tet  },
-  {17, 3, 8, 20, DM_POLYTOPE_HEXAHEDRON,    at_hex  },
-  {12, 3, 8, 27, DM_POLYTOPE_HEXAHEDRON,    at_hex  },
-  {18, 3, 6, 15, DM_POLYTOPE_TRI_PRISM,     at_prism},
+  {15, 0, 1, 1, DM_POLYTOPE_POINT, NULL},          {1, 1, 2, 2, DM_POLYTOPE_SEGMENT, NULL},
+  {2, 2, 3, 3, DM_POLYTOPE_TRIANGLE, NULL},        {3, 2, 4, 4, DM_POLYTOPE_QUADRILATERAL, NULL},
+  {4, 3, 4, 4, DM_POLYTOPE_TETRAHEDRON, at_tet},   {5, 3, 8, 8, DM_POLYTOPE_HEXAHEDRON, at_hex},
+  {6, 3, 6, 6, DM_POLYTOPE_TRI_PRISM, at_prism},   {8, 1, 2, 3, DM_POLYTOPE_SEGMENT, NULL},
+  {9, 2, 3, 6, DM_POLYTOPE_TRIANGLE, NULL},        {16, 2, 4, 8, DM_POLYTOPE_QUADRILATERAL, NULL},
+  {10, 2, 4, 9, DM_POLYTOPE_QUADRILATERAL, NULL},  {11, 3, 4, 10, DM_POLYTOPE_TETRAHEDRON, at_tet},
+  {17, 3, 8, 20, DM_POLYTOPE_HEXAHEDRON, at_hex},  {12, 3, 8, 27, DM_POLYTOPE_HEXAHEDRON, at_hex},
+  {18, 3, 6, 15, DM_POLYTOPE_TRI_PRISM, at_prism},
 };
 
 /* Names of types that are not read, and what to do about them */
@@ -40,10 +33,10 @@ static const struct {
   PetscInt    type;
   const char *what;
 } refused[] = {
-  {7,  "5-node pyramids are not supported; mesh with tetrahedra where hexahedra and tetrahedra meet"     },
+  {7, "5-node pyramids are not supported; mesh with tetrahedra where hexahedra and tetrahedra meet"},
   {13, "18-node wedges are not supported; mesh with Mesh.SecondOrderIncomplete = 1 for those of 15 nodes"},
-  {14, "14-node pyramids are not supported; mesh with tetrahedra"                                        },
-  {19, "13-node pyramids are not supported; mesh with tetrahedra"                                        },
+  {14, "14-node pyramids are not supported; mesh with tetrahedra"},
+  {19, "13-node pyramids are not supported; mesh with tetrahedra"},
 };
 
 /* What opens $Nodes and $Elements: the number of items, and in format 4.1 of blocks (then smallest and largest tag)
@@ -138,8 +131,8 @@ static PetscErrorCode ReadNodes(MeshReader *r, GmshMesh *mesh)
   PetscFunctionReturn(0);
 }
 
-/* Nodes of format 2.2 with Mesh.SaveParametric: dimension and tag of their entity follow x, y, z, then the parameters on a
-   curve or surface */
+/* Nodes of format 2.2 with Mesh.SaveParametric: dimension and tag of their entity follow x, y, z, then the parameters
+   on a curve or surface */
 static PetscErrorCode ReadParametricNodes(MeshReader *r, GmshMesh *mesh)
 {
   PetscReal parameter[3];
@@ -230,17 +223,14 @@ static const struct {
   const char *name;
   PetscErrorCode (*read)(MeshReader *, GmshMesh *);
 } sections[] = {
-  {"MeshFormat",          ReadFormat                 },
-  {"PhysicalNames",       GmshReadNames              },
-  {"Entities",            GmshReadEntities           },
-  {"PartitionedEntities", GmshReadPartitionedEntities},
-  {"Nodes",               ReadNodes                  },
-  {"ParametricNodes",     ReadParametricNodes        },
-  {"Elements",            ReadElements               },
+  {"MeshFormat", ReadFormat},     {"PhysicalNames", GmshReadNames},
+  {"Entities", GmshReadEntities}, {"PartitionedEntities", GmshReadPartitionedEntities},
+  {"Nodes", ReadNodes},           {"ParametricNodes", ReadParametricNodes},
+  {"Elements", ReadElements},
 };
 
-/* Reads the section whose first line has just been read, up to its end; behind $Elements only looks whether one of these stands
-   in the file again */
+/* Reads the section whose first line has just been read, up to its end; behind $Elements only looks whether one of
+   these stands in the file again */
 static PetscErrorCode ReadSection(MeshReader *r, const char line[], GmshMesh *mesh)
 {
   PetscBool known = PETSC_FALSE;

@@ -51,7 +51,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode GmshMeshRead(const char file[], GmshMesh *mesh, ReaderError *error);
 PETSC_INTERN PetscErrorCode GmshMeshDestroy(GmshMesh *mesh);
 
-/* gmsh/groups.c - sections $PhysicalNames, $Entities and $PartitionedEntities; the index of an entity, -1 where it is none */
+/* gmsh/groups.c - sections $PhysicalNames, $Entities and $PartitionedEntities; the index of an entity, -1 where it is
+   none */
 PETSC_INTERN PetscErrorCode GmshReadNames(MeshReader *r, GmshMesh *mesh);
 PETSC_INTERN PetscErrorCode GmshReadEntities(MeshReader *r, GmshMesh *mesh);
 PETSC_INTERN PetscErrorCode GmshReadPartitionedEntities(MeshReader *r, GmshMesh *mesh);

@@ -34,8 +34,8 @@ PetscErrorCode GmshReadNames(MeshReader *r, GmshMesh *mesh)
     group->tag = tag;
     for (PetscInt k = 0; k < g; k++)
       if (mesh->groups[k].dim == dim && mesh->groups[k].tag == tag)
-        ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$PhysicalNames calls group %d of dimension %d '%s' and '%s'", tag,
-                       dim, mesh->groups[k].name, group->name);
+        ReaderErrorSet(r->error, PETSC_ERR_FILE_READ, "$PhysicalNames calls group %d of dimension %d '%s' and '%s'",
+                       tag, dim, mesh->groups[k].name, group->name);
   }
   if (r->version == 41) PetscFunctionReturn(0);
   mesh->n_entities = mesh->n_groups;
@@ -46,9 +46,9 @@ PetscErrorCode GmshReadNames(MeshReader *r, GmshMesh *mesh)
   PetscFunctionReturn(0);
 }
 
-/* One entity (4.1): its tag; of a partitioned mesh the entity that it is part of, and its partitions; its box (a point for
-   dimension 0), physical groups, bounding entities. The tag of a group is negative where the entity stands reversed in it,
-   which is no matter here */
+/* One entity (4.1): its tag; of a partitioned mesh the entity that it is part of, and its partitions; its box (a point
+   for dimension 0), physical groups, bounding entities. The tag of a group is negative where the entity stands reversed
+   in it, which is no matter here */
 static void ReadEntity(MeshReader *r, PetscInt dim, PetscBool partitioned, GmshEntity *entity)
 {
   PetscReal box[6];

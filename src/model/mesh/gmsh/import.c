@@ -3,8 +3,8 @@
    1: on cells for volumes, on faces for surfaces, on vertices for points, and on vertices and edges for curves.
 
    Nodes that belong to no volume element (centres of arcs, say) are left out; a named group that needs one is an
-   error, and so is a named surface or curve element that is no face or edge of a cell. Elements of lower dimension without a named
-   group do nothing.
+   error, and so is a named surface or curve element that is no face or edge of a cell. Elements of lower dimension
+   without a named group do nothing.
 */
 #include "volumes.h"
 #include "model/modelimpl.h"
@@ -149,8 +149,8 @@ static PetscErrorCode AppendJoin(DM dm, PetscInt n_vertices, const PetscInt vert
   PetscFunctionReturn(0);
 }
 
-/* The points of the mesh that stand for an element: its cell, its face, or its vertices with the edge between them; n is
-   0 without any */
+/* The points of the mesh that stand for an element: its cell, its face, or its vertices with the edge between them; n
+   is 0 without any */
 static PetscErrorCode FindPoints(DM dm, const GmshElement *element, PetscInt cell, const PetscInt vertex[], PetscInt *n,
                                  PetscInt points[])
 {

@@ -23,7 +23,7 @@ typedef struct {
   char         section[32]; /* the one being read */
   long         most;        /* items that a file of this size can hold */
   ReaderError *error;
-  unsigned     seen;        /* a bit for each section that has been read */
+  unsigned     seen; /* a bit for each section that has been read */
 } MeshReader;
 
 /* Records an error unless there is one */

@@ -1,6 +1,7 @@
 /*
-   The element of a Gmsh file of which a face has the corners of a neighbour's face in another order: a hexahedron or wedge whose
-   corners are turned. Two such faces agree where the corner opposite to their smallest one, across the diagonal, is the same.
+   The element of a Gmsh file of which a face has the corners of a neighbour's face in another order: a hexahedron or
+   wedge whose corners are turned. Two such faces agree where the corner opposite to their smallest one, across the
+   diagonal, is the same.
 */
 #include "volumes.h"
 #include <stdlib.h>
@@ -15,7 +16,8 @@ typedef struct {
 } Quadrilateral;
 
 /* Faces of a hexahedron and of a wedge, of Gmsh's corners, around */
-static const int hexahedron[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+static const int hexahedron[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 static const int wedge[3][4]      = {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
 
 /* By corners, then by element */

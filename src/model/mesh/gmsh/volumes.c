@@ -228,12 +228,15 @@ static PetscErrorCode VolumesExplain(const GmshMesh *mesh, const char file[])
   PetscCall(VolumesFindTwisted(mesh, element));
   PetscCheck(element[0] < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "Option -model_mesh %s: elements %" PetscInt_FMT " and %" PetscInt_FMT
-             " have the corners of their common face in different orders around it; write those of a hexahedron or wedge in Gmsh's order",
+             " have the corners of their common face in different orders around it; write those of a hexahedron or "
+             "wedge in Gmsh's order",
              file, element[0], element[1]);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Option -model_mesh %s: its volume elements do not fit at their faces", file);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "Option -model_mesh %s: its volume elements do not fit at their faces",
+          file);
 }
 
-PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes, ReaderError *error, DM *dm)
+PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes, ReaderError *error,
+                                 DM *dm)
 {
   PetscErrorCode code;
   PetscInt       pEnd, *node;

@@ -12,11 +12,12 @@ typedef struct {
 } GmshVolumes;
 
 /* volumes.c - interpolated DMPlex of the cells, whose coordinates stand at the points that bear a node: vertices, and
-   edges, faces and cells of elements of second order; fills volumes->point. What is wrong goes to the error of rank 0, but for cells
-   that do not fit to each other: their error is raised, with the name of the file.
+   edges, faces and cells of elements of second order; fills volumes->point. What is wrong goes to the error of rank 0,
+   but for cells that do not fit to each other: their error is raised, with the name of the file.
    Collective. */
-PETSC_INTERN PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes, ReaderError *error,
-                                              DM *dm);
+PETSC_INTERN PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes,
+                                              ReaderError *error, DM *dm);
 
-/* twisted.c - numbers in the file of two elements whose common face has its corners in different orders; -1 for none. Not collective. */
+/* twisted.c - numbers in the file of two elements whose common face has its corners in different orders; -1 for none.
+   Not collective. */
 PETSC_INTERN PetscErrorCode VolumesFindTwisted(const GmshMesh *mesh, PetscInt element[2]);

@@ -18,9 +18,9 @@
    Newton's method (basis/follow.c), the plane by inverse iteration; all modes are solved for only where what that finds
    is not the same one for certain.
 
-   Where two modes change places between neighbouring values, g jumps from one to the other, and the bracket shrinks to the jump: a
-   change of sign and no zero. Then the onset is only known to lie in the bracket that it began with, and its frequency is that
-   of the unstable end.
+   Where two modes change places between neighbouring values, g jumps from one to the other, and the bracket shrinks to
+   the jump: a change of sign and no zero. Then the onset is only known to lie in the bracket that it began with, and
+   its frequency is that of the unstable end.
 
    Error of the critical value: |delta g| / |g'|, where sigma carries three times the estimated error of the eigenvalue
    and what rounding does to it, kappa that times 2 |lambda| + error, with damping times kappa / lambda at the unstable

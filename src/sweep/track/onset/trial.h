@@ -1,6 +1,6 @@
 /*
-   Private to sweep/: a value of the line at which an onset may be, with the modes that take part. Pure functions on small
-   arrays: no MPI, no options.
+   Private to sweep/: a value of the line at which an onset may be, with the modes that take part. Pure functions on
+   small arrays: no MPI, no options.
 */
 #pragma once
 
