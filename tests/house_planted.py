@@ -52,6 +52,9 @@ PLANTED = (
     ("options", "-eps_type is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
     ("rows", "-mu is read without", {"src/model/a.c": MU.replace("ts_dt", "mu")}),
     ("rows", "-mu has no help", {"src/model/a.c": 'static const Quantity rows[] = {\n  {"-mu", "", NULL, QUANTITY_REAL},\n};\n'}),
+    ("rows", "-force has no unit", {"src/model/a.c": 'static const Quantity rows[] = {\n  {"-force", "a", NULL, QUANTITY_REAL},\n};\n'}),
+    ("rows", "-force is read by nobody", {"src/model/a.c": 'typedef struct {\n  double f;\n} Force;\nstatic const Quantity rows[] = {\n'
+                                          '  {"-force", "a", "N", QUANTITY_REAL, FORCE(f)},\n};\n'}),
     ("unused", "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
     ("unused", "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
     ("dead", "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",

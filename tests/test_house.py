@@ -12,7 +12,7 @@
   strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
-  rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help
+  rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help, a unit and a reader
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
@@ -58,6 +58,12 @@ UNROWED = dict.fromkeys("squeal_traceback squeal_log squeal_progress squeal_memo
                   "PETSc's own: looked at, read by PETSc") | \
     {"ts_central_b": "read by TSSetFromOptions()", "contacts": "a list of the scene, in an array of the room",
      "frf_probes": "a list of names", "terms": "whether it is given"}
+REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
+# Numbers without a unit, or with that of what they stand for
+UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
+    contact_mu dense scale sweep_rtol sweep_percent kn_per_area slip map_rtol dynamics_growth_rtol cycle_rtol
+    cycle_range cycle_amplitude mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c
+    operators_dense_h""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 
@@ -252,14 +258,29 @@ def options(house):
                 yield f"{here[1]}-{name} is read at {before[1][:-2]} too"
 
 
+ROW = re.compile(r'\{\s*"-(?P<name>\w+)",\s*(?P<help>(?:"[^"]*"\s*)+|NULL|\w+),\s*(?P<unit>NULL|"[^"]*"),\s*(?P<kind>QUANTITY_\w+)'
+                 r'(?:,\s*(?P<at>\w+\([\w.]+))?')
+
+
+def row_faults(row, words):
+    """What a row lacks: a help, a unit, somebody who reads its member."""
+    if row["help"].strip() in ('""', "NULL"):
+        yield "has no help"
+    if row["unit"] == "NULL" and row["kind"] in REALS and row["name"] not in UNITLESS:
+        yield "has no unit"
+    if row["at"] and words[re.split(r"[(.]", row["at"])[-1]] < 3:  # its struct, its row, and who reads it
+        yield "is read by nobody"
+
+
 def rows(house):
-    """Options that are read without a row, rows without a help, exceptions that nobody needs."""
+    """Options that are read without a row, rows that lack something, exceptions that nobody needs."""
     read = {}
+    words = sum((collections.Counter(re.findall(r"\w+", source.code)) for source in house.c), collections.Counter())
     for source in house.c:
         for name, _, _, line in read_options(source):
             read[name] = house.say(source.path, line, f"-{name} is read without a row")
-        for row in re.finditer(r'\{"-(\w+)",\s*(?:NULL|""),\s*(?:NULL|"[^"]*"),\s*QUANTITY_', source.text):
-            yield house.say(source.path, source.line(row.start()), f"-{row[1]} has no help")
+        for row in ROW.finditer(source.text):
+            yield from (house.say(source.path, source.line(row.start()), f"-{row[1]} {fault}") for fault in row_faults(row, words))
     yield from (text for name, text in read.items() if name not in UNROWED)
     if len(read) > 2:  # a planted house reads few
         yield from (f"tests/test_house.py: -{name} of UNROWED is not read" for name in UNROWED if name not in read)
