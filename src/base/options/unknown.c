@@ -81,6 +81,7 @@ static const struct {
   {"symmetry", "leave it out for all modes of the whole mesh, or mesh one half and hold its plane by -supports"},
   {"loss_frequency", "give -model_loss_frequency"},
   {"statics_view", "give -static_view"},
+  {"projector_rtol", "leave it out: the laws of contact in time hold to 1e-10"},
   {"modes_groups", "leave it out: all ranks share each shift of -modes_shifts"},
 };
 
