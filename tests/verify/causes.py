@@ -4,7 +4,7 @@
     causes.py terms RESULTS N SPEED    the model of tests/affine.py: vectors of LAPACK's companion form, dense matrices
     causes.py uniform RESULTS A B      C = A M + B K: -A / 2 and -B |lambda|^2 / 2
     causes.py limit RESULTS OTHER TOL  an exact contact beside a stiff penalty: the same causes, TOL of the largest share
-    causes.py same RESULTS OTHER       other ranks
+    causes.py closes RESULTS           their sum alone: what the vector leaves is within the error of the eigenvalue
 """
 
 import csv
@@ -92,12 +92,14 @@ def main():
                 sums[name.rsplit("_", 1)[1]] += value
             exact = {"alpha": -alpha / 2, "beta": -beta * abs(values[mode]) ** 2 / 2}
             worst = max(worst, compare(mode, sums, exact, SHARE, stated[mode]))
-    else:
+    elif what == "limit":
         other = shares(rest[0])
         if set(found) != set(other):
             sys.exit(f"{sorted(found)} and {sorted(other)} have causes")
         for mode, causes in found.items():
-            worst = max(worst, compare(mode, causes, other[mode], float(rest[1]) if what == "limit" else SHARE))
+            worst = max(worst, compare(mode, causes, other[mode], float(rest[1])))
+    elif what != "closes" or not found:
+        sys.exit(f"{what}: no such comparison, or no mode has causes")
     print(f"{len(found)} modes, worst {worst:.1e} of the largest share")
 
 
