@@ -2,7 +2,7 @@
 """scripts/import_matrices: every form, written by scipy or from its manual, comes back to the last bit and in one order of unknowns;
 frequencies of CalculiX's matrices are CalculiX's; damaged files are refused in one line, or differ in one entry alone.
 
-    test_import_matrices.py SQUEAL LAUNCHER [--count N]    N damaged files of each form, default 500"""
+    test_import_matrices.py SQUEAL LAUNCHER [--count N]    N damaged files of each form, default 100"""
 
 import argparse
 import csv
@@ -288,7 +288,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("squeal")
     parser.add_argument("launcher")
-    parser.add_argument("--count", type=int, default=500)
+    parser.add_argument("--count", type=int, default=100)
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)

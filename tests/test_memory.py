@@ -16,7 +16,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parent.parent
 WORDS = re.compile(r"squeal: error: (ulimit -v allows \d+ MB of address space, which leave no room|out of memory: a rank has \d+ MB|"
                    r"MUMPS ran out of memory).*(allow \d+ MB or more|take a coarser mesh|use more ranks or a coarser mesh)")
-BOUNDS = range(350, 851, 50)  # MB
+BOUNDS = range(350, 851, 125)  # MB
 PATIENCE = 240  # seconds
 MOST = 340  # MB of the default scene; 336 are asked for by scripts/bench/modes, libraries of other systems may take some more
 PARENT = 500_000_000  # bytes of this process when it starts a run that takes a fifth of them

@@ -169,7 +169,7 @@ def column_out(random, data):
     return b"\n".join(b",".join(row[:at] + row[at + 1:]) for row in rows), False
 
 
-def check_damages(t, names, n=40):
+def check_damages(t, names, n=15):
     """Files of a folder damaged at random, from a fixed seed: a page or one line, never a trace or a warning."""
     sys.path.insert(0, str(SOURCE / "scripts"))
     from squeal.report.folders import Options
