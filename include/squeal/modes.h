@@ -55,7 +55,7 @@ the units of a part are in doubt
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called
-disc, the only one with the word disc, disk or rotor in its name, in any letters
+disc, the only one with the word disc, disk, rotor or drum in its name, in any letters
 .  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
 -  -modes_contact <all|static> - whether the pencil that is set is to be one with all pairs closed, or
 about the sliding state (statics.h)

@@ -106,6 +106,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->part_percent));
+  PetscCall(PetscFree(modes->label_percent));
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));

@@ -63,9 +63,10 @@ struct _p_Modes {
   Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode       *mode;
   PetscInt    n;
-  double     *part_percent; /* participation of the parts [n][parts], NULL for matrices without a mesh */
-  PetscBool   dense;        /* LAPACK found all eigenvalues */
-  PetscInt    shifts;       /* in use */
+  double     *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  double     *label_percent; /* of the shape what its name explains [n], NULL likewise */
+  PetscBool   dense;         /* LAPACK found all eigenvalues */
+  PetscInt    shifts;        /* in use */
   char        completeness[4096];
   char        saved[N_SAVED][SAVED_LENGTH];
   char        solver[96];  /* type of the undamped eigensolver, its block and factors */
@@ -233,6 +234,9 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 
 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
 #define LABEL_TIE 1e-6
+
+/* label_percent of what is named after an unknown */
+#define LABEL_UNKNOWN -1
 
 /* label/unknown.c - names after the unknowns that move most */
 PETSC_INTERN PetscErrorCode ModesLabelUnknowns(Modes modes);

@@ -92,6 +92,7 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsT
     PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", mesh->part[part]));
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
+  if (mesh) PetscCall(PetscStrlcat(header, ",label_percent", sizeof(header)));
   PetscCall(ResultsTableOpen(results, "modes", header, table));
   PetscFunctionReturn(0);
 }
@@ -110,6 +111,10 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
     for (PetscInt part = 0; mesh && part < mesh->n_parts; part++) {
       PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * mesh->n_parts + part]));
       PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
+    }
+    if (mesh) {
+      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->label_percent[i]));
+      PetscCall(PetscStrlcat(percent, modes->label_percent[i] >= 0 ? number : ",", sizeof(percent)));
     }
     PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s", (int)i + 1,
                               (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),

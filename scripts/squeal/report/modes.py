@@ -10,7 +10,7 @@ from .markup import Column, Part, count, figure, figures, fixed, legend, missing
 from .shapes import Bodies, Shape, data_script, viewer
 
 KINDS = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str}
-MORE = {"damping_ratio": float, "backward_error": optional, "condition": optional, "error_hz": optional}
+MORE = {"damping_ratio": float, "backward_error": optional, "condition": optional, "error_hz": optional, "label_percent": optional}
 PART = "part_{}_percent"
 COLOURS = ("steel", "orange", "green", "purple", "sky", "vermilion", "grey")
 
@@ -136,7 +136,11 @@ def mode_table(modes, folder):
         columns.append(Column("damping, %", lambda row: 100 * row["damping_ratio"], lambda v: fixed(v, 5),
                               hint="negative: the vibration grows"))
     columns.append(Column("label", lambda row: row["label"], left=True,
-                          hint="(n,m): n nodal circles, m nodal diameters, + an antinode at the contact"))
+                          hint="(n,m): n nodal circles, m nodal diameters; in plane IP-R(m) radial, IP-C(m) circumferential; "
+                               "+ an antinode at the contact"))
+    if "label_percent" in modes.has:
+        columns.append(Column("label, %", lambda row: row["label_percent"], lambda v: fixed(v, 1),
+                              hint="share of the shape that the label explains"))
     for name, title, hint in (("error_hz", "error, Hz", "first-order error of the eigenvalue"),
                               ("condition", "condition", "of the eigenvalue: 1 is best"),
                               ("backward_error", "backward error", "relative residual")):

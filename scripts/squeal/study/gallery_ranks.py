@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..mesh.gmsh import make_mesh
 from ..run.launched import end
 from ..run.program import ROOT, scene
-from .table_difference import difference, of_map, of_table, read
+from .table_difference import added_columns, difference, of_map, of_table, read
 
 SAME = 1e-9  # of the scale of a column
 BUILDS = 1e-12  # the same between two builds on one rank
@@ -164,9 +164,11 @@ class Gallery:
         if isinstance(one, str) or isinstance(other, str):
             print(f"{name:24} {one}; before: {other}", flush=True)
             return False
-        found = difference(one, other, BUILDS)
+        added = added_columns(one, other)
+        found = difference(one, other, BUILDS, added)
         passed = found.value <= BUILDS
-        print(f"{name:24} {found.value:.1e} {'same' if passed else f'DIFFERS ({found.where})'} ({seconds:.1f} s)", flush=True)
+        print(f"{name:24} {found.value:.1e} {'same' if passed else f'DIFFERS ({found.where})'} ({seconds:.1f} s)"
+              f"{'; added: ' * bool(added)}{' '.join(sorted(added))}", flush=True)
         return passed
 
     def compare(self, name):

@@ -87,7 +87,7 @@ def of_rows(name, one, other):
     for i, (a, b) in enumerate(zip(one, other)):
         worst = Difference()
         for column in a:
-            if IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
+            if column not in b or IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
                 continue
             value = apart(column, a[column], b[column], scale.get(family(name, column), 1.0))
             if value > worst.value:
@@ -95,10 +95,12 @@ def of_rows(name, one, other):
         yield worst._replace(since=float(a["time_s"]) if "time_s" in a else math.nan)
 
 
-def of_table(name, one, other, limit):
-    """Of two tables."""
+def of_table(name, one, other, limit, added=frozenset()):
+    """Of two tables; columns that only the first one has are `added` ones."""
     if len(one) != len(other):
         return Difference(math.inf, f"{name}: {len(one)} and {len(other)} rows")
+    if one and one[0].keys() - other[0].keys() - added:
+        return Difference(math.inf, f"{name}: only one has {' '.join(sorted(one[0].keys() - other[0].keys() - added))}")
     found = list(of_rows(name, one, other))
     since = next((row.since for row in found if row.value > limit and not math.isnan(row.since)), math.nan)
     return max(found, key=lambda row: row.value, default=Difference())._replace(since=since)
@@ -125,11 +127,17 @@ def of_map(one, other, limit):
     return found, (sum(value > limit for value in rest), sum(map(math.isinf, rest)))
 
 
-def difference(one, other, limit):
-    """The worst of all tables of two folders."""
+def added_columns(one, other):
+    """Names of columns that only the tables of the first folder have."""
+    rows = [(read(path)[:1], read(other / path.name)[:1]) for path in Path(one).glob("*.csv") if (other / path.name).exists()]
+    return frozenset(name for first, second in rows if first and second for name in first[0].keys() - second[0].keys())
+
+
+def difference(one, other, limit, added=frozenset()):
+    """The worst of all tables of two folders, but for the columns `added` of the first one."""
     names = [{path.name for path in Path(folder).glob("*.csv")} for folder in (one, other)]
     if names[0] != names[1] or not names[0]:
         return Difference(math.inf, f"tables {' '.join(sorted(names[0] ^ names[1])) or 'none'}")
-    found = [of_table(name, read(one / name), read(other / name), limit) for name in sorted(names[0])]
+    found = [of_table(name, read(one / name), read(other / name), limit, added) for name in sorted(names[0])]
     worst = max(found, key=lambda one: one.value)
     return worst._replace(since=min((one.since for one in found if not math.isnan(one.since)), default=math.nan))

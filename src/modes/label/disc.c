@@ -1,11 +1,9 @@
 /*
-   Fit of a disc's out-of-plane displacement (see label.c for the formula): frame from the inertia tensor, and normal
-   equations by BLAS.
+   A disc: frame from the inertia tensor, the friction ring, the harmonics that its mesh resolves.
 */
 #include "disc.h"
 #include "base/algebra/dense.h"
 #include "base/algebra/vec3.h"
-#include <petscblaslapack.h>
 
 #define DISC_BINS    720 /* of the rim, to find gaps between columns of nodes */
 #define DISC_SECTORS 8   /* all of which a surface around the axis has nodes in */
@@ -70,17 +68,7 @@ static void FindPlane(Disc *disc, const PetscReal to[])
   Vec3Cross(disc->axis, disc->e1, disc->e2);
 }
 
-void DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS])
-{
-  const PetscReal rho = (2 * r - disc->r_inner - disc->r_outer) / (disc->r_outer - disc->r_inner);
-
-  p[0] = 1;
-  p[1] = rho;
-  for (int j = 2; j < DISC_POLYNOMIALS; j++) p[j] = ((2 * j - 1) * rho * p[j - 1] - (j - 1) * p[j - 2]) / j;
-}
-
-/* Polar coordinates of a point */
-static void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
+void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
 {
   const PetscReal d[3] = {x[0] - disc->centre[0], x[1] - disc->centre[1], x[2] - disc->centre[2]};
   const PetscReal a = Vec3Dot(d, disc->e1), b = Vec3Dot(d, disc->e2);
@@ -89,17 +77,9 @@ static void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, Pets
   *theta = atan2(b, a);
 }
 
-/* All terms at one point: for each m the cosine, then (m > 0) the sine, each times the polynomials */
-static void DiscTerms(const Disc *disc, PetscReal r, PetscReal theta, PetscReal terms[DISC_TERMS])
+PetscReal DiscAlong(const Disc *disc, const PetscReal x[3])
 {
-  PetscReal p[DISC_POLYNOMIALS];
-  int       k = 0;
-
-  DiscLegendre(disc, r, p);
-  for (int m = 0; m < DISC_HARMONICS; m++) {
-    for (int j = 0; j < DISC_POLYNOMIALS; j++) terms[k++] = p[j] * PetscCosReal(m * theta);
-    for (int j = 0; j < DISC_POLYNOMIALS && m > 0; j++) terms[k++] = p[j] * PetscSinReal(m * theta);
-  }
+  return Vec3Dot(x, disc->axis) - Vec3Dot(disc->centre, disc->axis);
 }
 
 /* Least values over all ranks */
@@ -159,16 +139,17 @@ static PetscErrorCode DiscFindBounds(const Disc *disc, const DiscPart *part, Pet
   PetscFunctionReturn(0);
 }
 
-/* Nodes of the disc on this rank, their weights, and the radii over all ranks */
+/* Nodes of the disc on this rank, their weights; over all ranks its radii, and where its profiles are read */
 static PetscErrorCode DiscNodes(Disc *disc, const DiscPart *part)
 {
-  PetscReal range[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, radius[2], along[2], r, theta;
+  PetscReal range[4], radius[2], along[2], r, theta;
 
   PetscFunctionBeginUser;
+  for (int k = 0; k < 4; k++) range[k] = PETSC_MAX_REAL;
   PetscCall(DiscFindBounds(disc, part, radius, along));
   PetscCall(PetscMalloc2(part->n_vertices, &disc->node, part->n_vertices, &disc->weight));
   for (PetscInt v = 0; v < part->n_vertices; v++) {
-    const PetscReal z = Vec3Dot(&part->x[3 * v], disc->axis);
+    const PetscReal z = Vec3Dot(&part->x[3 * v], disc->axis), s = DiscAlong(disc, &part->x[3 * v]);
 
     DiscPolar(disc, &part->x[3 * v], &r, &theta);
     if (part->mass[v] <= 0 || r < radius[0] || z < along[0] || z > along[1]) continue;
@@ -176,10 +157,14 @@ static PetscErrorCode DiscNodes(Disc *disc, const DiscPart *part)
     disc->node[disc->n_nodes++] = v;
     range[0]                    = PetscMin(range[0], r);
     range[1]                    = PetscMin(range[1], -r);
+    range[2]                    = PetscMin(range[2], s);
+    range[3]                    = PetscMin(range[3], -s);
   }
-  PetscCall(LeastOfAll(disc->comm, 2, range));
+  PetscCall(LeastOfAll(disc->comm, 4, range));
   disc->r_inner = range[0];
   disc->r_outer = -range[1];
+  disc->is_drum = -range[3] - range[2] > 2 * (disc->r_outer - disc->r_inner) ? PETSC_TRUE : PETSC_FALSE;
+  for (int k = 0; k < 2; k++) disc->range[k] = (k ? -1 : 1) * range[2 * disc->is_drum + k];
   PetscFunctionReturn(0);
 }
 
@@ -204,34 +189,6 @@ static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
   PetscFunctionReturn(0);
 }
 
-/* gram = basis' W basis; basis is row-major, hence column-major transposed */
-static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
-{
-  const PetscBLASInt terms = DISC_TERMS;
-  const PetscReal    one = 1, zero = 0;
-  PetscBLASInt       n;
-  PetscReal         *scaled, r, theta;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
-  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &disc->basis));
-  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &scaled));
-  PetscCall(PetscCalloc1(DISC_TERMS * DISC_TERMS, &disc->gram));
-  for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    PetscReal *row = &disc->basis[i * DISC_TERMS];
-
-    DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
-    DiscTerms(disc, r, theta, row);
-    for (int k = 0; k < DISC_TERMS; k++) scaled[i * DISC_TERMS + k] = disc->weight[i] * row[k];
-  }
-  if (n)
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &terms, &terms, &n, &one, disc->basis, &terms, scaled, &terms, &zero,
-                                        disc->gram, &terms));
-  PetscCall(PetscFree(scaled));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->gram, DISC_TERMS * DISC_TERMS, MPIU_REAL, MPI_SUM, disc->comm));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc, PetscBool *is_disc)
 {
   PetscReal inertia[9];
@@ -239,7 +196,7 @@ PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes,
   PetscFunctionBeginUser;
   disc->comm        = comm;
   disc->has_contact = part->contact ? PETSC_TRUE : PETSC_FALSE;
-  disc->n_columns   = 2 * n_modes;
+  disc->n_modes     = n_modes;
   PetscCall(DiscMoments(comm, part->n_vertices, part->x, part->mass, disc->centre, inertia));
   PetscCall(DiscFindAxis(inertia, disc->axis, is_disc));
   if (!*is_disc) PetscFunctionReturn(0);
@@ -249,41 +206,7 @@ PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes,
   *is_disc = disc->r_outer - disc->r_inner > 1e-6 * disc->r_outer ? PETSC_TRUE : PETSC_FALSE;
   if (!*is_disc) PetscFunctionReturn(0);
   PetscCall(DiscResolution(disc, part->x));
-  PetscCall(DiscGram(disc, part->x));
-  PetscCall(PetscCalloc1(disc->n_columns * DISC_TERMS, &disc->fit));
-  PetscFunctionReturn(0);
-}
-
-void DiscProject(Disc *disc, PetscInt column, const PetscReal u[], PetscReal energy[2])
-{
-  PetscReal *const rhs = &disc->fit[column * DISC_TERMS];
-
-  for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    const PetscReal *a = &u[3 * disc->node[i]];
-    const PetscReal  w = Vec3Dot(a, disc->axis), weighted = w * disc->weight[i];
-
-    energy[0] += disc->weight[i] * Vec3Dot(a, a);
-    energy[1] += weighted * w;
-    for (int k = 0; k < DISC_TERMS; k++) rhs[k] += weighted * disc->basis[i * DISC_TERMS + k];
-  }
-}
-
-PetscErrorCode DiscSolve(Disc *disc)
-{
-  const PetscBLASInt terms = DISC_TERMS;
-  PetscBLASInt       columns, info;
-  PetscReal          trace = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(disc->n_columns, &columns));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->fit, (PetscMPIInt)(disc->n_columns * DISC_TERMS), MPIU_REAL, MPI_SUM,
-                             disc->comm));
-  for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
-  for (int k = 0; k < DISC_TERMS; k++)
-    disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
-  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("U", &terms, disc->gram, &terms, &info));
-  PetscCheck(!info, disc->comm, PETSC_ERR_LIB, "LAPACK potrf: info %d", (int)info);
-  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("U", &terms, &columns, disc->gram, &terms, disc->fit, &terms, &info));
+  PetscCall(DiscFitCreate(disc, part->x));
   PetscFunctionReturn(0);
 }
 
@@ -293,6 +216,7 @@ PetscErrorCode DiscDestroy(Disc *disc)
   PetscCall(PetscFree2(disc->node, disc->weight));
   PetscCall(PetscFree(disc->basis));
   PetscCall(PetscFree(disc->gram));
-  PetscCall(PetscFree(disc->fit));
+  PetscCall(PetscFree(disc->moved));
+  PetscCall(PetscFree2(disc->rhs, disc->fit));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Private to modes/: the fit of a disc's out-of-plane displacement by harmonics and radial polynomials (see label.c) */
+/* Private to modes/: the fit of a disc's displacement by harmonics and radial polynomials (see label.c) */
 #pragma once
 
 #include <petscsys.h>
@@ -7,19 +7,30 @@
 #define DISC_POLYNOMIALS 5  /* Legendre, degree 0..4 */
 #define DISC_TERMS       ((2 * DISC_HARMONICS - 1) * DISC_POLYNOMIALS)
 
+/* Directions of the displacement; each is fitted by itself with the same terms */
+enum { DISC_AXIAL, DISC_RADIAL, DISC_TANGENTIAL, N_DISC_DIRECTIONS };
+
+/* Values that a fit has for one harmonic at a radius: cosine re, cosine im, sine re, sine im */
+enum { DISC_COS_RE, DISC_COS_IM, DISC_SIN_RE, DISC_SIN_IM, N_DISC_VALUES };
+
+#define DISC_SAMPLES 41 /* places at which profiles are read */
+
 typedef struct {
   MPI_Comm   comm;
   PetscBool  has_contact;
   PetscReal  centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
   PetscReal  r_inner, r_outer;                 /* m */
+  PetscBool  is_drum;                          /* twice as long as wide: profiles are read along the axis */
+  PetscReal  range[2];                         /* of the radius, or of a drum's place along the axis, m */
   PetscReal  size;                             /* radius of gyration, m */
   int        n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
-  PetscInt   n_nodes, n_columns; /* nodes of the disc on this rank; two right-hand sides per mode: re, im */
-  PetscInt  *node;               /* their local nodes */
-  PetscReal *weight;             /* nodal mass, kg */
-  PetscReal *basis;              /* [n_nodes][DISC_TERMS] */
-  PetscReal *gram;               /* [DISC_TERMS][DISC_TERMS] */
-  PetscReal *fit;                /* [n_columns][DISC_TERMS]: right-hand sides, then coefficients */
+  PetscInt   n_nodes, n_modes;                 /* nodes of the disc on this rank; shapes to fit */
+  PetscInt  *node;                             /* their local nodes */
+  PetscReal *weight;                           /* nodal mass, kg */
+  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] */
+  PetscReal *gram;                             /* [DISC_TERMS][DISC_TERMS] */
+  PetscReal *moved;                            /* [N_DISC_DIRECTIONS][2][n_nodes] m: re, im of one shape, work */
+  PetscReal *rhs, *fit; /* [n_modes][N_DISC_DIRECTIONS][2][DISC_TERMS]: right-hand sides; coefficients */
 } Disc;
 
 /* A part that may be a disc */
@@ -33,12 +44,30 @@ typedef struct {
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
 PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
                                        PetscBool *is_disc);
-/* Adds the displacements u[local nodes][3] to right-hand side `column`, and their energy on this rank, all and out
-   of plane, to energy */
-PETSC_INTERN void           DiscProject(Disc *disc, PetscInt column, const PetscReal u[], PetscReal energy[2]);
+/* Polar coordinates of a point, m and rad */
+PETSC_INTERN void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta);
+/* Place along the axis from the centre, m */
+PETSC_INTERN PetscReal DiscAlong(const Disc *disc, const PetscReal x[3]);
+/* label/fit.c - basis, normal equations, and room for the fit of all modes */
+PETSC_INTERN PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[]);
+/* Takes the displacements u[re, im][local nodes][3] of a shape for its right-hand sides, u[1] = NULL for a real one;
+   adds their energy on this rank, all and out of plane, to energy */
+PETSC_INTERN PetscErrorCode DiscProject(Disc *disc, PetscInt mode, PetscReal *const u[2], PetscReal energy[2]);
 PETSC_INTERN PetscErrorCode DiscSolve(Disc *disc);
-/* P_0 .. P_4 of the radius r mapped to [-1, 1] */
-PETSC_INTERN void           DiscLegendre(const Disc *disc, PetscReal r, PetscReal p[DISC_POLYNOMIALS]);
+/* Profiles of harmonic m of one mode in a direction at the radius, of a drum the place along the axis, s */
+PETSC_INTERN void DiscProfile(const Disc *disc, PetscInt mode, int direction, int m, PetscReal s,
+                              PetscReal v[N_DISC_VALUES]);
+/* Second moments sum_s v v' r of the profiles of harmonic m; their trace, which is returned, is the energy */
+PETSC_INTERN PetscReal DiscMomentsOf(const Disc *disc, PetscInt mode, int direction, int m,
+                                     PetscReal moments[N_DISC_VALUES * N_DISC_VALUES]);
+/* Middle of the k-th of DISC_SAMPLES parts of the range, m; weight of a place in integrals over the ring */
+PETSC_INTERN PetscReal DiscSample(const Disc *disc, int k);
+PETSC_INTERN PetscReal DiscSampleWeight(const Disc *disc, PetscReal s);
+/* Energy of what harmonic m alone fits of directions first to last */
+PETSC_INTERN PetscErrorCode DiscExplain(const Disc *disc, PetscInt mode, int m, int first, int last, PetscReal *energy);
 PETSC_INTERN PetscErrorCode DiscDestroy(Disc *disc);
-/* label/name.c - "(circles,diameters+)" */
-PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size);
+/* label/name.c - "(circles,diameters+)"; energy of what the harmonic of the name alone fits */
+PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size, PetscReal *energy);
+/* label/inplane.c - "IP-C(diameters+)" or "IP-R(diameters+)", and the same energy in the plane */
+PETSC_INTERN PetscErrorCode DiscNameInPlane(const Disc *disc, PetscInt mode, char name[], size_t size,
+                                            PetscReal *energy);

@@ -1,28 +1,32 @@
 /*
-   Names of shapes. The out-of-plane displacement w of the disc's nodes is fitted, by least squares weighted with
-   nodal mass, as
+   Names of shapes. Each direction of the displacement of the disc's nodes, w along its axis, u_r and u_theta in its
+   plane, is fitted by least squares weighted with nodal mass, as
 
       w(r, theta) = sum_m sum_j P_j(rho) (a_mj cos m theta + b_mj sin m theta),   m = 0..16, j = 0..4,
 
    P_j Legendre polynomials of the radius mapped to rho in [-1, 1], theta measured about the disc's axis from the
-   contact. The nodal circles are the sign changes of the harmonics' radial profiles (the family of harmonics with
-   most energy decides), the nodal diameters half the antinodes of that family around the rim, since a stiff contact
-   mixes neighbouring harmonics, and cosine against sine tells an antinode at the contact (+). Axis and centre are
-   those of the part's inertia tensor, so any mesh in any position serves. Where a contact surface goes all around the
-   axis, only the ring from its least radius outward counts, not a hat inside of it.
+   contact. Out of plane the nodal circles are the sign changes of the harmonics' radial profiles (the family of
+   harmonics with most energy decides), the nodal diameters half the antinodes of that family around the rim, since a
+   stiff contact mixes neighbouring harmonics, and cosine against sine tells an antinode at the contact (+). Axis and
+   centre are those of the part's inertia tensor, so any mesh in any position serves. Where a contact surface goes all
+   around the axis, only the ring from its least radius outward counts, not a hat inside of it. In plane: inplane.c.
 
-   A mode is named after the disc's shape when the disc takes part with at least a quarter and moves mostly out of
-   plane, else after the part that takes most part. Participation of part p is |y^T M_p x| from left and right
-   vectors, the share of the part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic energy;
-   at a lock-in, where the right vector moves one body and the left one the other, about one half for each of the two
-   (I. J. Perez-Arriaga et al., IEEE Trans. Power Apparatus and Systems 101, 1982: participation factors).
+   A mode is named after the disc's shape when the disc takes part with at least a quarter, out of plane or in plane
+   as it moves more, else after the part that takes most part. Participation of part p is |y^T M_p x| from left and
+   right vectors, the share of the part's mass in the eigenvalue's sensitivity: for real modes the share of kinetic
+   energy; at a lock-in, where the right vector moves one body and the left one the other, about one half for each of
+   the two (I. J. Perez-Arriaga et al., IEEE Trans. Power Apparatus and Systems 101, 1982: participation factors).
+
+   What the name explains is the share of the ring's kinetic energy that the harmonic of the name fits alone, in its
+   directions; of a mode that is named after a part the participation of the part.
 */
 #include "modes/modesimpl.h"
 #include "disc.h"
 #include <ctype.h>
 #include <string.h>
 
-#define DISC_SHARE 0.25 /* participation from which on a mode is named after the disc's shape */
+#define DISC_SHARE     0.25 /* participation from which on a mode is named after the disc's shape */
+#define DISC_EXPLAINED 0.25 /* share of the ring's energy that a name in the plane has to explain */
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
@@ -65,18 +69,40 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
     share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
     share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
   }
-  for (int k = 0; k < (xi ? 2 : 1) && l->disc >= 0; k++) DiscProject(&l->frame, 2 * i + k, l->x[k], &l->energy[2 * i]);
+  if (l->disc >= 0)
+    PetscCall(DiscProject(&l->frame, i, (PetscReal *[2]){l->x[0], xi ? l->x[1] : NULL}, &l->energy[2 * i]));
   PetscFunctionReturn(0);
 }
 
-/* Writes the name of mode i, and its participation in per cent */
+/* Name of a shape of the disc, and the share of the energy of the ring that it explains; none = no name, for a harmonic
+   beyond the fit looks like any of it */
+static PetscErrorCode LabelDisc(const Labels *l, PetscInt i, Mode *mode, double *explained, PetscBool *none)
+{
+  const PetscReal *energy = &l->energy[2 * i];
+  PetscBool        axial  = energy[1] > (1 + LABEL_TIE) * 0.5 * energy[0] ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal        fitted;
+  char             name[sizeof(mode->label)];
+
+  PetscFunctionBeginUser;
+  if (axial)
+    PetscCall(DiscName(&l->frame, i, name, sizeof(name), &fitted));
+  else
+    PetscCall(DiscNameInPlane(&l->frame, i, name, sizeof(name), &fitted));
+  *none = !axial && !(fitted > DISC_EXPLAINED * energy[0]) ? PETSC_TRUE : PETSC_FALSE;
+  if (*none) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(mode->label, name, sizeof(name)));
+  *explained = energy[0] > 0 ? fitted / energy[0] : 0;
+  PetscFunctionReturn(0);
+}
+
+/* Writes the name of mode i, its participation and what its name explains, both in per cent */
 static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
 {
-  double *const share = &modes->part_percent[i * l->n_parts];
+  double *const share = &modes->part_percent[i * l->n_parts], *explained = &modes->label_percent[i];
   PetscReal     total = 0;
   PetscInt      most  = 0;
   Mode         *mode  = &modes->mode[i];
-  PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE, unnamed = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) {
@@ -86,12 +112,13 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
     total += share[part];
     if (share[part] > (1 + LABEL_TIE) * share[most]) most = part;
   }
-  if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total &&
-      l->energy[2 * i + 1] > (1 + LABEL_TIE) * 0.5 * l->energy[2 * i] && !rigid)
-    PetscCall(DiscName(&l->frame, i, mode->label, sizeof(mode->label)));
-  else if (!l->by_unknown || rigid)
+  *explained = total > 0 ? share[most] / total : 0;
+  if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total && !rigid)
+    PetscCall(LabelDisc(l, i, mode, explained, &unnamed));
+  if (unnamed && (!l->by_unknown || rigid))
     PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
   for (PetscInt part = 0; part < l->n_parts; part++) share[part] = total > 0 ? 100 * (share[part] / total) : 0;
+  *explained = unnamed && l->by_unknown && !rigid ? LABEL_UNKNOWN : 100 * *explained;
   PetscFunctionReturn(0);
 }
 
@@ -146,7 +173,7 @@ static PetscErrorCode NameHasWord(const char name[], const char word[], PetscBoo
 /* Whether a part is the disc by a word of its name, in small or capital letters */
 static PetscErrorCode NameIsDisc(const char part[], PetscBool *is_disc)
 {
-  static const char *const names[] = {"disc", "disk", "rotor"};
+  static const char *const names[] = {"disc", "disk", "rotor", "drum"};
   char                     name[256];
 
   PetscFunctionBeginUser;
@@ -256,7 +283,9 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   PetscCall(PetscFree(modes->part_percent));
+  PetscCall(PetscFree(modes->label_percent));
   PetscCall(PetscMalloc1(n, &modes->part_percent));
+  PetscCall(PetscMalloc1(modes->n, &modes->label_percent));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, mesh, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
@@ -281,7 +310,7 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
 
   PetscFunctionBeginUser;
   shapes.n            = n;
-  shapes.part_percent = NULL;
+  shapes.part_percent = shapes.label_percent = NULL;
   PetscCall(SpectrumCreate(n, &shapes.right));
   PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
   PetscCall(PetscCalloc1(n, &shapes.mode));
@@ -301,5 +330,6 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   PetscCall(SpectrumDestroy(&shapes.left_spectrum));
   PetscCall(PetscFree(shapes.mode));
   PetscCall(PetscFree(shapes.part_percent));
+  PetscCall(PetscFree(shapes.label_percent));
   PetscFunctionReturn(0);
 }

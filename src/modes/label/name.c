@@ -4,62 +4,25 @@
 #include "disc.h"
 #include "base/algebra/dense.h"
 
-#define SAMPLES 41    /* radii at which the profile is read */
-#define ANGLES  360   /* angles at which the rim is read */
-#define RIPPLE  0.005 /* turns of the rim's displacement smaller than this part of the largest do not count */
-
-/* Radial profiles of harmonic m of one mode at a radius: cosine re, cosine im, sine re, sine im */
-static void DiscProfile(const Disc *disc, PetscInt mode, int m, PetscReal r, PetscReal v[4])
-{
-  const int first = m ? (2 * m - 1) * DISC_POLYNOMIALS : 0;
-  PetscReal p[DISC_POLYNOMIALS];
-
-  DiscLegendre(disc, r, p);
-  for (int part = 0; part < 2; part++) {
-    const PetscReal *a = &disc->fit[(2 * mode + part) * DISC_TERMS + first];
-
-    v[part] = v[2 + part] = 0;
-    for (int j = 0; j < DISC_POLYNOMIALS; j++) v[part] += a[j] * p[j];
-    for (int j = 0; j < DISC_POLYNOMIALS && m; j++) v[2 + part] += a[DISC_POLYNOMIALS + j] * p[j];
-  }
-}
-
-static PetscReal SampleRadius(const Disc *disc, int s)
-{
-  return disc->r_inner + (disc->r_outer - disc->r_inner) * (s + 0.5) / SAMPLES;
-}
-
-/* Second moments sum_r v v' r of the profiles of harmonic m; its trace is the energy */
-static PetscReal ProfileMoments(const Disc *disc, PetscInt mode, int m, PetscReal moments[16])
-{
-  PetscReal v[4];
-
-  for (int k = 0; k < 16; k++) moments[k] = 0;
-  for (int s = 0; s < SAMPLES; s++) {
-    const PetscReal r = SampleRadius(disc, s);
-
-    DiscProfile(disc, mode, m, r, v);
-    for (int k = 0; k < 16; k++) moments[k] += v[k / 4] * v[k % 4] * r * (m ? 1 : 2);
-  }
-  return moments[0] + moments[5] + moments[10] + moments[15];
-}
+#define ANGLES 360   /* angles at which the rim is read */
+#define RIPPLE 0.005 /* turns of the rim's displacement smaller than this part of the largest do not count */
 
 /* Sign changes of the principal profile; values below a twentieth of the largest count as zero */
 static PetscErrorCode NodalCircles(const Disc *disc, PetscInt mode, int m, const PetscReal moments[16], int *n)
 {
-  PetscReal a[16], values[4], profile[SAMPLES], v[4], largest = 0, last = 0;
+  PetscReal a[16], values[4], profile[DISC_SAMPLES], v[4], largest = 0, last = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(a, moments, 16));
   PetscCall(DenseSymmetricEigen(4, a, NULL, values, NULL));
-  for (int s = 0; s < SAMPLES; s++) {
-    DiscProfile(disc, mode, m, SampleRadius(disc, s), v);
+  for (int s = 0; s < DISC_SAMPLES; s++) {
+    DiscProfile(disc, mode, DISC_AXIAL, m, DiscSample(disc, s), v);
     profile[s] = 0;
     for (int k = 0; k < 4; k++) profile[s] += a[12 + k] * v[k];
     largest = PetscMax(largest, PetscAbsReal(profile[s]));
   }
   *n = 0;
-  for (int s = 0; s < SAMPLES; s++) {
+  for (int s = 0; s < DISC_SAMPLES; s++) {
     if (PetscAbsReal(profile[s]) < 0.05 * largest) continue;
     if (last * profile[s] < 0) ++*n;
     last = profile[s];
@@ -84,7 +47,7 @@ static PetscErrorCode FamilyFind(const Disc *disc, PetscInt mode, Family *best)
   PetscFunctionBeginUser;
   for (int m = 0; m < disc->n_harmonics; m++) {
     PetscReal       moments[16];
-    const PetscReal energy = ProfileMoments(disc, mode, m, moments);
+    const PetscReal energy = DiscMomentsOf(disc, mode, DISC_AXIAL, m, moments);
     int             n;
 
     PetscCall(NodalCircles(disc, mode, m, moments, &n));
@@ -110,7 +73,7 @@ static void RimValue(const Disc *disc, PetscInt mode, const Family *family, Pets
   w[0] = w[1] = 0;
   for (int m = 0; m < DISC_HARMONICS; m++) {
     if (!family->has[m]) continue;
-    DiscProfile(disc, mode, m, disc->r_outer, v);
+    DiscProfile(disc, mode, DISC_AXIAL, m, disc->range[1], v);
     for (int part = 0; part < 2; part++)
       w[part] += v[part] * PetscCosReal(m * theta) + v[2 + part] * PetscSinReal(m * theta);
   }
@@ -157,7 +120,7 @@ static int NodalDiameters(const Disc *disc, PetscInt mode, const Family *family)
   return (extrema + 1) / 2;
 }
 
-PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size)
+PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size, PetscReal *energy)
 {
   Family family;
   int    diameters;
@@ -167,5 +130,6 @@ PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t siz
   diameters = family.strongest && disc->has_contact ? NodalDiameters(disc, mode, &family) : family.strongest;
   PetscCall(PetscSNPrintf(name, size, "(%d,%d%s)", family.circles, diameters,
                           disc->has_contact && diameters && family.even > family.odd ? "+" : ""));
+  PetscCall(DiscExplain(disc, mode, PetscMin(diameters, DISC_HARMONICS - 1), DISC_AXIAL, DISC_AXIAL, energy));
   PetscFunctionReturn(0);
 }

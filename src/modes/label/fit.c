@@ -1,0 +1,209 @@
+/*
+   Fit of a disc's displacement (see label.c for the formula): normal equations by BLAS, the same ones for all three
+   directions, and what its harmonics tell.
+*/
+#include "disc.h"
+#include "base/algebra/vec3.h"
+#include <petscblaslapack.h>
+
+/* P_0 .. P_4 of the place s in the range mapped to [-1, 1] */
+static void DiscLegendre(const Disc *disc, PetscReal s, PetscReal p[DISC_POLYNOMIALS])
+{
+  const PetscReal rho = (2 * s - disc->range[0] - disc->range[1]) / (disc->range[1] - disc->range[0]);
+
+  p[0] = 1;
+  p[1] = rho;
+  for (int j = 2; j < DISC_POLYNOMIALS; j++) p[j] = ((2 * j - 1) * rho * p[j - 1] - (j - 1) * p[j - 2]) / j;
+}
+
+/* All terms at one point: for each m the cosine, then (m > 0) the sine, each times the polynomials */
+static void DiscTerms(const Disc *disc, PetscReal s, PetscReal theta, PetscReal terms[DISC_TERMS])
+{
+  PetscReal p[DISC_POLYNOMIALS];
+  int       k = 0;
+
+  DiscLegendre(disc, s, p);
+  for (int m = 0; m < DISC_HARMONICS; m++) {
+    for (int j = 0; j < DISC_POLYNOMIALS; j++) terms[k++] = p[j] * PetscCosReal(m * theta);
+    for (int j = 0; j < DISC_POLYNOMIALS && m > 0; j++) terms[k++] = p[j] * PetscSinReal(m * theta);
+  }
+}
+
+/* gram = basis' W basis; basis is row-major, hence column-major transposed */
+static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
+{
+  const PetscBLASInt terms = DISC_TERMS;
+  const PetscReal    one = 1, zero = 0;
+  PetscBLASInt       n;
+  PetscReal         *scaled, r, theta;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
+  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &disc->basis));
+  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &scaled));
+  PetscCall(PetscCalloc1(DISC_TERMS * DISC_TERMS, &disc->gram));
+  for (PetscInt i = 0; i < disc->n_nodes; i++) {
+    PetscReal *row = &disc->basis[i * DISC_TERMS];
+
+    DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
+    if (disc->is_drum) r = DiscAlong(disc, &x[3 * disc->node[i]]);
+    DiscTerms(disc, r, theta, row);
+    for (int k = 0; k < DISC_TERMS; k++) scaled[i * DISC_TERMS + k] = disc->weight[i] * row[k];
+  }
+  if (n)
+    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &terms, &terms, &n, &one, disc->basis, &terms, scaled, &terms, &zero,
+                                        disc->gram, &terms));
+  PetscCall(PetscFree(scaled));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->gram, DISC_TERMS * DISC_TERMS, MPIU_REAL, MPI_SUM, disc->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Coefficients of all fits */
+static PetscInt DiscUnknowns(const Disc *disc)
+{
+  return disc->n_modes * N_DISC_DIRECTIONS * 2 * DISC_TERMS;
+}
+
+PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(DiscGram(disc, x));
+  PetscCall(PetscMalloc1(2 * N_DISC_DIRECTIONS * disc->n_nodes, &disc->moved));
+  PetscCall(PetscCalloc2(DiscUnknowns(disc), &disc->rhs, DiscUnknowns(disc), &disc->fit));
+  PetscFunctionReturn(0);
+}
+
+/* Displacement u of node i in the directions of the disc; its row of the basis has cos theta and sin theta */
+static void DiscTurn(const Disc *disc, PetscInt i, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
+{
+  const PetscReal *row = &disc->basis[i * DISC_TERMS];
+  const PetscReal  c = row[DISC_POLYNOMIALS], s = row[2 * DISC_POLYNOMIALS];
+  const PetscReal  a = Vec3Dot(u, disc->e1), b = Vec3Dot(u, disc->e2);
+
+  v[DISC_AXIAL]      = Vec3Dot(u, disc->axis);
+  v[DISC_RADIAL]     = a * c + b * s;
+  v[DISC_TANGENTIAL] = b * c - a * s;
+}
+
+PetscErrorCode DiscProject(Disc *disc, PetscInt mode, PetscReal *const u[2], PetscReal energy[2])
+{
+  const PetscBLASInt terms = DISC_TERMS, columns = 2 * N_DISC_DIRECTIONS;
+  const PetscReal    one = 1, zero = 0;
+  PetscReal         *rhs = &disc->rhs[mode * columns * DISC_TERMS], v[N_DISC_DIRECTIONS];
+  PetscBLASInt       n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(disc->moved, columns * n));
+  for (int part = 0; part < 2 && u[part]; part++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal w = disc->weight[i];
+
+      DiscTurn(disc, i, &u[part][3 * disc->node[i]], v);
+      for (int d = 0; d < N_DISC_DIRECTIONS; d++) {
+        disc->moved[(2 * d + part) * n + i] = w * v[d];
+        energy[0] += w * v[d] * v[d];
+      }
+      energy[1] += w * v[DISC_AXIAL] * v[DISC_AXIAL];
+    }
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &terms, &columns, &n, &one, disc->basis, &terms, disc->moved, &n, &zero,
+                                      rhs, &terms));
+  PetscFunctionReturn(0);
+}
+
+/* B := A^-1 B, A of so many rows symmetric and positive definite, overwritten */
+static PetscErrorCode DiscSolveNormal(MPI_Comm comm, PetscBLASInt rows, PetscReal A[], PetscInt m, PetscReal B[])
+{
+  PetscBLASInt columns, info;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(m, &columns));
+  PetscCallBLAS("LAPACKpotrf", LAPACKpotrf_("U", &rows, A, &rows, &info));
+  PetscCheck(!info, comm, PETSC_ERR_LIB, "LAPACK potrf: info %d", (int)info);
+  PetscCallBLAS("LAPACKpotrs", LAPACKpotrs_("U", &rows, &columns, A, &rows, B, &rows, &info));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscSolve(Disc *disc)
+{
+  const PetscInt n     = DiscUnknowns(disc);
+  PetscReal      trace = 0, *A;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->rhs, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, disc->comm));
+  for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
+  for (int k = 0; k < DISC_TERMS; k++)
+    disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
+  PetscCall(PetscMalloc1(DISC_TERMS * DISC_TERMS, &A));
+  PetscCall(PetscArraycpy(A, disc->gram, DISC_TERMS * DISC_TERMS));
+  PetscCall(PetscArraycpy(disc->fit, disc->rhs, n));
+  PetscCall(DiscSolveNormal(disc->comm, DISC_TERMS, A, n / DISC_TERMS, disc->fit));
+  PetscCall(PetscFree(A));
+  PetscFunctionReturn(0);
+}
+
+/* First term of harmonic m, and how many it has */
+static int DiscFirst(int m)
+{
+  return m ? (2 * m - 1) * DISC_POLYNOMIALS : 0;
+}
+
+static int DiscCount(int m)
+{
+  return m ? 2 * DISC_POLYNOMIALS : DISC_POLYNOMIALS;
+}
+
+PetscErrorCode DiscExplain(const Disc *disc, PetscInt mode, int m, int first, int last, PetscReal *energy)
+{
+  const int        start = DiscFirst(m), n = DiscCount(m), columns = 2 * (last - first + 1);
+  const PetscReal *rhs = &disc->rhs[(mode * N_DISC_DIRECTIONS + first) * 2 * DISC_TERMS + start];
+  PetscReal        A[4 * DISC_POLYNOMIALS * DISC_POLYNOMIALS], x[2 * N_DISC_DIRECTIONS * 2 * DISC_POLYNOMIALS];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n * n; i++) A[i] = disc->gram[(start + i / n) * DISC_TERMS + start + i % n];
+  for (int i = 0; i < n * columns; i++) x[i] = rhs[i / n * DISC_TERMS + i % n];
+  PetscCall(DiscSolveNormal(disc->comm, n, A, columns, x));
+  *energy = 0;
+  for (int i = 0; i < n * columns; i++) *energy += x[i] * rhs[i / n * DISC_TERMS + i % n];
+  PetscFunctionReturn(0);
+}
+
+void DiscProfile(const Disc *disc, PetscInt mode, int direction, int m, PetscReal s, PetscReal v[N_DISC_VALUES])
+{
+  PetscReal p[DISC_POLYNOMIALS];
+
+  DiscLegendre(disc, s, p);
+  for (int part = 0; part < 2; part++) {
+    const PetscReal *a = &disc->fit[((mode * N_DISC_DIRECTIONS + direction) * 2 + part) * DISC_TERMS + DiscFirst(m)];
+
+    v[DISC_COS_RE + part] = v[DISC_SIN_RE + part] = 0;
+    for (int j = 0; j < DISC_POLYNOMIALS; j++) v[DISC_COS_RE + part] += a[j] * p[j];
+    for (int j = 0; j < DISC_POLYNOMIALS && m; j++) v[DISC_SIN_RE + part] += a[DISC_POLYNOMIALS + j] * p[j];
+  }
+}
+
+PetscReal DiscSample(const Disc *disc, int k)
+{
+  return disc->range[0] + (disc->range[1] - disc->range[0]) * (k + 0.5) / DISC_SAMPLES;
+}
+
+PetscReal DiscSampleWeight(const Disc *disc, PetscReal s)
+{
+  return disc->is_drum ? disc->r_outer : s;
+}
+
+PetscReal DiscMomentsOf(const Disc *disc, PetscInt mode, int direction, int m,
+                        PetscReal moments[N_DISC_VALUES * N_DISC_VALUES])
+{
+  PetscReal v[4];
+
+  for (int k = 0; k < 16; k++) moments[k] = 0;
+  for (int i = 0; i < DISC_SAMPLES; i++) {
+    const PetscReal s = DiscSample(disc, i), r = DiscSampleWeight(disc, s);
+
+    DiscProfile(disc, mode, direction, m, s, v);
+    for (int k = 0; k < 16; k++) moments[k] += v[k / 4] * v[k % 4] * r * (m ? 1 : 2);
+  }
+  return moments[0] + moments[5] + moments[10] + moments[15];
+}
