@@ -1,13 +1,12 @@
 """A deck (decks/deck.py) of the options and the mesh of a scene: what squeal computes with, in CalculiX's terms. What these do not
 have is a note."""
 
-import math
-
 import numpy
 
 from ..decks.deck import Axes, Block, Contact, Deck, Load, Material, Place, Section, Spring, Support, Tie
 from ..decks.mesh.elements import EDGES, SHAPES
 from ..decks.mesh.faces import faces_by_three, nodes_by_kind
+from ..friction import law_of
 from ..mesh.gmsh import DIMENSION, read_any
 from ..tables import BadInput
 from .shares import face_shares, set_shares
@@ -202,13 +201,12 @@ def add_loads(build):
 
 def friction(options, owner):
     """Friction coefficient at the sliding speed."""
-    if options.text(f"{owner}_friction_law") != "static_kinetic":
-        return options.number(f"{owner}_mu", "0")
-    static, kinetic, decay = (options.number(f"{owner}_mu_{name}", "0") for name in ("static", "kinetic", "decay_speed"))
-    if any(options.numbers(f"{owner}_rotation", "0,0,0")):
-        raise BadInput(f"{options.path}: {owner}_friction_law static_kinetic with a rotation: each point has a friction coefficient of "
-                       "its own, which a deck cannot say")
-    return kinetic + (static - kinetic) * math.exp(-options.number(f"{owner}_speed", "0") / decay)
+    law = law_of(options.text(f"{owner}_friction_law", "coulomb"), options.path)
+    if not law.fixed and any(options.numbers(f"{owner}_rotation", "0,0,0")):
+        raise BadInput(f"{options.path}: {owner}_friction_law {options.text(f'{owner}_friction_law')} with a rotation: each point has a "
+                       "friction coefficient of its own, which a deck cannot say")
+    return law.mu({name: options.number(f"{owner}_{name}", "0") for name in law.names},
+                  0 if law.fixed else options.number(f"{owner}_speed", "0"))
 
 
 def add_contacts(build, sliding):

@@ -1,5 +1,6 @@
 """The scene in sentences, from the options in force."""
 
+from ..friction import law_of
 from ..picture import MINUS
 from ..tables import prefixed
 from .markup import count, figures, tag
@@ -103,12 +104,9 @@ def sliding_words(scene, name):
 
 def friction_words(scene, name):
     """A friction law."""
-    if scene.value(f"{name}_friction_law") == "static_kinetic":
-        decay = scene.si("m/s") * scene.number(f"{name}_mu_decay_speed")
-        return (f"friction coefficient {scene.value(f'{name}_mu_static', '0')} at rest, {scene.value(f'{name}_mu_kinetic', '0')} in "
-                f"fast sliding, decay speed {figures(decay, 4)} m/s")
-    slope = scene.si("s/m") * scene.number(f"{name}_mu_slope")
-    return f"friction coefficient {scene.value(f'{name}_mu', '0')}{f', its slope {figures(slope, 4)} s/m' if slope else ''}"
+    law = law_of(scene.value(f"{name}_friction_law", "coulomb"), name)
+    return law.words(lambda parameter: scene.value(f"{name}_{parameter}", "0"),
+                     lambda parameter, unit: scene.si(unit) * scene.number(f"{name}_{parameter}"))
 
 
 def contact_words(scene, name):
@@ -208,6 +206,6 @@ def headline(scene):
     """One line for lists of folders."""
     parts = scene.names("parts")
     first = next(iter(scene.names("contacts")), None)
-    mu = "mu_static" if first and scene.value(f"{first}_friction_law") == "static_kinetic" else "mu"
+    mu = law_of(scene.value(f"{first}_friction_law", "coulomb"), first).first if first else "mu"
     return f"{scene.value('analysis', 'modes')}, {count(len(parts), 'part')}" + (
         f", {mu} {scene.value(f'{first}_{mu}', '0')}" if first else "")

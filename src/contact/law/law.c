@@ -4,6 +4,7 @@
 */
 #include "coulombs.h"
 #include "statickinetic.h"
+#include <string.h>
 
 static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law};
 
@@ -90,17 +91,32 @@ PetscInt FrictionGetParameters(const FrictionLaw *law, const FrictionParameter *
   return KindOf(law)->n;
 }
 
-/* Rows of one law into a law of that kind */
-static PetscErrorCode KindRead(MPI_Comm comm, const char name[], FrictionLaw *law)
+/* Whether a law has a parameter of this name; laws may share names */
+static PetscBool KindHas(const FrictionKind *kind, const char name[])
+{
+  for (PetscInt j = 0; j < kind->n; j++)
+    if (!strcmp(kind->parameter[j].row.name, name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Rows of one law into a law of that kind; of laws that were not chosen those that no other has shown */
+static PetscErrorCode KindRead(MPI_Comm comm, const char name[], const FrictionKind *chosen, FrictionLaw *law)
 {
   const FrictionKind *kind = KindOf(law);
   Quantity            row[FRICTION_PARAMETERS];
+  PetscInt            n_rows = 0;
   char                title[160];
 
   PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < kind->n; j++) row[j] = kind->parameter[j].row;
+  for (PetscInt j = 0; j < kind->n; j++) {
+    const char *const own   = kind->parameter[j].row.name;
+    PetscBool         shown = kind != chosen ? KindHas(chosen, own) : PETSC_FALSE;
+
+    for (PetscInt k = 0; k < law->kind && kind != chosen && !shown; k++) shown = KindHas(kinds[k], own);
+    if (!shown) row[n_rows++] = kind->parameter[j].row;
+  }
   PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
-  PetscCall(QuantitiesReadOf(comm, name, &(QuantityTable){title, "frictionlaw.h", kind->n, row}, law));
+  PetscCall(QuantitiesReadOf(comm, name, &(QuantityTable){title, "frictionlaw.h", n_rows, row}, law));
   PetscFunctionReturn(0);
 }
 
@@ -113,9 +129,10 @@ static PetscErrorCode KindsRefuse(MPI_Comm comm, const char name[], const Fricti
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_friction_law %s", name, KindOf(chosen)->name));
   PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_friction_law is %s", name, KindOf(chosen)->name));
   for (PetscInt k = 0; k < N_KINDS; k++)
-    for (PetscInt j = 0; j < kinds[k]->n && k != chosen->kind; j++) {
+    for (PetscInt j = 0; j < kinds[k]->n; j++) {
       const char *const own = kinds[k]->parameter[j].row.name + 1;
 
+      if (KindHas(KindOf(chosen), own - 1)) continue;
       PetscCall(OptionsRefuseOf(comm, name, own, why));
       PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, own));
       PetscCall(OptionsDrop(comm, option, instead));
@@ -154,11 +171,11 @@ PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], Friction
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
   PetscCall(QuantitiesReadOf(comm, name, &table, &chosen));
+  *law = (FrictionLaw){.kind = chosen};
   for (PetscInt k = 0; k < N_KINDS; k++) {
     FrictionLaw read = {.kind = k};
 
-    PetscCall(KindRead(comm, name, &read));
-    if (k == chosen) *law = read;
+    PetscCall(KindRead(comm, name, kinds[chosen], k == chosen ? law : &read));
   }
   PetscCall(KindsRefuse(comm, name, law));
   PetscCall(LawCheck(comm, name, law));
@@ -184,7 +201,7 @@ PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const Frictio
     const FrictionParameter *q  = &KindOf(law)->parameter[j];
     const double             mu = (double)law->parameter[j];
 
-    if (q->coefficient && PetscAbsReal(mu) > LARGEST_MU)
+    if (q->coefficient && !q->row.unit && PetscAbsReal(mu) > LARGEST_MU)
       PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n",
                              name, q->row.name + 1, mu, LARGEST_MU, mu, mu / 100));
   }
