@@ -33,9 +33,21 @@ def static_kinetic_words(text, si):
             f"decay speed {figures(si('mu_decay_speed', 'm/s'), 4)} m/s")
 
 
+def stribeck_mu(p, speed):
+    fall = (p["mu_static"] - p["mu_kinetic"]) * math.exp(-(speed / p["mu_stribeck_speed"])**2)
+    return p["mu_kinetic"] + fall + p["mu_viscous"] * speed
+
+
+def stribeck_words(text, si):
+    viscous = si("mu_viscous", "s/m")
+    return (f"friction coefficient {text('mu_static')} at rest, {text('mu_kinetic')} beyond the Stribeck speed "
+            f"{figures(si('mu_stribeck_speed', 'm/s'), 4)} m/s{f', and {figures(viscous, 4)} s/m viscous' if viscous else ''}")
+
+
 LAWS = {
     "coulomb": Law("mu", ("mu",), lambda p, _: p["mu"], coulomb_words, fixed=True),
     "static_kinetic": Law("mu_static", ("mu_static", "mu_kinetic", "mu_decay_speed"), static_kinetic_mu, static_kinetic_words),
+    "stribeck": Law("mu_static", ("mu_static", "mu_kinetic", "mu_viscous", "mu_stribeck_speed"), stribeck_mu, stribeck_words),
 }
 
 

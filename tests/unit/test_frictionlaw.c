@@ -34,6 +34,21 @@ static int TestStaticKinetic(void)
   return failed;
 }
 
+/* Breaks when: mu is not mu_k + (mu_s - mu_k) exp(-(s / s_0)^2) + b s. By hand: exp(-ln 2) = 1/2, at sqrt(ln 2) s_0 */
+static int TestStribeck(void)
+{
+  const FrictionLaw law    = {.kind = 2, .speed = 2, .parameter = {0.5, 0.3, 0.2, 0.1}};
+  const PetscReal   half   = 0.1 * sqrt(log(2));
+  int               failed = CheckClose("at rest", FrictionMu(&law, 0), 0.5, 1e-15);
+
+  failed += CheckClose("half way down", FrictionMu(&law, half), 0.4 + 0.2 * half, 1e-15);
+  failed += CheckClose("its slope", FrictionSlope(&law, half), -20 * half + 0.2, 1e-14);
+  failed += CheckClose("level at rest but for b", FrictionSlope(&law, 0), 0.2, 1e-15);
+  failed += CheckClose("far beyond", FrictionMu(&law, 10), 2.3, 1e-15);
+  failed += CheckTrue("it knows the speed itself", FrictionNeedsSpeed(&law) && FrictionVaries(&law), 0);
+  return failed;
+}
+
 /* d f / d x by central differences, f mu or mu' at the stated speed; x a parameter of the law, or that speed (j < 0) */
 static PetscReal Difference(const FrictionLaw *law, PetscReal (*f)(const FrictionLaw *), int j)
 {
@@ -75,6 +90,8 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   *failed += TestStaticKinetic();
   *failed += TestDerivatives(&(FrictionLaw){.kind = 1, .speed = 0.15, .parameter = {0.5, 0.3, 0.1}});
   *failed += TestDerivatives(&(FrictionLaw){.kind = 1, .speed = 3, .parameter = {0.2, 0.6, 1.5}});
+  *failed += TestStribeck();
+  *failed += TestDerivatives(&(FrictionLaw){.kind = 2, .speed = 0.12, .parameter = {0.5, 0.3, 0.2, 0.1}});
   PetscFunctionReturn(0);
 }
 

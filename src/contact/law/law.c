@@ -4,9 +4,10 @@
 */
 #include "coulombs.h"
 #include "statickinetic.h"
+#include "stribeck.h"
 #include <string.h>
 
-static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law};
+static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law, &stribeck_law};
 
 #define LARGEST_MU 1.5 /* of rubber on dry concrete */
 #define N_KINDS    ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(kinds))
