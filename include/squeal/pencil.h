@@ -159,6 +159,26 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
 @*/
 PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[]);
 
+/* Products of one term that may have a share, its coefficient included, with the vectors of a mode and of a second one:
+   y_a' A x_b and y_a' A' x_b, without conjugation */
+typedef struct {
+  OperatorsTermKind kind;
+  PetscBool         exact;                       /* friction of an exact contact, A from its left null space */
+  PetscBool         friction;                    /* friction of a contact, which the whole term goes with */
+  PetscReal         form[2];                     /* real and imaginary part of x_0^H A x_0 */
+  PetscComplex      product[2][2], turned[2][2]; /* y_a' A x_b; y_a' A' x_b, of an exact contact as the first */
+} PencilForms;
+
+/* Right (xr + i xi) and left (yr + i yi) vectors of up to two modes, of all unknowns; xi, yi NULL for real ones */
+typedef struct {
+  PetscInt n;
+  Vec      xr[2], xi[2], yr[2], yi[2];
+} PencilVectors;
+
+/*@ PencilMeasureForms - the products of each term that PencilGetCauses() lists, called before, as many as n says; the
+    caller frees them. Collective. @*/
+PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *vectors, PetscInt *n, PencilForms **forms);
+
 /*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point
    are
     formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other

@@ -105,6 +105,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->right));
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
+  PetscCall(PetscFree(modes->mechanism));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
   PetscCall(EPSDestroy(&modes->left_solver));

@@ -1,6 +1,7 @@
 /* Private to modes/: the record of the solver, and the pieces of a solution */
 #pragma once
 
+#include "growth/mechanism.h"
 #include "solver/factor/shiftinvert.h"
 #include <squeal/modes.h>
 #include <squeal/options.h>
@@ -33,6 +34,13 @@ PETSC_INTERN PetscErrorCode SpectrumPermute(Spectrum *spectrum, const PetscInt o
 PETSC_INTERN PetscErrorCode SpectrumRemove(Spectrum *spectrum, PetscInt i);
 PETSC_INTERN PetscErrorCode SpectrumAppend(Spectrum *from, Spectrum *to); /* moves the entries; `from` is destroyed */
 PETSC_INTERN PetscErrorCode SpectrumDestroy(Spectrum *spectrum);
+
+/* By which mechanism a mode grows, and the mode that couples with it, -1 for none */
+typedef struct {
+  Mechanism kind;
+  PetscInt  partner;
+  PetscReal real[2]; /* of the two without friction and damping, rad/s, to second order */
+} ModeMechanism;
 
 /* Routes of a damped solution: by projection where its measure allows, always, never */
 typedef enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP } DampingRoute;
@@ -74,6 +82,8 @@ struct _p_Modes {
   EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
   ShiftInvert null;        /* far below all elastic modes, for the null space of K */
   ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
+  /* [n] or NULL: not asked for yet */
+  ModeMechanism *mechanism;
   /* of the solution under way */
   /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
   PetscInt       block[2];
@@ -123,7 +133,11 @@ typedef struct {
   WindowRoute route;
 } Window;
 
-/* causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
+/* growth/pair.c - the mechanism of every mode (borrowed); that of an unstable one begins a line. Collective */
+PETSC_INTERN PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms);
+PETSC_INTERN PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const ModeMechanism *m, PetscViewer viewer);
+
+/* growth/causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteCauses(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 

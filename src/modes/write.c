@@ -93,6 +93,7 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsT
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
   if (mesh) PetscCall(PetscStrlcat(header, ",label_percent", sizeof(header)));
+  PetscCall(PetscStrlcat(header, ",mechanism,partner", sizeof(header)));
   PetscCall(ResultsTableOpen(results, "modes", header, table));
   PetscFunctionReturn(0);
 }
@@ -100,9 +101,11 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsT
 /* modes.csv */
 static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results results)
 {
-  ResultsTable table;
+  const ModeMechanism *mechanism;
+  ResultsTable         table;
 
   PetscFunctionBeginUser;
+  PetscCall(ModesGetMechanisms(modes, &mechanism));
   PetscCall(ModesOpenTable(mesh, results, &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m             = &modes->mode[i];
@@ -116,10 +119,14 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
       PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->label_percent[i]));
       PetscCall(PetscStrlcat(percent, modes->label_percent[i] >= 0 ? number : ",", sizeof(percent)));
     }
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s", (int)i + 1,
-                              (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),
-                              (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
-                              (double)(m->error / (2 * PETSC_PI)), percent));
+    if (mechanism[i].partner >= 0)
+      PetscCall(PetscSNPrintf(number, sizeof(number), "%d", (int)mechanism[i].partner + 1));
+    else
+      number[0] = 0;
+    PetscCall(ResultsTableRow(
+      table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s,%s,%s", (int)i + 1, (double)ModeFrequency(m),
+      (double)m->sigma, (double)ModeDampingRatio(m), (double)m->backward_error, (double)m->condition, (int)m->unstable,
+      m->label, (double)(m->error / (2 * PETSC_PI)), percent, MechanismName(mechanism[i].kind, PETSC_FALSE), number));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

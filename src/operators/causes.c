@@ -12,6 +12,7 @@
    penalty's.
 */
 #include "pencilimpl.h"
+#include <complex.h>
 
 /* Whether a term can have a share */
 static PetscBool TermHasShare(const OperatorsTerm *term, const PetscReal p[])
@@ -166,5 +167,88 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal ome
   for (PetscInt i = 0; i < pencil->n_causes; i++) growth[i] /= -D;
   PetscCall(VectorDestroy(&q));
   PetscCall(VecDestroy(&u.y));
+  PetscFunctionReturn(0);
+}
+
+/* product = y' z, without conjugation */
+static PetscErrorCode VectorDot(const CauseVector *y, const CauseVector *z, PetscComplex *product)
+{
+  PetscScalar d[2];
+
+  PetscFunctionBeginUser;
+  *product = 0;
+  for (int k = 0; k < 2 && z->x[k]; k++) {
+    PetscCall(VecMDot(z->x[k], y->x[1] ? 2 : 1, (Vec *)y->x, d));
+    *product += (k ? I : 1) * CMPLX(d[0], y->x[1] ? d[1] : 0);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* product = y' A x, or y' A' x */
+static PetscErrorCode VectorProduct(const CauseVector *y, Mat A, PetscBool turned, const CauseVector *x,
+                                    PetscComplex *product)
+{
+  CauseVector z = {{NULL, NULL}, NULL};
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2 && x->x[k]; k++) {
+    PetscCall(VecDuplicate(x->x[k], &z.x[k]));
+    if (turned)
+      PetscCall(MatMultTranspose(A, x->x[k], z.x[k]));
+    else
+      PetscCall(MatMult(A, x->x[k], z.x[k]));
+  }
+  PetscCall(VectorDot(y, &z, product));
+  PetscCall(VectorDestroy(&z));
+  PetscFunctionReturn(0);
+}
+
+/* x[n], y[n] in the unknowns of the term */
+static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscInt n, const CauseVector x[],
+                                       const CauseVector y[], PencilForms *forms)
+{
+  PetscFunctionBeginUser;
+  *forms = (PencilForms){.kind     = term->kind,
+                         .exact    = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE,
+                         .friction = term->constraint >= 0 || !strcmp(term->cause_kind, "friction")};
+  PetscCall(VectorForm(&x[0], term->A, forms->form));
+  for (int k = 0; k < 2; k++) forms->form[k] *= term->scale;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt b = 0; b < n; b++) {
+      PetscCall(VectorProduct(&y[a], term->A, PETSC_FALSE, &x[b], &forms->product[a][b]));
+      forms->product[a][b] *= term->scale;
+      forms->turned[a][b] = forms->product[a][b];
+      if (forms->exact || term->symmetric) continue;
+      PetscCall(VectorProduct(&y[a], term->A, PETSC_TRUE, &x[b], &forms->turned[a][b]));
+      forms->turned[a][b] *= term->scale;
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *v, PetscInt *n, PencilForms **forms)
+{
+  CauseVector x[2][2] = {0}, y[2][2] = {0}; /* of all unknowns, of those of the pencil; a mode each */
+
+  PetscFunctionBeginUser;
+  *n = pencil->causing.n;
+  PetscCall(PetscMalloc1(*n, forms));
+  for (PetscInt a = 0; a < v->n; a++) {
+    x[0][a] = (CauseVector){{v->xr[a], v->xi[a]}, NULL};
+    y[0][a] = (CauseVector){{v->yr[a], v->yi[a]}, NULL};
+    PetscCall(VecDuplicate(v->xr[a], &x[0][a].y));
+    PetscCall(VectorRestrict(pencil, &x[0][a], &x[1][a]));
+    PetscCall(VectorRestrict(pencil, &y[0][a], &y[1][a]));
+  }
+  for (PetscInt t = 0; t < *n; t++) {
+    const OperatorsTerm *term  = &pencil->causing.term[t];
+    const int            space = term->constraint >= 0;
+
+    PetscCall(TermMeasureForms(term, v->n, x[space], y[space], &(*forms)[t]));
+  }
+  for (PetscInt a = 0; a < v->n; a++) {
+    PetscCall(VectorDestroy(&x[1][a]));
+    PetscCall(VectorDestroy(&y[1][a]));
+    PetscCall(VecDestroy(&x[0][a].y));
+  }
   PetscFunctionReturn(0);
 }

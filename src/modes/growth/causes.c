@@ -1,11 +1,11 @@
 /*
-   Why modes grow or decay: modes_causes.csv, and the largest shares of unstable ones in the view.
+   Why modes grow or decay: modes_causes.csv, and mechanism and largest shares of unstable ones in the view.
 
    Error of a share, an estimate of first order: the vector is off by about d / g, d the error of the eigenvalue and g
    the distance of the next one, so that the share is off by d + 2 s d / g, s the largest share of the mode, and by what
    the balance leaves. Modes of one eigenvalue have no shares of their own, and errors as large as these.
 */
-#include "modesimpl.h"
+#include "modes/modesimpl.h"
 
 #define CAUSES_SHOWN 3 /* of a mode */
 
@@ -87,32 +87,43 @@ static PetscInt CauseNext(PetscInt n, const ModeShares *s, const PetscBool shown
   return largest;
 }
 
+/* The largest shares, none for a mode without a frequency; shown has room for all causes */
+static PetscErrorCode SharesView(const PencilCause cause[], PetscInt n, const ModeShares *s, PetscBool shown[],
+                                 PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (!s->known) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(shown, n));
+  for (PetscInt k = 0; k < CAUSES_SHOWN; k++) {
+    const PetscInt at = CauseNext(n, s, shown);
+
+    if (at < 0) break;
+    shown[at] = PETSC_TRUE;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : ":", cause[at].kind, cause[at].name,
+                                     (double)s->growth[at]));
+  }
+  if (CauseNext(n, s, shown) >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", others in modes_causes.csv"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer)
 {
-  const PencilCause *cause;
-  PetscInt           n;
-  ModeShares         s;
-  PetscBool         *shown;
+  const ModeMechanism *mechanism;
+  const PencilCause   *cause;
+  PetscInt             n;
+  ModeShares           s;
+  PetscBool           *shown;
 
   PetscFunctionBeginUser;
+  PetscCall(ModesGetMechanisms(modes, &mechanism)); /* which forms the causes anew */
   PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
   PetscCall(PetscMalloc2(n, &s.growth, n, &shown));
-  for (PetscInt i = 0; i < modes->n && n; i++) {
+  for (PetscInt i = 0; i < modes->n; i++) {
     if (!modes->mode[i].unstable) continue;
     PetscCall(ModeMeasureShares(modes, i, n, &s));
-    if (!s.known) continue;
-    PetscCall(PetscArrayzero(shown, n));
-    PetscCall(
-      PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s:", i + 1, (double)modes->mode[i].sigma));
-    for (PetscInt k = 0; k < CAUSES_SHOWN; k++) {
-      const PetscInt at = CauseNext(n, &s, shown);
-
-      if (at < 0) break;
-      shown[at] = PETSC_TRUE;
-      PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %s %+.5g", k ? "," : "", cause[at].kind, cause[at].name,
-                                       (double)s.growth[at]));
-    }
-    PetscCall(PetscViewerASCIIPrintf(viewer, CauseNext(n, &s, shown) < 0 ? "\n" : ", others in modes_causes.csv\n"));
+    PetscCall(ModesViewMechanism(modes, i, &mechanism[i], viewer));
+    PetscCall(SharesView(cause, n, &s, shown, viewer));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
   PetscCall(PetscFree2(s.growth, shown));
   PetscFunctionReturn(0);
