@@ -12,7 +12,11 @@ UNITS = "_percent", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s
 ESTIMATES = "error", "condition", "damping_ratio", "check", "residual", "period_slope", "worst_ratio", "sweeps", "pairs_changed", \
     "steps_changed", "onset_distance"
 # A column with the one that states its error
-VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv": ("growth_rad_s", "error_rad_s")}
+VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv": ("growth_rad_s", "error_rad_s"),
+          "modes_effects.csv": ("growth_rad_s_per_unit", "error_rad_s_per_unit")}
+# Columns that have no error of their own: of nodes that are nearly as good another may be named
+FOLLOW = {"modes_effects.csv": {*(f"{axis}_m" for axis in "xyz"), *(f"direction_{axis}" for axis in "xyz"), "freq_hz_per_unit",
+                                "first_order_units_to_zero"}}
 
 
 def read(path):
@@ -128,6 +132,7 @@ class Comparison:
         if self.name in VALUES:
             self.stated_values(*VALUES[self.name])
             columns -= {VALUES[self.name][0], "freq_hz"}
+        columns -= FOLLOW.get(self.name, set())
         for column in self.columns:
             if column in columns:
                 self.values(column)

@@ -4,6 +4,7 @@ Used by test_report.py; `t` keeps what is wrong, `page` finds elements, `key` is
 import base64
 import csv
 import json
+import math
 import re
 import shutil
 
@@ -63,6 +64,18 @@ def check_modes(t, page, key, folder):
     shares = [float(row["part_beam_percent"]) for row in rows]
     seen = [(e["height"], share) for e, share in zip(boxes, shares) if share > 1]
     t.check(len(boxes) == 2 * len(rows) and straight(*zip(*seen)), f"{key}: shares of the beam")
+    check_effects(t, page, key, folder / "modes_effects.csv")
+
+
+def check_effects(t, page, key, path):
+    """What stops a mode, in g and N/mm: breaks when a unit or a row is mixed up."""
+    if not path.exists():
+        return
+    rows, factor = rows_of(path), {"kg": 1e3, "N/m": 1e-3, "N s/m": 1}
+    shown = page.table(f"{key}-effects-table")
+    t.check(len(shown) == len(rows) > 0, f"{key}: {len(shown)} of {len(rows)} changes")
+    t.check(all(math.isclose(float(cell["that would stop it"]), factor[row["unit"]] * float(row["first_order_units_to_zero"]),
+                             rel_tol=1e-9) and cell["part"] == row["part"] for cell, row in zip(shown, rows)), f"{key}: amounts")
 
 
 def numbers(text, kind):

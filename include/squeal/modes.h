@@ -116,7 +116,7 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);
 /*@ ModesView - the table of modes for people. Collective. @*/
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
 
-/*@ ModesWrite - modes.csv, modes_causes.csv and the shapes. Collective. @*/
+/*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv and the shapes. Collective. @*/
 PetscErrorCode ModesWrite(Modes modes, Results results);
 
 /*@ ModesDestroy - frees the solver. Collective. @*/

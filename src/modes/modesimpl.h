@@ -141,6 +141,13 @@ PETSC_INTERN PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const Mo
 PETSC_INTERN PetscErrorCode ModesWriteCauses(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 
+/* causes.c - distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond
+   the band */
+PETSC_INTERN PetscReal ModeGap(const Modes modes, PetscInt i);
+
+/* effects.c - modes_effects.csv, and fields, where modes are unstable. Collective */
+PETSC_INTERN PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, const Mesh *mesh, Results results);
+
 /* quantities.c - rows of the options */
 extern const QuantityTable modes_quantities;
 

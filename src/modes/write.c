@@ -170,6 +170,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(OperatorsGetMesh(operators, &mesh));
   PetscCall(ModesWriteTable(modes, mesh, results));
   PetscCall(ModesWriteCauses(modes, results));
+  PetscCall(ModesWriteEffects(modes, operators, mesh, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));

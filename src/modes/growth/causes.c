@@ -16,8 +16,7 @@ typedef struct {
   PetscBool  known;       /* the mode has a frequency */
 } ModeShares;
 
-/* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */
-static PetscReal ModeGap(const Modes modes, PetscInt i)
+PetscReal ModeGap(const Modes modes, PetscInt i)
 {
   const Mode *a   = &modes->mode[i];
   PetscReal   gap = 2 * a->omega;

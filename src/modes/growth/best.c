@@ -1,0 +1,122 @@
+/*
+   Where on a part a mass, a spring or a dashpot lowers the growth of a mode most, and along which direction.
+
+   At a node the rate of growth along the unit vector d is d'S d, S = Re(factor (y x' + x y') / 2): the least is the
+   lowest eigenvalue of S, its vector the direction. |S| <= |factor| |x| |y|, so that most nodes need no eigenvalues.
+   Of nodes that are alike within rounding, as in a scene with symmetry, the first in the order of places is named, so
+   that the answer is the same on any number of ranks.
+*/
+#include "effects.h"
+#include "base/algebra/dense.h"
+#include "base/algebra/vec3.h"
+
+#define DIRECTION_ZERO 1e-12 /* components of a direction below it are rounding */
+
+/* Lowest rate of growth at a node, and where along */
+static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt node, EffectBest *here)
+{
+  PetscComplex form[3][3];
+  PetscReal    S[9], w[3];
+  PetscBool    definite;
+
+  PetscFunctionBeginUser;
+  *here = (EffectBest){.at = {e->mesh->x[3 * node], e->mesh->x[3 * node + 1], e->mesh->x[3 * node + 2]}};
+  EffectAtNode(e, kind, node, form);
+  if (kind == EFFECT_MASS) {
+    here->rate = form[0][0] + form[1][1] + form[2][2];
+    PetscFunctionReturn(0);
+  }
+  for (int i = 0; i < 9; i++) S[i] = creal(form[i / 3][i % 3]);
+  PetscCall(DenseSymmetricEigen(3, S, NULL, w, &definite));
+  for (int a = 0; a < 3; a++) here->direction[a] = PetscAbsReal(S[a]) < DIRECTION_ZERO ? 0 : S[a];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) here->rate += here->direction[a] * form[a][b] * here->direction[b];
+  PetscFunctionReturn(0);
+}
+
+/* The largest that any change of a kind may do at a node */
+static PetscReal NodeBound(const ModeEffects *e, EffectKind kind, PetscInt node)
+{
+  PetscReal xx = 0, yy = 0;
+
+  for (PetscInt i = 3 * node; i < 3 * node + 3; i++) {
+    xx += PetscSqr(e->xr[i]) + PetscSqr(e->xi[i]);
+    yy += PetscSqr(e->yr[i]) + PetscSqr(e->yi[i]);
+  }
+  return cabs(e->factor[kind]) * PetscSqrtReal(xx * yy);
+}
+
+/* Takes the change at a node where it is better than the best so far, or as good and earlier in place */
+static PetscErrorCode BestTry(const ModeEffects *e, EffectKind kind, PetscInt node, EffectBest *best)
+{
+  const PetscReal least = best->found ? creal(best->rate) : 0;
+  EffectBest      here;
+
+  PetscFunctionBeginUser;
+  if (NodeBound(e, kind, node) < -least * (1 - e->rounding)) PetscFunctionReturn(0);
+  PetscCall(NodeLowest(e, kind, node, &here));
+  if (!(creal(here.rate) < 0) || creal(here.rate) > least * (1 - e->rounding)) PetscFunctionReturn(0);
+  here.found = PETSC_TRUE;
+  if (creal(here.rate) < least * (1 + e->rounding) || Vec3ComparePlaces(here.at, best->at) < 0) *best = here;
+  PetscFunctionReturn(0);
+}
+
+/* The better of two, by the same rule */
+static EffectBest BestOf(const EffectBest *a, const EffectBest *b, PetscReal rounding)
+{
+  if (!a->found || !b->found) return a->found ? *a : *b;
+  if (creal(b->rate) < creal(a->rate) * (1 + rounding)) return *b;
+  if (creal(a->rate) < creal(b->rate) * (1 + rounding)) return *a;
+  return Vec3ComparePlaces(b->at, a->at) < 0 ? *b : *a;
+}
+
+/* A direction and its opposite are one: its largest component is positive */
+static void BestTurn(EffectBest *best)
+{
+  int largest = 0;
+
+  for (int a = 1; a < 3; a++)
+    if (PetscAbsReal(best->direction[a]) > (1 + 1e-6) * PetscAbsReal(best->direction[largest])) largest = a;
+  if (best->direction[largest] >= 0) return;
+  for (int a = 0; a < 3; a++) best->direction[a] = best->direction[a] == 0 ? 0 : -best->direction[a];
+}
+
+/* The same of this rank's nodes of a part, each once: seen [local nodes] is the last part that a node was tried for */
+static PetscErrorCode BestOfPart(const ModeEffects *e, EffectKind kind, PetscInt part, PetscInt seen[],
+                                 EffectBest *best)
+{
+  const Mesh *mesh = e->mesh;
+
+  PetscFunctionBeginUser;
+  *best = (EffectBest){.found = PETSC_FALSE};
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_first[c]; k < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; k++) {
+      const PetscInt node = mesh->cell_node[k];
+
+      if (seen[node] != part) PetscCall(BestTry(e, kind, node, best));
+      seen[node] = part;
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[])
+{
+  const PetscInt n_parts = e->mesh->n_parts;
+  PetscMPIInt    size, bytes = (PetscMPIInt)((size_t)n_parts * sizeof(EffectBest));
+  PetscInt      *seen;
+  EffectBest    *all;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc2(e->mesh->n_nodes, &seen, (PetscInt)size * n_parts, &all));
+  for (PetscInt node = 0; node < e->mesh->n_nodes; node++) seen[node] = -1;
+  for (PetscInt k = 0; k < n_parts; k++) PetscCall(BestOfPart(e, kind, k, seen, &best[k]));
+  PetscCallMPI(MPI_Allgather(best, bytes, MPI_BYTE, all, bytes, MPI_BYTE, comm));
+  for (PetscInt k = 0; k < n_parts; k++) {
+    best[k] = all[k];
+    for (PetscMPIInt r = 1; r < size; r++) best[k] = BestOf(&best[k], &all[r * n_parts + k], e->rounding);
+    BestTurn(&best[k]);
+  }
+  PetscCall(PetscFree2(seen, all));
+  PetscFunctionReturn(0);
+}
