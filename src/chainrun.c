@@ -31,11 +31,14 @@ static PetscErrorCode ChainIntegrate(Chain *chain)
 /* The pencil of those that are about one point */
 static PetscErrorCode ChainGivePencil(Chain *chain)
 {
+  PetscBool components;
+
   PetscFunctionBeginUser;
   if (chain->analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
   if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_FRF) PetscFunctionReturn(0);
   PetscCall(ChainLinearise(chain));
-  if (chain->analysis == ANALYSIS_MODES) PetscCall(PencilReleaseTerms(chain->pencil)); /* which need one point alone */
+  PetscCall(ModesWantComponents(chain->modes, &components)); /* which ask for another pencil */
+  if (chain->analysis == ANALYSIS_MODES && !components) PetscCall(PencilReleaseTerms(chain->pencil));
   PetscCall(ModesSetPencil(chain->modes, chain->pencil));
   PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   PetscFunctionReturn(0);
@@ -44,9 +47,12 @@ static PetscErrorCode ChainGivePencil(Chain *chain)
 static PetscErrorCode ChainSolve(Chain *chain)
 {
   const Analysis analysis = chain->analysis;
+  PetscBool      components;
 
   PetscFunctionBeginUser;
   if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
+  PetscCall(ModesWantComponents(chain->modes, &components));
+  if (analysis == ANALYSIS_MODES && components) PetscCall(ModesFindComponents(chain->modes));
   if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
   if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
   if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));

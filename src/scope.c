@@ -263,6 +263,8 @@ static PetscErrorCode ScopeCheckRead(MPI_Comm comm, const Scope *s, PetscBool st
   PetscCall(ScopeCheckEquilibrium(comm, s, identify, slides));
   if (s->sweep || s->transient)
     PetscCall(OptionsRefuse(comm, "-modes_filters", "written by -analysis modes and frf alone; leave it out"));
+  if (s->sweep || s->transient || s->frf)
+    PetscCall(OptionsRefuse(comm, "-modes_components", "written by -analysis modes alone; leave it out"));
   if (s->frf)
     PetscCall(OptionsRefuse(comm, "-modes_growth",
                             "not used by -analysis frf, whose residual term stands for the modes left out"));

@@ -54,6 +54,8 @@ angular frequency of f2
 the units of a part are in doubt
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
+.  -modes_components <0>     - write which free modes of the bodies make up each mode, of those up to this multiple of
+the highest frequency
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called
 disc, the only one with the word disc, disk, rotor or drum in its name, in any letters
 .  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
@@ -93,6 +95,14 @@ PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
+/*@ ModesWantComponents - whether the options ask for contributions of component modes. Not collective. @*/
+PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted);
+
+/*@ ModesFindComponents - which free modes of the bodies make up each mode of the last solution, for ModesView() and
+    ModesWrite(); the terms of the operators must be there. Collective.
+    Errors: PETSC_ERR_USER_INPUT for loaded matrices. @*/
+PetscErrorCode ModesFindComponents(Modes modes);
+
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 
@@ -116,7 +126,7 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);
 /*@ ModesView - the table of modes for people. Collective. @*/
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
 
-/*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv and the shapes. Collective. @*/
+/*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv, modes_components.csv and the shapes. Collective. @*/
 PetscErrorCode ModesWrite(Modes modes, Results results);
 
 /*@ ModesDestroy - frees the solver. Collective. @*/

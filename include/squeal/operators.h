@@ -102,6 +102,10 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
+/*@ OperatorsUnitIsGyration - whether a parameter is one of damping or spin, which real modes know nothing of: by its
+    unit, since names begin with those that the user gave. Not collective. @*/
+PetscErrorCode OperatorsUnitIsGyration(const char unit[], PetscBool *is);
+
 /*@ OperatorsCreatePoint - a copy of a point, NULL for the values of the scene, p [parameters], to be changed and freed
     (PetscFree()) by the caller. Not collective. @*/
 PetscErrorCode OperatorsCreatePoint(Operators operators, const PetscReal from[], PetscReal **p);

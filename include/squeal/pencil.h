@@ -118,6 +118,13 @@ PetscErrorCode SlidingStateDestroy(SlidingState *state);
 @*/
 PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil);
 
+/*@
+   OperatorsLineariseBodies - makes the pencil of the bodies by themselves at a point p [parameters], NULL for that of
+   the scene: every pair open, neither damping nor spin, and where they are to be `apart` no bushing between two sets.
+   Bodies that share nodes, ties and rigid points stay one; supports and springs to the ground stay. Collective.
+@*/
+PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[], PetscBool apart, Pencil *bodies);
+
 /*@ PencilGetParameters - the parameters of the operators, then closed_1, closed_2, ... of the groups, and the present
     point (borrowed); pass NULL for what is not needed. Not collective. @*/
 PetscErrorCode PencilGetParameters(Pencil pencil, PetscInt *n, const OperatorsParameter **parameters,

@@ -106,8 +106,10 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(SpectrumDestroy(&modes->left_spectrum));
   PetscCall(PetscFree(modes->mode));
   PetscCall(PetscFree(modes->mechanism));
+  PetscCall(PetscFree(modes->residual));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
+  PetscCall(ComponentsDestroy(&modes->components));
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));

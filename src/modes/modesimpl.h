@@ -52,12 +52,16 @@ enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 
 #define SAVED_LENGTH 512
 
+/* components/ - which free modes of the bodies make up each mode */
+typedef struct _p_ModesComponents *ModesComponents;
+
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
   /* set by options */
   PetscReal    band[2], target; /* Hz */
   PetscReal    growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscReal    free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
   PetscInt     most;            /* modes that a band may hold; 0: any number */
   PetscBool    has_most;        /* given */
   PetscReal    max_time;        /* s, of one solution; 0: any */
@@ -68,20 +72,22 @@ struct _p_Modes {
   char         disc[64];
   Progress     progress;
   /* results */
-  Spectrum    right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
-  Mode       *mode;
-  PetscInt    n;
-  double     *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
-  double     *label_percent; /* of the shape what its name explains [n], NULL likewise */
-  PetscBool   dense;         /* LAPACK found all eigenvalues */
-  PetscInt    shifts;        /* in use */
-  char        completeness[4096];
-  char        saved[N_SAVED][SAVED_LENGTH];
-  char        solver[96];  /* type of the undamped eigensolver, its block and factors */
-  ShiftInvert factor;      /* of the solution where keep is set */
-  EPS         left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
-  ShiftInvert null;        /* far below all elastic modes, for the null space of K */
-  ShiftInvert counter;     /* of the last count by inertia, from which the solution takes its analysis */
+  Spectrum        right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
+  Mode           *mode;
+  PetscReal      *residual; /* [n] |Q(lambda) x| in the norm of M^-1, at most, with x of M-norm one, (rad/s)^2 */
+  PetscInt        n;
+  double         *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
+  ModesComponents components;    /* NULL: not asked for */
+  PetscBool       dense;         /* LAPACK found all eigenvalues */
+  PetscInt        shifts;        /* in use */
+  char            completeness[4096];
+  char            saved[N_SAVED][SAVED_LENGTH];
+  char            solver[96];  /* type of the undamped eigensolver, its block and factors */
+  ShiftInvert     factor;      /* of the solution where keep is set */
+  EPS             left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
+  ShiftInvert     null;        /* far below all elastic modes, for the null space of K */
+  ShiftInvert     counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* [n] or NULL: not asked for yet */
   ModeMechanism *mechanism;
   /* of the solution under way */
@@ -140,6 +146,15 @@ PETSC_INTERN PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const Mo
 /* growth/causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteCauses(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
+/* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */
+PETSC_INTERN PetscReal ModeGap(const Modes modes, PetscInt i);
+
+/* components/table.c - modes_components.csv; the largest contributions of each unstable mode; nothing where none were
+   found. Collective */
+PETSC_INTERN PetscErrorCode ComponentsWrite(Modes modes, Results results);
+PETSC_INTERN PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer);
+/* components/bodies.c */
+PETSC_INTERN PetscErrorCode ComponentsDestroy(ModesComponents *components);
 
 /* causes.c - distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond
    the band */

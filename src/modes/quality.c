@@ -17,8 +17,10 @@
 #define QUALITY_NULL     1e-10 /* |K x| / (|K| |x|) of a rigid motion */
 /* x'K x / (lambda^2 x'M x) of one, at most; of an elastic one that does not oscillate 1 at least */
 #define QUALITY_ENERGY 0.1
-#define QUALITY_DOUBLE 6.7e7 /* 1 / sqrt(machine epsilon) */
-#define QUALITY_NOISE  100   /* lambda^2 below this many times its error is a rigid mode */
+/* root of the largest ratio of M^-1 to the inverse of its diagonal, 8 for brick elements of first order */
+#define QUALITY_CONSISTENT 2.9
+#define QUALITY_DOUBLE     6.7e7 /* 1 / sqrt(machine epsilon) */
+#define QUALITY_NOISE      100   /* lambda^2 below this many times its error is a rigid mode */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
@@ -26,6 +28,7 @@ typedef struct {
   Mat                   M; /* of all unknowns; the pencil's own without constraints */
   PetscReal             norms[3];
   Vec                   diagonal, scratch; /* diagonal of K */
+  Vec                   lightness;         /* roots of 1 / M_ii, 0 where there is no mass */
   ComplexVec            Mx, Cx, z;         /* unknowns of the pencil */
   ComplexVec            full;              /* all unknowns */
   Mat                   KX, CX, MX, MY;    /* products of a block of modes, MY where M is the pencil's own */
@@ -196,11 +199,29 @@ static PetscErrorCode QualityIsSlowing(const Quality *q, PetscReal size, Complex
   PetscFunctionReturn(0);
 }
 
-/* Backward error of an eigenpair, |y^T Q x|, |y^T D x| */
+/* Backward error of an eigenpair, |y^T Q x|, |y^T D x|; the root of sum_i |(Q x)_i|^2 / M_ii, and what
+   rounding in K adds to it */
 typedef struct {
-  PetscReal    backward, y_Qx, y_Dx;
+  PetscReal    backward, y_Qx, y_Dx, residual;
   PetscComplex product; /* y^T D x */
 } QualityProducts;
+
+/* Root of sum_i |d_i x_i|^2 / M_ii, d = 1 for NULL */
+static PetscErrorCode QualityWeigh(Quality *q, ComplexVec x, Vec d, PetscReal *norm)
+{
+  PetscReal square;
+
+  PetscFunctionBeginUser;
+  *norm = 0;
+  for (int part = 0; part < (x.i ? 2 : 1); part++) {
+    PetscCall(VecPointwiseMult(q->scratch, part ? x.i : x.r, q->lightness));
+    if (d) PetscCall(VecPointwiseMult(q->scratch, q->scratch, d));
+    PetscCall(VecDot(q->scratch, q->scratch, &square));
+    *norm += square;
+  }
+  *norm = PetscSqrtReal(*norm);
+  PetscFunctionReturn(0);
+}
 
 /* From Mx, Cx and z = K x; it overwrites Mx and z; the products with y are not touched without a left vector */
 static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVec x, ComplexVec y, QualityProducts *p)
@@ -216,6 +237,9 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
   PetscCall(ComplexVecSquare(x, x, &length));
   PetscCall(ComplexVecSquare(q->z, q->z, &residual));
   p->backward = PetscSqrtReal(residual / length) / bound;
+  PetscCall(QualityWeigh(q, q->z, NULL, &p->residual));
+  PetscCall(QualityWeigh(q, x, q->diagonal, &residual));
+  p->residual += ROUNDINGS * PETSC_MACHINE_EPSILON * residual;
   if (!y.r) PetscFunctionReturn(0);
   PetscCall(ComplexVecDot(y, q->z, &dot));
   p->y_Qx = cabs(dot);
@@ -268,6 +292,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   PetscCall(QualityResidual(q, lambda, x, y, &p));
   PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
   if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
+  modes->residual[i]   = QUALITY_CONSISTENT * p.residual / norm_x;
   mode->backward_error = p.backward;
   mode->sigma          = creal(lambda);
   mode->omega          = cimag(lambda);
@@ -291,10 +316,12 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   PetscFunctionReturn(0);
 }
 
-/* Norms and work vectors */
+/* Norms and work vectors; of M the roots of 1 / M_ii */
 static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Quality *q)
 {
-  Vec *const work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->Cx.r, &q->Cx.i, &q->z.r, &q->z.i};
+  Vec *const   work[] = {&q->diagonal, &q->scratch, &q->Mx.r, &q->Mx.i, &q->Cx.r, &q->Cx.i, &q->z.r, &q->z.i};
+  PetscScalar *m;
+  PetscInt     n;
 
   PetscFunctionBeginUser;
   *q = (Quality){.pencil = pencil};
@@ -303,6 +330,12 @@ static PetscErrorCode QualityCreate(Modes modes, const PencilMatrices *pencil, Q
   PetscCall(MatNorm(pencil->M, NORM_FROBENIUS, &q->norms[2]));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(MatCreateVecs(pencil->K, work[k], NULL));
   PetscCall(MatGetDiagonal(pencil->K, q->diagonal));
+  PetscCall(VecDuplicate(q->diagonal, &q->lightness));
+  PetscCall(MatGetDiagonal(pencil->M, q->lightness));
+  PetscCall(VecGetLocalSize(q->lightness, &n));
+  PetscCall(VecGetArray(q->lightness, &m));
+  for (PetscInt i = 0; i < n; i++) m[i] = m[i] > 0 ? 1 / PetscSqrtReal(m[i]) : 0;
+  PetscCall(VecRestoreArray(q->lightness, &m));
   PetscCall(PencilGetMass(modes->pencil, &q->M));
   PetscCall(MatCreateVecs(q->M, &q->full.r, NULL));
   PetscCall(VecDuplicate(q->full.r, &q->full.i));
@@ -316,6 +349,7 @@ static PetscErrorCode QualityDestroy(Quality *q)
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(work); k++) PetscCall(VecDestroy(work[k]));
+  PetscCall(VecDestroy(&q->lightness));
   PetscFunctionReturn(0);
 }
 
@@ -328,6 +362,7 @@ PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil)
   if (modes->left_spectrum.n) PetscCall(LeftBiorthogonalise(modes, pencil, (Vec[]){q.scratch, q.z.r, q.z.i}));
   modes->n = modes->right.n;
   PetscCall(PetscCalloc1(modes->n, &modes->mode));
+  PetscCall(PetscMalloc1(modes->n, &modes->residual));
   for (PetscInt first = 0; first < modes->n; first += QUALITY_BLOCK) {
     const PetscInt n = PetscMin(QUALITY_BLOCK, modes->n - first);
 

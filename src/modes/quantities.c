@@ -29,6 +29,11 @@ static const Quantity rows[] = {
    .initial = PETSC_TRUE, .restart = PETSC_TRUE},
   {"-modes_filters", "write modal filters, which find the modes' amplitudes in a transient", NULL, QUANTITY_BOOL,
    MODES_AT(filters)},
+  {"-modes_components",
+   "write which free modes of the bodies make up each mode, of those up to this multiple of the band's highest "
+   "frequency "
+   "(0: none; 1.5 is enough for most)",
+   NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100)},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
   {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD,

@@ -71,6 +71,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable; %s\n", n_unstable, modes->completeness));
   if (n_unstable) PetscCall(ModesViewCauses(modes, viewer));
+  if (n_unstable) PetscCall(ComponentsView(modes, viewer));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));
@@ -171,6 +172,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(ModesWriteTable(modes, mesh, results));
   PetscCall(ModesWriteCauses(modes, results));
   PetscCall(ModesWriteEffects(modes, operators, mesh, results));
+  PetscCall(ComponentsWrite(modes, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));

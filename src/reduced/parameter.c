@@ -140,23 +140,13 @@ void ReducedParameterMove(const ReducedParameter *p, PetscReal value, const Redu
   }
 }
 
-PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is)
-{
-  static const char *const units[] = {"1/s", "s", "N s/m", "N s/m^3", "N m s/rad", "rad/s"};
-
-  PetscFunctionBeginUser;
-  *is = PETSC_FALSE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(units) && !*is; i++) PetscCall(PetscStrcmp(unit, units[i], is));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedParameterGetRise(const ReducedParameter *p, PetscReal value, PetscReal *rise)
 {
   PetscBool damps, weighs;
 
   PetscFunctionBeginUser;
   *rise = 1;
-  PetscCall(ReducedUnitIsGyration(p->unit, &damps));
+  PetscCall(OperatorsUnitIsGyration(p->unit, &damps));
   PetscCall(PetscStrncmp(p->unit, "kg", 2, &weighs));
   if (damps || value <= 0 || p->value <= 0) PetscFunctionReturn(0);
   *rise = PetscSqrtReal(PetscMax(1, weighs ? p->value / value : value / p->value));

@@ -40,10 +40,6 @@ PETSC_INTERN PetscErrorCode ReducedParameterCheck(Operators operators, const cha
 /* ReducedParameterMove - gives one that is none of the bodies a value. Not collective. */
 PETSC_INTERN void ReducedParameterMove(const ReducedParameter *parameter, PetscReal value, const ReducedMoved *moved);
 
-/* ReducedUnitIsGyration - whether a parameter is one of damping or spin, which real modes know nothing of: by its unit,
-   since names begin with those that the user gave. Not collective. */
-PETSC_INTERN PetscErrorCode ReducedUnitIsGyration(const char unit[], PetscBool *is);
-
 /* What no frequency of the bodies rises by more than from the scene to a value: the root of a stiffness, or of one over
    a mass */
 PETSC_INTERN PetscErrorCode ReducedParameterGetRise(const ReducedParameter *parameter, PetscReal value,

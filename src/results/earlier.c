@@ -32,6 +32,7 @@ static const struct {
   {"modes_effects.csv", NULL},
   {"modes_effects.h5", NULL},
   {"modes_effects.xmf", NULL},
+  {"modes_components.csv", NULL},
   {"robustness.csv", NULL},
   {"parameters.csv", NULL},
   {"frf.csv", NULL},

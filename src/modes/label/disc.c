@@ -68,20 +68,6 @@ static void FindPlane(Disc *disc, const PetscReal to[])
   Vec3Cross(disc->axis, disc->e1, disc->e2);
 }
 
-void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
-{
-  const PetscReal d[3] = {x[0] - disc->centre[0], x[1] - disc->centre[1], x[2] - disc->centre[2]};
-  const PetscReal a = Vec3Dot(d, disc->e1), b = Vec3Dot(d, disc->e2);
-
-  *r     = PetscSqrtReal(a * a + b * b);
-  *theta = atan2(b, a);
-}
-
-PetscReal DiscAlong(const Disc *disc, const PetscReal x[3])
-{
-  return Vec3Dot(x, disc->axis) - Vec3Dot(disc->centre, disc->axis);
-}
-
 /* Least values over all ranks */
 static PetscErrorCode LeastOfAll(MPI_Comm comm, int n, PetscReal values[])
 {

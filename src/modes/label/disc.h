@@ -44,11 +44,11 @@ typedef struct {
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
 PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
                                        PetscBool *is_disc);
-/* Polar coordinates of a point, m and rad */
+/* label/fit.c - polar coordinates of a point, m and rad */
 PETSC_INTERN void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta);
 /* Place along the axis from the centre, m */
 PETSC_INTERN PetscReal DiscAlong(const Disc *disc, const PetscReal x[3]);
-/* label/fit.c - basis, normal equations, and room for the fit of all modes */
+/* Basis, normal equations, and room for the fit of all modes */
 PETSC_INTERN PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[]);
 /* Takes the displacements u[re, im][local nodes][3] of a shape for its right-hand sides, u[1] = NULL for a real one;
    adds their energy on this rank, all and out of plane, to energy */

@@ -6,6 +6,20 @@
 #include "base/algebra/vec3.h"
 #include <petscblaslapack.h>
 
+void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
+{
+  const PetscReal d[3] = {x[0] - disc->centre[0], x[1] - disc->centre[1], x[2] - disc->centre[2]};
+  const PetscReal a = Vec3Dot(d, disc->e1), b = Vec3Dot(d, disc->e2);
+
+  *r     = PetscSqrtReal(a * a + b * b);
+  *theta = atan2(b, a);
+}
+
+PetscReal DiscAlong(const Disc *disc, const PetscReal x[3])
+{
+  return Vec3Dot(x, disc->axis) - Vec3Dot(disc->centre, disc->axis);
+}
+
 /* P_0 .. P_4 of the place s in the range mapped to [-1, 1] */
 static void DiscLegendre(const Disc *disc, PetscReal s, PetscReal p[DISC_POLYNOMIALS])
 {

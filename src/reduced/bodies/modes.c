@@ -7,43 +7,10 @@
    reduction.
 */
 #include "reduced/reducedimpl.h"
-#include "reduced/parameter.h"
 #include "solver/block/orthonormal.h"
 
 #define ORTHONORMAL  1e-7 /* largest |Phi'M Phi - I| */
 #define CUTOFF_NOISE 10   /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
-
-/* The pencil of the bodies: every pair open, neither damping nor spin */
-static PetscErrorCode ReducedCreatePencil(ReducedRun r)
-{
-  const OperatorsParameter *parameter;
-  const PetscReal          *p;
-  PetscInt                  n_pairs, n_all, n, *open;
-  const ContactPair        *pair;
-  PetscReal                *still;
-  SlidingState              state;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactGetPairs(r->run.contact, &n_pairs, &n_all, &pair));
-  PetscCall(PetscMalloc1(n_pairs, &open));
-  for (PetscInt i = 0; i < n_pairs; i++) open[i] = -1;
-  PetscCall(SlidingStateCreate(n_pairs, 0, open, &state));
-  PetscCall(PetscFree(open));
-  PetscCall(OperatorsLinearise(r->run.operators, &state, &r->bodies));
-  PetscCall(SlidingStateDestroy(&state));
-  PetscCall(PencilGetParameters(r->bodies, &n, &parameter, &p));
-  if (r->p) p = r->p;
-  PetscCall(PetscMalloc1(n, &still));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscBool is;
-
-    PetscCall(ReducedUnitIsGyration(parameter[i].unit, &is));
-    still[i] = is && parameter[i].body ? 0 : p[i]; /* a contact that turns is none of them */
-  }
-  PetscCall(PencilSetParameters(r->bodies, still));
-  PetscCall(PetscFree(still));
-  PetscFunctionReturn(0);
-}
 
 /* Raises the error for a cut-off whose square is rounding of the largest K_ii / M_ii */
 static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pencil)
@@ -232,7 +199,7 @@ PetscErrorCode ReducedFindModes(ReducedRun r)
   PencilMatrices  pencil;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedCreatePencil(r));
+  PetscCall(OperatorsLineariseBodies(r->run.operators, r->p, PETSC_FALSE, &r->bodies));
   PetscCall(PencilGetMatrices(r->bodies, &pencil));
   PetscCheck(!pencil.C, r->comm, PETSC_ERR_PLIB, "modes of the bodies see damping");
   PetscCall(ReducedCheckCutoff(r, &pencil));

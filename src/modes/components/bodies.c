@@ -1,0 +1,186 @@
+/*
+   Bodies: parts that K or M of a pencil connects, or that follow others. A random vector r that is zero outside of a
+   part has K r, M r and Z r exactly zero at what is not connected with it.
+*/
+#include "components.h"
+
+/* Random numbers from 1 to 2 that are the same on any ranks: multiples of the golden ratio */
+static PetscReal Scatter(PetscInt unknown)
+{
+  const PetscReal x = 0.6180339887498949 * (PetscReal)(unknown + 1);
+
+  return 1 + x - PetscFloorReal(x);
+}
+
+/* Part of each unknown of this rank, n_parts where no cell of this rank has it */
+static PetscErrorCode PartsOfUnknowns(const Mesh *mesh, Vec part)
+{
+  PetscScalar *at;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(part, mesh->n_parts));
+  PetscCall(VecGetArray(part, &at));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = 3 * mesh->cell_first[c]; k < 3 * mesh->cell_first[c + 1]; k++) {
+      const PetscInt own = mesh->unknown[3 * mesh->cell_node[k / 3] + k % 3] - mesh->first_own;
+
+      if (own >= 0 && own < mesh->n_own) at[own] = mesh->cell_part[c];
+    }
+  PetscCall(VecRestoreArray(part, &at));
+  PetscFunctionReturn(0);
+}
+
+/* Marks the parts (row of `joined`) at which a vector is not zero */
+static PetscErrorCode PartsMark(Vec part, Vec moved, PetscInt row[])
+{
+  const PetscScalar *at, *u;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(part, &n));
+  PetscCall(VecGetArrayRead(part, &at));
+  PetscCall(VecGetArrayRead(moved, &u));
+  for (PetscInt i = 0; i < n; i++)
+    if (u[i] != 0) row[(PetscInt)at[i]] = 1;
+  PetscCall(VecRestoreArrayRead(moved, &u));
+  PetscCall(VecRestoreArrayRead(part, &at));
+  PetscFunctionReturn(0);
+}
+
+/* r of one part: zero elsewhere */
+static PetscErrorCode PartTake(Vec part, PetscInt which, Vec r)
+{
+  const PetscScalar *at;
+  PetscScalar       *value;
+  PetscInt           n, first;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(part, &n));
+  PetscCall(VecGetOwnershipRange(part, &first, NULL));
+  PetscCall(VecGetArrayRead(part, &at));
+  PetscCall(VecGetArrayWrite(r, &value));
+  for (PetscInt i = 0; i < n; i++) value[i] = (PetscInt)at[i] == which ? Scatter(first + i) : 0;
+  PetscCall(VecRestoreArrayWrite(r, &value));
+  PetscCall(VecRestoreArrayRead(part, &at));
+  PetscFunctionReturn(0);
+}
+
+/* joined[p][q] of n parts: whether p is connected with q; with itself: whether it has unknowns */
+static PetscErrorCode PartsJoin(Pencil pencil, PetscInt n, Vec part, PetscInt joined[])
+{
+  PencilMatrices matrices;
+  Vec            own, r, f, u;
+  MPI_Comm       comm;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(pencil, &matrices));
+  PetscCall(PetscObjectGetComm((PetscObject)matrices.K, &comm));
+  PetscCall(MatCreateVecs(matrices.K, &r, &f));
+  PetscCall(VecDuplicate(r, &own));
+  PetscCall(VecDuplicate(part, &u));
+  PetscCall(PencilRestrict(pencil, part, own));
+  for (PetscInt p = 0; p < n; p++) {
+    PetscCall(PartTake(own, p, r));
+    PetscCall(MatMult(matrices.K, r, f));
+    PetscCall(PartsMark(own, f, &joined[p * n]));
+    PetscCall(MatMult(matrices.M, r, f));
+    PetscCall(PartsMark(own, f, &joined[p * n]));
+    PetscCall(PencilExpand(pencil, PETSC_FALSE, r, u));
+    PetscCall(PartsMark(part, u, &joined[p * n]));
+    PetscCall(PartTake(part, p, u));
+    PetscCall(PartsMark(part, u, &joined[p * n]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, comm));
+  PetscCall(VecDestroy(&own));
+  PetscCall(VecDestroy(&r));
+  PetscCall(VecDestroy(&f));
+  PetscCall(VecDestroy(&u));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers the bodies by their first parts: body[n], -1 for a part without unknowns */
+static PetscInt FreeBodiesNumber(PetscInt n, const PetscInt joined[], PetscInt body[])
+{
+  PetscInt n_bodies = 0;
+
+  for (PetscInt p = 0; p < n; p++) body[p] = joined[p * n + p] ? p : -1;
+  for (PetscBool again = PETSC_TRUE; again;) {
+    again = PETSC_FALSE;
+    for (PetscInt p = 0; p < n; p++)
+      for (PetscInt q = 0; q < n; q++)
+        if (joined[p * n + q] && body[p] != body[q]) {
+          body[p] = body[q] = PetscMin(body[p], body[q]);
+          again             = PETSC_TRUE;
+        }
+  }
+  for (PetscInt p = 0; p < n; p++) body[p] = body[p] == p ? n_bodies++ : body[p] < 0 ? -1 : body[body[p]];
+  return n_bodies;
+}
+
+/* Names of the bodies; what has no part is called so */
+static PetscErrorCode FreeBodiesName(const Mesh *mesh, const PetscInt body[], FreeBodies *bodies)
+{
+  char name[1024];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(bodies->n, &bodies->name));
+  for (PetscInt b = 0; b < bodies->n; b++) {
+    name[0] = 0;
+    for (PetscInt p = 0; p < mesh->n_parts; p++) {
+      if (body[p] != b) continue;
+      PetscCall(PetscStrlcat(name, name[0] ? "+" : "", sizeof(name)));
+      PetscCall(PetscStrlcat(name, mesh->part[p], sizeof(name)));
+    }
+    PetscCall(PetscStrallocpy(name[0] ? name : "no part", &bodies->name[b]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies)
+{
+  const PetscScalar *at;
+  PetscInt           n, n_own, *joined, *body;
+  Operators          operators;
+  const Mesh        *mesh;
+  Vec                part;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(pencil, &operators));
+  PetscCall(OperatorsGetMesh(operators, &mesh));
+  n = mesh->n_parts + 1;
+  PetscCall(PetscCalloc2(n * n, &joined, n, &body));
+  PetscCall(OperatorsCreateVec(operators, &part));
+  PetscCall(PartsOfUnknowns(mesh, part));
+  PetscCall(PartsJoin(pencil, n, part, joined));
+  bodies->n = FreeBodiesNumber(n, joined, body);
+  PetscCall(FreeBodiesName(mesh, body, bodies));
+  PetscCall(VecGetLocalSize(part, &n_own));
+  PetscCall(PetscMalloc1(n_own, &bodies->of));
+  PetscCall(VecGetArrayRead(part, &at));
+  for (PetscInt i = 0; i < n_own; i++) bodies->of[i] = body[(PetscInt)at[i]];
+  PetscCall(VecRestoreArrayRead(part, &at));
+  PetscCall(VecDestroy(&part));
+  PetscCall(PetscFree2(joined, body));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FreeBodiesDestroy(FreeBodies *bodies)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < bodies->n; b++) PetscCall(PetscFree(bodies->name[b]));
+  PetscCall(PetscFree(bodies->name));
+  PetscCall(PetscFree(bodies->of));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComponentsDestroy(ModesComponents *c)
+{
+  PetscFunctionBeginUser;
+  if (!*c) PetscFunctionReturn(0);
+  PetscCall(FreeBodiesDestroy(&(*c)->bodies));
+  PetscCall(PetscFree((*c)->level));
+  PetscCall(PetscFree((*c)->free));
+  PetscCall(PetscFree3((*c)->share, (*c)->energy, (*c)->mixed));
+  PetscCall(PetscFree(*c));
+  PetscFunctionReturn(0);
+}

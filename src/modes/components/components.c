@@ -1,0 +1,298 @@
+/*
+   Contributions of component modes. Of each body by itself, its pairs open, without damping, spin and bushings to other
+   bodies, the free modes phi_k below a multiple of the highest frequency of the band are found, phi_j' M phi_k = 1 for
+   j = k, else 0. In body b a mode is x = sum_k phi_k (phi_k' M x) + rest, and its left vector y likewise. Hence, with
+   M_b the part of M that belongs to the unknowns of b,
+
+      share   s_bk = Re( (y^T M_b phi_k) (phi_k^T M_b x) / y^T M x )
+      energy  e_bk = |phi_k^T M_b x|^2 / x^H M x
+
+   and with the rests, s_b - sum_k s_bk for s_b = Re(y^T M_b x / y^T M x), the shares of all bodies sum to 1, as the
+   energies do. Shares are participation factors (see label/label.c): at a lock-in the right vector moves one body more
+   and the left one the other. Close to it y^T M x vanishes, and they are large, with both signs; the energies are not.
+
+   Free modes of one frequency are any basis of a plane, over several bodies too (rigid motions, two equal pads): their
+   shares are summed in each body. Error of a share: the shape of a mode is off by about d = c |Q x| / (2 omega g) in
+   norms of M, c its condition and g the distance of the next eigenvalue, that of a free mode by d_k = |(K - omega^2 M)
+   phi| / |omega_k^2 - omega_j^2|, so that the share is off by 2 s (d + d_k), s the largest share.
+*/
+#include "components.h"
+#include <complex.h>
+#include <string.h>
+
+#define LEVEL_EQUAL 1e-6 /* of the frequency: free modes of one frequency */
+
+/* Sums over the unknowns of each body: first of every free mode with M x re, M x im, M y re, M y im, then of M x */
+enum { SUM_X_RE, SUM_X_IM, SUM_Y_RE, SUM_Y_IM, N_SUMS };
+enum { SUM_RE_RE, SUM_RE_IM, SUM_IM_RE, SUM_IM_IM, SUM_X_X_RE, SUM_X_X_IM, N_WHOLE }; /* y re M x re, ... */
+
+PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted)
+{
+  PetscFunctionBeginUser;
+  *wanted = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Free modes below the multiple of the highest frequency */
+static PetscErrorCode FreeModesSolve(const Modes modes, Pencil bodies, Modes *free)
+{
+  const PetscReal highest = modes->mode[modes->n - 1].omega / (2 * PETSC_PI);
+  const PetscReal band[2] = {0, modes->free_to * (modes->has_band ? modes->band[1] : highest)};
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesCreate(modes->comm, free));
+  PetscCall(ModesSetPencil(*free, bodies));
+  PetscCall(ModesSetBand(*free, band));
+  (*free)->has_disc = modes->has_disc;
+  (*free)->most     = modes->most;
+  (*free)->max_time = modes->max_time;
+  PetscCall(PetscStrncpy((*free)->disc, modes->disc, sizeof((*free)->disc)));
+  PetscCall(ModesSolve(*free));
+  PetscFunctionReturn(0);
+}
+
+/* What a shape with a residual is off by where the next eigenvalue kappa = omega^2 is so far, relative */
+static PetscReal ShapeOff(PetscReal residual, PetscReal gap)
+{
+  return gap > 0 ? PetscMin(1, residual / gap) : 1;
+}
+
+/* Sorts the free modes into levels */
+static PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(free->n, &c->level));
+  for (PetscInt k = 0; k < free->n; k++) {
+    const PetscReal omega = free->mode[k].rigid ? 0 : free->mode[k].omega;
+    FreeLevel      *last  = c->n_levels ? &c->level[c->n_levels - 1] : NULL;
+    const PetscReal gap   = last ? omega * omega - last->omega * last->omega : PETSC_MAX_REAL;
+
+    if (last && omega - last->omega <= LEVEL_EQUAL * omega) {
+      last->n++;
+      continue;
+    }
+    if (last) last->mixed = PetscMax(last->mixed, ShapeOff(free->residual[last->first], gap));
+    c->level[c->n_levels++] = (FreeLevel){
+      .first = k, .n = 1, .omega = omega, .rigid = free->mode[k].rigid, .mixed = ShapeOff(free->residual[k], gap)};
+  }
+  PetscFunctionReturn(0);
+}
+
+/* sums[b] += sum of a_u b_u over the unknowns of body b; a zero vector is NULL */
+static PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscReal sums[])
+{
+  const PetscScalar *x, *y;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  if (!a || !b) PetscFunctionReturn(0);
+  PetscCall(VecGetLocalSize(a, &n));
+  PetscCall(VecGetArrayRead(a, &x));
+  PetscCall(VecGetArrayRead(b, &y));
+  for (PetscInt i = 0; i < n; i++) sums[bodies->of[i]] += x[i] * y[i];
+  PetscCall(VecRestoreArrayRead(b, &y));
+  PetscCall(VecRestoreArrayRead(a, &x));
+  PetscFunctionReturn(0);
+}
+
+/* own[free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
+static PetscErrorCode FreeModesLocate(const Modes free, Mat M, const FreeBodies *bodies, PetscReal own[])
+{
+  Vec x, Mx;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(M, NULL, &Mx));
+  for (PetscInt k = 0; k < free->n; k++) {
+    PetscCall(ModesGetVectors(free, k, &x, NULL, NULL, NULL));
+    PetscCall(MatMult(M, x, Mx));
+    PetscCall(FreeBodiesAddDot(bodies, x, Mx, &own[k * bodies->n]));
+  }
+  PetscCall(VecDestroy(&Mx));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, own, (PetscMPIInt)(free->n * bodies->n), MPIU_REAL, MPI_SUM, free->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Name of a level in one body: that of the disc's shape, without the contact's + where it is any of a plane; else its
+   number among the elastic ones of the body */
+static PetscErrorCode FreeLevelName(const Modes free, const FreeLevel *level, PetscInt n_bodies, const PetscReal own[],
+                                    PetscInt elastic, FreeMode *is)
+{
+  char        disc[32] = "", *plus;
+  char *const name     = is->name;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = level->first; k < level->first + level->n; k++) {
+    const char *label = free->mode[k].label;
+
+    if (own[k * n_bodies] > 0.5 && !disc[0] && (label[0] == '(' || !strncmp(label, "IP-", 3)))
+      PetscCall(PetscStrncpy(disc, label, sizeof(disc)));
+  }
+  plus = is->n > 1 ? strchr(disc, '+') : NULL;
+  if (plus) *plus = ')', plus[1] = 0;
+  if (level->rigid)
+    PetscCall(PetscStrncpy(name, "rigid", sizeof(is->name)));
+  else if (disc[0])
+    PetscCall(PetscStrncpy(name, disc, sizeof(is->name)));
+  else
+    PetscCall(PetscSNPrintf(name, sizeof(is->name), "elastic %" PetscInt_FMT, elastic + 1));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers and names of the levels of each body */
+static PetscErrorCode FreeLevelsName(const Modes free, Mat M, ModesComponents c)
+{
+  const PetscInt n = c->bodies.n;
+  PetscReal     *own;
+  PetscInt      *number, *elastic;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(c->n_levels * n, &c->free));
+  PetscCall(PetscCalloc3(free->n * n, &own, n, &number, n, &elastic));
+  PetscCall(FreeModesLocate(free, M, &c->bodies, own));
+  for (PetscInt i = 0; i < c->n_levels * n; i++) {
+    const FreeLevel *level = &c->level[i / n];
+    FreeMode        *is    = &c->free[i];
+    PetscReal        sum   = 0;
+
+    for (PetscInt k = level->first; k < level->first + level->n; k++) sum += own[k * n + i % n];
+    is->n     = (PetscInt)(sum + 0.5);
+    is->first = number[i % n];
+    PetscCall(FreeLevelName(free, level, n, &own[i % n], elastic[i % n], is));
+    number[i % n] += is->n;
+    if (!level->rigid) elastic[i % n] += is->n;
+  }
+  PetscCall(PetscFree3(own, number, elastic));
+  PetscFunctionReturn(0);
+}
+
+/* Sums of mode i with the free modes, [free modes][N_SUMS][bodies], then of the whole, [N_WHOLE][bodies] */
+static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, const FreeBodies *bodies, Vec product[],
+                                PetscReal sums[])
+{
+  PetscReal *whole = &sums[free->n * N_SUMS * bodies->n];
+  Vec        v[N_SUMS], phi;
+  Mat        M;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMass(modes->pencil, &M));
+  PetscCall(ModesGetVectors(modes, i, &v[SUM_X_RE], &v[SUM_X_IM], &v[SUM_Y_RE], &v[SUM_Y_IM]));
+  for (int k = 0; k < N_SUMS; k++) {
+    PetscReal size = 0;
+
+    if (v[k]) PetscCall(VecNorm(v[k], NORM_INFINITY, &size));
+    if (size == 0) v[k] = NULL; /* the imaginary part of a real vector */
+    if (v[k]) PetscCall(MatMult(M, v[k], product[k]));
+  }
+  for (PetscInt j = 0; j < free->n * N_SUMS; j++) {
+    PetscCall(ModesGetVectors(free, j / N_SUMS, &phi, NULL, NULL, NULL));
+    PetscCall(FreeBodiesAddDot(bodies, v[j % N_SUMS] ? phi : NULL, product[j % N_SUMS], &sums[j * bodies->n]));
+  }
+  for (int k = 0; k < 4; k++)
+    PetscCall(FreeBodiesAddDot(bodies, v[SUM_Y_RE + k / 2], v[SUM_X_RE + k % 2] ? product[SUM_X_RE + k % 2] : NULL,
+                               &whole[(SUM_RE_RE + k) * bodies->n]));
+  for (int k = 0; k < 2; k++)
+    PetscCall(FreeBodiesAddDot(bodies, v[SUM_X_RE + k], product[SUM_X_RE + k], &whole[(SUM_X_X_RE + k) * bodies->n]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)((free->n * N_SUMS + N_WHOLE) * bodies->n), MPIU_REAL,
+                             MPI_SUM, modes->comm));
+  PetscFunctionReturn(0);
+}
+
+/* y^T M_b x of body b, of a mode without left vector x^H M_b x */
+static PetscComplex WholeOf(PetscBool left, PetscInt n, PetscInt b, const PetscReal whole[], PetscReal *energy)
+{
+  *energy = whole[SUM_X_X_RE * n + b] + whole[SUM_X_X_IM * n + b];
+  if (!left) return *energy;
+  return CMPLX(whole[SUM_RE_RE * n + b] - whole[SUM_IM_IM * n + b],
+               whole[SUM_RE_IM * n + b] + whole[SUM_IM_RE * n + b]);
+}
+
+/* Shares and energies of all levels, and of the bodies, of mode i from its sums */
+static void SharesForm(ModesComponents c, PetscBool left, PetscInt n_free, PetscInt i, const PetscReal sums[])
+{
+  const PetscInt   n     = c->bodies.n;
+  const PetscReal *whole = &sums[n_free * N_SUMS * n];
+  PetscReal       *share = &c->share[i * (c->n_levels + 1) * n], *energy = &c->energy[i * (c->n_levels + 1) * n], e;
+  PetscReal        energies = 0;
+  PetscComplex     total    = 0;
+
+  for (PetscInt b = 0; b < n; b++) total += WholeOf(left, n, b, whole, &e), energies += e;
+  for (PetscInt b = 0; b < n; b++) {
+    share[c->n_levels * n + b]  = creal(WholeOf(left, n, b, whole, &e) / total);
+    energy[c->n_levels * n + b] = e / energies;
+    for (PetscInt l = 0; l < c->n_levels; l++)
+      for (PetscInt k = c->level[l].first; k < c->level[l].first + c->level[l].n; k++) {
+        const PetscReal   *s = &sums[k * N_SUMS * n + b];
+        const PetscComplex x = CMPLX(s[SUM_X_RE * n], s[SUM_X_IM * n]);
+        const PetscComplex y = left ? CMPLX(s[SUM_Y_RE * n], s[SUM_Y_IM * n]) : conj(x);
+
+        share[l * n + b] += creal(y * x / total);
+        energy[l * n + b] += creal(conj(x) * x) / energies;
+      }
+  }
+}
+
+/* What the shape of mode i is off by, relative: rigid modes are any basis of theirs */
+static PetscReal ShapeMixed(const Modes modes, PetscInt i)
+{
+  const Mode *mode = &modes->mode[i];
+  PetscReal   gap  = PETSC_MAX_REAL;
+
+  if (!mode->rigid) return ShapeOff(mode->condition * modes->residual[i], 2 * mode->omega * ModeGap(modes, i));
+  for (PetscInt k = 0; k < modes->n; k++)
+    if (k != i) gap = PetscMin(gap, modes->mode[k].rigid ? 0 : PetscSqr(modes->mode[k].omega));
+  return ShapeOff(modes->residual[i], gap);
+}
+
+/* Shares of all modes */
+static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents c)
+{
+  const PetscInt n = (c->n_levels + 1) * c->bodies.n, n_sums = (free->n * N_SUMS + N_WHOLE) * c->bodies.n;
+  PetscReal     *sums;
+  Vec            product[N_SUMS], yr;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(modes->n * n, &c->share, modes->n * n, &c->energy, modes->n, &c->mixed));
+  PetscCall(PetscMalloc1(n_sums, &sums));
+  for (int k = 0; k < N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    PetscCall(PetscArrayzero(sums, n_sums));
+    PetscCall(SharesSum(modes, free, i, &c->bodies, product, sums));
+    PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
+    SharesForm(c, yr ? PETSC_TRUE : PETSC_FALSE, free->n, i, sums);
+    c->mixed[i] = ShapeMixed(modes, i);
+  }
+  for (int k = 0; k < N_SUMS; k++) PetscCall(VecDestroy(&product[k]));
+  PetscCall(PetscFree(sums));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesFindComponents(Modes modes)
+{
+  const PetscReal *p;
+  ModesComponents  c;
+  Operators        operators;
+  Pencil           pencil;
+  Model            model;
+  Modes            free;
+  Mat              M;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, NULL));
+  PetscCheck(model, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_components needs a mesh: loaded matrices have no bodies");
+  PetscCall(ComponentsDestroy(&modes->components));
+  PetscCall(PetscCalloc1(1, &modes->components));
+  c = modes->components;
+  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
+  PetscCall(OperatorsLineariseBodies(operators, p, PETSC_TRUE, &pencil));
+  PetscCall(FreeBodiesFind(pencil, &c->bodies));
+  PetscCall(FreeModesSolve(modes, pencil, &free));
+  PetscCall(FreeLevelsFind(free, c));
+  PetscCall(PencilGetMass(modes->pencil, &M));
+  PetscCall(FreeLevelsName(free, M, c));
+  PetscCall(SharesFind(modes, free, c));
+  PetscCall(ModesDestroy(&free));
+  PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
+}

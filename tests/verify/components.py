@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Contributions of component modes, modes_components.csv, beside free modes by LAPACK, body by body, and inverse iteration:
+
+    verify/components.py RESULTS OPEN MU
+
+RESULTS has the tables of modes and the saved matrices K.bin, H.bin, M.bin; OPEN the K.bin of the same scene whose contact has next to
+no stiffness, and whose bodies are the connected parts of that matrix. Free modes of one frequency are summed, as in the table. Shares
+and energies of complex modes and of each third one agree within the errors that the rows state; those of a mode sum to 100."""
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+from dense import matrix
+from scipy.linalg import eigh
+from scipy.sparse import csc_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+
+ERROR = 1e-3  # per cent, the largest that a row states
+CONTACT = 1e-9  # of the largest entry: what the open contact leaves is far below, what holds a body together above
+
+
+def read(folder, name):
+    with (folder / name).open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def bodies(stiffness, mass):
+    """Of each body its unknowns, frequencies (Hz), and vectors."""
+    n, of = connected_components(abs(stiffness) > CONTACT * abs(stiffness).max(), directed=False)
+    for b in range(n):
+        at = np.flatnonzero(of == b)
+        values, vectors = eigh(stiffness[np.ix_(at, at)], mass[np.ix_(at, at)])
+        yield at, np.sqrt(np.maximum(values, 0)) / (2 * np.pi), vectors
+
+
+def block_of(rows, blocks):
+    """The block whose frequencies a body of the table has."""
+    def off(block):
+        return max(abs(block[1][int(row["component"]) - 1] - float(row["freq_hz"])) for row in rows if row["name"] != "rigid")
+    return min(blocks, key=off)
+
+
+def vectors_of(stiffness, mass, kappa):
+    """Right and left vector of K x = kappa M x, y^T K = kappa y^T M, from a number next to kappa."""
+    near = kappa * (1 + 1e-9) if kappa else -1.0
+    factors, found = splu(csc_matrix(stiffness - near * mass, dtype=complex)), []
+    for transposed in "NT":
+        x = np.random.default_rng(1).standard_normal(len(mass)) + 0j
+        for _ in range(4):
+            x = factors.solve(mass @ (x / np.linalg.norm(x)), transposed)
+        found.append(x / np.linalg.norm(x))
+    return found
+
+
+def main():
+    folder, opened, mu = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])
+    mass, stiffness = matrix(folder / "M.bin"), matrix(folder / "K.bin") + mu * matrix(folder / "H.bin")
+    blocks = list(bodies(matrix(opened / "K.bin"), mass))
+    table = read(folder, "modes_components.csv")
+    names = sorted({row["body"] for row in table})
+    block = {name: block_of([row for row in table if row["body"] == name and row["component"]], blocks) for name in names}
+    worst, failed, complex_modes = 0, [], 0
+    for mode in read(folder, "modes.csv"):
+        wanted = -complex(float(mode["growth_rad_s"]), 2 * np.pi * float(mode["freq_hz"])) ** 2
+        complex_modes += abs(wanted.imag) > 0
+        rows = [row for row in table if row["mode"] == mode["mode"]]
+        sums = np.sum([[float(row["share_percent"]), float(row["energy_percent"])] for row in rows], axis=0)
+        if max(abs(sums - 100)) > 1e-9:
+            failed.append(f"mode {mode['mode']} sums to {sums}")
+        if not wanted.imag and int(mode["mode"]) % 3:
+            continue
+        x, y = vectors_of(stiffness, mass, wanted)
+        whole, energy = y @ mass @ x, (x.conj() @ mass @ x).real
+        for row in rows:
+            if not row["component"]:
+                continue
+            at, _, vectors = block[row["body"]]
+            first = int(row["component"]) - 1
+            phi = vectors[:, first:first + int(row["modes"])]
+            inner = mass[np.ix_(at, at)]
+            on_x, on_y = phi.T @ inner @ x[at], phi.T @ inner @ y[at]
+            found = 100 * (on_y @ on_x / whole).real, 100 * (on_x.conj() @ on_x).real / energy
+            off = max(abs(found[0] - float(row["share_percent"])), abs(found[1] - float(row["energy_percent"])))
+            worst = max(worst, off)
+            if not off <= float(row["error_percent"]) < ERROR:
+                failed.append(f"mode {mode['mode']}, {row['body']} {row['name']}: {found}, not {row['share_percent']}")
+    said = f"{len(names)} bodies, {len(table)} rows, {complex_modes} complex modes: largest difference {worst:.1e} %"
+    print("; ".join(failed[:5]) or said)
+    return 1 if failed or len(names) != len(blocks) or not complex_modes else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
