@@ -19,6 +19,30 @@
 typedef struct _p_Modes *Modes;
 struct ShiftInvert; /* factors, private to the solvers */
 
+/* Growth beyond its error, and beyond the limit of what counts as unstable; neutral: the first alone */
+typedef enum { MODE_STABLE, MODE_NEUTRAL, MODE_UNSTABLE } ModeState;
+
+/* Growth up to the larger of ratio |lambda| and growth, 1/s, is no instability; ratio: a damping ratio */
+typedef struct {
+  PetscReal ratio, growth;
+} ModesLimit;
+
+#define MODES_TINY 1e-9 /* of |lambda|: growth below it is rounding */
+
+/*@ ModesLimitGrowth - the limit of an eigenvalue of that size |lambda|, 1/s. Not collective. @*/
+PetscReal ModesLimitGrowth(const ModesLimit *limit, PetscReal size);
+
+/*@ ModesLimitIsExceeded - whether growth sigma of sigma + i omega (rad/s) exceeds its error and the limit. Not
+    collective. @*/
+PetscBool ModesLimitIsExceeded(const ModesLimit *limit, PetscReal sigma, PetscReal omega, PetscReal error);
+
+/*@ ModesLimitJudge - the state of an eigenvalue sigma + i omega, rad/s, with that error; without a limit growth within
+    a damping ratio of 1e-5 is neutral. Not collective. @*/
+ModeState ModesLimitJudge(const ModesLimit *limit, PetscReal sigma, PetscReal omega, PetscReal error);
+
+/*@ ModeStateName - stable, neutral or unstable, as tables have it. Not collective. @*/
+const char *ModeStateName(ModeState state);
+
 /* One eigenvalue of the upper half plane (omega >= 0) and its errors */
 typedef struct {
   PetscReal sigma, omega;   /* rad/s; sigma > 0 is unstable */
@@ -28,7 +52,8 @@ typedef struct {
     condition; /* 2 |lambda| |x|_M |y|_M / |y'(2 lambda M + C) x|: 1 for real modes, infinite at a defective pair */
   PetscReal
     error; /* first-order error of lambda from left and right vectors, |y'Q(lambda)x| / |y'Q'(lambda)x|, rad/s */
-  PetscBool unstable; /* sigma exceeds its error */
+  ModeState state;    /* whether sigma exceeds its error, and the limit */
+  PetscBool unstable; /* state is MODE_UNSTABLE */
   PetscBool rigid;    /* zero within its error */
   PetscBool slowing;  /* a rigid motion that damping slows down, a real eigenvalue */
   char      label[32];
@@ -52,6 +77,8 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 angular frequency of f2
 .  -modes_most <3000>        - modes that a band may hold, counted before they are computed (0: any number); 100 where
 the units of a part are in doubt
+.  -modes_unstable_damping <0> - growth within this damping ratio, %, is no instability
+.  -modes_unstable_growth <0>  - growth up to this, 1/s, is none
 .  -modes_left <true>        - compute left vectors (condition and error need them)
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_components <0>     - write which free modes of the bodies make up each mode, of those up to this multiple of
@@ -71,6 +98,9 @@ PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static);
 /*@ ModesGetBand - the band of the options, Hz, and the largest growth that it covers, 1/s. Not collective.
     Errors: PETSC_ERR_USER_INPUT without -modes_band. @*/
 PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth);
+
+/*@ ModesGetLimit - what counts as unstable. Not collective. @*/
+PetscErrorCode ModesGetLimit(Modes modes, ModesLimit *limit);
 
 /*@ ModesHaveBand - whether the modes of a band are asked for, not those nearest to a target. Not collective. @*/
 PetscErrorCode ModesHaveBand(Modes modes, PetscBool *has_band);

@@ -62,6 +62,7 @@ struct _p_Modes {
   PetscReal    band[2], target; /* Hz */
   PetscReal    growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal    free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
+  PetscReal    unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
   PetscInt     most;            /* modes that a band may hold; 0: any number */
   PetscBool    has_most;        /* given */
   PetscReal    max_time;        /* s, of one solution; 0: any */
@@ -138,6 +139,9 @@ typedef struct {
   WindowKnown known;
   WindowRoute route;
 } Window;
+
+/* growth/state.c - what counts as unstable, in a line where it is given or decides */
+PETSC_INTERN PetscErrorCode ModesViewLimit(Modes modes, PetscBool decides, PetscViewer viewer);
 
 /* growth/pair.c - the mechanism of every mode (borrowed); that of an unstable one begins a line. Collective */
 PETSC_INTERN PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms);

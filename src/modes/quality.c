@@ -21,6 +21,7 @@
 #define QUALITY_CONSISTENT 2.9
 #define QUALITY_DOUBLE     6.7e7 /* 1 / sqrt(machine epsilon) */
 #define QUALITY_NOISE      100   /* lambda^2 below this many times its error is a rigid mode */
+#define QUALITY_UNSURE     1e-6  /* without left vectors: growth below this, of |lambda|, may be error */
 
 /* What all modes share: matrices, their Frobenius norms (K, C, M), and work vectors */
 typedef struct {
@@ -284,6 +285,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
   PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square, amplified = 1;
   QualityProducts  p = {.y_Dx = 1};
+  ModesLimit       limit;
 
   PetscFunctionBeginUser;
   PetscCall(QualityNext(q, x, y, &norm_x, &norm_y));
@@ -309,8 +311,10 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   mode->error = mode->rigid ? PetscSqrtReal(size * size + square) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   if (mode->rigid) mode->slowing = PETSC_FALSE;
-  mode->unstable =
-    mode->sigma > mode->error && mode->sigma > (has_left ? 1e-9 : 1e-6) * size ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ModesGetLimit(modes, &limit));
+  mode->state    = ModesLimitJudge(&limit, mode->sigma, mode->omega,
+                                has_left ? mode->error : PetscMax(mode->error, QUALITY_UNSURE * size));
+  mode->unstable = mode->state == MODE_UNSTABLE ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModeCheck(modes, mode, cimag(lambda) / (2 * PETSC_PI)));
   if (!has_left) mode->error = NAN;
   PetscFunctionReturn(0);

@@ -53,7 +53,9 @@ static PetscErrorCode ModesViewState(Modes modes, PetscViewer viewer)
 
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
 {
-  PetscInt n_unstable = 0;
+  static const char *const mark[] = {[MODE_STABLE] = "", [MODE_NEUTRAL] = "  neutral", [MODE_UNSTABLE] = "  UNSTABLE"};
+
+  PetscInt n[] = {[MODE_STABLE] = 0, [MODE_NEUTRAL] = 0, [MODE_UNSTABLE] = 0};
 
   PetscFunctionBeginUser;
   PetscCall(
@@ -61,17 +63,20 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m = &modes->mode[i];
 
-    if (m->unstable) n_unstable++;
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n", i + 1, (double)ModeFrequency(m),
-      (double)m->sigma, (double)(100 * ModeDampingRatio(m)), (double)(m->error / (2 * PETSC_PI)), (double)m->condition,
-      (double)m->backward_error, m->label, m->unstable ? "  UNSTABLE" : ""));
+    n[m->state]++;
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%4" PetscInt_FMT " %10.3f %12.5g %10.5f %9.1e %10.4g %9.1e  %s%s\n",
+                                     i + 1, (double)ModeFrequency(m), (double)m->sigma,
+                                     (double)(100 * ModeDampingRatio(m)), (double)(m->error / (2 * PETSC_PI)),
+                                     (double)m->condition, (double)m->backward_error, m->label, mark[m->state]));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes", modes->n));
   if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
-  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable; %s\n", n_unstable, modes->completeness));
-  if (n_unstable) PetscCall(ModesViewCauses(modes, viewer));
-  if (n_unstable) PetscCall(ComponentsView(modes, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable", n[MODE_UNSTABLE]));
+  if (n[MODE_NEUTRAL]) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " neutral", n[MODE_NEUTRAL]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "; %s\n", modes->completeness));
+  PetscCall(ModesViewLimit(modes, n[MODE_NEUTRAL] ? PETSC_TRUE : PETSC_FALSE, viewer));
+  if (n[MODE_UNSTABLE]) PetscCall(ModesViewCauses(modes, viewer));
+  if (n[MODE_UNSTABLE]) PetscCall(ComponentsView(modes, viewer));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));
@@ -94,7 +99,7 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsT
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
   if (mesh) PetscCall(PetscStrlcat(header, ",label_percent", sizeof(header)));
-  PetscCall(PetscStrlcat(header, ",mechanism,partner", sizeof(header)));
+  PetscCall(PetscStrlcat(header, ",state,mechanism,partner", sizeof(header)));
   PetscCall(ResultsTableOpen(results, "modes", header, table));
   PetscFunctionReturn(0);
 }
@@ -124,10 +129,11 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
       PetscCall(PetscSNPrintf(number, sizeof(number), "%d", (int)mechanism[i].partner + 1));
     else
       number[0] = 0;
-    PetscCall(ResultsTableRow(
-      table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s,%s,%s", (int)i + 1, (double)ModeFrequency(m),
-      (double)m->sigma, (double)ModeDampingRatio(m), (double)m->backward_error, (double)m->condition, (int)m->unstable,
-      m->label, (double)(m->error / (2 * PETSC_PI)), percent, MechanismName(mechanism[i].kind, PETSC_FALSE), number));
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%.15g,%.15g,%.15g,%.15g,%d,\"%s\",%.15g%s,%s,%s,%s", (int)i + 1,
+                              (double)ModeFrequency(m), (double)m->sigma, (double)ModeDampingRatio(m),
+                              (double)m->backward_error, (double)m->condition, (int)m->unstable, m->label,
+                              (double)(m->error / (2 * PETSC_PI)), percent, ModeStateName(m->state),
+                              MechanismName(mechanism[i].kind, PETSC_FALSE), number));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

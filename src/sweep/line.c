@@ -209,12 +209,11 @@ PetscErrorCode SweepClassify(Sweep sweep)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
     for (PetscInt k = 0; k < sweep->point[i].n; k++) {
-      SweepMode         *m      = &sweep->point[i].mode[k];
-      const PetscComplex lambda = CMPLX(m->sigma, m->omega);
+      SweepMode      *m    = &sweep->point[i].mode[k];
+      const PetscReal tiny = MODES_TINY * hypot(m->sigma, m->omega);
 
-      m->unstable = ReducedIsUnstable(lambda, isnan(m->error) ? 0 : m->error);
-      m->numerical =
-        !m->unstable && (isinf(m->error) || m->sigma > REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
+      m->state     = ModesLimitJudge(&sweep->limit, m->sigma, m->omega, isnan(m->error) ? 0 : m->error);
+      m->numerical = m->state == MODE_STABLE && (isinf(m->error) || m->sigma > tiny) ? PETSC_TRUE : PETSC_FALSE;
       if (m->branch >= 0) PetscCall(PetscStrncpy(m->label, sweep->label[m->branch].text, sizeof(m->label)));
     }
   PetscFunctionReturn(0);

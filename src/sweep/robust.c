@@ -137,7 +137,8 @@ static PetscErrorCode RisksCount(Sweep sweep, PetscInt n, const PetscReal points
       const PetscReal sigma = creal(modes[i].lambda[k]);
       SweepRisk      *r     = &risk[match[k] >= 0 ? match[k] : modes[0].n];
 
-      if (!ReducedModeIsUnstable(&modes[i], k)) continue;
+      if (ModesLimitJudge(&sweep->limit, sigma, cimag(modes[i].lambda[k]), modes[i].error[k]) != MODE_UNSTABLE)
+        continue;
       r->n_unstable++;
       if (sigma <= r->largest) continue;
       r->largest = sigma;

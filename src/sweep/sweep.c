@@ -124,10 +124,11 @@ static PetscErrorCode ModelMake(Sweep sweep)
   GridPoint(&sweep->grid, 0, p);
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
-  sweep->greedy.modes  = sweep->modes;
-  sweep->greedy.window = sweep->window;
-  sweep->greedy.groups = &sweep->groups;
-  sweep->greedy.rtol   = sweep->rtol;
+  sweep->basis.reduced.limit = sweep->limit;
+  sweep->greedy.modes        = sweep->modes;
+  sweep->greedy.window       = sweep->window;
+  sweep->greedy.groups       = &sweep->groups;
+  sweep->greedy.rtol         = sweep->rtol;
   if (!sweep->max_given && sweep->grid.n_groups)
     sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;
@@ -211,6 +212,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   sweep->results = results;
   PetscCall(ResultsGetDirectory(results, &sweep->folder));
   PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
+  PetscCall(ModesGetLimit(sweep->modes, &sweep->limit));
   sweep->window.low  = 2 * PETSC_PI * band[0];
   sweep->window.high = 2 * PETSC_PI * band[1];
   PetscCall(SweepAxes(sweep));

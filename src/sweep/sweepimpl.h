@@ -22,7 +22,8 @@ typedef struct {
   PetscReal noise;        /* the part of it that is rounding */
   PetscReal condition;
   PetscInt  branch; /* from 0 on; -1 where branches are not followed */
-  PetscBool unstable, numerical;
+  ModeState state;
+  PetscBool numerical; /* stable, but its error covers growth */
   char      label[32];
 } SweepMode;
 
@@ -78,6 +79,7 @@ struct _p_Sweep {
   PointGroups   groups;
   PointStore    store;
   ReducedWindow window;
+  ModesLimit    limit; /* what counts as unstable */
   Basis         basis;
   Greedy        greedy;
   StatusList    statuses;              /* empty without statics; n_pairs -1 without contact */
@@ -119,8 +121,8 @@ PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
 /* Names of all modes of a point from their shapes on the mesh */
 PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
                                             char label[][32]);
-/* Which eigenvalues are unstable, or numerically so: growth is `unstable` when it exceeds the estimated error of
-   its eigenvalue, and `numerical` when the error bar covers zero, or is not finite */
+/* Which eigenvalues are unstable or neutral, beyond the estimated error, or `numerical`: the error bar covers zero, or
+   is not finite */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* axes.c - parameters, links and values of the axes, and the places of the grid */
 PETSC_INTERN PetscErrorCode SweepAxes(Sweep sweep);

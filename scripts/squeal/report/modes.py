@@ -11,7 +11,8 @@ from .markup import Column, Part, count, figure, figures, fixed, legend, missing
 from .shapes import Bodies, Shape, data_script, viewer
 
 KINDS = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag, "label": str}
-MORE = {"damping_ratio": float, "backward_error": optional, "condition": optional, "error_hz": optional, "label_percent": optional}
+MORE = {"damping_ratio": float, "backward_error": optional, "condition": optional, "error_hz": optional, "label_percent": optional,
+        "state": str, "mechanism": str, "partner": optional}
 PART = "part_{}_percent"
 COLOURS = ("steel", "orange", "green", "purple", "sky", "vermilion", "grey")
 
@@ -27,6 +28,7 @@ class Modes:
         self.rows = read_table(path, kinds | {PART.format(name): float for name in self.parts})
         self.has = set(kinds)
         self.fields = folder / "modes.h5"
+        self.neutral = [row for row in self.rows if row.get("state") == "neutral"]
         self.unstable = sorted((row for row in self.rows if row["unstable"]), key=lambda row: -row["growth_rad_s"])
 
     def largest(self, name):
@@ -49,11 +51,19 @@ def name_of(row):
     return f"{row['mode']}: {fixed(row['freq_hz'], 1)} Hz {row['label']}".rstrip()
 
 
+def mechanism_of(row):
+    """coupling with mode 12"""
+    text = row.get("mechanism", "").replace("damping_induced", "damping-induced").replace("_", " ")
+    return text + (f" with mode {row['partner']:.0f}" if text and row["partner"] == row["partner"] else "")
+
+
 def detail_of(row):
     """A line about a mode."""
     text = f"Mode {row['mode']}, {fixed(row['freq_hz'], 3)} Hz, {row['label'] or 'unnamed'}: "
     if row["unstable"]:
-        text += f"UNSTABLE, growth {signed(row['growth_rad_s'])} 1/s"
+        text += f"UNSTABLE, growth {signed(row['growth_rad_s'])} 1/s" + ", ".join(["", mechanism_of(row)]).rstrip(", ")
+    elif row.get("state") == "neutral":
+        text += f"neutral, growth {signed(row['growth_rad_s'])} 1/s, by e in {figures(1 / row['growth_rad_s'], 3)} s"
     elif row["growth_rad_s"]:
         text += f"decays with {figures(-row['growth_rad_s'], 4)} 1/s"
     else:
@@ -69,13 +79,15 @@ def verdict(modes):
         return "No mode lies in the band."
     low, high = (figures(modes.rows[i]["freq_hz"], 5) for i in (0, -1))
     text = f"{count(len(modes.rows), 'mode')} from {low} to {high} Hz; "
+    slight = f" {len(modes.neutral)} more {'grows' if len(modes.neutral) == 1 else 'grow'} so slowly that it is no instability (neutral)." \
+        if modes.neutral else ""
     if not modes.unstable:
-        return text + "none is unstable."
+        return text + "none is unstable." + slight
     worst = modes.unstable[0]
     verb = "is" if len(modes.unstable) == 1 else "are"
     return text + (f"{len(modes.unstable)} {verb} unstable, fastest {worst['label']} at {fixed(worst['freq_hz'], 1)} "
                    f"Hz "
-                   f"with {signed(worst['growth_rad_s'])} 1/s.")
+                   f"with {signed(worst['growth_rad_s'])} 1/s{' by ' + mechanism_of(worst) if mechanism_of(worst) else ''}.") + slight
 
 
 def eigenvalues(modes, folder):
@@ -95,7 +107,8 @@ def eigenvalues(modes, folder):
         panel.label(scale * row["freq_hz"], row["growth_rad_s"], f"{scale * row['freq_hz']:.3f} {unit} {row['label']}",
                     "vermilion")
     keys = legend([("vermilion", "dot", f"unstable ({len(modes.unstable)})"),
-                   ("blue", "dot", f"stable ({len(rows) - len(modes.unstable)})")])
+                   ("blue", "dot", f"stable ({len(rows) - len(modes.unstable) - len(modes.neutral)})"
+                    + (f" or neutral ({len(modes.neutral)})" if modes.neutral else ""))])
     picture = [keys, Chart("growth rate of each mode against its frequency", x, [panel]).markup(f"{folder.key}-plane")]
     return figure(f"{folder.key}-eigenvalues", "Eigenvalues", picture,
                   "Above the line a vibration grows. A mode that locks in has a partner below the line.",
@@ -136,6 +149,10 @@ def mode_table(modes, folder):
     if "damping_ratio" in modes.has:
         columns.append(Column("damping, %", lambda row: 100 * row["damping_ratio"], lambda v: fixed(v, 5),
                               hint="negative: the vibration grows"))
+    if "mechanism" in modes.has and (modes.unstable or modes.neutral):
+        columns += [Column("state", lambda row: row["state"], left=True,
+                           hint="neutral: growth beyond its error that is no instability"),
+                    Column("mechanism", mechanism_of, left=True, hint="why an unstable mode grows")]
     columns.append(Column("label", lambda row: row["label"], left=True,
                           hint="(n,m): n nodal circles, m nodal diameters; in plane IP-R(m) radial, IP-C(m) circumferential; "
                                "+ an antinode at the contact"))

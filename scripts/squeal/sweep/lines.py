@@ -38,6 +38,7 @@ class Branch:
             at = place[row["value"]] if number >= 0 else i
             self.x[at], self.frequency[at] = row["value"] * axis.factor, row["freq_hz"] * scale
             self.growth[at], self.error[at], self.kind[at] = row["growth_rad_s"], row["error_hz"], row["class"]
+        self.kind[self.kind == "neutral"] = "stable"  # growth that is no instability
         self.label = collections.Counter(row["label"] for row in rows).most_common(1)[0][0]
         self.last = numpy.flatnonzero(~numpy.isnan(self.x))[-1]
 

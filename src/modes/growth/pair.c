@@ -144,9 +144,16 @@ PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms)
 
 PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const ModeMechanism *m, PetscViewer viewer)
 {
+  const Mode     *mode = &modes->mode[i];
+  const PetscReal size = PetscSqrtReal(mode->sigma * mode->sigma + mode->omega * mode->omega);
+
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s, %s", i + 1,
-                                   (double)modes->mode[i].sigma, MechanismName(m->kind, PETSC_TRUE)));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "mode %" PetscInt_FMT " grows by %.5g 1/s (by e in %.3g s", i + 1,
+                                   (double)mode->sigma, (double)(1 / mode->sigma)));
+  if (mode->omega > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "; a further damping ratio of %.3g %% would stop it",
+                                     (double)(100 * mode->sigma / size)));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "), %s", MechanismName(m->kind, PETSC_TRUE)));
   if (m->partner >= 0)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, " with mode %" PetscInt_FMT " (without friction and damping at about %.4g and %.4g Hz)", m->partner + 1,

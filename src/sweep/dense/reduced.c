@@ -17,16 +17,6 @@
 #define SAME_VALUE 1e-9  /* relative difference of equal eigenvalues */
 #define DEFECTIVE  1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
 
-PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error)
-{
-  return creal(lambda) > PetscMax(error, REDUCED_TINY * cabs(lambda)) ? PETSC_TRUE : PETSC_FALSE;
-}
-
-PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i)
-{
-  return ReducedIsUnstable(modes->lambda[i], modes->error[i]);
-}
-
 void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[])
 {
   const PetscInt first = PetscMin(cluster[i], cluster[j]), last = PetscMax(cluster[i], cluster[j]);

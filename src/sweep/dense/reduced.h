@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include <squeal/pencil.h>
+#include <squeal/modes.h>
 #include <complex.h>
 
 /* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to
@@ -18,6 +18,7 @@ typedef struct {
   PetscReal               **D;         /* [n_terms][n_used * n_used] V' |diag A_t| V of the stiffness terms, for what
                                           rounding in A_t does; NULL, or NULL entries, where that is no more than
                                           rounding in the dense matrices */
+  ModesLimit                limit;     /* what counts as unstable; no limit without */
 } Reduced;
 
 /* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s; and with rtol > 0 those of larger |sigma|
@@ -54,12 +55,6 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
 /* A copy of some of the modes, list [n], or of the first n where list is NULL */
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
-
-/* Whether sigma exceeds the error of its eigenvalue, and rounding, REDUCED_TINY |lambda|; the same of
-   mode i */
-#define REDUCED_TINY 1e-9
-PetscBool ReducedIsUnstable(PetscComplex lambda, PetscReal error);
-PetscBool ReducedModeIsUnstable(const ReducedModes *modes, PetscInt i);
 
 /* mass.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite; no
    mass that depends on parameters: nothing to do */

@@ -140,12 +140,13 @@ static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const R
    states */
 static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
 {
-  const PetscReal growth = sweep->window.growth;
+  const PetscReal   growth = sweep->window.growth;
+  const ModesLimit *limit  = &sweep->limit;
 
   for (PetscInt i = 0; i < n; i++) {
     if (PetscAbsReal(full[i].sigma) > growth) continue;
     check->n_full++;
-    check->n_unstable_full += ReducedIsUnstable(CMPLX(full[i].sigma, full[i].omega), full[i].error);
+    check->n_unstable_full += ModesLimitJudge(limit, full[i].sigma, full[i].omega, full[i].error) == MODE_UNSTABLE;
     if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
   }
   for (PetscInt k = 0; k < reduced->n; k++) {
@@ -154,7 +155,8 @@ static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const Re
     if (omega < sweep->window.low || omega > sweep->window.high || PetscAbsReal(creal(reduced->lambda[k])) > growth)
       continue;
     check->n_reduced++;
-    check->n_unstable_reduced += ReducedIsUnstable(reduced->lambda[k], reduced->error[k]);
+    check->n_unstable_reduced +=
+      ModesLimitJudge(limit, creal(reduced->lambda[k]), omega, reduced->error[k]) == MODE_UNSTABLE;
   }
 }
 

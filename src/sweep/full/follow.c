@@ -52,6 +52,7 @@ static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, con
 
   PetscFunctionBeginUser;
   PetscCall(FollowModel(pencil, from, point, &reduced));
+  reduced.limit = sweep->limit;
   for (PetscInt k = 0; k < point->modes.n && !from; k++) point->branch[k] = sweep->n_branches++;
   if (from) {
     before = *from;

@@ -18,6 +18,7 @@ static PetscErrorCode RealBasisMake(Sweep sweep, const PetscReal p[])
   PetscCall(BasisDestroy(&sweep->basis));
   PetscCall(PencilSetParameters(sweep->pencil, p));
   PetscCall(BasisCreate(sweep->comm, sweep->pencil, &sweep->basis));
+  sweep->basis.reduced.limit = sweep->limit;
   PetscCall(BasisFillReal(&sweep->basis, friction, sweep->n_real, -PetscSqr(omega), &sweep->progress));
   PetscFunctionReturn(0);
 }

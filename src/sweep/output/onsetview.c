@@ -16,7 +16,7 @@ static int OnsetDigits(Sweep sweep)
 static PetscBool PointIsUnstable(const SweepPoint *point)
 {
   for (PetscInt k = 0; k < point->n; k++)
-    if (point->mode[k].unstable) return PETSC_TRUE;
+    if (point->mode[k].state == MODE_UNSTABLE) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

@@ -55,7 +55,7 @@ static PetscErrorCode BranchesView(Sweep sweep, PetscViewer viewer)
       for (PetscInt k = 0; k < sweep->point[i].n; k++) {
         const SweepMode *m = &sweep->point[i].mode[k];
 
-        if (m->branch != b || !m->unstable) continue;
+        if (m->branch != b || m->state != MODE_UNSTABLE) continue;
         first = n ? PetscMin(first, grid->value[0][i % grid->n[0]]) : grid->value[0][i % grid->n[0]];
         last  = n++ ? PetscMax(last, grid->value[0][i % grid->n[0]]) : first;
         if (m->sigma > largest) largest = m->sigma, omega = m->omega;
@@ -213,13 +213,14 @@ static PetscErrorCode FollowView(Sweep sweep, PetscViewer viewer)
 PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
 {
   const OperatorsParameter *parameters;
-  PetscInt                  n, n_unstable = 0, n_numerical = 0;
+  PetscInt                  n, n_unstable = 0, n_neutral = 0, n_numerical = 0;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
   for (PetscInt i = 0; i < GridSize(&sweep->grid); i++)
     for (PetscInt k = 0; k < sweep->point[i].n; k++) {
-      n_unstable += sweep->point[i].mode[k].unstable;
+      n_unstable += sweep->point[i].mode[k].state == MODE_UNSTABLE;
+      n_neutral += sweep->point[i].mode[k].state == MODE_NEUTRAL;
       n_numerical += sweep->point[i].mode[k].numerical;
     }
   PetscCall(LinksView(sweep, parameters, viewer));
@@ -230,8 +231,10 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
   PetscCall(RisksView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
-                                   " unstable eigenvalues, %" PetscInt_FMT " more numerical only\n",
+                                   " unstable eigenvalues, %" PetscInt_FMT " more numerical only",
                                    GridSize(&sweep->grid), sweep->n_branches, n_unstable, n_numerical));
+  if (n_neutral) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " neutral", n_neutral));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   if (sweep->method == SWEEP_FULL) PetscCall(FollowView(sweep, viewer));
   PetscCall(SamplesView(sweep, parameters, viewer));
   PetscCall(BasisView(sweep, viewer));

@@ -62,10 +62,8 @@ static PetscErrorCode PointRow(Sweep sweep, PetscInt i, const SweepMode *m, Resu
   PetscCall(ResultsTableRow(
     table, "%d,%.15g,%s,%.15g,%.15g,%s,%d,\"%s\",%s,%s,%s,%s,%s,%s,%d", (int)i + 1, (double)sweep->grid.value[0][i % n],
     NumberOrEmpty(m->branch < 0 ? NAN : m->branch + 1).text, (double)(m->omega / (2 * PETSC_PI)), (double)m->sigma,
-    NumberOrEmpty(size > 0 ? m->error / size : NAN).text, (int)m->unstable, m->label, SecondValue(sweep, i / n).text,
-    m->unstable    ? "unstable"
-    : m->numerical ? "numerical"
-                   : "stable",
+    NumberOrEmpty(size > 0 ? m->error / size : NAN).text, (int)(m->state == MODE_UNSTABLE), m->label,
+    SecondValue(sweep, i / n).text, m->numerical ? "numerical" : ModeStateName(m->state),
     NumberOrEmpty(m->error / (2 * PETSC_PI)).text, NumberOrEmpty(m->condition).text, NumberOrEmpty(distance).text,
     NumberOrEmpty(n_closed < 0 ? NAN : n_closed).text, (int)jump));
   PetscFunctionReturn(0);

@@ -161,6 +161,7 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
   f->refine = refine;
+  f->limit  = reduced->limit;
   f->form   = (StandardForm){&f->pencil, size, form->damped, form->scale};
   f->N      = StandardSize(&f->form);
   PetscCall(ReducedModesSelect(modes, n, NULL, &f->modes));
@@ -176,6 +177,13 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
     if (f->cluster[i] == i) PetscCall(ClusterBases(f, i));
   *frame = f;
   PetscFunctionReturn(0);
+}
+
+PetscBool ModeFrameIsUnstable(const ModeFrame *frame, PetscInt i)
+{
+  const PetscComplex lambda = frame->modes.lambda[i];
+
+  return ModesLimitIsExceeded(&frame->limit, creal(lambda), cimag(lambda), frame->modes.error[i]);
 }
 
 PetscErrorCode ModeFrameDestroy(ModeFrame **frame)

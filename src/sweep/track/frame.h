@@ -13,6 +13,7 @@
    mean nothing one by one, only the plane that they span does */
 typedef struct {
   PetscReal     value;  /* of the parameter of the line */
+  ModesLimit    limit;  /* of the reduced model */
   PetscBool     refine; /* whether planes may be refined: the modes are those of the pencil */
   DensePencil   pencil;
   StandardForm  form;
@@ -48,6 +49,8 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
 PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 /* The other member of the pair lambda, -conj(lambda) of an undamped system in flutter, else -1 */
 PetscInt ModeFramePartner(const ModeFrame *frame, PetscInt i);
+/* Whether mode i is unstable: beyond its error and the limit */
+PetscBool ModeFrameIsUnstable(const ModeFrame *frame, PetscInt i);
 /* Number of modes of the cluster of mode i */
 PetscInt ModeFrameClusterSize(const ModeFrame *frame, PetscInt i);
 /* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at

@@ -41,8 +41,8 @@ static PetscBool PairMatrix(const PetscComplex H[], const PetscComplex G[], Pets
   return PETSC_TRUE;
 }
 
-/* Undamped: lowest point of d(t) when it is negative */
-static PetscBool PredictUndamped(PetscReal delta_a, PetscReal delta_b, PetscReal coupling, PetscReal kappa,
+/* Undamped: lowest point of d(t) when it is below -least */
+static PetscBool PredictUndamped(PetscReal delta_a, PetscReal delta_b, PetscReal coupling, PetscReal least,
                                  PetscReal *t)
 {
   const PetscReal slope = delta_b - delta_a, curvature = slope * slope + 4 * coupling;
@@ -53,7 +53,7 @@ static PetscBool PredictUndamped(PetscReal delta_a, PetscReal delta_b, PetscReal
   if (*t <= 0) return PETSC_FALSE;
   d = PetscSqr(delta_a + *t * slope) / 4 + *t * *t * coupling;
   if (*t == 1) *t = 0.5;
-  return d < -NARROW * kappa * kappa ? PETSC_TRUE : PETSC_FALSE;
+  return d < -least ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Larger growth of the two eigenvalues lambda of diag(s) + t (S - diag(s)) */
@@ -111,7 +111,7 @@ static PetscBool ModeTakesPart(const IntervalStep *step, PetscInt i)
   const ModeFrame *a = step->a;
 
   if (step->other[i] < 0 || a->modes.rigid[i] || cimag(a->modes.lambda[i]) == 0) return PETSC_FALSE;
-  return ModeFrameClusterSize(a, i) == 1 && !ReducedModeIsUnstable(&a->modes, i) ? PETSC_TRUE : PETSC_FALSE;
+  return ModeFrameClusterSize(a, i) == 1 && !ModeFrameIsUnstable(a, i) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether the match exchanges the frequencies of modes i and k */
@@ -131,11 +131,13 @@ static PetscBool PredictPair(const IntervalStep *step, PetscInt i, PetscInt k, c
   const ReducedModes *modes   = &a->modes;
   const PetscComplex  s[2]    = {StandardValue(&a->form, modes->lambda[i]), StandardValue(&a->form, modes->lambda[k])};
   const PetscComplex  delta_a = s[0] - s[1], delta_b = S[0] - S[3], coupling = S[1] * S[2];
-  const PetscReal     limit = PetscMax(REDUCED_TINY * cabs(s[0]), modes->error[i] + modes->error[k]);
+  const PetscReal     size = cabs(modes->lambda[i]), growth = ModesLimitGrowth(&a->limit, size);
+  const PetscReal     limit = PetscMax(PetscMax(MODES_TINY * size, growth), modes->error[i] + modes->error[k]);
+  const PetscReal     least = PetscMax(NARROW * PetscSqr(cabs(s[0])), PetscSqr(2 * growth * size));
 
-  if (!ReducedModeIsUnstable(&b->modes, other[i]) && !ReducedModeIsUnstable(&b->modes, other[k])) {
+  if (!ModeFrameIsUnstable(b, other[i]) && !ModeFrameIsUnstable(b, other[k])) {
     if (a->form.damped && PredictDamped(s, S, limit, t)) return PETSC_TRUE;
-    if (!a->form.damped && PredictUndamped(creal(delta_a), creal(delta_b), creal(coupling), cabs(s[0]), t))
+    if (!a->form.damped && PredictUndamped(creal(delta_a), creal(delta_b), creal(coupling), least, t))
       return PETSC_TRUE;
   }
   if (!ModesSwap(step, i, k)) return PETSC_FALSE;

@@ -73,14 +73,14 @@ static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Ma
   for (PetscInt j = 0; j < b->modes.n; j++) {
     const PetscInt i = match->from[j];
 
-    if (!ReducedModeIsUnstable(&b->modes, j)) continue;
-    if (i >= 0 && ReducedModeIsUnstable(&a->modes, i))
+    if (!ModeFrameIsUnstable(b, j)) continue;
+    if (i >= 0 && ModeFrameIsUnstable(a, i))
       goes_on[i] = PETSC_TRUE;
     else
       PetscCall(ChangeAddJump(b, j, a, events));
   }
   for (PetscInt i = 0; i < a->modes.n; i++)
-    if (ReducedModeIsUnstable(&a->modes, i) && !goes_on[i]) PetscCall(ChangeAddJump(a, i, b, events));
+    if (ModeFrameIsUnstable(a, i) && !goes_on[i]) PetscCall(ChangeAddJump(a, i, b, events));
   PetscCall(PetscFree(goes_on));
   PetscFunctionReturn(0);
 }
@@ -108,14 +108,15 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const Bran
 static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member[], PetscReal *m)
 {
   const PetscComplex *lambda = f->modes.lambda;
+  const PetscReal     L      = ModesLimitGrowth(&f->limit, cabs(lambda[member[0]]));
   PetscComplex        mean = 0, square = 0;
 
   *m = PetscSqr(cimag(lambda[member[0]]));
-  if (f->form.damped) return creal(lambda[member[0]]);
+  if (f->form.damped) return creal(lambda[member[0]]) - L;
   for (PetscInt k = 0; k < n; k++) mean += StandardValue(&f->form, lambda[member[k]]) / n;
   for (PetscInt k = 0; k < n; k++) square += cpow(StandardValue(&f->form, lambda[member[k]]) - mean, 2);
   *m = creal(mean);
-  return n > 1 ? -creal(square) : -*m;
+  return n > 1 ? -creal(square) - n * 4 * L * L * (*m + L * L) : -*m - PetscSqr(f->limit.growth);
 }
 
 /* Where the event of mode i, unstable at u and not at s, lies: its zero of g, or half way where to [modes of u], the
@@ -152,7 +153,7 @@ static PetscBool ComponentIsStable(const ModeFrame *f, const PetscInt component[
   PetscInt n = 0;
 
   for (PetscInt i = 0; i < f->modes.n; i++) {
-    if (component[i] == c && ReducedModeIsUnstable(&f->modes, i)) return PETSC_FALSE;
+    if (component[i] == c && ModeFrameIsUnstable(f, i)) return PETSC_FALSE;
     n += component[i] == c;
   }
   return n > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -167,7 +168,7 @@ static PetscErrorCode StepOnsets(const ModeFrame *u, const PetscInt component[],
   for (PetscInt i = 0; i < u->modes.n; i++) {
     PetscInt j = to[i];
 
-    if (!ReducedModeIsUnstable(&u->modes, i) || (j >= 0 && ReducedModeIsUnstable(&s->modes, j))) continue;
+    if (!ModeFrameIsUnstable(u, i) || (j >= 0 && ModeFrameIsUnstable(s, j))) continue;
     if (j < 0 && !ComponentIsStable(s, component_s, component[i])) continue;
     PetscCall(ChangeAdd(u, i, s, events));
     PetscCall(StepPlace(u, s, i, j < 0 ? NULL : to, &events->event[events->n - 1]));

@@ -28,9 +28,9 @@ static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeF
   PetscCall(BranchListContinue(&tracker->branches, a, b, match));
   for (PetscInt j = 0; j < b->modes.n; j++) {
     const PetscInt  i    = match->from[j];
-    const PetscBool at_a = i >= 0 ? ReducedModeIsUnstable(&a->modes, i) : PETSC_FALSE;
+    const PetscBool at_a = i >= 0 ? ModeFrameIsUnstable(a, i) : PETSC_FALSE;
 
-    if (i < 0 || at_a == ReducedModeIsUnstable(&b->modes, j)) continue;
+    if (i < 0 || at_a == ModeFrameIsUnstable(b, j)) continue;
     if (at_a)
       PetscCall(ChangeAdd(a, i, b, tracker->events));
     else

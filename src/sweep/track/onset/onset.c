@@ -11,6 +11,8 @@
    is ((kappa_1 - kappa_2) / 2)^2 for k = 2, and the same for two such pairs at once (a doublet that locks in with a
    doublet, k = 4). At lock-in omega = sqrt(m).
    Damped: g = sigma of the mode, which is simple. Divergence: g = -kappa = -y^T K x / (y^T M x).
+   With a limit L(|lambda|) of what counts as unstable the onset is where sigma = L: g = -d - 4 L^2 (m + L^2),
+   sigma - L, -kappa - L^2; with damping a real eigenvalue is simple there, and g = sigma - L too.
 
    The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
    Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
@@ -266,7 +268,7 @@ static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes
   onset->source.estimate = PETSC_FALSE;
   if (event->found) {
     if (onset->kind == ONSET_PAIR)
-      event->omega = PetscSqrtReal(PetscMax(trial.m, 0));
+      event->omega = PetscSqrtReal(PetscMax(trial.m + trial.limit, 0));
     else if (onset->kind == ONSET_GROWTH)
       event->omega = cimag(trial.frame->modes.lambda[trial.member[0]]);
     else
@@ -323,6 +325,7 @@ PetscErrorCode OnsetFind(const Reduced *reduced, const BranchLine *line, BranchE
   if (modes) PetscCall(PetscMemzero(modes, sizeof(*modes)));
   PetscCall(ModeSourceCreate(reduced, line, &onset.source));
   onset.kind = divergence ? ONSET_STIFFNESS : (onset.source.form.damped ? ONSET_GROWTH : ONSET_PAIR);
+  if (divergence && onset.source.form.damped && reduced->limit.growth > 0) onset.kind = ONSET_GROWTH;
   PetscCall(OnsetBracket(&onset, event, &critical, &event->found));
   if (event->found) {
     event->critical = critical;

@@ -29,7 +29,16 @@ static PetscErrorCode PlaneProduct(const Trial *trial, const PetscReal A[], cons
   PetscFunctionReturn(0);
 }
 
-/* -d and m of the plane of the trial's members */
+/* Square of the growth at which a pair of mean m, lambda^2 = -m +- i e, counts as unstable: with |lambda|^2 = m + 2 L^2
+   for L = ratio |lambda| */
+static PetscReal PlaneLimit(const ModesLimit *limit, PetscReal m)
+{
+  const PetscReal square = PetscSqr(limit->ratio);
+
+  return PetscMax(PetscSqr(limit->growth), square < 0.5 ? square * PetscMax(m, 0) / (1 - 2 * square) : PETSC_INFINITY);
+}
+
+/* g and m of the plane of the trial's members: growth L is e^2 = -d = 4 L^2 (m + L^2) */
 static PetscErrorCode PlaneDiscriminant(Trial *trial)
 {
   const ModeFrame *f = trial->frame;
@@ -49,7 +58,8 @@ static PetscErrorCode PlaneDiscriminant(Trial *trial)
   for (PetscInt a = 0; a < k; a++) S[a * k + a] -= trial->m;
   for (PetscInt a = 0; a < k; a++)
     for (PetscInt b = 0; b < k; b++) d += S[a * k + b] * S[b * k + a] / k;
-  trial->g = -d;
+  trial->limit = PlaneLimit(&f->limit, trial->m);
+  trial->g     = -d - 4 * trial->limit * (trial->m + trial->limit);
   PetscCall(PetscFree6(X, Y, Z, G, S, pivot));
   PetscFunctionReturn(0);
 }
@@ -69,18 +79,20 @@ static PetscErrorCode ModeStiffness(Trial *trial)
       m += y[r] * f->pencil.M[c * f->form.n + r] * x[c];
     }
   }
-  trial->g = -creal(k / m);
+  trial->g = -creal(k / m) - PetscSqr(f->limit.growth);
   PetscFunctionReturn(0);
 }
 
 /* g of the members */
 PetscErrorCode TrialValue(OnsetKind kind, Trial *trial)
 {
+  const PetscComplex lambda = trial->frame->modes.lambda[trial->member[0]];
+
   PetscFunctionBeginUser;
   if (kind == ONSET_PAIR)
     PetscCall(PlaneDiscriminant(trial));
   else if (kind == ONSET_GROWTH)
-    trial->g = creal(trial->frame->modes.lambda[trial->member[0]]);
+    trial->g = creal(lambda) - ModesLimitGrowth(&trial->frame->limit, cabs(lambda));
   else
     PetscCall(ModeStiffness(trial));
   PetscFunctionReturn(0);

@@ -13,6 +13,7 @@ typedef struct {
   ModeFrame *frame;
   PetscInt   k, *member; /* [k] */
   PetscReal  g, m;
+  PetscReal  limit;   /* of a pair: L^2, the square of growth that counts as unstable */
   PetscBool  settled; /* the plane of a pair is known to be an invariant one */
 } Trial;
 
