@@ -64,7 +64,21 @@ def check_modes(t, page, key, folder):
     shares = [float(row["part_beam_percent"]) for row in rows]
     seen = [(e["height"], share) for e, share in zip(boxes, shares) if share > 1]
     t.check(len(boxes) == 2 * len(rows) and straight(*zip(*seen)), f"{key}: shares of the beam")
+    t.check(same_numbers(page, f"{key}-table", "label, %", rows, "label_percent"), f"{key}: what labels explain")
     check_effects(t, page, key, folder / "modes_effects.csv")
+    check_components(t, page, key, folder / "modes_components.csv", {row["mode"] for row in rows if row["unstable"] == "1"})
+
+
+def check_components(t, page, key, path, unstable):
+    """Bars of the free modes of unstable modes from 2 % on: breaks when a share is lost or another one's bar is drawn."""
+    if not path.exists():
+        return
+    shares = {f"{row['body']} {row['name']}": float(row["share_percent"]) for row in rows_of(path)
+              if row["mode"] in unstable and abs(float(row["share_percent"])) >= 2}
+    boxes = first_half(page.find("rect", inside=f"{key}-components"))
+    bars = {box["text"].split(" Hz: ")[1].rsplit(" ", 2)[0]: float(box["height"]) for box in boxes if " Hz: " in box["text"]}
+    t.check(bars.keys() == shares.keys() and straight([bars[name] for name in shares], [abs(v) for v in shares.values()]),
+            f"{key}: bars {sorted(bars)}, shares {sorted(shares)}")
 
 
 def check_effects(t, page, key, path):

@@ -86,5 +86,5 @@ def components(modes, folder):
                     "tip": lambda name, value: f"{name[0]} {name[1]} {fixed(value, 1)} %",
                     "title": "share of each free mode in the unstable modes"})
     return picture and figure(f"{folder.key}-components", "Which free modes of the bodies they are made of", picture,
-                              "Measured with left and right vectors. The two largest bars of a mode are those that merge. Bars below "
-                              f"{figures(COMPONENT)} % are left out." + beyond(modes), folder.command("report"))
+                              "Measured with left and right vectors. The largest bars of a mode that couples are those that merge. "
+                              f"Bars below {figures(COMPONENT)} % are left out." + beyond(modes), folder.command("report"))

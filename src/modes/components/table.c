@@ -96,7 +96,7 @@ static PetscInt ComponentNext(const ModesComponents c, PetscInt i, PetscReal sca
   for (PetscInt k = 0; k < c->n_levels * n; k++) {
     const Contribution part = ContributionGet(c, i, k / n, k % n, scale);
 
-    if (shown[k] || !(PetscAbsReal(part.share) > most) || !(PetscAbsReal(part.share) > part.error)) continue;
+    if (shown[k] || !(PetscAbsReal(part.share) > most) || PetscAbsReal(part.share) <= part.error) continue;
     largest = k;
     most    = (1 + LABEL_TIE) * PetscAbsReal(part.share);
   }
