@@ -26,7 +26,8 @@ static inline void SystemAdd(System *s, OperatorsTermKind kind, PetscBool symmet
 {
   const PetscInt n = s->reduced.n, t = s->reduced.n_terms++;
 
-  s->term[t] = (OperatorsTerm){.kind = kind, .symmetric = symmetric, .scale = 1, .n = parameter < 0 ? 0 : 1};
+  s->term[t] =
+    (OperatorsTerm){.kind = kind, .symmetric = symmetric, .scale = 1, .n = parameter < 0 ? 0 : 1, .constraint = -1};
   s->term[t].factor[0].parameter = PetscMax(parameter, 0);
   s->term[t].factor[0].power     = 1;
   s->pointer[t]                  = s->A[t];

@@ -81,7 +81,8 @@ static PetscBool FormsAreSkew(const PencilForms *forms, PetscInt n)
 /* Im(lambda^k x^H A x), the share of circulation */
 static PetscReal FormsTwist(const MechanismPair *pair, const PencilForms *forms)
 {
-  PetscComplex form = CMPLX(forms->form[0], forms->form[1]);
+  PetscComplex form =
+    CMPLX(forms->exact ? forms->form[0] : 0, forms->form[1]); /* else M and C have no real part here */
 
   for (int k = forms->kind; k > OPERATORS_STIFFNESS; k--) form *= pair->lambda[0];
   return cimag(form);

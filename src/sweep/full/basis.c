@@ -112,7 +112,7 @@ static PetscErrorCode ModelAdd(Mat A, OperatorsTermKind kind, PetscReal scale, P
 
   PetscFunctionBeginUser;
   if (!A) PetscFunctionReturn(0);
-  *term                     = (OperatorsTerm){.kind = kind, .scale = scale, .n = parameter < 0 ? 0 : 1};
+  *term = (OperatorsTerm){.kind = kind, .scale = scale, .n = parameter < 0 ? 0 : 1, .constraint = -1};
   term->factor[0].parameter = parameter;
   term->factor[0].power     = 1;
   reduced->n_terms++;

@@ -52,6 +52,20 @@ static PetscErrorCode AnswerView(Sweep sweep, const OperatorsParameter *paramete
   PetscFunctionReturn(0);
 }
 
+/* Why it grows, where the kind does not say so */
+static const char *EventWhy(const BranchEvent *event)
+{
+  if (event->mechanism == MECHANISM_DAMPING_INDUCED) return " (damping-induced)";
+  return event->mechanism == MECHANISM_GYROSCOPIC ? " (gyroscopic)" : "";
+}
+
+static const char *EventKindText(const BranchEvent *event)
+{
+  const PetscBool of_two = event->kind == EVENT_LOCK_IN || event->kind == EVENT_LOCK_OUT ? PETSC_TRUE : PETSC_FALSE;
+
+  return of_two && event->mechanism == MECHANISM_NEGATIVE_DAMPING ? by_damping[event->kind] : kinds[event->kind];
+}
+
 /* One onset */
 static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParameter *parameter, PetscViewer viewer)
 {
@@ -64,10 +78,10 @@ static PetscErrorCode EventView(Sweep sweep, PetscInt e, const OperatorsParamete
       parameter->name, (double)event->critical, parameter->unit, (double)event->error,
       sweep->label[event->branch[0]].text, (double)(event->omega / (2 * PETSC_PI)), event->above ? "above" : "below"));
   else
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s at %s = %.*g %s +- %.1e, %.2f Hz, %s%s\n",
-                                     event->by_damping ? by_damping[event->kind] : kinds[event->kind], parameter->name,
-                                     OnsetDigits(sweep), (double)event->critical, parameter->unit, (double)event->error,
-                                     (double)(event->omega / (2 * PETSC_PI)), sweep->label[event->branch[0]].text,
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s at %s = %.*g %s +- %.1e, %.2f Hz, %s%s\n", EventKindText(event),
+                                     EventWhy(event), parameter->name, OnsetDigits(sweep), (double)event->critical,
+                                     parameter->unit, (double)event->error, (double)(event->omega / (2 * PETSC_PI)),
+                                     sweep->label[event->branch[0]].text,
                                      sweep->is_confirmed[e] ? ""
                                      : event->jumps         ? " (modes change places there: give more values between)"
                                      : sweep->method == SWEEP_FULL ? " (between two points)"

@@ -9,7 +9,9 @@ static const char *const by_damping[]  = {"negative_damping", "positive_damping"
 
 static const char *EventKind(const BranchEvent *event)
 {
-  return event->by_damping ? by_damping[event->kind] : event_kinds[event->kind];
+  const PetscBool is_two = event->kind == EVENT_LOCK_IN || event->kind == EVENT_LOCK_OUT ? PETSC_TRUE : PETSC_FALSE;
+
+  return is_two && event->mechanism == MECHANISM_NEGATIVE_DAMPING ? by_damping[event->kind] : event_kinds[event->kind];
 }
 
 /* Number as text, empty where there is none */
@@ -88,12 +90,12 @@ static PetscErrorCode OnsetRows(Sweep sweep, ResultsTable table)
     const BranchEvent *event = &sweep->events.event[e];
 
     if (!event->found) continue;
-    PetscCall(ResultsTableRow(table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s",
-                              parameters[sweep->grid.parameter[0][0]].name, (double)event->critical,
-                              (double)(event->omega / (2 * PETSC_PI)), EventKind(event),
-                              sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
-                              NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text,
-                              (int)sweep->is_confirmed[e], SecondValue(sweep, SweepEventLine(sweep, e)).text));
+    PetscCall(ResultsTableRow(
+      table, "%s,%.15g,%.15g,%s,\"%s\",%.15g,%d,%s,%d,%s,%s", parameters[sweep->grid.parameter[0][0]].name,
+      (double)event->critical, (double)(event->omega / (2 * PETSC_PI)), EventKind(event),
+      sweep->label[event->branch[0]].text, (double)event->error, (int)event->branch[0] + 1,
+      NumberOrEmpty(event->branch[1] < 0 ? NAN : event->branch[1] + 1).text, (int)sweep->is_confirmed[e],
+      SecondValue(sweep, SweepEventLine(sweep, e)).text, MechanismName(event->mechanism, PETSC_FALSE)));
   }
   PetscFunctionReturn(0);
 }
@@ -264,7 +266,7 @@ static const SweepTable parameter_table = {
 static const SweepTable onset_table = {
   "onsets",
   "parameter,critical_value,freq_hz,kind,label,error_estimate,branch,partner,"
-  "confirmed,value_2",
+  "confirmed,value_2,mechanism",
   OnsetRows,
 };
 

@@ -31,30 +31,13 @@ static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 /* Event between two points of mode i, which is unstable at this one */
 static BranchEvent EventOf(const ModeFrame *frame, PetscInt i, const ModeFrame *other)
 {
-  return (BranchEvent){.lambda   = frame->modes.lambda[i],
-                       .omega    = cimag(frame->modes.lambda[i]),
-                       .lower    = PetscMin(frame->value, other->value),
-                       .upper    = PetscMax(frame->value, other->value),
-                       .critical = frame->value,
-                       .branch   = {frame->branch[i], EventPartner(frame, i)}};
-}
-
-/* Whether most of the growth of mode i comes from damping, not from an unsymmetric stiffness through which two modes
-   feed each other. With x^H M x = 1 the imaginary part of x^H Q(sigma + i omega) x = 0 is
-
-      2 sigma omega = P - omega c,   P = -Im x^H K x,   c = Re x^H C x,
-
-   so that damping alone makes -c / 2 of sigma, and more than half of it where c < -sigma. */
-static PetscBool GrowsByDamping(const ModeFrame *frame, PetscInt i)
-{
-  const DensePencil  *pencil = &frame->pencil;
-  const PetscInt      size   = frame->modes.size;
-  const PetscComplex *x      = &frame->modes.x[i * size];
-  PetscReal           c      = 0;
-
-  for (PetscInt k = 0; k < size && pencil->damped; k++)
-    for (PetscInt j = 0; j < size; j++) c += creal(conj(x[j]) * x[k]) * pencil->C[k * pencil->n + j];
-  return c < -creal(frame->modes.lambda[i]) ? PETSC_TRUE : PETSC_FALSE;
+  return (BranchEvent){.lambda    = frame->modes.lambda[i],
+                       .omega     = cimag(frame->modes.lambda[i]),
+                       .lower     = PetscMin(frame->value, other->value),
+                       .upper     = PetscMax(frame->value, other->value),
+                       .critical  = frame->value,
+                       .mechanism = ModeFrameMechanism(frame, i),
+                       .branch    = {frame->branch[i], EventPartner(frame, i)}};
 }
 
 PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
@@ -67,7 +50,6 @@ PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *ot
     event.kind = begins ? EVENT_DIVERGENCE : EVENT_RESTABILISATION;
   else
     event.kind = begins ? EVENT_LOCK_IN : EVENT_LOCK_OUT;
-  event.by_damping = cimag(event.lambda) != 0 ? GrowsByDamping(frame, i) : PETSC_FALSE;
   PetscCall(BranchEventsAdd(events, &event));
   PetscFunctionReturn(0);
 }

@@ -160,10 +160,13 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
-  f->refine = refine;
-  f->limit  = reduced->limit;
-  f->form   = (StandardForm){&f->pencil, size, form->damped, form->scale};
-  f->N      = StandardSize(&f->form);
+  f->refine  = refine;
+  f->limit   = reduced->limit;
+  f->reduced = reduced;
+  PetscCall(PetscMalloc1(reduced->n_parameters, &f->p));
+  PetscCall(PetscArraycpy(f->p, p, reduced->n_parameters));
+  f->form = (StandardForm){&f->pencil, size, form->damped, form->scale};
+  f->N    = StandardSize(&f->form);
   PetscCall(ReducedModesSelect(modes, n, NULL, &f->modes));
   PetscCall(ReducedPencil(reduced, p, size, &f->pencil));
   PetscCall(PetscMalloc5(n, &f->cluster, n, &f->branch, n * f->N, &f->X, n * f->N, &f->Y, n * f->N, &f->W));
@@ -194,6 +197,7 @@ PetscErrorCode ModeFrameDestroy(ModeFrame **frame)
   if (!f) PetscFunctionReturn(0);
   PetscCall(ReducedModesDestroy(&f->modes));
   PetscCall(DensePencilDestroy(&f->pencil));
+  PetscCall(PetscFree(f->p));
   PetscCall(PetscFree5(f->cluster, f->branch, f->X, f->Y, f->W));
   PetscCall(PetscFree(*frame));
   PetscFunctionReturn(0);

@@ -12,16 +12,18 @@
 /* Modes of one point in the standard form A z = s B z (dense/standard.c). A cluster is a set of modes whose vectors
    mean nothing one by one, only the plane that they span does */
 typedef struct {
-  PetscReal     value;  /* of the parameter of the line */
-  ModesLimit    limit;  /* of the reduced model */
-  PetscBool     refine; /* whether planes may be refined: the modes are those of the pencil */
-  DensePencil   pencil;
-  StandardForm  form;
-  PetscInt      N;         /* length of z */
-  ReducedModes  modes;     /* a copy */
-  PetscInt     *cluster;   /* [modes.n] first mode of its cluster */
-  PetscInt     *branch;    /* [modes.n] -1 for none */
-  PetscComplex *X, *Y, *W; /* [modes.n][N] bases of the clusters, W = B' Y, W_i^T X_j = 1 if i = j, 0 elsewhere */
+  PetscReal      value;   /* of the parameter of the line */
+  ModesLimit     limit;   /* of the reduced model */
+  const Reduced *reduced; /* borrowed, with its parameters p [n_parameters] */
+  PetscReal     *p;
+  PetscBool      refine; /* whether planes may be refined: the modes are those of the pencil */
+  DensePencil    pencil;
+  StandardForm   form;
+  PetscInt       N;         /* length of z */
+  ReducedModes   modes;     /* a copy */
+  PetscInt      *cluster;   /* [modes.n] first mode of its cluster */
+  PetscInt      *branch;    /* [modes.n] -1 for none */
+  PetscComplex  *X, *Y, *W; /* [modes.n][N] bases of the clusters, W = B' Y, W_i^T X_j = 1 if i = j, 0 elsewhere */
 } ModeFrame;
 
 /* Solves at values of the line */
@@ -51,6 +53,8 @@ PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 PetscInt ModeFramePartner(const ModeFrame *frame, PetscInt i);
 /* Whether mode i is unstable: beyond its error and the limit */
 PetscBool ModeFrameIsUnstable(const ModeFrame *frame, PetscInt i);
+/* why.c - by which mechanism mode i grows */
+Mechanism ModeFrameMechanism(const ModeFrame *frame, PetscInt i);
 /* Number of modes of the cluster of mode i */
 PetscInt ModeFrameClusterSize(const ModeFrame *frame, PetscInt i);
 /* What x with its dual w has in common with each cluster Q: adds sum_{j in Q} (w^T x_j) (w_j^T x) to sum [modes.n] at

@@ -4,6 +4,7 @@
 */
 #pragma once
 
+#include "modes/growth/mechanism.h"
 #include "sweep/dense/reduced.h"
 
 typedef enum { EVENT_LOCK_IN, EVENT_LOCK_OUT, EVENT_DIVERGENCE, EVENT_RESTABILISATION, EVENT_JUMP } BranchEventKind;
@@ -23,7 +24,7 @@ typedef struct {
   PetscBool       found;
   /* modes change places in the bracket: critical is its middle, error half of it, omega of lambda */
   PetscBool jumps;
-  PetscBool by_damping;           /* of a lock-in or lock-out: damping changes its sign, no two modes coalesce */
+  Mechanism mechanism;            /* of the growth on the unstable side */
   PetscBool above;                /* of a jump: unstable at upper */
   PetscInt  place;                /* of the grid, whose other parameters hold; set by the caller */
   PetscInt  n_solved, n_followed; /* reduced eigenproblems, and single modes followed, so far */
