@@ -53,7 +53,7 @@ PetscErrorCode DiscNameInPlane(const Disc *disc, PetscInt mode, char name[], siz
 {
   InPlane   most = {.n = 0};
   PetscReal m[N_DISC_VALUES * N_DISC_VALUES], even;
-  PetscBool radial;
+  PetscBool radial = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (int n = 0; n < disc->n_harmonics; n++) {

@@ -80,7 +80,7 @@ static PetscErrorCode LabelDisc(const Labels *l, PetscInt i, Mode *mode, double 
 {
   const PetscReal *energy = &l->energy[2 * i];
   PetscBool        axial  = energy[1] > (1 + LABEL_TIE) * 0.5 * energy[0] ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal        fitted;
+  PetscReal        fitted = 0;
   char             name[sizeof(mode->label)];
 
   PetscFunctionBeginUser;
