@@ -9,7 +9,26 @@ static const Quantity rows[] = {
   {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = analyses},
   {"-squeal_view", "print choices and why, and the time of each stage", NULL, QUANTITY_BOOL, QUANTITY_AT(Chain, view)},
 };
-static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
+
+#define VIEW(shown, name, help, bits)                                                                                  \
+  [shown] = {name, help, NULL, QUANTITY_VIEWER, QUANTITY_AT(Chain, viewer[shown]), .in = (bits), .unread = NOTHING}
+#define NOTHING ": it has nothing to show there"
+
+static const Quantity views[N_SHOWN] = {
+  VIEW(SHOWN_MODEL, "-model_view", "show mesh, parts, supports, springs and loads", 0),
+  VIEW(SHOWN_CONTACT, "-contact_view", "show interfaces and their pairs", RUN_LINEAR | RUN_STATIC),
+  VIEW(SHOWN_OPERATORS, "-operators_view", "show the pencil of modes and sweeps, and its parameters", RUN_LINEAR),
+  VIEW(SHOWN_STATICS, "-static_view", "show the equilibrium", RUN_STATIC),
+  VIEW(SHOWN_MODES, "-modes_view", "show the modes found", RUN_MODES | RUN_FRF),
+  VIEW(SHOWN_SWEEP, "-sweep_view", "show what a sweep found", RUN_SWEEP),
+  VIEW(SHOWN_FRF, "-frf_view", "show the frequency response and its peaks", RUN_FRF),
+  VIEW(SHOWN_DYNAMICS, "-dynamics_view", "show bodies, step and balances of a run in time", RUN_TRANSIENT),
+  VIEW(SHOWN_MAP, "-map_view", "show regimes and cost of a map", RUN_MAP),
+  VIEW(SHOWN_CYCLE, "-cycle_view", "show cycles, their stability and errors", RUN_CYCLE),
+};
+const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
+                                   N_SHOWN, views, .in = 0};
 
 PetscBool ChainIsInTime(const Chain *chain)
 {
@@ -24,11 +43,10 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
   PetscBool has_matrices;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsClaimsCreate(&chain->claims));
   PetscCall(SquealSetFromOptions(comm));
   PetscCall(QuantitiesRead(comm, &chain_quantities, chain));
   ShiftInvertShow(chain->view);
-  PetscCall(ChainGetViewers(comm, chain));
+  PetscCall(QuantitiesRead(comm, &chain_views, chain));
   PetscCall(OperatorsCreate(comm, &chain->operators));
   PetscCall(OperatorsSetFromOptions(chain->operators));
   PetscCall(OperatorsHaveMatrices(chain->operators, &has_matrices));
@@ -41,11 +59,10 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
   }
   PetscCall(ResultsCreate(comm, &chain->results));
   PetscCall(ResultsSetFromOptions(chain->results));
-  PetscCall(OptionsClaim(chain->claims, READER_ANY));
   PetscFunctionReturn(0);
 }
 
-/* What not every analysis needs; each reader claims what is read in its turn */
+/* What not every analysis needs */
 static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
 {
   PetscFunctionBeginUser;
@@ -54,30 +71,21 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(DynamicsSetFromOptions(chain->dynamics));
   PetscCall(ReducedCreate(comm, &chain->reduced));
   PetscCall(ReducedSetFromOptions(chain->reduced));
-  PetscCall(OptionsClaim(chain->claims, READER_DYNAMICS));
   PetscCall(MapCreate(comm, &chain->map));
   PetscCall(MapSetFromOptions(chain->map));
-  PetscCall(OptionsClaim(chain->claims, READER_MAP));
   PetscCall(CycleCreate(comm, &chain->cycle));
   PetscCall(CycleSetFromOptions(chain->cycle));
-  PetscCall(OptionsClaim(chain->claims, READER_CYCLE));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
-  PetscCall(OptionsClaim(chain->claims, READER_STATICS));
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
   PetscCall(SolverReadEigenOptions(comm));
-  PetscCall(OptionsClaim(chain->claims, READER_MODES));
   PetscCall(SolverReadFactorOptions(comm));
-  PetscCall(OptionsClaim(chain->claims, READER_FACTOR));
   PetscCall(SolverReadIterativeOptions(comm));
-  PetscCall(OptionsClaim(chain->claims, READER_ITERATIVE));
   PetscCall(SweepCreate(comm, &chain->sweep));
   PetscCall(SweepSetFromOptions(chain->sweep));
-  PetscCall(OptionsClaim(chain->claims, READER_SWEEP));
   PetscCall(FrfCreate(comm, &chain->frf));
   PetscCall(FrfSetFromOptions(chain->frf));
-  PetscCall(OptionsClaim(chain->claims, READER_FRF));
   PetscFunctionReturn(0);
 }
 
@@ -93,7 +101,6 @@ PetscErrorCode ChainDestroy(Chain *chain)
 {
   PetscFunctionBeginUser;
   for (int i = 0; i < N_SHOWN; i++) PetscCall(PetscViewerDestroy(&chain->viewer[i]));
-  PetscCall(OptionsClaimsDestroy(&chain->claims));
   PetscCall(ResultsDestroy(&chain->results));
   PetscCall(MapDestroy(&chain->map));
   PetscCall(CycleDestroy(&chain->cycle));
@@ -113,31 +120,49 @@ PetscErrorCode ChainDestroy(Chain *chain)
 
 Scope ChainGetScope(const Chain *chain)
 {
-  const Analysis analysis = chain->analysis;
-
-  return (Scope){.analysis  = analyses[analysis],
-                 .sweep     = analysis == ANALYSIS_SWEEP,
-                 .transient = ChainIsInTime(chain),
-                 .map       = analysis == ANALYSIS_MAP,
-                 .cycle     = analysis == ANALYSIS_CYCLE,
-                 .frf       = analysis == ANALYSIS_FRF,
-                 .modes     = analysis <= ANALYSIS_SWEEP || analysis == ANALYSIS_FRF,
+  return (Scope){.analysis  = analyses[chain->analysis],
+                 .does      = 1U << chain->analysis,
                  .model     = chain->model,
                  .contact   = chain->contact,
                  .linear    = chain->modes,
                  .operators = chain->operators,
                  .varied    = chain->sweep,
                  .dynamics  = chain->dynamics,
-                 .reduced   = chain->reduced};
+                 .reduced   = chain->reduced,
+                 .cycle     = chain->cycle};
 }
 
-PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain)
+/* Shows the rows of all rooms, in their order */
+static PetscErrorCode ChainVisit(Chain *chain, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &chain_quantities, NULL, chain, NULL));
+  PetscCall(QuantitiesVisit(visitor, &chain_views, NULL, chain, NULL));
+  PetscCall(OperatorsVisit(chain->operators, visitor));
+  if (chain->model) PetscCall(ModelVisit(chain->model, visitor));
+  if (chain->contact) PetscCall(ContactVisit(chain->contact, visitor));
+  PetscCall(ResultsVisit(chain->results, visitor));
+  PetscCall(DynamicsVisit(chain->dynamics, visitor));
+  PetscCall(ReducedVisit(chain->reduced, visitor));
+  PetscCall(MapVisit(chain->map, visitor));
+  PetscCall(CycleVisit(chain->cycle, visitor));
+  PetscCall(StaticsVisit(chain->statics, visitor));
+  PetscCall(ModesVisit(chain->modes, visitor));
+  PetscCall(SweepVisit(chain->sweep, visitor));
+  PetscCall(FrfVisit(chain->frf, visitor));
+  PetscCall(SolverVisit(visitor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
 {
   const Scope scope = ChainGetScope(chain);
+  QuantityRun run;
 
   PetscFunctionBeginUser;
-  PetscCall(ScopeCheck(comm, &scope, chain->claims));
-  PetscCall(ChainCheckViewers(comm, chain));
+  PetscCall(ScopeGetRun(comm, &scope, &run));
+  PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
+  PetscCall(ScopeCheck(&scope, &run));
   PetscFunctionReturn(0);
 }
 

@@ -32,35 +32,37 @@ typedef enum {
 /* The chain of a run: options, model, contact, operators, statics, pencil, then modes, sweep, frequency response or
    dynamics; and results */
 typedef struct {
-  Model         model; /* NULL for matrices without a mesh */
-  Contact       contact;
-  Operators     operators;
-  PetscReal    *p; /* values of the parameters: those of the scene, and what statics identify */
-  Statics       statics;
-  Pencil        pencil; /* at p, where modes, a file or a view ask for it */
-  Modes         modes;
-  Sweep         sweep;
-  Frf           frf;
-  Dynamics      dynamics;
-  ReducedRun    reduced; /* the same runs on few coordinates, where asked for */
-  Map           map;
-  LimitCycle    cycle; /* limit cycles of it */
-  Results       results;
-  Analysis      analysis;
-  OptionsClaims claims; /* who read what stands on the command line */
-  PetscBool     view;
-  PetscViewer   viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
+  Model       model; /* NULL for matrices without a mesh */
+  Contact     contact;
+  Operators   operators;
+  PetscReal  *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics     statics;
+  Pencil      pencil; /* at p, where modes, a file or a view ask for it */
+  Modes       modes;
+  Sweep       sweep;
+  Frf         frf;
+  Dynamics    dynamics;
+  ReducedRun  reduced; /* the same runs on few coordinates, where asked for */
+  Map         map;
+  LimitCycle  cycle; /* limit cycles of it */
+  Results     results;
+  Analysis    analysis;
+  PetscBool   view;
+  PetscViewer viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
 } Chain;
 
 /* Reads the options of every analysis. Collective */
 PETSC_INTERN PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain);
 /* Raises an error for what stands on the command line and has no effect in this analysis. Collective */
-PETSC_INTERN PetscErrorCode ChainCheckOptions(MPI_Comm comm, const Chain *chain);
+PETSC_INTERN PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain);
 /* Model, contact and terms; what rooms need of each other; matrices for a file where asked for */
 PETSC_INTERN PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode ChainDestroy(Chain *chain);
 /* The pencil at p: about the sliding state there, or with all pairs closed; made once */
 PETSC_INTERN PetscErrorCode ChainLinearise(Chain *chain);
+
+/* Which objects -X_view asks for, a row for each Shown */
+extern const QuantityTable chain_views;
 
 /* The run as scope.h sees it */
 PETSC_INTERN Scope ChainGetScope(const Chain *chain);
@@ -72,9 +74,6 @@ PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
 
 /* chainview.c - the set of units to scene.yaml, and in a line where it is not that of the words of lines and tables */
 PETSC_INTERN PetscErrorCode ChainSayUnits(Chain *chain);
-/* Which objects -X_view asks for */
-PETSC_INTERN PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain);
-PETSC_INTERN PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain);
 /* Shows an object on stdout where wanted, and where its option says */
 PETSC_INTERN PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted);
 /* Shows what there is before the analysis */

@@ -1,47 +1,12 @@
 /* Views of the objects of a run: -model_view and its like, and -squeal_view for all; its units */
 #include "chain.h"
 
-#define MODAL   (1 << ANALYSIS_MODES | 1 << ANALYSIS_FRF)
-#define LINEAR  (MODAL | 1 << ANALYSIS_SWEEP)
-#define AT_REST (LINEAR | 1 << ANALYSIS_STATIC)
-
-static const struct {
-  const char *option, *help;
-  unsigned    in; /* bits of the analyses that have something to show */
-} shown[N_SHOWN] = {
-  [SHOWN_MODEL]     = {"-model_view", "show mesh, parts, supports, springs and loads", (1 << N_ANALYSES) - 1},
-  [SHOWN_CONTACT]   = {"-contact_view", "show interfaces and their pairs", AT_REST},
-  [SHOWN_OPERATORS] = {"-operators_view", "show the pencil of modes and sweeps, and its parameters", LINEAR},
-  [SHOWN_STATICS]   = {"-static_view", "show the equilibrium", 1 << ANALYSIS_STATIC},
-  [SHOWN_MODES]     = {"-modes_view", "show the modes found", MODAL},
-  [SHOWN_SWEEP]     = {"-sweep_view", "show what a sweep found", 1 << ANALYSIS_SWEEP},
-  [SHOWN_FRF]       = {"-frf_view", "show the frequency response and its peaks", 1 << ANALYSIS_FRF},
-  [SHOWN_MAP]       = {"-map_view", "show regimes and cost of a map", 1 << ANALYSIS_MAP},
-  [SHOWN_DYNAMICS]  = {"-dynamics_view", "show bodies, step and balances of a run in time", 1 << ANALYSIS_TRANSIENT},
-  [SHOWN_CYCLE]     = {"-cycle_view", "show cycles, their stability and errors", 1 << ANALYSIS_CYCLE},
-};
-
 /* Whether the analysis has something to show there */
 static PetscBool ChainShows(const Chain *chain, Shown what)
 {
-  return shown[what].in >> chain->analysis & 1 ? PETSC_TRUE : PETSC_FALSE;
-}
+  const unsigned in = chain_views.row[what].in;
 
-PetscErrorCode ChainGetViewers(MPI_Comm comm, Chain *chain)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < N_SHOWN; i++)
-    PetscCall(OptionsGetViewer(comm, shown[i].option, shown[i].help, &chain->viewer[i]));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ChainCheckViewers(MPI_Comm comm, const Chain *chain)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < N_SHOWN; i++)
-    if (chain->viewer[i] && !ChainShows(chain, (Shown)i))
-      PetscCall(OptionsRefuse(comm, shown[i].option, "this analysis has nothing to show there"));
-  PetscFunctionReturn(0);
+  return !in || in >> chain->analysis & 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The run in time */

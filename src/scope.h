@@ -1,28 +1,13 @@
-/* Private to the chain: what an analysis has a use for, and who reads the options of the rest */
+/* Private to the chain: what a run does, and what of the solvers of PETSc and of the scene it does not use */
 #pragma once
 
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <squeal/squeal.h>
-
-/* Who reads options */
-typedef enum {
-  READER_ANY,
-  READER_STATICS,
-  READER_MODES,
-  READER_FACTOR,
-  READER_ITERATIVE,
-  READER_SWEEP,
-  READER_FRF,
-  READER_DYNAMICS,
-  READER_MAP,
-  READER_CYCLE,
-  N_READERS
-} Reader;
 
 /* A run; model and contact are NULL for matrices without a mesh */
 typedef struct {
   const char *analysis;
-  PetscBool   modes, sweep, frf, transient /* and what is made of such runs */, map, cycle;
+  unsigned    does; /* RunBit of the analysis */
   Model       model;
   Contact     contact;
   Operators   operators;
@@ -30,10 +15,14 @@ typedef struct {
   Sweep       varied;
   Dynamics    dynamics;
   ReducedRun  reduced;
+  LimitCycle  cycle;
 } Scope;
 
-/* Raises an error for an option of the command line that a reader claimed of whom the run has no need. Collective. */
-PETSC_INTERN PetscErrorCode ScopeCheck(MPI_Comm comm, const Scope *scope, OptionsClaims claims);
+/* All that the run does. Collective. */
+PETSC_INTERN PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *scope, QuantityRun *run);
+
+/* Raises an error for options of the command line of a solver that the run has no need of. Collective. */
+PETSC_INTERN PetscErrorCode ScopeCheck(const Scope *scope, const QuantityRun *run);
 
 /* Says which things of the model the run does not use. Collective. */
 PETSC_INTERN PetscErrorCode ScopeView(const Scope *scope, PetscViewer viewer);

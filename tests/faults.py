@@ -114,8 +114,9 @@ FAULTS = (
      "transient_reduced"),
     ("the critical step is 0.4 % longer", "src/dynamics/criticalstep.c", "  critical->assembled = dt;",
      "  critical->assembled = 1.004 * dt;", "transient_free"),
-    ("the place of a probe that the analysis does not use is accepted", "src/scope.c", 'name, "at part", no_probe',
-     'name, "part", no_probe', "bad_probes"),
+    ("the place of a probe that the analysis does not use is accepted", "src/model/quantities.c",
+     "#define RECORDED RUN_TRANSIENT | RUN_CYCLE | RUN_FRF", "#define RECORDED RUN_MODES | RUN_TRANSIENT | RUN_CYCLE | RUN_FRF",
+     "bad_probes"),
 )
 
 

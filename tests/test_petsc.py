@@ -84,7 +84,7 @@ def check_where(r):
     said = "squeal: error: -modes_view shows text"
     r.check(done.returncode == 1 and re.fullmatch(f"{said}.*\n", done.stderr), "a viewer of text only", done)
     done = r.run("modes", "-sweep_view")
-    said = "squeal: error: -sweep_view: this analysis has nothing to show there\n"
+    said = "squeal: error: -sweep_view: not used by -analysis modes: it has nothing to show there\n"
     r.check(done.returncode == 1 and done.stderr == said, "a view of what is not there", done)
 
 

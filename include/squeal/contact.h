@@ -157,6 +157,9 @@ named `bond`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact);
 
+/*@ ContactVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor);
+
 /*@
    ContactSetUp - pairs facing nodes by position, across ranks. Collective; call after ModelSetUp().
 

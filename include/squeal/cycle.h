@@ -61,6 +61,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/reduced.h>
 
 typedef struct _p_LimitCycle *LimitCycle;
@@ -86,6 +87,12 @@ instability
 -  -cycle_amplitude <0.3>  - change of the pairs' normal forces in the latter, of those at rest
 @*/
 PetscErrorCode CycleSetFromOptions(LimitCycle cycle);
+
+/*@ CycleFollowsTransient - whether the first cycle is that at the end of a transient. Not collective. @*/
+PetscErrorCode CycleFollowsTransient(LimitCycle cycle, PetscBool *follows);
+
+/*@ CycleVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode CycleVisit(LimitCycle c, const QuantityVisitor *visitor);
 
 /*@ CycleSetRooms - the reduced run, at whose end a cycle is looked for, and the operators (borrowed), with the values p
     [parameters] of their parameters, NULL for those of the scene. Collective. @*/

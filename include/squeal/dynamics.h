@@ -17,6 +17,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/statics.h>
 
 typedef struct _p_Dynamics *Dynamics;
@@ -71,6 +72,9 @@ the last
    Those of contact surfaces are in projector.h.
 @*/
 PetscErrorCode DynamicsSetFromOptions(Dynamics dynamics);
+
+/*@ DynamicsVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode DynamicsVisit(Dynamics d, const QuantityVisitor *visitor);
 
 /*@ DynamicsNeedsPairs - whether the start is the sliding state, for which surfaces must face each other. Not
  * collective. @*/

@@ -29,6 +29,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/modes.h>
 #include <squeal/results.h>
 #include <squeal/statics.h>
@@ -86,6 +87,9 @@ without a mesh the number of an unknown, from 1
    Errors: PETSC_ERR_USER_INPUT for frequencies that are not positive, directions that are none.
 @*/
 PetscErrorCode FrfSetFromOptions(Frf frf);
+
+/*@ FrfVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode FrfVisit(Frf frf, const QuantityVisitor *visitor);
 
 /*@
    FrfSetUp - looks the places up. Collective; after ModelSetUp().

@@ -94,10 +94,8 @@ PetscErrorCode FrictionCheckNotNegative(MPI_Comm comm, const char name[], const 
 /*@ FrictionWarnLarge - a warning for coefficients as large as those in per cent. Collective. @*/
 PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const FrictionLaw *law);
 
-/*@ FrictionRefuseSlopes - raises an error for parameters on the command line that mu' alone depends on; why ends the
-   message.
-    Collective. @*/
-PetscErrorCode FrictionRefuseSlopes(MPI_Comm comm, const char name[], const FrictionLaw *law, const char why[]);
+/*@ FrictionVisit - shows the rows of all laws of a contact. Collective. @*/
+PetscErrorCode FrictionVisit(const FrictionLaw *law, const char name[], const QuantityVisitor *visitor);
 
 /*@ FrictionView - the parameters, e.g. "mu 0.4". Collective. @*/
 PetscErrorCode FrictionView(const FrictionLaw *law, PetscViewer viewer);

@@ -58,6 +58,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/reduced.h>
 
 typedef struct _p_Map *Map;
@@ -85,6 +86,9 @@ is not in error_estimate
 -  -map_rtol <0.01>             - relative change of the rms, or standard error of its mean, below which an amplitude is
 settled @*/
 PetscErrorCode MapSetFromOptions(Map map);
+
+/*@ MapVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode MapVisit(Map map, const QuantityVisitor *visitor);
 
 /*@ MapSetRooms - the reduced model and the operators of the scene, at p (referenced until MapDestroy()). Not
    collective. @*/

@@ -8,6 +8,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <petscdmplex.h>
 #include <squeal/checksum.h>
 #include <squeal/element.h>
@@ -147,6 +148,9 @@ frequency)
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
 @*/
 PetscErrorCode ModelSetFromOptions(Model model);
+
+/*@ ModelVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ModelVisit(Model model, const QuantityVisitor *visitor);
 
 /*@
    ModelKeepTogether - asks the partition to leave all cells that touch the faces of a set on one rank; call before

@@ -13,6 +13,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/pencil.h>
 #include <squeal/results.h>
 
@@ -91,6 +92,9 @@ about the sliding state (statics.h)
    The solvers take -eps_*, -pep_*, -st_*.
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);
+
+/*@ ModesVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ModesVisit(Modes modes, const QuantityVisitor *visitor);
 
 /*@ ModesGetContact - whether the options ask for the pairs closed in the sliding state. Not collective. @*/
 PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static);

@@ -62,6 +62,9 @@ F.bin;
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 
+/*@ OperatorsVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visitor);
+
 /*@ OperatorsHaveMatrices - whether matrices are loaded or given densely, so that no model is needed. Not collective.
     @*/
 PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);

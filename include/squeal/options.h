@@ -282,25 +282,6 @@ PetscErrorCode OptionsCommandGives(const char name[], PetscBool *gives);
     Collective. @*/
 PetscErrorCode OptionsFilesGive(MPI_Comm comm, const char option[], PetscBool *give);
 
-/* Options of the command line, and who read each */
-typedef struct _p_OptionsClaims *OptionsClaims;
-
-/* Somebody who reads options */
-typedef struct {
-  PetscBool   in_force; /* what he reads has an effect in this run */
-  const char *belongs;  /* what he reads for, in words */
-} OptionsReader;
-
-PetscErrorCode OptionsClaimsCreate(OptionsClaims *claims);
-
-/*@ OptionsClaim - what was read since the last call was read by this reader. Not collective. @*/
-PetscErrorCode OptionsClaim(OptionsClaims claims, int reader);
-
-/*@ OptionsClaimsCheck - raises an error for an option of the command line whose reader is not in force. Collective. @*/
-PetscErrorCode OptionsClaimsCheck(MPI_Comm comm, OptionsClaims claims, const OptionsReader readers[],
-                                  const char analysis[]);
-PetscErrorCode OptionsClaimsDestroy(OptionsClaims *claims);
-
 /*@ OptionIsLibrarys - whether PETSc or SLEPc read an option, given without its dash. Not collective. @*/
 PetscErrorCode OptionIsLibrarys(const char name[], PetscBool *is_librarys);
 

@@ -80,6 +80,9 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
 @*/
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector projector);
 
+/*@ ContactProjectorVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ContactProjectorVisit(ContactProjector projector, const QuantityVisitor *visitor);
+
 /*@ ContactProjectorSetUp - checks the interfaces and gathers their surfaces; after ModelSetUp(). Collective. @*/
 PetscErrorCode ContactProjectorSetUp(ContactProjector projector);
 

@@ -1,7 +1,8 @@
 /*
    Quantity - what an option sets, in one row: its name, help, unit, limits, where it lies in the struct of its owner,
-   when nothing reads it, and whether a restart depends on it. A table of rows is read, checked, refused and summed by
-   one call each. Rows stand in quantities.c of their room, options that need more in its SetFromOptions().
+   which runs read it, and whether a restart depends on it. A table of rows is read, checked and summed by one call
+   each. Rows stand in quantities.c of their room, options that need more in its SetFromOptions(). A room shows all its
+   tables to a visitor, XVisit(): one of them refuses, on the command line, what a run does not read.
 */
 #pragma once
 
@@ -9,19 +10,51 @@
 #include <squeal/options.h>
 #include <stddef.h>
 
+/* What a run does, as bits: who reads a row. The first are the analyses, in the order of -analysis */
 typedef enum {
-  QUANTITY_INT,   /* PetscInt */
-  QUANTITY_REAL,  /* PetscReal */
-  QUANTITY_REALS, /* PetscReal [n], all of them */
-  QUANTITY_LIST,  /* PetscReal [n], one at least and n at most */
-  QUANTITY_INTS,  /* PetscInt [n], likewise; all of them where there is no .count */
-  QUANTITY_MANY,  /* PetscReal *, which the owner frees, of one to .most */
-  QUANTITY_BOOL,  /* PetscBool */
-  QUANTITY_WORD,  /* one of .words, as int: an enumeration or PetscBool */
-  QUANTITY_TEXT,  /* char [n] */
-  QUANTITY_NAME,  /* char *, which the owner frees */
-  QUANTITY_NAMES, /* char *[n], likewise; all of them or none */
-  QUANTITY_PATH,  /* char [PETSC_MAX_PATH_LEN], relative to its options file */
+  RUN_MODES     = 1 << 0,
+  RUN_SWEEP     = 1 << 1,
+  RUN_STATIC    = 1 << 2,
+  RUN_TRANSIENT = 1 << 3,
+  RUN_FRF       = 1 << 4,
+  RUN_MAP       = 1 << 5,
+  RUN_CYCLE     = 1 << 6,
+  RUN_LINEAR    = RUN_MODES | RUN_SWEEP | RUN_FRF,
+  RUN_IN_TIME   = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
+  RUN_MOVES     = RUN_LINEAR | RUN_IN_TIME,
+  /* and what it does within them */
+  RUN_EQUILIBRIUM = 1 << 7,  /* it finds an equilibrium */
+  RUN_SLIDING     = 1 << 8,  /* modes and their like about the sliding state */
+  RUN_IDENTIFY    = 1 << 9,  /* it presses contacts to find their stiffness */
+  RUN_HOLDS       = 1 << 10, /* an equilibrium with pairs that can stick */
+  RUN_WEIGHT      = 1 << 11, /* gravity acts */
+  RUN_FACTORS     = 1 << 12, /* it factorises matrices */
+  RUN_HISTORY     = 1 << 13, /* a transient from its beginning to its end */
+  RUN_MESH        = 1 << 14, /* of the mesh */
+  RUN_REDUCED     = 1 << 15, /* or of a reduced model */
+} RunBit;
+
+typedef struct {
+  MPI_Comm    comm;
+  const char *analysis; /* its word */
+  unsigned    does;     /* its RunBits */
+} QuantityRun;
+
+typedef enum {
+  QUANTITY_INT,    /* PetscInt */
+  QUANTITY_REAL,   /* PetscReal */
+  QUANTITY_REALS,  /* PetscReal [n], all of them */
+  QUANTITY_LIST,   /* PetscReal [n], one at least and n at most */
+  QUANTITY_INTS,   /* PetscInt [n], likewise; all of them where there is no .count */
+  QUANTITY_MANY,   /* PetscReal *, which the owner frees, of one to .most */
+  QUANTITY_BOOL,   /* PetscBool */
+  QUANTITY_WORD,   /* one of .words, as int: an enumeration or PetscBool */
+  QUANTITY_TEXT,   /* char [n] */
+  QUANTITY_NAME,   /* char *, which the owner frees */
+  QUANTITY_NAMES,  /* char *[n], likewise; all of them or none */
+  QUANTITY_PATH,   /* char [PETSC_MAX_PATH_LEN], relative to its options file */
+  QUANTITY_VIEWER, /* PetscViewer, which the owner destroys; NULL where it is not given */
+  QUANTITY_PREFIX, /* nothing: options of PETSc and SLEPc that begin so, which read themselves */
 } QuantityKind;
 
 typedef struct {
@@ -29,20 +62,24 @@ typedef struct {
   const char        *help; /* one sentence, without the unit */
   const char        *unit; /* e.g. "Hz"; NULL for what has none */
   QuantityKind       kind;
-  PetscReal          initial;             /* default of a number, a logical, a word, or the first of a list */
-  const char        *text;                /* default of a text, of a list for its help; NULL: empty */
-  size_t             at;                  /* offset in the owner's struct */
-  size_t             size;                /* in bytes */
-  size_t             given;               /* offset of a PetscBool: whether it is given; 0 for none */
-  size_t             count;               /* offset of a PetscInt: how many values are given; of a list */
-  const char *const *words;               /* of QUANTITY_WORD, NULL at the end */
-  PetscReal          least, most;         /* of a number; most 0 where there is no upper limit */
-  PetscBool          bounded;             /* least and most are limits */
-  PetscBool          open;                /* the limits themselves are refused */
-  const char        *why;                 /* of the limits, or what is to be given, for messages; or NULL */
-  PetscBool          required;            /* an error where it is not given; of a name, else with .given */
-  const char *(*idle)(const void *owner); /* NULL where it is read, else why not; NULL: always read */
-  PetscBool restart;                      /* another value is another run: a restart must not go on */
+  PetscReal          initial;     /* default of a number, a logical, a word, or the first of a list */
+  const char        *text;        /* default of a text, of a list for its help; NULL: empty */
+  size_t             at;          /* offset in the owner's struct */
+  size_t             size;        /* in bytes */
+  size_t             given;       /* offset of a PetscBool: whether it is given; 0 for none */
+  size_t             count;       /* offset of a PetscInt: how many values are given; of a list */
+  const char *const *words;       /* of QUANTITY_WORD, NULL at the end */
+  PetscReal          least, most; /* of a number; most 0 where there is no upper limit */
+  PetscBool          bounded;     /* least and most are limits */
+  PetscBool          open;        /* the limits themselves are refused */
+  const char        *why;         /* of the limits, or what is to be given, for messages; or NULL */
+  PetscBool          required;    /* an error where it is not given; of a name, else with .given */
+  unsigned           in;          /* RunBits, one of which a run that reads it does; 0: those of its table */
+  const char        *unread;      /* why other runs do not read it, e.g. ", where nothing moves"; or NULL */
+  PetscBool          always;      /* each scene says it: others refuse it only beside a file that does, too */
+  /* NULL where a run that does one of `in` reads it, else why not, the owner's name for @; NULL: always read */
+  const char *(*idle)(const void *owner, const QuantityRun *run);
+  PetscBool restart; /* another value is another run: a restart must not go on */
 } Quantity;
 
 typedef struct {
@@ -50,6 +87,8 @@ typedef struct {
   const char     *header; /* with the manual page, e.g. "sweep.h" */
   PetscInt        n;
   const Quantity *row;
+  unsigned        in; /* as of a row; 0: every run */
+  const char     *unread;
 } QuantityTable;
 
 /* Where a member lies, as in {"-sweep_rtol", "...", .kind = QUANTITY_REAL, QUANTITY_AT(struct _p_Sweep, rtol)} */
@@ -74,8 +113,7 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
 .  owner - the struct that the rows' offsets are of; unchanged where an option is not given
 
    Errors: PETSC_ERR_USER_INPUT for a value that is none, not finite, or beyond the row's limits, for one that is
-   required and not given, and for an option of the command line whose row is idle in this owner. Files may give such
-   options.
+   required and not given.
 @*/
 PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
 
@@ -90,6 +128,7 @@ typedef struct {
   size_t               size;          /* of a record, which begins with char *name */
   const QuantityTable *table;
   PetscErrorCode (*check)(MPI_Comm comm, void *owner, void *record); /* what no row says; NULL for nothing */
+  unsigned in;                                                       /* RunBits that read the list itself; 0: all */
 } QuantityList;
 
 /*@ QuantitiesReadList - reads the names of a list into n new records, which begin as QuantitiesInit() says, and then
@@ -101,3 +140,26 @@ PetscErrorCode QuantitiesReadList(MPI_Comm comm, const QuantityList *list, void 
 /*@ QuantitiesAddChecksum - adds the values of the rows that decide a restart, in their order, to the
     part of the checksum that is set. Not collective. @*/
 PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *owner, Checksum checksum);
+
+/* Whoever goes over the tables of all rooms. Of each: its owner, the name before its options or NULL, and why this run
+   reads none of them, or NULL */
+typedef struct {
+  PetscErrorCode (*table)(const QuantityTable *table, const char name[], void *owner, const char why[], void *ctx);
+  void *ctx;
+} QuantityVisitor;
+
+/*@ QuantitiesVisit - shows one table. Collective. @*/
+PetscErrorCode QuantitiesVisit(const QuantityVisitor *visitor, const QuantityTable *table, const char name[],
+                               void *owner, const char why[]);
+
+/*@ QuantitiesVisitList - shows the option of a list, and the table of each of its n records. Collective. @*/
+PetscErrorCode QuantitiesVisitList(const QuantityVisitor *visitor, const QuantityList *list, PetscInt n, void *records);
+
+/*@ QuantitiesReadVisited - a visitor with an MPI_Comm for its context: as QuantitiesReadOf(). Collective. @*/
+PetscErrorCode QuantitiesReadVisited(const QuantityTable *table, const char name[], void *owner, const char why[],
+                                     void *comm);
+
+/*@ QuantitiesRefuse - a visitor with a QuantityRun for its context: raises an error for an option of the command line
+   that the run does not read. Files may give such options. Collective. @*/
+PetscErrorCode QuantitiesRefuse(const QuantityTable *table, const char name[], void *owner, const char why[],
+                                void *run);

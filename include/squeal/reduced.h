@@ -49,6 +49,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/dynamics.h>
 #include <squeal/modes.h>
 
@@ -203,6 +204,9 @@ are chosen; where
                                     the cut-off alone
 @*/
 PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
+
+/*@ ReducedVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ReducedVisit(ReducedRun r, const QuantityVisitor *visitor);
 
 /*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
 PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);

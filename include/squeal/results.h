@@ -5,6 +5,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <petscsys.h>
 #include <squeal/mesh.h>
 #include <stdint.h>
@@ -25,6 +26,9 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results);
 -  -output_fields <true>  - write shapes (*.h5, *.xmf) beside the tables
 @*/
 PetscErrorCode ResultsSetFromOptions(Results results);
+
+/*@ ResultsVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode ResultsVisit(Results results, const QuantityVisitor *visitor);
 
 /*@ ResultsOpenDirectory - makes the folder and its parents where they are missing, and locks it until ResultsUnlock().
     Collective. Errors: PETSC_ERR_FILE_OPEN with the folder and the reason, also for a folder in which nothing may be

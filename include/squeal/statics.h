@@ -25,6 +25,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/pencil.h>
 #include <squeal/results.h>
 
@@ -70,6 +71,9 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
    The factorisation takes -st_pc_*, -st_mat_mumps_*, GMRES -st_pairs_ksp_*.
 @*/
 PetscErrorCode StaticsSetFromOptions(Statics statics);
+
+/*@ StaticsVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode StaticsVisit(Statics s, const QuantityVisitor *visitor);
 
 /*@
    StaticsSolve - the equilibrium at a point p of the operators' parameters, NULL for the values of the scene. Starts

@@ -17,6 +17,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/modes.h>
 #include <squeal/statics.h>
 
@@ -74,6 +75,9 @@ points)
 -  -sweep_restart <true>          - go on where a sweep of the same scene in -output_dir was stopped
 @*/
 PetscErrorCode SweepSetFromOptions(Sweep sweep);
+
+/*@ SweepVisit - shows the rows of its options. Collective. @*/
+PetscErrorCode SweepVisit(Sweep sweep, const QuantityVisitor *visitor);
 
 /*@ SweepGetDamping - whether it varies a parameter of damping, which may be 0 at some points, and whether it projects
    on

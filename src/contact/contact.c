@@ -115,6 +115,19 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    ContactInterface *c = &contact->interfaces[i];
+
+    PetscCall(QuantitiesVisit(visitor, &contact_quantities, c->name, c, NULL));
+    PetscCall(FrictionVisit(&c->friction, c->name, visitor));
+  }
+  PetscCall(QuantitiesVisitList(visitor, &ties_list, contact->n_ties, contact->ties));
+  PetscFunctionReturn(0);
+}
+
 /* Faces of a surface, on all ranks, of each number of nodes */
 static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt count[CONTACT_MAX_MASTER + 1])
 {

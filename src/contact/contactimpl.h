@@ -31,6 +31,8 @@ PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interfac
                                               ContactPair pair[], PetscReal *lost);
 
 /* quantities.c - options of an interface, and the list of ties; tie.c - what their rows do not say */
+/* Why nobody reads how it slides in time, where it does not slide as told */
+#define CONTACT_STILL "not used where nothing slides as told: give -@slip or -@rotation"
 extern const QuantityTable  contact_quantities;
 extern const QuantityList   ties_list;
 PETSC_INTERN PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record);

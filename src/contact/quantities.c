@@ -10,40 +10,87 @@
 static const char *const laws[] = {[CONTACT_PENALTY] = "penalty", [CONTACT_CONSTRAINT] = "constraint", NULL};
 static const char *const fars[] = {[PETSC_FALSE] = "error", [PETSC_TRUE] = "free", NULL};
 
-static const char *ContactIdleCentre(const void *contact)
+static const char *ContactIdleCentre(const void *contact, const QuantityRun *run)
 {
+  (void)run;
   const PetscReal *w = ((const ContactInterface *)contact)->rotation;
 
   return Vec3Dot(w, w) > 0 ? NULL : "not used without -@rotation";
 }
 
-static const char *ContactIdleSlip(const void *contact)
+static const char *ContactIdleSlip(const void *contact, const QuantityRun *run)
 {
+  (void)run;
   const ContactInterface *c = contact;
 
   return Vec3Dot(c->rotation, c->rotation) > 0 && Vec3Dot(c->slip, c->slip) > 0 ? "not used beside -@rotation; give one"
                                                                                 : NULL;
 }
 
+#define CONTACT_EXACT  ", whose contact is exact: no penalty, no linearisation"
+#define CONTACT_STEADY "not used by -analysis static: the loads tell the forces, and nothing moves"
+
+static const char *ContactIdleLaw(const void *contact, const QuantityRun *run)
+{
+  return run->does & RUN_IN_TIME && ((const ContactInterface *)contact)->law != CONTACT_CONSTRAINT
+           ? "not used in time, where contact is exact: no penalty, no linearisation"
+           : NULL;
+}
+
+static const char *ContactIdleArea(const void *contact, const QuantityRun *run)
+{
+  (void)run;
+  return ((const ContactInterface *)contact)->law == CONTACT_CONSTRAINT
+           ? "not used with -@law constraint, which is as stiff as can be"
+           : NULL;
+}
+
+static const char *ContactIdleStiffness(const void *contact, const QuantityRun *run)
+{
+  return ((const ContactInterface *)contact)->identify ? NULL : ContactIdleArea(contact, run);
+}
+
+static const char *ContactIdleForce(const void *contact, const QuantityRun *run)
+{
+  (void)run;
+  return ((const ContactInterface *)contact)->damping ? NULL : "not used by modes without -@friction_damping";
+}
+
+/* Of a speed without a direction, and where neither friction nor its damping hangs on it */
+static const char *ContactIdleSpeed(const void *contact, const QuantityRun *run)
+{
+  const ContactInterface *c = contact;
+
+  if (run->does & RUN_IN_TIME)
+    return Vec3Dot(c->rotation, c->rotation) + Vec3Dot(c->slip, c->slip) > 0 || c->speed <= 0 ? NULL : CONTACT_STILL;
+  if (run->does & RUN_STATIC) return FrictionNeedsSpeed(&c->friction) ? NULL : CONTACT_STEADY;
+  return FrictionVaries(&c->friction) ? NULL : ContactIdleForce(contact, run);
+}
+
 static const Quantity interface[] = {
   {"-surfaces", "slave,master: named surfaces (required)", NULL, QUANTITY_NAMES, SURFACES(ContactInterface),
    .why = "slave,master"},
-  {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws},
+  {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws,
+   .idle = ContactIdleLaw},
   {"-kn_per_area", "instead: normal stiffness per area of the slave, N/m^3 (penalty)", NULL, QUANTITY_REAL,
-   INTERFACE(kn), .given = offsetof(ContactInterface, per_area)},
+   INTERFACE(kn), .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
+   .idle = ContactIdleArea},
   {"-kn", "normal stiffness per pair, N/m (penalty), or: identify", NULL, QUANTITY_TEXT, INTERFACE(kn_text),
-   .text = "0", .given = offsetof(ContactInterface, has_kn)},
+   .text = "0", .given = offsetof(ContactInterface, has_kn), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
+   .idle = ContactIdleStiffness},
   {"-kt", "modes, holding by friction: stiffness along the surface of a pair that sticks", "N/m", QUANTITY_REAL,
-   INTERFACE(kt), QUANTITY_POSITIVE, .given = offsetof(ContactInterface, has_kt)},
+   INTERFACE(kt), QUANTITY_POSITIVE, .given = offsetof(ContactInterface, has_kt), .in = RUN_LINEAR},
   {"-kt_per_area", "instead: that per area of the slave", "N/m^3", QUANTITY_REAL, INTERFACE(kt), QUANTITY_POSITIVE,
-   .given = offsetof(ContactInterface, kt_per_area)},
+   .given = offsetof(ContactInterface, kt_per_area), .in = RUN_LINEAR},
   {"-tolerance", "largest distance of a slave node from the master along the normal", "m", QUANTITY_REAL,
    INTERFACE(tolerance), .initial = 1e-5, QUANTITY_POSITIVE},
   {"-overhang", "slave nodes farther beyond the master's border have no pair; 0: 1 % of a facet", "m", QUANTITY_REAL,
    INTERFACE(overhang), QUANTITY_NOT_NEGATIVE},
-  {"-force", "total normal force in the sliding state", "N", QUANTITY_REAL, INTERFACE(force), QUANTITY_NOT_NEGATIVE},
-  {"-speed", "sliding speed", "m/s", QUANTITY_REAL, INTERFACE(speed), QUANTITY_NOT_NEGATIVE},
-  {"-friction_damping", "damping mu N/v across the slip, mu' N along it", NULL, QUANTITY_BOOL, INTERFACE(damping)},
+  {"-force", "total normal force in the sliding state", "N", QUANTITY_REAL, INTERFACE(force), QUANTITY_NOT_NEGATIVE,
+   .in = RUN_LINEAR, .idle = ContactIdleForce},
+  {"-speed", "sliding speed", "m/s", QUANTITY_REAL, INTERFACE(speed), QUANTITY_NOT_NEGATIVE, .idle = ContactIdleSpeed},
+  {"-friction_damping", "damping mu N/v across the slip, mu' N along it", NULL, QUANTITY_BOOL, INTERFACE(damping),
+   .in = RUN_LINEAR},
   {"-slip", "direction of the slave's velocity relative to the master", NULL, QUANTITY_REALS, INTERFACE(slip),
    .idle = ContactIdleSlip},
   {"-rotation", "or: angular velocity of the master", "rad/s", QUANTITY_REALS, INTERFACE(rotation)},
@@ -57,7 +104,9 @@ static const Quantity tie[] = {
   {"-far", "nodes farther off are an error, or stay free", NULL, QUANTITY_WORD, TIE(free), .words = fars},
 };
 
-static const QuantityTable ties        = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie};
-const QuantityTable contact_quantities = {"Contact", "contact.h", PETSC_STATIC_ARRAY_LENGTH(interface), interface};
-const QuantityList  ties_list          = {"-ties", "surfaces glued to others, each the prefix of its -surfaces",
-                                          sizeof(ContactTie), &ties, TieCheckNames};
+static const QuantityTable ties        = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};
+const QuantityTable contact_quantities = {"Contact", "contact.h", PETSC_STATIC_ARRAY_LENGTH(interface), interface,
+                                          .in = 0};
+const QuantityList  ties_list          = {
+            "-ties", "surfaces glued to others, each the prefix of its -surfaces", sizeof(ContactTie), &ties, TieCheckNames,
+            .in = 0};

@@ -39,6 +39,7 @@ struct _p_Dynamics {
   const ContactInterface *interfaces;
   /* set by options */
   PetscReal     fraction, dt_asked; /* of the critical step; -ts_dt, 0 for none */
+  PetscBool     dt_given;           /* by -ts_dt, which goes before -ts_time_step */
   PetscBool     step_force, coriolis, centrifugal, view_kkt, restart;
   DynamicsStart start;
   char          shape[PETSC_MAX_PATH_LEN]; /* folder of a run of modes; empty for none */

@@ -28,11 +28,7 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
              "-ts_type does not suit exact contact: leave it out, it is " TSCENTRAL);
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-ts_dt", &dt, &set));
   if (set) d->dt_asked = dt;
-  if (set) PetscCall(OptionsRefuse(d->comm, "-ts_time_step", "the same as -ts_dt, which is given too; give one"));
-  if (d->dt_asked > 0)
-    PetscCall(OptionsRefuse(d->comm, "-dynamics_step_fraction",
-                            set ? "not used beside -ts_dt" : "not used beside -ts_time_step"));
-  if (d->dt_asked == 0) PetscCall(OptionsRefuse(d->comm, "-dynamics_step_force", "not used without a -ts_dt"));
+  d->dt_given = set;
   PetscCheck(!PetscIsInfOrNanReal(d->dt_asked) && d->dt_asked >= 0, d->comm, PETSC_ERR_USER_INPUT,
              "-ts_dt %.6g must be a positive time (s)", (double)d->dt_asked);
   PetscCall(TSCentralGetB(d->ts, &d->b));
@@ -40,5 +36,16 @@ PetscErrorCode DynamicsSetFromOptions(Dynamics d)
   if (d->external) PetscCall(ExternalSetFromOptions(d->external));
   if (d->projector) PetscCall(ContactProjectorSetFromOptions(d->projector));
   PetscCall(BodiesSetFromOptions(d->bodies));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsVisit(Dynamics d, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &dynamics_quantities, NULL, d, NULL));
+  PetscCall(HistoryVisit(d->history, visitor));
+  if (d->external) PetscCall(ExternalVisit(d->external, visitor));
+  if (d->projector) PetscCall(ContactProjectorVisit(d->projector, visitor));
+  PetscCall(BodiesVisit(d->bodies, visitor));
   PetscFunctionReturn(0);
 }

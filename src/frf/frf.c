@@ -101,6 +101,13 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FrfVisit(Frf frf, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &frf_quantities, NULL, frf, NULL));
+  PetscFunctionReturn(0);
+}
+
 /* The band of the modes must have something to do with the frequencies, and left vectors are needed */
 static PetscErrorCode FrfCheckModes(Frf frf)
 {

@@ -5,13 +5,15 @@
 
 static const char *const methods[] = {[FRF_MODAL] = "modal", [FRF_DIRECT] = "direct", NULL};
 
-static const char *FrfIdleDirect(const void *frf)
+static const char *FrfIdleDirect(const void *frf, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_Frf *)frf)->method == FRF_DIRECT ? "not used by -frf_method direct" : NULL;
 }
 
-static const char *FrfIdleModal(const void *frf)
+static const char *FrfIdleModal(const void *frf, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_Frf *)frf)->method == FRF_MODAL ? "not used without -frf_method direct" : NULL;
 }
 
@@ -31,4 +33,5 @@ static const Quantity rows[] = {
    FRF_AT(restart), .initial = PETSC_TRUE, .idle = FrfIdleModal},
 };
 
-const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                      .in = RUN_FRF};

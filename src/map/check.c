@@ -3,24 +3,8 @@
    its end.
 */
 #include "mapimpl.h"
-#include "reduced/idle.h"
+#include "reduced/refuse.h"
 #include <squeal/options.h>
-
-static const char nothing[] =
-  "not used by -analysis map, whose lines begin with the sliding state and which keeps no histories";
-
-/* What a transient reads, and what the command line says of places that are looked at */
-static PetscErrorCode CheckIdle(Map map, const ModelScene *scene)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedRefuseIdle(map->comm, map->operators, nothing));
-  PetscCall(OptionsRefuse(map->comm, "-dynamics_compare -dynamics_growth_rtol", nothing));
-  for (PetscInt i = 0; i < scene->n_probes; i++)
-    PetscCall(OptionsRefuseOf(map->comm, scene->probes[i].name, "at part", nothing));
-  for (PetscInt i = 0; i < scene->n_circles; i++)
-    PetscCall(OptionsRefuseOf(map->comm, scene->circles[i].name, "radius count part face centre tolerance", nothing));
-  PetscFunctionReturn(0);
-}
 
 PetscErrorCode MapCheck(Map map)
 {
@@ -44,7 +28,6 @@ PetscErrorCode MapCheck(Map map)
                "contact %s: a map is about sliding; say along what by -%s_slip and -%s_speed", c[i].name, c[i].name,
                c[i].name);
   PetscCheck(scene->n_loads > 0, map->comm, PETSC_ERR_USER_INPUT, "-analysis map needs -loads that press the contact");
-  PetscCall(CheckIdle(map, scene));
   PetscFunctionReturn(0);
 }
 

@@ -23,6 +23,13 @@ PetscErrorCode MapSetFromOptions(Map map)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MapVisit(Map map, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &map_quantities, NULL, map, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[])
 {
   PetscFunctionBeginUser;

@@ -35,4 +35,4 @@ static const Quantity rows[] = {
    MAP_AT(restart), .initial = PETSC_TRUE},
 };
 
-const QuantityTable map_quantities = {"Map", "map.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable map_quantities = {"Map", "map.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = RUN_MAP};

@@ -52,6 +52,26 @@ PetscErrorCode ModelSetFromOptions(Model model)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelVisit(Model model, const QuantityVisitor *visitor)
+{
+  ModelScene *s = &model->scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &model_quantities, NULL, model, NULL));
+  if (!model->from_file) PetscCall(QuantitiesVisit(visitor, &rig_quantities, NULL, &model->rig, NULL));
+  PetscCall(QuantitiesVisitList(visitor, &parts_list, s->n_parts, s->parts));
+  PetscCall(QuantitiesVisitList(visitor, &supports_list, s->n_supports, s->supports));
+  PetscCall(QuantitiesVisitList(visitor, &springs_list, s->n_springs, s->springs));
+  PetscCall(QuantitiesVisitList(visitor, &dashpots_list, s->n_dashpots, s->dashpots));
+  PetscCall(QuantitiesVisitList(visitor, &joints_list, s->n_joints, s->joints));
+  PetscCall(QuantitiesVisitList(visitor, &points_list, s->n_points, s->points));
+  PetscCall(QuantitiesVisitList(visitor, &loads_list, s->n_loads, s->loads));
+  PetscCall(QuantitiesVisitList(visitor, &motions_list, s->n_motions, s->motions));
+  PetscCall(QuantitiesVisitList(visitor, &probes_list, s->n_probes, s->probes));
+  PetscCall(QuantitiesVisitList(visitor, &circles_list, s->n_circles, s->circles));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelKeepTogether(Model model, const char set[])
 {
   PetscFunctionBeginUser;

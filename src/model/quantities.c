@@ -1,7 +1,13 @@
 /* Options of the model, and of what a scene names: each name is the prefix of the rows of its list */
 #include "modelimpl.h"
 
-#define SET "named surface, curve, point or volume of the mesh (required)"
+/* Modes with all pairs closed need no equilibrium */
+#define LOADS .in = RUN_IN_TIME | RUN_EQUILIBRIUM, .unread = " with all pairs closed; give -modes_contact static"
+#define MOVING                                                                                                         \
+  .in = RUN_MOVES, .unread = ", where nothing moves and nothing is damped" /* inertia but for weight, and damping */
+#define WEIGHS   .in = RUN_MOVES | RUN_WEIGHT, .unread = " without -model_gravity"
+#define RECORDED RUN_TRANSIENT | RUN_CYCLE | RUN_FRF
+#define SET      "named surface, curve, point or volume of the mesh (required)"
 
 #define PART(member)     QUANTITY_AT(Part, member)
 #define SUPPORT(member)  QUANTITY_AT(Support, member)
@@ -16,9 +22,9 @@
 /* Three of six values: along x, y, z, or about them */
 #define JOINT_THREE(member, first) .at = offsetof(Joint, member[first]), .size = 3 * sizeof(PetscReal)
 
-#define TABLE(title, rows)                                                                                             \
+#define TABLE(title, rows, ...)                                                                                        \
   {                                                                                                                    \
-    title, "model.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows                                                            \
+    title, "model.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, __VA_ARGS__                                               \
   }
 
 static const char *const sources[] = {[PETSC_FALSE] = "rig", [PETSC_TRUE] = "file", NULL};
@@ -51,7 +57,7 @@ static const Quantity rig[] = {
   {"-rig_beam_rows", "heights of the spring rows above the beam's lower end", "m", QUANTITY_REALS, RIG(beam_rows)},
   {"-rig_save", "file of Gmsh to write the mesh and its sets to", NULL, QUANTITY_TEXT, RIG(save)},
 };
-const QuantityTable rig_quantities = TABLE("Built-in disc, pad and beam", rig);
+const QuantityTable rig_quantities = TABLE("Built-in disc, pad and beam", rig, .in = 0);
 
 static const Quantity model[] = {
   {"-model_source", "mesh: the built-in disc-pad-beam rig, or a file", NULL, QUANTITY_WORD, MODEL(from_file),
@@ -60,12 +66,12 @@ static const Quantity model[] = {
    .given = offsetof(struct _p_Model, has_file)},
   {"-model_element", "8-node hexahedra: incompatible (QM6) or full (trilinear)", NULL, QUANTITY_TEXT,
    MODEL(formulation), .text = "incompatible", .given = offsetof(struct _p_Model, has_formulation)},
-  {"-model_gravity", "acceleration of gravity in x,y,z", "m/s^2", QUANTITY_REALS, MODEL(scene.gravity)},
+  {"-model_gravity", "acceleration of gravity in x,y,z", "m/s^2", QUANTITY_REALS, MODEL(scene.gravity), LOADS},
   {"-model_loss_frequency", "where the loss factors of the parts are exact", "Hz", QUANTITY_REAL,
    MODEL(scene.loss_frequency), .given = offsetof(struct _p_Model, has_loss)},
 };
 
-const QuantityTable model_quantities = TABLE("Model", model);
+const QuantityTable model_quantities = TABLE("Model", model, .in = 0);
 
 /* Young's moduli, Poisson's ratios and densities are checked with the mesh: the rig's own parts need no -parts for
    -help */
@@ -87,13 +93,14 @@ static const Quantity part[] = {
    PART(asked.axis[AXIS_CYLINDER]), .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
   {"-cylinder_centre", "a point of that axis", "m", QUANTITY_REALS, PART(asked.axis[AXIS_CENTRE]),
    .given = offsetof(Part, asked.given[AXIS_CENTRE])},
-  {"-density", "density (required)", "kg/m^3", QUANTITY_REAL, PART(density)},
-  {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE},
-  {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE},
+  {"-density", "density (required)", "kg/m^3", QUANTITY_REAL, PART(density), WEIGHS, .always = PETSC_TRUE},
+  {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE, MOVING},
+  {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE, MOVING},
   {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss),
-   QUANTITY_NOT_NEGATIVE},
+   QUANTITY_NOT_NEGATIVE, MOVING},
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
-   PART(spin.rate), .given = offsetof(Part, spin.given)},
+   PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,
+   .unread = "; it belongs to modes, sweep and frf; in time a contact's -..._kinematics turning turns its master"},
   {"-spin_axis", "x,y,z, about which a positive spin is right-handed", NULL, QUANTITY_REALS, PART(spin.axis),
    .given = offsetof(Part, spin.has_axis)},
   {"-spin_centre", "a point of that axis", "m", QUANTITY_REALS, PART(spin.centre),
@@ -115,11 +122,11 @@ static const Quantity spring[] = {
 static const Quantity dashpot[] = {
   {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-viscosity", "viscosity in x,y,z at every node", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH])},
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH]), MOVING},
   {"-viscosity_total", "instead: viscosity in x,y,z of the whole set", "N s/m", QUANTITY_REALS,
-   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL]), MOVING},
   {"-viscosity_per_area", "instead: viscosity in x,y,z per area", "N s/m^3", QUANTITY_REALS,
-   GROUNDED(asked[SPREAD_AREA]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
+   GROUNDED(asked[SPREAD_AREA]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA]), MOVING},
 };
 
 /* What resists the motions of a bushing or a point, and where they are taken */
@@ -131,10 +138,11 @@ static const Quantity dashpot[] = {
     {"-stiffness", "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0), QUANTITY_NOT_NEGATIVE},     \
     {"-turn_stiffness", "stiffness about x,y,z",   "N m/rad",                                                          \
      QUANTITY_REALS,    JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE},                                             \
-    {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE},   \
+    {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE,    \
+     MOVING},                                                                                                          \
   {                                                                                                                    \
     "-turn_viscosity", "viscosity about x,y,z", "N m s/rad", QUANTITY_REALS, JOINT_THREE(viscosity, 3),                \
-      QUANTITY_NOT_NEGATIVE                                                                                            \
+      QUANTITY_NOT_NEGATIVE, MOVING                                                                                    \
   }
 
 static const Quantity joint[] = {
@@ -148,9 +156,9 @@ static const Quantity point[] = {
   {"-join", "the set moves freely, the point with it in the mean; or as one rigid body", NULL, QUANTITY_WORD,
    JOINT(rigid), .words = joins},
   HOLDERS,
-  {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE},
+  {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE, WEIGHS},
   {"-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz", "kg m^2", QUANTITY_LIST, JOINT(inertia),
-   .count = offsetof(Joint, n_inertia)},
+   .count = offsetof(Joint, n_inertia), MOVING},
 };
 static const Quantity load[] = {
   {"-set", SET " unless on a point", NULL, QUANTITY_NAME, LOAD(set)},
@@ -184,34 +192,42 @@ static const Quantity circle[] = {
    CIRCLE(tolerance), .given = offsetof(Circle, has_tolerance)},
 };
 
-static const QuantityTable parts = TABLE("Part", part), supports = TABLE("Support", support),
-                           joints = TABLE("Bushing", joint), points = TABLE("Point", point),
-                           loads = TABLE("Load", load), motions = TABLE("Motion", motion),
-                           probes = TABLE("Probe", probe), circles = TABLE("Circle", circle);
-const QuantityTable spring_quantities  = TABLE("Grounded spring", spring),
-                    dashpot_quantities = TABLE("Grounded dashpot", dashpot);
+static const QuantityTable parts = TABLE("Part", part, .in = 0), supports = TABLE("Support", support, .in = 0),
+                           joints = TABLE("Bushing", joint, .in = 0), points = TABLE("Point", point, .in = 0),
+                           loads = TABLE("Load", load, LOADS), motions = TABLE("Motion", motion, .in = 0),
+                           probes      = TABLE("Probe", probe, .in = RECORDED),
+                           circles     = TABLE("Circle", circle, .in = RECORDED);
+const QuantityTable spring_quantities  = TABLE("Grounded spring", spring, .in = 0),
+                    dashpot_quantities = TABLE("Grounded dashpot", dashpot, .in = 0);
 
-const QuantityList parts_list = {"-parts", "bodies: volumes of the mesh, each the prefix of its material", sizeof(Part),
-                                 &parts, PartCheck};
-const QuantityList supports_list = {"-supports", "essential conditions, each the prefix of its -set and -fix",
-                                    sizeof(Support), &supports, SupportCheck};
-const QuantityList springs_list  = {"-springs", "each the prefix of its -set and value", sizeof(Grounded),
-                                    &spring_quantities, SpringCheck};
-const QuantityList dashpots_list = {"-dashpots", "each the prefix of its -set and value", sizeof(Grounded),
-                                    &dashpot_quantities, DashpotCheck};
-const QuantityList joints_list   = {"-joints", "bushings, each the prefix of its -a, -b and -stiffness", sizeof(Joint),
-                                    &joints, JointCheck};
-const QuantityList points_list   = {"-points", "points joined to sets, each the prefix of its -set and -mass",
-                                    sizeof(Joint), &points, PointCheck};
-const QuantityList loads_list = {"-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load),
-                                 &loads, LoadCheck};
-const QuantityList motions_list = {"-motions", "prescribed displacements, each the prefix of its -set",
-                                   sizeof(PrescribedMotion), &motions, MotionCheck};
-const QuantityList probes_list  = {"-probes",
-                                   "places that histories and responses record, each the prefix of its -at and -part",
-                                   sizeof(Probe), &probes, ProbeCheck};
+const QuantityList parts_list = {
+  "-parts", "bodies: volumes of the mesh, each the prefix of its material", sizeof(Part), &parts, PartCheck, .in = 0};
+const QuantityList supports_list = {"-supports",     "essential conditions, each the prefix of its -set and -fix",
+                                    sizeof(Support), &supports,
+                                    SupportCheck,    .in = 0};
+const QuantityList springs_list  = {
+   "-springs", "each the prefix of its -set and value", sizeof(Grounded), &spring_quantities, SpringCheck, .in = 0};
+const QuantityList dashpots_list = {
+  "-dashpots", "each the prefix of its -set and value", sizeof(Grounded), &dashpot_quantities, DashpotCheck, .in = 0};
+const QuantityList joints_list = {
+  "-joints", "bushings, each the prefix of its -a, -b and -stiffness", sizeof(Joint), &joints, JointCheck, .in = 0};
+const QuantityList points_list = {"-points",     "points joined to sets, each the prefix of its -set and -mass",
+                                  sizeof(Joint), &points,
+                                  PointCheck,    .in = 0};
+const QuantityList loads_list  = {
+   "-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load), &loads, LoadCheck, .in = 0};
+const QuantityList motions_list = {
+  "-motions", "prescribed displacements, each the prefix of its -set", sizeof(PrescribedMotion), &motions, MotionCheck,
+  .in = 0};
+const QuantityList probes_list = {
+  "-probes",     "places that histories and responses record, each the prefix of its -at and -part",
+  sizeof(Probe), &probes,
+  ProbeCheck,    .in = 0};
 const QuantityList circles_list = {
   "-circles",
   "circles of nodes that histories and responses record, each the prefix of its -radius and "
   "-count",
-  sizeof(Circle), &circles, CircleCheck};
+  sizeof(Circle),
+  &circles,
+  CircleCheck,
+  .in = 0};

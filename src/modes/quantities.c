@@ -13,12 +13,13 @@ static const Quantity rows[] = {
   {"-modes_band", "all modes with frequency in f1,f2", "Hz", QUANTITY_REALS, MODES_AT(band), MODES_GIVEN(has_band),
    QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE},
   {"-modes_target", "instead of a band: the modes nearest to this frequency", "Hz", QUANTITY_REAL, MODES_AT(target),
-   MODES_GIVEN(has_target), QUANTITY_WITHIN(0, MODES_LARGEST)},
+   MODES_GIVEN(has_target), QUANTITY_WITHIN(0, MODES_LARGEST), .in = RUN_LINEAR},
   {"-modes_count", "how many of them", NULL, QUANTITY_INT, MODES_AT(count), .initial = 20, MODES_GIVEN(has_count),
-   QUANTITY_POSITIVE},
+   QUANTITY_POSITIVE, .in = RUN_LINEAR},
   {"-modes_growth",
    "modes of a band with growth and decay up to this must be found (0: a tenth of the angular frequency f2)", "1/s",
-   QUANTITY_REAL, MODES_AT(growth), QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE},
+   QUANTITY_REAL, MODES_AT(growth), QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE,
+   .in = RUN_MODES | RUN_SWEEP | RUN_REDUCED},
   {"-modes_unstable_damping", "growth within this damping ratio is no instability", "%", QUANTITY_REAL,
    MODES_AT(unstable[0]), QUANTITY_WITHIN(0, 100)},
   {"-modes_unstable_growth", "growth up to this is no instability", "1/s", QUANTITY_REAL, MODES_AT(unstable[1]),
@@ -32,12 +33,11 @@ static const Quantity rows[] = {
   {"-modes_left", "left vectors: condition and error of each eigenvalue", NULL, QUANTITY_BOOL, MODES_AT(left),
    .initial = PETSC_TRUE, .restart = PETSC_TRUE},
   {"-modes_filters", "write modal filters, which find the modes' amplitudes in a transient", NULL, QUANTITY_BOOL,
-   MODES_AT(filters)},
+   MODES_AT(filters), .in = RUN_MODES | RUN_FRF},
   {"-modes_components",
    "write which free modes of the bodies make up each mode, of those up to this multiple of the band's highest "
-   "frequency "
-   "(0: none; 1.5 is enough for most)",
-   NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100)},
+   "frequency (0: none; 1.5 is enough for most)",
+   NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100), .in = RUN_MODES},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
   {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD,
@@ -48,4 +48,5 @@ static const Quantity rows[] = {
    .restart = PETSC_TRUE},
 };
 
-const QuantityTable modes_quantities = {"Modes", "modes.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable modes_quantities = {"Modes", "modes.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                        .in = RUN_LINEAR | RUN_REDUCED};

@@ -46,3 +46,10 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
   PetscCall(ModesChooseRange(modes));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ModesVisit(Modes modes, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &modes_quantities, NULL, modes, NULL));
+  PetscFunctionReturn(0);
+}

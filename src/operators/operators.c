@@ -41,6 +41,19 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visitor)
+{
+  PetscBool have;
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisitList(visitor, &operators_terms, operators->n_named, operators->named));
+  PetscCall(QuantitiesVisit(visitor, &operators_matrices, NULL, operators, NULL));
+  PetscCall(QuantitiesVisit(visitor, &operators_quantities, NULL, operators, NULL));
+  PetscCall(OperatorsHaveMatrices(operators, &have));
+  if (have) PetscCall(QuantitiesVisit(visitor, &operators_loaded, NULL, operators, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsLump(Operators operators)
 {
   PetscFunctionBeginUser;

@@ -77,6 +77,8 @@ struct _p_Operators {
 
 /* quantities.c - rows of the options; of loaded matrices alone */
 extern const QuantityTable operators_quantities, operators_loaded, operators_matrices, operators_term;
+/* matrixtermoptions.c - the list of terms */
+extern const QuantityList operators_terms;
 
 /* The point that NULL stands for */
 static inline const PetscReal *OperatorsPoint(Operators operators, const PetscReal p[])

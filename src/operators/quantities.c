@@ -7,13 +7,26 @@ static const char *const factors[] = {
   [OPERATORS_AUTO] = "auto", [OPERATORS_LU] = "lu", [OPERATORS_EVEN] = "symmetric", NULL};
 static const char *const masses[] = {[PETSC_FALSE] = "consistent", [PETSC_TRUE] = "lumped", NULL};
 
+static const char *OperatorsIdleFactors(const void *operators, const QuantityRun *run)
+{
+  const struct _p_Operators *o = operators;
+  const ContactInterface    *c = NULL;
+  PetscInt                   n = 0;
+
+  (void)run;
+  if (o->contact && ContactGetInterfaces(o->contact, &n, &c)) return NULL;
+  for (PetscInt i = 0; i < n; i++)
+    if (c[i].law == CONTACT_CONSTRAINT) return "not used with contacts of -..._law constraint, which need LU";
+  return NULL;
+}
+
 static const Quantity rows[] = {
   {"-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
-   NULL, QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses},
+   NULL, QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses, .in = RUN_LINEAR},
   {"-operators_factors",
    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak "
    "for",
-   NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors},
+   NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors, .in = RUN_LINEAR, .idle = OperatorsIdleFactors},
   {"-operators_save", "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)", NULL, QUANTITY_TEXT,
    OPERATORS_OPTION(save)},
   {"-operators_nodes", "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes", NULL,
@@ -57,7 +70,8 @@ static const Quantity term[] = {
    .count = offsetof(MatrixTerm, n_powers), .text = "1"},
 };
 
-const QuantityTable operators_quantities = {"Operators", "operators.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
-const QuantityTable operators_loaded     = {"Friction of loaded matrices", "operators.h", 1, loaded};
-const QuantityTable operators_matrices   = {"Matrices", "operators.h", PETSC_STATIC_ARRAY_LENGTH(matrices), matrices};
-const QuantityTable operators_term       = {"Matrix", "operators.h", PETSC_STATIC_ARRAY_LENGTH(term), term};
+const QuantityTable operators_quantities = {"Operators", "operators.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
+const QuantityTable operators_loaded     = {"Friction of loaded matrices", "operators.h", 1, loaded, .in = 0};
+const QuantityTable operators_matrices   = {"Matrices", "operators.h", PETSC_STATIC_ARRAY_LENGTH(matrices), matrices,
+                                            .in = 0};
+const QuantityTable operators_term       = {"Matrix", "operators.h", PETSC_STATIC_ARRAY_LENGTH(term), term, .in = 0};

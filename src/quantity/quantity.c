@@ -1,4 +1,4 @@
-/* Rows of options: checked, refused, summed; row.c reads them */
+/* Rows of options: checked and summed; row.c reads them, visit.c refuses them */
 #include "row.h"
 #include <string.h>
 
@@ -23,14 +23,6 @@ static PetscErrorCode LimitsDescribe(const Quantity *row, PetscReal x, size_t si
   if (row->unit) PetscCall(PetscStrlcat(text, ")", size));
   if (row->why) PetscCall(PetscStrlcat(text, ": ", size));
   if (row->why) PetscCall(PetscStrlcat(text, row->why, size));
-  PetscFunctionReturn(0);
-}
-
-/* The option of a row, with the name of its owner: -pad_mu */
-static PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t size, char option[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(option, size, "-%s%s%s", name ? name : "", name ? "_" : "", row->name + 1));
   PetscFunctionReturn(0);
 }
 
@@ -62,21 +54,6 @@ static PetscErrorCode QuantityCheck(MPI_Comm comm, const char option[], const Qu
   PetscFunctionReturn(0);
 }
 
-/* The reason of an idle row, with the name of its owner in place of each @: "-@ramp" becomes "-press_ramp" */
-static PetscErrorCode WhyName(const char why[], const char name[], size_t size, char text[])
-{
-  PetscFunctionBeginUser;
-  text[0] = '\0';
-  for (const char *at; (at = strchr(why, '@')); why = at + 1) {
-    char part[QUANTITY_HELP];
-
-    PetscCall(PetscSNPrintf(part, sizeof(part), "%.*s%s_", (int)(at - why), why, name ? name : ""));
-    PetscCall(PetscStrlcat(text, part, size));
-  }
-  PetscCall(PetscStrlcat(text, why, size));
-  PetscFunctionReturn(0);
-}
-
 /* Whether a row is given, as far as its owner keeps that */
 static PetscBool QuantityIsGiven(const Quantity *row, const void *owner)
 {
@@ -87,20 +64,16 @@ static PetscBool QuantityIsGiven(const Quantity *row, const void *owner)
   return row->given ? *(const PetscBool *)((const char *)owner + row->given) : PETSC_TRUE;
 }
 
-/* What is required, the numbers, and whether anything reads them */
+/* What is required, and the numbers */
 static PetscErrorCode QuantityJudge(MPI_Comm comm, const char name[], const Quantity *row, const void *owner)
 {
-  const char     *why   = row->idle ? row->idle(owner) : NULL;
   const PetscBool given = QuantityIsGiven(row, owner);
-  char            option[QUANTITY_HELP], text[QUANTITY_HELP];
+  char            option[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
   PetscCall(QuantityGetOption(name, row, sizeof(option), option));
   PetscCheck(!row->required || given, comm, PETSC_ERR_USER_INPUT, "%s must be given: %s", option, row->why);
   if (given) PetscCall(QuantityCheck(comm, option, row, owner));
-  if (!why) PetscFunctionReturn(0);
-  PetscCall(WhyName(why, name, sizeof(text), text));
-  PetscCall(OptionsRefuse(comm, option, text));
   PetscFunctionReturn(0);
 }
 

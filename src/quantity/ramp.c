@@ -5,8 +5,9 @@
 
 static const char *const shapes[] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth", NULL};
 
-static const char *RampIdleShape(const void *ramp)
+static const char *RampIdleShape(const void *ramp, const QuantityRun *run)
 {
+  (void)run;
   return ((const Ramp *)ramp)->length > 0 ? NULL : "not used without a positive -@ramp";
 }
 
@@ -17,13 +18,21 @@ static const Quantity rows[] = {
   {"-delay", "time at which it begins", "s", QUANTITY_REAL, QUANTITY_AT(Ramp, delay), QUANTITY_NOT_NEGATIVE},
 };
 
-PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char name[], Ramp *ramp)
+PetscErrorCode RampVisit(const QuantityVisitor *visitor, const char title[], const char name[], Ramp *ramp,
+                         const char why[])
 {
-  const QuantityTable table = {title, "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+  const QuantityTable table = {title, "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = RUN_HISTORY};
 
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesInit(&table, ramp));
-  PetscCall(QuantitiesReadOf(comm, name, &table, ramp));
+  PetscCall(QuantitiesVisit(visitor, &table, name, ramp, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char name[], Ramp *ramp)
+{
+  PetscFunctionBeginUser;
+  *ramp = (Ramp){.shape = RAMP_SMOOTH};
+  PetscCall(RampVisit(&(QuantityVisitor){QuantitiesReadVisited, &comm}, title, name, ramp, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -62,6 +62,10 @@ static inline double RampIntegral(const Ramp *ramp, double t)
 @*/
 PETSC_INTERN PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char name[], Ramp *ramp);
 
+/*@ RampVisit - shows its rows; why: nobody reads them, or NULL. Collective. @*/
+PETSC_INTERN PetscErrorCode RampVisit(const QuantityVisitor *visitor, const char title[], const char name[], Ramp *ramp,
+                                      const char why[]);
+
 /*@ RampDescribe - words that follow a load or motion, such as "smooth ramp over 0.002 s from 0.001 s" or "at once". Not
     collective. @*/
 PETSC_INTERN PetscErrorCode RampDescribe(const Ramp *ramp, size_t size, char words[]);

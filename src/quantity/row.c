@@ -135,6 +135,13 @@ static PetscErrorCode HelpWithUnit(const Quantity *row, size_t size, char help[]
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t size, char option[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, size, "-%s%s%s", name ? name : "", name ? "_" : "", row->name + 1));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner)
 {
   void     *value = QuantityValue(row, owner);
@@ -163,6 +170,11 @@ PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[]
     break;
   case QUANTITY_NAME:
     PetscCall(QuantityReadName(PetscOptionsObject, header, row, help, value, &given));
+    break;
+  case QUANTITY_VIEWER:
+    PetscCall(OptionsGetViewer(PetscOptionsObject->comm, row->name, help, value));
+    break;
+  case QUANTITY_PREFIX:
     break;
   case QUANTITY_PATH:
     PetscCall(OptionsGetPath(PetscOptionsObject, row->name, help, value, &given));

@@ -8,3 +8,5 @@
 /* Reads the option of a row into its owner, between PetscOptionsBegin() and PetscOptionsEnd(). Collective */
 PETSC_INTERN PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
                                          void *owner);
+/* The option of a row, with the name of its owner: -pad_mu */
+PETSC_INTERN PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t size, char option[]);

@@ -5,16 +5,17 @@
 
 static const char *const models[] = {[PETSC_FALSE] = "full", [PETSC_TRUE] = "reduced", NULL};
 
-static const char *ReducedIdle(const void *reduced)
+static const char *ReducedIdle(const void *reduced, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_ReducedRun *)reduced)->asked ? NULL : "not used without -dynamics_model reduced";
 }
 
-static const char *ReducedIdleChosen(const void *reduced)
+static const char *ReducedIdleChosen(const void *reduced, const QuantityRun *run)
 {
   const struct _p_ReducedRun *r = reduced;
 
-  return r->cutoff > 0 ? "not used where -dynamics_cutoff says the cut-off" : ReducedIdle(r);
+  return r->cutoff > 0 ? "not used where -dynamics_cutoff says the cut-off" : ReducedIdle(r, run);
 }
 
 static const Quantity rows[] = {
@@ -25,15 +26,16 @@ static const Quantity rows[] = {
   {"-dynamics_growth_rtol",
    "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step are chosen", NULL,
    QUANTITY_REAL, REDUCED_AT(growth_rtol), .initial = 5e-3, .given = offsetof(struct _p_ReducedRun, has_rtol),
-   QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE, .idle = ReducedIdleChosen},
+   QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE, .idle = ReducedIdleChosen, .in = RUN_TRANSIENT | RUN_CYCLE},
   {"-dynamics_compare", "eigenvalues of a reduced model beside those of the mesh in -modes_band", NULL, QUANTITY_BOOL,
-   REDUCED_AT(compare), .initial = PETSC_TRUE, .idle = ReducedIdle},
+   REDUCED_AT(compare), .initial = PETSC_TRUE, .idle = ReducedIdle, .in = RUN_TRANSIENT | RUN_CYCLE},
   {"-dynamics_verify",
    "after a reduced run once more with half the step, and with 2.25 times the cut-off; an error where the rms of the "
    "normal force "
    "in the last half of the time, or the share of the time without contact, differs by more than 10 % beyond twice its "
    "standard error",
-   NULL, QUANTITY_BOOL, REDUCED_AT(verify), .idle = ReducedIdle},
+   NULL, QUANTITY_BOOL, REDUCED_AT(verify), .idle = ReducedIdle, .in = RUN_HISTORY},
 };
 
-const QuantityTable reduced_quantities = {"Reduced model", "reduced.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable reduced_quantities = {"Reduced model", "reduced.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                          .in = RUN_IN_TIME};

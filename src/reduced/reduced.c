@@ -3,7 +3,7 @@
    mesh, which may choose cut-off and step -> state at the start -> steps -> histories.
 */
 #include "reducedimpl.h"
-#include "idle.h"
+#include "refuse.h"
 #include "dynamics/run/stop.h"
 #include <squeal/options.h>
 
@@ -13,6 +13,13 @@ PetscErrorCode ReducedSetFromOptions(ReducedRun r)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(r->comm, &reduced_quantities, r));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedVisit(ReducedRun r, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &reduced_quantities, NULL, r, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -1,8 +1,6 @@
-/*
-   What a reduced model cannot do, by name, and what does nothing where no transient runs from its beginning to its end.
-*/
+/* What a reduced model cannot do, by name; what comes too late */
 #include "reducedimpl.h"
-#include "idle.h"
+#include "refuse.h"
 #include <squeal/options.h>
 
 PetscErrorCode ReducedRefuse(ReducedRun r)
@@ -29,50 +27,9 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedRefuseIdle(MPI_Comm comm, Operators operators, const char why[])
-{
-  static const char       idle[]  = "-dynamics_start -dynamics_shape -dynamics_shape_mode -dynamics_shape_amplitude "
-                                    "-dynamics_history_interval -dynamics_pairs_interval "
-                                    "-dynamics_snapshot_interval -dynamics_live -dynamics_restart "
-                                    "-dynamics_checkpoint_interval -dynamics_check_interval -dynamics_verify "
-                                    "-contact_view_kkt -ts_max_steps";
-  static const char       ramps[] = "ramp ramp_shape delay";
-  const ModelScene       *scene;
-  const ContactInterface *c;
-  PetscInt                n;
-  Model                   model;
-  Contact                 contact;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsRefuse(comm, idle, why));
-  PetscCall(OperatorsGetModel(operators, &model, &contact));
-  PetscCall(ModelGetScene(model, &scene));
-  PetscCall(ContactGetInterfaces(contact, &n, &c));
-  for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(OptionsRefuseOf(comm, scene->loads[i].name, ramps, why));
-  for (PetscInt i = 0; i < n; i++) PetscCall(OptionsRefuseOf(comm, c[i].name, ramps, why));
-  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OptionsRefuseOf(comm, scene->parts[i].name, "velocity", why));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end)
 {
   PetscFunctionBeginUser;
   PetscCall(ExternalCheckLate(r->run.external, end, r->dt, LATE_NEVER));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedRefuseImpulses(ReducedRun r, const char why[])
-{
-  PetscInt n;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsRefuse(r->comm, "-impulses", why));
-  PetscCall(ExternalCountHits(r->run.external, &n));
-  for (PetscInt i = 0; i < n; i++) {
-    ExternalHit hit;
-
-    PetscCall(ExternalGetHit(r->run.external, i, &hit));
-    PetscCall(OptionsRefuseOf(r->comm, hit.name, "at part impulse time", why));
-  }
   PetscFunctionReturn(0);
 }

@@ -17,7 +17,8 @@ static const Quantity rows[] = {
   {"-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", NULL, QUANTITY_BOOL,
    QUANTITY_AT(struct _p_Results, fields), .initial = PETSC_TRUE},
 };
-static const QuantityTable results_quantities = {"Results", "results.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+static const QuantityTable results_quantities = {"Results", "results.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                                 .in = 0};
 
 PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results)
 {
@@ -37,6 +38,13 @@ PetscErrorCode ResultsSetFromOptions(Results results)
   PetscCall(QuantitiesRead(results->comm, &results_quantities, results));
   PetscCheck(results->dir[0] && strlen(results->dir) < room, results->comm, PETSC_ERR_USER_INPUT,
              "-output_dir must be the name of a folder, of at most %d characters", (int)room);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ResultsVisit(Results results, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &results_quantities, NULL, results, NULL));
   PetscFunctionReturn(0);
 }
 

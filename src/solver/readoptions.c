@@ -237,13 +237,25 @@ PetscErrorCode SolverReadFactorOptions(MPI_Comm comm)
 
 PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm)
 {
+  static const char why[] =
+    "not used: it belongs to an iterative -st_ksp_type such as gmres, since a factorised matrix "
+    "needs no iteration";
   static const char *const iterated[] = {"st_ksp_"};
-  PetscBool                left;
+  PetscBool                left, used;
+  PetscInt                 n;
+  char                   **names, **values, option[256];
 
   PetscFunctionBeginUser;
   PetscCall(PrefixIsLeft(1, iterated, &left));
   if (!left) PetscFunctionReturn(0);
   PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton)); /* -help lists a prefix once */
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   PetscCall(KspReadOptions(comm, "st_", KSPGMRES, PCNONE));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscOptionsUsed(NULL, names[i], &used));
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", names[i]));
+    if (used) PetscCall(OptionsRefuse(comm, option, why));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);
 }

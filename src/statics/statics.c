@@ -29,6 +29,13 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode StaticsVisit(Statics s, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &statics_quantities, NULL, s, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
 {
   PetscFunctionBeginUser;

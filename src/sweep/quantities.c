@@ -7,13 +7,15 @@ static const char *const methods[] = {[SWEEP_REDUCED] = "reduced", [SWEEP_FULL] 
 static const char *const stiffnesses[] = {
   [SWEEP_SYMMETRISED] = "symmetrised", [SWEEP_FRICTIONLESS] = "frictionless", NULL};
 
-static const char *SweepIdleNotReal(const void *sweep)
+static const char *SweepIdleNotReal(const void *sweep, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_Sweep *)sweep)->method == SWEEP_REAL ? NULL : "not used without -sweep_method real";
 }
 
-static const char *SweepIdleFull(const void *sweep)
+static const char *SweepIdleFull(const void *sweep, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_Sweep *)sweep)->method == SWEEP_FULL ? "not used by -sweep_method full" : NULL;
 }
 
@@ -52,4 +54,4 @@ static const Quantity rows[] = {
    SWEEP_AT(restart), .initial = PETSC_TRUE},
 };
 
-const QuantityTable sweep_quantities = {"Sweep", "sweep.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable sweep_quantities = {"Sweep", "sweep.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = RUN_SWEEP};

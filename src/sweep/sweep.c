@@ -83,6 +83,13 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SweepVisit(Sweep sweep, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &sweep_quantities, NULL, sweep, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
 {
   static const char *const factors[] = {"_alpha", "_beta", "_viscosity", "_spin"};

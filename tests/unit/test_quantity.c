@@ -17,8 +17,9 @@ typedef struct {
   char      name[16], title[8], file[PETSC_MAX_PATH_LEN];
 } Owner;
 
-static const char *Idle(const void *owner)
+static const char *Idle(const void *owner, const QuantityRun *run)
 {
+  (void)run;
   return ((const Owner *)owner)->way == SLOW ? "not used without -way fast" : NULL;
 }
 
@@ -41,7 +42,7 @@ static const Quantity    rows[]  = {
   {"-edges", "frequencies", "Hz", QUANTITY_REALS, ROW(edge), QUANTITY_WITHIN(0, 1e30)},
   {"-title", "a word", NULL, QUANTITY_TEXT, ROW(title), .text = "disc"},
 };
-static const QuantityTable table = {"Test", "test.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+static const QuantityTable table = {"Test", "test.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
 
 static PetscErrorCode Read(const char options[], Owner *owner)
 {
@@ -116,6 +117,39 @@ static PetscErrorCode TestLimits(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: a row that the run does not read is accepted, one that it reads is refused, or the message lacks the
+   reason. The words of the bits are those of the manual page of quantity.h */
+static PetscErrorCode TestRefuse(int *failed)
+{
+  static const struct {
+    unsigned    does;
+    const char *said; /* empty: accepted */
+  } runs[] = {
+    {RUN_MODES, ""},
+    {RUN_STATIC | RUN_EQUILIBRIUM,
+     "-speed 0.5: not used by -analysis test; it belongs to -analysis modes and frf, and -dynamics_model reduced"},
+    {RUN_CYCLE | RUN_REDUCED, ""},
+    {RUN_FRF | RUN_SLIDING, "-speed 0.5: not used without -way fast"},
+  };
+  Quantity            row   = rows[1];
+  const QuantityTable other = {"Test", "test.h", 1, &row, .in = RUN_MODES | RUN_FRF | RUN_REDUCED};
+  Owner               o;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(runs); i++) {
+    QuantityRun    run = {PETSC_COMM_WORLD, "test", runs[i].does};
+    PetscErrorCode code;
+
+    PetscCall(Read(runs[i].does & RUN_FRF ? "-way slow" : "", &o));
+    last[0] = '\0';
+    PetscCall(PetscPushErrorHandler(Keep, NULL));
+    code = QuantitiesRefuse(&other, NULL, &o, NULL, &run);
+    PetscCall(PetscPopErrorHandler());
+    *failed += CheckTrue(runs[i].said, !code == !runs[i].said[0] && !strcmp(last, runs[i].said), code);
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Sum(const char options[], uint64_t *sum)
 {
   const ChecksumPart *part;
@@ -156,11 +190,14 @@ static PetscErrorCode TestChecksum(int *failed)
 
 int main(int argc, char **argv)
 {
-  int failed = 0;
+  char *words[] = {argv[0], "-speed", "0.5", NULL}, **command = words; /* what TestRefuse() judges */
+  int   failed = 0;
 
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  argc = 3;
+  PetscCall(PetscInitialize(&argc, &command, NULL, NULL));
   PetscCall(TestRead(&failed));
   PetscCall(TestLimits(&failed));
+  PetscCall(TestRefuse(&failed));
   PetscCall(TestChecksum(&failed));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscFinalize());

@@ -1,14 +1,6 @@
-/*
-   Who reads what stands on the command line: see arguments.c.
-*/
+/* What stands on the command line: see arguments.c */
 #include <squeal/options.h>
 #include <strings.h>
-
-struct _p_OptionsClaims {
-  PetscInt     n;
-  const char **name, **value; /* as on the command line; value NULL without */
-  int         *reader;        /* -1: nobody yet */
-};
 
 /* Names and values of the command line, by PETSc's rule; the caller frees both arrays */
 static PetscErrorCode ArgumentsGet(PetscInt *n, const char ***name, const char ***value)
@@ -55,8 +47,8 @@ static PetscErrorCode ArgumentsRefuse(MPI_Comm comm, const char option[], size_t
   PetscFunctionBeginUser;
   PetscCall(ArgumentsGet(&n, &name, &value));
   for (PetscInt i = n - 1; i >= 0; i--) /* the last one is in force */
-    PetscCheck(strncasecmp(name[i], option, length), comm, PETSC_ERR_USER_INPUT, "%.*s%s%s%s: %s", (int)length, option,
-               strlen(name[i]) > length ? name[i] + length : "", value[i] ? " " : "", value[i] ? value[i] : "", why);
+    PetscCheck(strncasecmp(name[i], option, length), comm, PETSC_ERR_USER_INPUT, "%s%s%s: %s", name[i],
+               value[i] ? " " : "", value[i] ? value[i] : "", why);
   PetscCall(PetscFree2(name, value));
   PetscFunctionReturn(0);
 }
@@ -96,56 +88,5 @@ PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const c
 {
   PetscFunctionBeginUser;
   PetscCall(ArgumentsRefuseEach(comm, "", prefixes, 0, why));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsClaimsCreate(OptionsClaims *claims)
-{
-  OptionsClaims c;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&c));
-  PetscCall(ArgumentsGet(&c->n, &c->name, &c->value));
-  PetscCall(PetscMalloc1(c->n, &c->reader));
-  for (PetscInt i = 0; i < c->n; i++) c->reader[i] = -1;
-  *claims = c;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsClaim(OptionsClaims c, int reader)
-{
-  PetscBool used;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->n; i++) {
-    if (c->reader[i] >= 0) continue;
-    PetscCall(PetscOptionsUsed(NULL, c->name[i] + strspn(c->name[i], "-"), &used));
-    if (used) c->reader[i] = reader;
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsClaimsCheck(MPI_Comm comm, OptionsClaims c, const OptionsReader readers[], const char analysis[])
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->n; i++) {
-    const OptionsReader *reader = c->reader[i] < 0 ? NULL : &readers[c->reader[i]];
-
-    PetscCheck(!reader || reader->in_force, comm, PETSC_ERR_USER_INPUT,
-               "%s%s%s: not used by -analysis %s; it belongs to %s", c->name[i], c->value[i] ? " " : "",
-               c->value[i] ? c->value[i] : "", analysis, reader->belongs);
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode OptionsClaimsDestroy(OptionsClaims *claims)
-{
-  OptionsClaims c = *claims;
-
-  PetscFunctionBeginUser;
-  if (!c) PetscFunctionReturn(0);
-  PetscCall(PetscFree2(c->name, c->value));
-  PetscCall(PetscFree(c->reader));
-  PetscCall(PetscFree(*claims));
   PetscFunctionReturn(0);
 }

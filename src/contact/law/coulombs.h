@@ -41,7 +41,8 @@ static const FrictionParameter coulombs_rows[] = {
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE,
    .rest        = PETSC_TRUE},
-  {{"-mu_slope", "its slope with the slip speed about the stated one", "s/m", QUANTITY_REAL, FRICTION_AT(1)},
+  {{"-mu_slope", "its slope with the slip speed about the stated one", "s/m", QUANTITY_REAL, FRICTION_AT(1),
+    .in = RUN_MOVES, .unread = ": the loads tell the forces, and nothing moves"},
    .coefficient = PETSC_FALSE},
 };
 

@@ -100,8 +100,10 @@ static PetscBool KindHas(const FrictionKind *kind, const char name[])
   return PETSC_FALSE;
 }
 
-/* Rows of one law into a law of that kind; of laws that were not chosen those that no other has shown */
-static PetscErrorCode KindRead(MPI_Comm comm, const char name[], const FrictionKind *chosen, FrictionLaw *law)
+/* Shows the rows of one law, a law of that kind their owner; of laws that were not chosen those that no other has
+   shown */
+static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, FrictionLaw *law,
+                                const QuantityVisitor *visitor)
 {
   const FrictionKind *kind = KindOf(law);
   Quantity            row[FRICTION_PARAMETERS];
@@ -117,7 +119,42 @@ static PetscErrorCode KindRead(MPI_Comm comm, const char name[], const FrictionK
     if (!shown) row[n_rows++] = kind->parameter[j].row;
   }
   PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
-  PetscCall(QuantitiesReadOf(comm, name, &(QuantityTable){title, "frictionlaw.h", n_rows, row}, law));
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name, law, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind */
+static PetscErrorCode KindsVisit(const char name[], FrictionLaw *law, const QuantityVisitor *visitor)
+{
+  const char    *word[N_KINDS + 1] = {NULL};
+  int            chosen            = (int)law->kind;
+  const Quantity row               = {"-friction_law",
+                                      "how friction depends on the slip speed",
+                                      NULL,
+                                      QUANTITY_WORD,
+                                      .size    = sizeof(chosen),
+                                      .words   = word,
+                                      .initial = 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){"Friction of contact", "frictionlaw.h", 1, &row, .in = 0}, name,
+                            &chosen, NULL));
+  if (law->kind != chosen) *law = (FrictionLaw){.kind = chosen};
+  for (PetscInt k = 0; k < N_KINDS; k++) {
+    FrictionLaw other = {.kind = k};
+
+    PetscCall(KindVisit(name, kinds[chosen], k == chosen ? law : &other, visitor));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionVisit(const FrictionLaw *law, const char name[], const QuantityVisitor *visitor)
+{
+  FrictionLaw copy = *law;
+
+  PetscFunctionBeginUser;
+  PetscCall(KindsVisit(name, &copy, visitor));
   PetscFunctionReturn(0);
 }
 
@@ -161,23 +198,9 @@ static PetscErrorCode LawCheck(MPI_Comm comm, const char name[], const FrictionL
 
 PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law)
 {
-  const char    *word[N_KINDS + 1] = {NULL};
-  int            chosen            = 0;
-  const Quantity row               = {
-                  "-friction_law", "how friction depends on the slip speed", NULL, QUANTITY_WORD, .size = sizeof(chosen),
-                  .words = word,
-  };
-  const QuantityTable table = {"Friction of contact", "frictionlaw.h", 1, &row};
-
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
-  PetscCall(QuantitiesReadOf(comm, name, &table, &chosen));
-  *law = (FrictionLaw){.kind = chosen};
-  for (PetscInt k = 0; k < N_KINDS; k++) {
-    FrictionLaw read = {.kind = k};
-
-    PetscCall(KindRead(comm, name, kinds[chosen], k == chosen ? law : &read));
-  }
+  *law = (FrictionLaw){.kind = 0};
+  PetscCall(KindsVisit(name, law, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
   PetscCall(KindsRefuse(comm, name, law));
   PetscCall(LawCheck(comm, name, law));
   PetscFunctionReturn(0);
@@ -206,15 +229,6 @@ PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const Frictio
       PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n",
                              name, q->row.name + 1, mu, LARGEST_MU, mu, mu / 100));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode FrictionRefuseSlopes(MPI_Comm comm, const char name[], const FrictionLaw *law, const char why[])
-{
-  PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < KindOf(law)->n; j++)
-    if (!KindOf(law)->parameter[j].steady)
-      PetscCall(OptionsRefuseOf(comm, name, KindOf(law)->parameter[j].row.name + 1, why));
   PetscFunctionReturn(0);
 }
 

@@ -18,11 +18,20 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactProjectorVisit(ContactProjector p, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &projector_quantities, NULL, p, NULL));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCall(SlidingVisit(&p->contact->interfaces[i], &p->sliding[i], visitor));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesRead(p->contact->comm, &projector_quantities, p));
-  for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlidingSetFromOptions(p->contact, i, &p->sliding[i]));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) p->sliding[i].ramp.shape = RAMP_SMOOTH;
+  PetscCall(ContactProjectorVisit(p, &(QuantityVisitor){QuantitiesReadVisited, &p->contact->comm}));
   PetscFunctionReturn(0);
 }
 

@@ -152,7 +152,8 @@ struct _p_ContactProjector {
 };
 
 /* sliding.c - options of the sliding of interface i, after its own ones */
-PETSC_INTERN PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, ContactSliding *sliding);
+PETSC_INTERN PetscErrorCode SlidingVisit(const ContactInterface *c, ContactSliding *sliding,
+                                         const QuantityVisitor *visitor);
 /* sliding.c - raises the error for a sliding that is not fully said */
 PETSC_INTERN PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const ContactSliding *sliding);
 PETSC_INTERN PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer);

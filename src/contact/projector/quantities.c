@@ -13,6 +13,6 @@ static const Quantity sliding[] = {
 };
 
 const QuantityTable projector_quantities = {"Contact forces in dynamics", "projector.h",
-                                            PETSC_STATIC_ARRAY_LENGTH(forces), forces};
+                                            PETSC_STATIC_ARRAY_LENGTH(forces), forces, .in = RUN_MESH};
 const QuantityTable sliding_quantities   = {"Sliding in time of contact", "projector.h",
-                                            PETSC_STATIC_ARRAY_LENGTH(sliding), sliding};
+                                            PETSC_STATIC_ARRAY_LENGTH(sliding), sliding, .in = RUN_IN_TIME};

@@ -23,13 +23,13 @@ static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
   for (int d = 0; d < 3; d++) sliding->axis[d] = length > 0 ? vector[d] / length : 0;
 }
 
-PetscErrorCode SlidingSetFromOptions(Contact contact, PetscInt i, ContactSliding *sliding)
+PetscErrorCode SlidingVisit(const ContactInterface *c, ContactSliding *sliding, const QuantityVisitor *visitor)
 {
-  const ContactInterface *c = &contact->interfaces[i];
+  const char *still = Vec3Length(c->rotation) > 0 || Vec3Length(c->slip) > 0 ? NULL : CONTACT_STILL;
 
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesReadOf(contact->comm, c->name, &sliding_quantities, sliding));
-  PetscCall(RampSetFromOptions(contact->comm, "Ramp of contact", c->name, &sliding->ramp));
+  PetscCall(QuantitiesVisit(visitor, &sliding_quantities, c->name, sliding, NULL));
+  PetscCall(RampVisit(visitor, "Ramp of contact", c->name, &sliding->ramp, still));
   SlidingSetAxis(c, sliding);
   PetscFunctionReturn(0);
 }

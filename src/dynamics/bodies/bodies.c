@@ -69,12 +69,19 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies)
 static const char *const kernels[] = {[PETSC_FALSE] = "auto", [PETSC_TRUE] = "general", NULL};
 static const Quantity kernel[] = {{"-dynamics_kernel", "internal forces; general: one matrix of blocks for every body",
                                    NULL, QUANTITY_WORD, QUANTITY_AT(struct _p_Bodies, no_sweep), .words = kernels}};
-static const QuantityTable bodies_quantities = {"Bodies in time", "dynamics.h", 1, kernel};
+static const QuantityTable bodies_quantities = {"Bodies in time", "dynamics.h", 1, kernel, .in = RUN_MESH};
 
 PetscErrorCode BodiesSetFromOptions(Bodies b)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(b->comm, &bodies_quantities, b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodiesVisit(Bodies b, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &bodies_quantities, NULL, b, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -9,6 +9,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/operators.h>
 
 typedef struct _p_Bodies *Bodies;
@@ -76,6 +77,9 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies);
 .  -dynamics_kernel <auto|general> - general: one sparse matrix of 3 x 3 blocks for every body
 @*/
 PetscErrorCode BodiesSetFromOptions(Bodies bodies);
+
+/* BodiesVisit - shows the rows of its options. Collective. */
+PETSC_INTERN PetscErrorCode BodiesVisit(Bodies b, const QuantityVisitor *visitor);
 
 /*@ BodiesSetUp - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels
    from

@@ -28,6 +28,22 @@ PetscErrorCode ExternalSetFromOptions(External external)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ExternalVisit(External external, const QuantityVisitor *visitor)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (PetscInt i = 0; i < external->n_loads; i++)
+    PetscCall(RampVisit(visitor, "Ramp of load", scene->loads[i].name, &external->loads[i].ramp, NULL));
+  for (PetscInt i = 0; i < external->n_motions; i++)
+    PetscCall(RampVisit(visitor, "Ramp of motion", scene->motions[i].name, &external->motions[i].ramp, NULL));
+  PetscCall(QuantitiesVisitList(visitor, &impulses_list, external->n_impulses, external->impulses));
+  for (PetscInt i = 0; i < external->n_parts; i++)
+    PetscCall(QuantitiesVisit(visitor, &start_velocity, scene->parts[i].name, &external->velocity[3 * i], NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExternalSetUp(External external, Bodies bodies)
 {
   PetscFunctionBeginUser;

@@ -12,6 +12,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include "dynamics/bodies/bodies.h"
 
 typedef struct _p_External *External;
@@ -48,6 +49,9 @@ PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value.
 */
 PETSC_INTERN PetscErrorCode ExternalSetFromOptions(External external);
+
+/* ExternalVisit - shows the rows of its options. Collective. */
+PETSC_INTERN PetscErrorCode ExternalVisit(External external, const QuantityVisitor *visitor);
 
 /*
    ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold(),

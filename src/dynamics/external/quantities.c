@@ -15,7 +15,10 @@ static const Quantity start[] = {
   {"-velocity", "at the start in x,y,z", "m/s", QUANTITY_REALS, .at = 0, .size = 3 * sizeof(PetscReal)},
 };
 
-static const QuantityTable impulses       = {"Impulse", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(impulse), impulse};
-const QuantityTable        start_velocity = {"Start of part", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(start), start};
-const QuantityList impulses_list = {"-impulses", "at nodes, each the prefix of its -at and -impulse", sizeof(Impulse),
-                                    &impulses, ImpulseCheck};
+static const QuantityTable impulses       = {"Impulse", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(impulse), impulse,
+                                             .in = RUN_HISTORY | RUN_MAP};
+const QuantityTable        start_velocity = {"Start of part", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(start), start,
+                                             .in = RUN_HISTORY};
+const QuantityList         impulses_list  = {"-impulses",     "at nodes, each the prefix of its -at and -impulse",
+                                             sizeof(Impulse), &impulses,
+                                             ImpulseCheck,    .in = RUN_HISTORY | RUN_MAP};

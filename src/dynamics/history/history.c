@@ -34,6 +34,13 @@ PetscErrorCode HistorySetFromOptions(History h)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode HistoryVisit(History h, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &history_quantities, NULL, h, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscReal end, PetscReal dt)
 {
   const ModelScene *scene;

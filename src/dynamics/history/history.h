@@ -4,6 +4,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <squeal/projector.h>
 #include <squeal/results.h>
 #include "ledger.h"
@@ -63,6 +64,9 @@ PETSC_INTERN PetscErrorCode HistoryCreate(MPI_Comm comm, History *history);
 
 /* -dynamics_history_interval, -dynamics_pairs_interval, -dynamics_snapshot_interval, -dynamics_live */
 PETSC_INTERN PetscErrorCode HistorySetFromOptions(History history);
+
+/* HistoryVisit - shows the rows of its options. Collective. */
+PETSC_INTERN PetscErrorCode HistoryVisit(History h, const QuantityVisitor *visitor);
 
 /* Takes what is recorded, and rounds the intervals to whole steps dt (0 for not), the run to `end` at most. Collective.
    Errors: PETSC_ERR_USER_INPUT for intervals of the command line that are longer, or without effect. */

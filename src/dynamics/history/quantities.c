@@ -14,4 +14,5 @@ static const Quantity rows[] = {
    .initial = 1, QUANTITY_NOT_NEGATIVE},
 };
 
-const QuantityTable history_quantities = {"History", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable history_quantities = {"History", "dynamics.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                          .in = RUN_HISTORY};

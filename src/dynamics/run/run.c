@@ -4,18 +4,10 @@
 #include "dynamics/dynamicsimpl.h"
 #include <squeal/options.h>
 
-/* Options of the explicit integrator: those that change the answer are refused wherever they stand, the others on the
-   command line */
+/* Options of the explicit integrator that change the answer */
 static PetscErrorCode RunRefuse(Dynamics d, const char by[])
 {
-  static const char idle[] =
-    "-ts_central_b -dynamics_step_fraction -dynamics_step_force -dynamics_kernel -projector_max_it";
-  char why[160];
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why), "not used by %s", by));
-  PetscCall(OptionsRefuse(d->comm, idle, why));
-  PetscCall(OptionsRefusePrefix(d->comm, "-ts_monitor -ts_view -ts_adapt_ -ts_trajectory_ -ts_event_", why));
   PetscCheck(!d->coriolis && !d->centrifugal, d->comm, PETSC_ERR_SUP,
              "%s knows no inertial forces of parts that turn: leave out -dynamics_coriolis and -dynamics_centrifugal",
              by);

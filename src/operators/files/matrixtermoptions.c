@@ -94,14 +94,19 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
   PetscFunctionReturn(0);
 }
 
+const QuantityList operators_terms = {"-terms",
+                                      "matrices from files, each the prefix of its -file and -kind",
+                                      sizeof(MatrixTerm),
+                                      &operators_term,
+                                      MatrixTermSetFactors,
+                                      .in = 0};
+
 PetscErrorCode MatrixTermsSetFromOptions(Operators o)
 {
-  const QuantityList list = {"-terms", "matrices from files, each the prefix of its -file and -kind",
-                             sizeof(MatrixTerm), &operators_term, MatrixTermSetFactors};
-  PetscBool          help, all;
+  PetscBool help, all;
 
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesReadList(o->comm, &list, NULL, &o->n_named, &o->named));
+  PetscCall(QuantitiesReadList(o->comm, &operators_terms, NULL, &o->n_named, &o->named));
   PetscCall(HelpIsAsked(&help, &all));
   for (PetscInt t = 0; t < o->n_named && !help; t++) PetscCall(MatrixTermCheck(o->comm, &o->named[t]));
   PetscFunctionReturn(0);

@@ -1,6 +1,6 @@
 /* Cycle: options, the flow of a run */
 #include "cycleimpl.h"
-#include "reduced/idle.h"
+#include "reduced/refuse.h"
 
 PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle)
 {
@@ -34,6 +34,20 @@ PetscErrorCode CycleSetFromOptions(LimitCycle c)
              "-cycle_steps %" PetscInt_FMT " must be an odd number, 7 or more, or 0 for those of the transient",
              c->steps);
   PetscCall(CycleCheckBranch(c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleFollowsTransient(LimitCycle c, PetscBool *follows)
+{
+  PetscFunctionBeginUser;
+  *follows = c->from_mode ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CycleVisit(LimitCycle c, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &cycle_quantities, NULL, c, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -202,14 +216,9 @@ static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
 /* Without a transient: the bodies, and a time after all ramps */
 static PetscErrorCode CycleReduce(LimitCycle c, Results results)
 {
-  static const char idle[] = "not used by -cycle_start mode, which runs no transient";
-
   PetscFunctionBeginUser;
-  PetscCall(ReducedRefuseIdle(c->comm, c->operators, idle));
-  PetscCall(OptionsRefuse(c->comm, "-ts_max_time -ts_exact_final_time -ts_init_time", idle));
   PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
-  PetscCall(ReducedRefuseImpulses(c->reduced, idle));
   PetscCall(ReducedChoose(c->reduced));
   PetscCall(ShiftInvertDestroy(&c->reduced->inverse));
   c->reduced->state.time = CYCLE_FAR;

@@ -6,13 +6,15 @@
 
 static const char *const starts[] = {[PETSC_FALSE] = "transient", [PETSC_TRUE] = "mode", NULL};
 
-static const char *CycleIdleAlone(const void *cycle)
+static const char *CycleIdleAlone(const void *cycle, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_LimitCycle *)cycle)->parameter[0] ? NULL : "not used without -cycle_parameter";
 }
 
-static const char *CycleIdleTransient(const void *cycle)
+static const char *CycleIdleTransient(const void *cycle, const QuantityRun *run)
 {
+  (void)run;
   return ((const struct _p_LimitCycle *)cycle)->from_mode ? NULL : "not used without -cycle_start mode";
 }
 
@@ -42,4 +44,5 @@ static const Quantity rows[] = {
    .idle = CycleIdleTransient},
 };
 
-const QuantityTable cycle_quantities = {"Limit cycles", "cycle.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows};
+const QuantityTable cycle_quantities = {"Limit cycles", "cycle.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                        .in = RUN_CYCLE};

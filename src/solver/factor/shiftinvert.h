@@ -1,6 +1,7 @@
 /* Private to the solvers in statics/, modes/ and sweep/: one factorisation at a shift, its solves, and its inertia */
 #pragma once
 
+#include <squeal/quantity.h>
 #include "base/process/progress.h"
 #include "base/algebra/synchronize.h"
 #include <squeal/pencil.h>
@@ -146,5 +147,8 @@ PETSC_INTERN PetscErrorCode MassIsSingular(const PencilMatrices *pencil, PetscBo
 PETSC_INTERN PetscErrorCode SolverReadEigenOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadFactorOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm);
+
+/* quantities.c - shows which runs read options of PETSc and SLEPc. Collective */
+PETSC_INTERN PetscErrorCode SolverVisit(const QuantityVisitor *visitor);
 /* Whether an option that begins so, as "pep_", is given */
 PETSC_INTERN PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given);

@@ -1,0 +1,58 @@
+/* Options of PETSc and SLEPc, by what their names begin with, and which runs read them */
+#include "solver/factor/shiftinvert.h"
+#include <squeal/quantity.h>
+
+static const char *SolverIdleSteps(const void *owner, const QuantityRun *run)
+{
+  (void)owner;
+  (void)run;
+  return "not used, runs in time take explicit steps of one length";
+}
+
+/* What runs in time leave out is of integrators that are implicit or choose their steps */
+#define OPTIONS(prefix, bits)                                                                                          \
+  {                                                                                                                    \
+    prefix, NULL, NULL, QUANTITY_PREFIX, .in = (bits)                                                                  \
+  }
+#define UNUSED(prefix)                                                                                                 \
+  {                                                                                                                    \
+    prefix, NULL, NULL, QUANTITY_PREFIX, .in = RUN_IN_TIME, .idle = SolverIdleSteps                                    \
+  }
+
+static const Quantity rows[] = {
+  OPTIONS("-ts_", RUN_IN_TIME),
+  OPTIONS("-ts_max_time", RUN_HISTORY | RUN_MAP),
+  OPTIONS("-ts_exact_final_time", RUN_HISTORY | RUN_MAP),
+  OPTIONS("-ts_init_time", RUN_HISTORY | RUN_MAP),
+  OPTIONS("-ts_max_steps", RUN_HISTORY),
+  OPTIONS("-ts_central_b", RUN_MESH),
+  OPTIONS("-ts_monitor", RUN_MESH),
+  OPTIONS("-ts_view", RUN_MESH),
+  OPTIONS("-ts_trajectory_", RUN_MESH),
+  OPTIONS("-ts_event_", RUN_MESH),
+  UNUSED("-ts_rtol"),
+  UNUSED("-ts_atol"),
+  UNUSED("-ts_adapt_"),
+  UNUSED("-ts_max_reject"),
+  UNUSED("-ts_max_snes_"),
+  UNUSED("-ts_error_if_"),
+  UNUSED("-ts_fd_color"),
+  UNUSED("-ts_use_splitrhs"),
+  UNUSED("-ts_time_span"),
+  UNUSED("-ts_rhs_jacobian_"),
+  OPTIONS("-eps_", RUN_LINEAR | RUN_REDUCED),
+  OPTIONS("-pep_", RUN_LINEAR | RUN_REDUCED),
+  OPTIONS("-bv_", RUN_LINEAR | RUN_REDUCED),
+  OPTIONS("-ds_", RUN_LINEAR | RUN_REDUCED),
+  OPTIONS("-rg_", RUN_LINEAR | RUN_REDUCED),
+  OPTIONS("-st_", RUN_FACTORS),
+  OPTIONS("-mat_mumps_", RUN_FACTORS),
+};
+static const QuantityTable librarys = {"PETSc and SLEPc", "petscsys.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
+
+PetscErrorCode SolverVisit(const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &librarys, NULL, NULL, NULL));
+  PetscFunctionReturn(0);
+}
