@@ -57,7 +57,7 @@ UNROWED = dict.fromkeys("squeal_traceback squeal_log squeal_progress squeal_memo
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
                   "PETSc's own: looked at, read by PETSc") | \
     {"ts_central_b": "read by TSSetFromOptions()", "contacts": "a list of the scene, in an array of the room",
-     "frf_probes": "a list of names", "terms": "whether it is given"}
+     "terms": "whether it is given"}
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
 UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction

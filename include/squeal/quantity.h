@@ -51,7 +51,7 @@ typedef enum {
   QUANTITY_WORD,   /* one of .words, as int: an enumeration or PetscBool */
   QUANTITY_TEXT,   /* char [n] */
   QUANTITY_NAME,   /* char *, which the owner frees */
-  QUANTITY_NAMES,  /* char *[n], likewise; all of them or none */
+  QUANTITY_NAMES,  /* char *[n], likewise; all of them or none. With .count char **, of any number */
   QUANTITY_PATH,   /* char [PETSC_MAX_PATH_LEN], relative to its options file */
   QUANTITY_VIEWER, /* PetscViewer, which the owner destroys; NULL where it is not given */
   QUANTITY_PREFIX, /* nothing: options of PETSc and SLEPc that begin so, which read themselves */

@@ -92,9 +92,6 @@ PetscErrorCode FrfSetFromOptions(Frf frf)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(frf->comm, &frf_quantities, frf));
-  PetscCall(OptionsGetWords(frf->comm, "-frf_probes",
-                            "where the response is recorded: probes, circles; default all probes", &frf->n_places,
-                            &frf->place));
   PetscCall(DirectionsCheck(frf));
   if (frf->frequencies[0]) PetscCall(FrequenciesParse(frf));
   if (frf->times[0]) PetscCall(TimesParse(frf));

@@ -1,4 +1,4 @@
-/* Options of frequency responses; -frf_probes, a list of names, is read beside them */
+/* Options of frequency responses */
 #include "frfimpl.h"
 
 #define FRF_AT(member) QUANTITY_AT(struct _p_Frf, member)
@@ -31,6 +31,8 @@ static const Quantity rows[] = {
    QUANTITY_POSITIVE, .idle = FrfIdleDirect},
   {"-frf_restart", "go on where a direct response of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
    FRF_AT(restart), .initial = PETSC_TRUE, .idle = FrfIdleModal},
+  {"-frf_probes", "where the response is recorded: probes, circles; default all probes", NULL, QUANTITY_NAMES,
+   FRF_AT(place), .count = offsetof(struct _p_Frf, n_places)},
 };
 
 const QuantityTable frf_quantities = {"Frequency response", "frf.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,

@@ -163,7 +163,11 @@ PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[]
     PetscCall(QuantityReadText(PetscOptionsObject, header, row, help, value, &given));
     break;
   case QUANTITY_NAMES:
-    PetscCall(QuantityReadNames(PetscOptionsObject, row, help, value, &given));
+    if (row->count)
+      PetscCall(
+        OptionsGetWords(PetscOptionsObject->comm, row->name, help, (PetscInt *)((char *)owner + row->count), value));
+    else
+      PetscCall(QuantityReadNames(PetscOptionsObject, row, help, value, &given));
     break;
   case QUANTITY_MANY:
     PetscCall(QuantityReadMany(PetscOptionsObject, row, help, value, (PetscInt *)((char *)owner + row->count)));
