@@ -1,5 +1,6 @@
 /* The chain of a run, from options to what an analysis begins with: the rooms in their order. No physics */
 #include "chain.h"
+#include "base/algebra/vec3.h"
 #include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
 
@@ -62,9 +63,31 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* Whether there are contacts, and loads, gravity or motions that close or open them; a given -contact_force is that of
+   all pairs closed */
+static PetscErrorCode ChainIsLoaded(const Chain *chain, PetscBool *loaded)
+{
+  const ContactInterface *interfaces;
+  const ModelScene       *scene;
+  PetscInt                n;
+
+  PetscFunctionBeginUser;
+  *loaded = PETSC_FALSE;
+  if (!chain->model) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(chain->model, &scene));
+  PetscCall(ContactGetInterfaces(chain->contact, &n, &interfaces));
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].force > 0) PetscFunctionReturn(0);
+  *loaded =
+    n && (scene->n_loads || scene->n_motions || Vec3Dot(scene->gravity, scene->gravity) > 0) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 /* What not every analysis needs */
 static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
 {
+  PetscBool loaded;
+
   PetscFunctionBeginUser;
   PetscCall(DynamicsCreate(comm, &chain->dynamics));
   if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
@@ -79,6 +102,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
+  PetscCall(ChainIsLoaded(chain, &loaded));
+  PetscCall(ModesSetLoaded(chain->modes, loaded));
   PetscCall(SolverReadEigenOptions(comm));
   PetscCall(SolverReadFactorOptions(comm));
   PetscCall(SolverReadIterativeOptions(comm));

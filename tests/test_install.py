@@ -34,7 +34,7 @@ from squeal.help_text import ask, options_of
 
 FOR_SOURCES = {"run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
                "completion.bash", "README.md"}
-SCENE = BRAKE + """modes: {band: "500,9000"}
+SCENE = BRAKE + """modes: {band: "500,9000", contact: all}
 """
 
 

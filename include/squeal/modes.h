@@ -87,8 +87,8 @@ the highest frequency
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called
 disc, the only one with the word disc, disk, rotor or drum in its name, in any letters
 .  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
--  -modes_contact <all|static> - whether the pencil that is set is to be one with all pairs closed, or
-about the sliding state (statics.h)
+-  -modes_contact <auto|all|static> - whether the pencil that is set is to be one with all pairs closed, or
+about the sliding state (statics.h); auto: about it where contacts are loaded
    The solvers take -eps_*, -pep_*, -st_*.
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);
@@ -96,7 +96,11 @@ PetscErrorCode ModesSetFromOptions(Modes modes);
 /*@ ModesVisit - shows the rows of its options. Collective. @*/
 PetscErrorCode ModesVisit(Modes modes, const QuantityVisitor *visitor);
 
-/*@ ModesGetContact - whether the options ask for the pairs closed in the sliding state. Not collective. @*/
+/*@ ModesSetLoaded - whether the scene has contacts and something that loads them: -modes_contact auto is about the
+    sliding state then; without this call it is not. Not collective. @*/
+PetscErrorCode ModesSetLoaded(Modes modes, PetscBool loaded);
+
+/*@ ModesGetContact - whether modes are about the pairs closed in the sliding state. Not collective. @*/
 PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static);
 
 /*@ ModesGetBand - the band of the options, Hz, and the largest growth that it covers, 1/s. Not collective.

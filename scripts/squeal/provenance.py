@@ -88,3 +88,11 @@ class Provenance:
     def is_true(self, name):
         """Whether a switch is on."""
         return self.value(name, "false").lower() in ("true", "1", "yes")
+
+
+def about_sliding(text, names):
+    """Whether modes are about the sliding state, as -modes_contact says; text and names: of an option, its value and its words."""
+    word = text("modes_contact", "auto")
+    forced = any(float(text(f"{name}_force", "0") or 0) for name in names("contacts"))
+    loaded = names("loads") or names("motions") or any(float(g) for g in names("model_gravity"))
+    return word == "static" or word == "auto" and bool(names("contacts") and loaded and not forced)

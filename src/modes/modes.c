@@ -34,10 +34,17 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum c)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesSetLoaded(Modes modes, PetscBool loaded)
+{
+  PetscFunctionBeginUser;
+  modes->loaded = loaded;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static)
 {
   PetscFunctionBeginUser;
-  *is_static = modes->is_static;
+  *is_static = modes->about == ABOUT_STATIC || (modes->about == ABOUT_AUTO && modes->loaded) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -45,6 +45,9 @@ typedef struct {
 /* Routes of a damped solution: by projection where its measure allows, always, never */
 typedef enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP } DampingRoute;
 
+/* About the sliding state where the scene is loaded, always with all pairs closed, always about the sliding state */
+typedef enum { ABOUT_AUTO, ABOUT_ALL, ABOUT_STATIC } ModesAbout;
+
 #define MODES_DAMPING "-modes_damping"
 
 /* What a choice saved, in words */
@@ -66,8 +69,10 @@ struct _p_Modes {
   PetscInt     most;            /* modes that a band may hold; 0: any number */
   PetscBool    has_most;        /* given */
   PetscReal    max_time;        /* s, of one solution; 0: any */
-  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, is_static, keep, filters;
+  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, keep, filters;
   PetscInt     count;
+  ModesAbout   about;    /* which pairs are closed */
+  PetscBool    loaded;   /* the scene has loads and contacts */
   DampingRoute damping;  /* of a damped solution */
   PetscInt     n_shifts; /* of a band; 0: chosen */
   char         disc[64];

@@ -5,7 +5,7 @@
 #define MODES_AT(member)    QUANTITY_AT(struct _p_Modes, member)
 #define MODES_GIVEN(member) .given = offsetof(struct _p_Modes, member)
 
-static const char *const contacts[] = {[PETSC_FALSE] = "all", [PETSC_TRUE] = "static", NULL};
+static const char *const contacts[] = {[ABOUT_AUTO] = "auto", [ABOUT_ALL] = "all", [ABOUT_STATIC] = "static", NULL};
 static const char *const routes[]   = {
     [DAMPING_AUTO] = "auto", [DAMPING_PROJECT] = "project", [DAMPING_PEP] = "pep", NULL};
 
@@ -40,8 +40,9 @@ static const Quantity rows[] = {
    NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100), .in = RUN_MODES},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
-  {"-modes_contact", "pairs that are closed: every one, or those of the sliding state", NULL, QUANTITY_WORD,
-   MODES_AT(is_static), .words = contacts, .restart = PETSC_TRUE},
+  {"-modes_contact",
+   "pairs that are closed: every one (all), those of the sliding state (static), which a scene with loads has (auto)",
+   NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE},
   {MODES_DAMPING,
    "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
    NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),

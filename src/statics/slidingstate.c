@@ -31,11 +31,11 @@ static PetscErrorCode StaticsCheckSliding(Statics s)
                "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
                c[i].name, (double)c[i].force);
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCheck(
-      c[i].slides || !FrictionExists(&c[i].friction) || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,
-      "-modes_contact static needs to know along what contact %s slides: give -%s_slip x,y,z or -%s_rotation, or "
-      "-%s_kt (N/m per pair) where it holds by friction",
-      c[i].name, c[i].name, c[i].name, c[i].name);
+    PetscCheck(c[i].slides || !FrictionExists(&c[i].friction) || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,
+               "modes about the sliding state need to know along what contact %s slides: give -%s_slip x,y,z or "
+               "-%s_rotation, or "
+               "-%s_kt (N/m per pair) where it holds by friction; or -modes_contact all",
+               c[i].name, c[i].name, c[i].name, c[i].name);
   PetscFunctionReturn(0);
 }
 

@@ -28,7 +28,7 @@ loads: press
 press: {set: block_top, force: "0,0,-100"}
 contacts: contact
 contact: {surfaces: "block_bottom,base_top", mu: 0.3, law: constraint, slip: "1,0,0", speed: 0.1}
-modes: {band: "0,3000", growth: 1000}
+modes: {band: "0,3000", growth: 1000, contact: all}
 sweep: {parameter: contact_mu, values: "0:0.6:4"}
 """
 MAP = BRAKE.replace("density: 2000}", "density: 2000, alpha: 300, beta: 1e-6}").replace(

@@ -8,6 +8,7 @@ from ..decks.mesh.elements import EDGES, SHAPES
 from ..decks.mesh.faces import faces_by_three, nodes_by_kind
 from ..friction import law_of
 from ..mesh.gmsh import DIMENSION, read_any
+from ..provenance import about_sliding
 from ..tables import BadInput
 from .shares import face_shares, set_shares
 
@@ -272,7 +273,7 @@ def scene_deck(options, mesh, count=0, sliding=False):
     wanted = int(options.number("modes_count", "20")) if target else 20
     if target and options.number("modes_target") > 1:
         build.notes.append(f"modes_target {options.text('modes_target')}: CalculiX finds the lowest modes")
-    if build.deck.contacts and build.deck.loads and options.text("modes_contact", "all") != "static":
+    if build.deck.contacts and build.deck.loads and not about_sliding(options.text, options.names):
         build.notes.append("modes_contact all: modes of the deck are about the pairs that its *STATIC closes")
     build.deck.modes = (count or wanted, 0.0 if target else low, 0.0 if target else high, Place("modes", 0))
     options.used |= {"model_mesh", "model_source", "analysis", *(name for name in options.given if name.startswith("rig_"))}

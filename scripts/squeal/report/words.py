@@ -2,6 +2,7 @@
 
 from ..friction import law_of
 from ..picture import MINUS
+from ..provenance import about_sliding
 from ..tables import prefixed
 from .markup import count, figures, tag
 
@@ -167,8 +168,7 @@ def range_words(text):
 def analysis_words(scene):
     """What was computed."""
     kind = scene.value("analysis", "modes")
-    own = scene.value("modes_contact") == "static"
-    about = "the pairs that the sliding state closes" if own else "all pairs closed"
+    about = "the pairs that the sliding state closes" if about_sliding(scene.value, scene.names) else "all pairs closed"
     low, high = (numbers(scene.value("modes_band")) + [0, 0])[:2]
     band = f"from {figures(low)} to {figures(high)} Hz" if high else (
         f"the {scene.value('modes_count')} nearest to {figures(scene.number('modes_target'))} Hz")

@@ -28,7 +28,7 @@ static const char most_used[] =
   "  -analysis static           or modes (default), sweep, transient, frf, map, cycle\n"
   "  -output_dir results        folder of tables and shapes\n"
   "  -modes_band 1000,10000     all modes between these frequencies, Hz\n"
-  "  -modes_contact static      modes about the pairs that touch while the bodies slide\n"
+  "  -modes_contact all         modes with all pairs closed, not about those that touch under the loads\n"
   "  -contact_mu 0.3            friction of the contact 'contact'; each name in a scene is the prefix of its options\n"
   "  -pad_young 16e9            modulus of the part 'pad', Pa\n"
   "  -sweep_parameter contact_mu -sweep_values 0:1:11\n"

@@ -116,12 +116,13 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
   (void)SweepClosedRange(sweep, &least, &most);
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
-  PetscCheck(!exact, sweep->comm, PETSC_ERR_SUP,
-             "-modes_contact static with -contact_law constraint: which pairs are closed changes between %s %.6g and "
-             "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
-             "); give -contact_law penalty or -sweep_method full",
-             parameters[sweep->grid.parameter[0][0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least,
-             most, n_all);
+  PetscCheck(
+    !exact, sweep->comm, PETSC_ERR_SUP,
+    "a sweep about the sliding state with -contact_law constraint: which pairs are closed changes between %s %.6g and "
+    "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
+    "); give -contact_law penalty, -sweep_method full or -modes_contact all",
+    parameters[sweep->grid.parameter[0][0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least, most,
+    n_all);
   PetscFunctionReturn(0);
 }
 
@@ -187,10 +188,9 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   }
   if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
   PetscCall(StaticsIsAffine(sweep->statics, &affine));
-  PetscCheck(
-    affine, sweep->comm, PETSC_ERR_SUP,
-    "-modes_contact static: pairs that hold by friction, friction damping, -static_geometric and -static_follower "
-    "change with the sliding state from point to point; give -sweep_method full");
+  PetscCheck(affine, sweep->comm, PETSC_ERR_SUP,
+             "a sweep about the sliding state: pairs that hold by friction, friction damping, -static_geometric and "
+             "-static_follower change with it from point to point; give -sweep_method full, or -modes_contact all");
   for (PetscInt k = 0; k < grid->n_places; k++)
     PetscCall(SweepStatusSolve(sweep, &grid->place[k], &grid->place[k].status));
   PetscCall(ChangesBracket(sweep));
