@@ -3,7 +3,7 @@
 
     verify/peaks.py RESPONSE MODES [--below 15000] [--rtol 3e-3] [--damping 0.05] [--mac 0.98]
 
-RESPONSE has peaks_modes.csv of `scripts/response --modes MODES`. Below that frequency (Hz) each mode whose label ends in
+RESPONSE has peaks_modes.csv of `scripts/response --modes MODES`. Below that frequency (Hz) each mode across the disc whose label ends in
 +) must have a peak with the relative difference of frequency, and of damping ratio where this is above 0.05 %, with the
 least MAC of the two shapes, and with its own label. Exit status: 0, or 1.
 """
@@ -29,7 +29,7 @@ def main():
         parser.add_argument(f"--{name}", type=float, default=default)
     args = parser.parse_args()
     plus = [row for row in rows(args.modes / "modes.csv")
-            if row["label"].endswith("+)") and args.above <= float(row["freq_hz"]) <= args.below]
+            if row["label"].startswith("(") and row["label"].endswith("+)") and args.above <= float(row["freq_hz"]) <= args.below]
     peaks = {row["mode"]: row for row in rows(args.response / "peaks_modes.csv")}
     faults, worst = [], [0.0, 0.0, 1.0]
     for mode in plus:
