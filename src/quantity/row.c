@@ -22,6 +22,18 @@ static PetscErrorCode QuantityReadWord(OptionsItems PetscOptionsObject, const ch
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for a word that fills its room, and may have been cut */
+static PetscErrorCode TextCheckLength(OptionsItems PetscOptionsObject, const Quantity *row, const char text[],
+                                      size_t size)
+{
+  const char *const prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
+
+  PetscFunctionBeginUser;
+  PetscCheck(strlen(text) + 1 < size, PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s %.40s... is too long: give at most %d characters", prefix, row->name + 1, text, (int)size - 2);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode QuantityReadText(OptionsItems PetscOptionsObject, const char header[], const Quantity *row,
                                        const char help[], char text[], PetscBool *given)
 {
@@ -30,6 +42,7 @@ static PetscErrorCode QuantityReadText(OptionsItems PetscOptionsObject, const ch
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(initial, text, sizeof(initial))); /* the text is written before PETSc's help shows it */
   PetscCall(PetscOptionsString(row->name, help, header, initial, text, row->size, given));
+  PetscCall(TextCheckLength(PetscOptionsObject, row, text, row->size));
   PetscFunctionReturn(0);
 }
 
@@ -42,6 +55,7 @@ static PetscErrorCode QuantityReadName(OptionsItems PetscOptionsObject, const ch
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(text, *name, sizeof(text)));
   PetscCall(PetscOptionsString(row->name, help, header, *name, text, sizeof(text), given));
+  PetscCall(TextCheckLength(PetscOptionsObject, row, text, sizeof(text)));
   PetscCall(PetscFree(*name));
   PetscCall(PetscStrallocpy(text, name));
   PetscFunctionReturn(0);
