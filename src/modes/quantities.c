@@ -41,7 +41,8 @@ static const Quantity rows[] = {
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
   {"-modes_contact",
-   "pairs that are closed: every one (all), those of the sliding state (static), which a scene with loads has (auto)",
+   "pairs that are closed: every one (all), those of the sliding state (static), or these where there are loads and no "
+   "-..._force (auto)",
    NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE},
   {MODES_DAMPING,
    "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",

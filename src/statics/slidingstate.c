@@ -28,7 +28,8 @@ static PetscErrorCode StaticsCheckSliding(Statics s)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCheck(c[i].force == 0, s->comm, PETSC_ERR_USER_INPUT,
-               "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads",
+               "-%s_force %.6g does nothing with -modes_contact static, which takes the normal forces from the -loads; "
+               "leave it out",
                c[i].name, (double)c[i].force);
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
     PetscCheck(c[i].slides || !FrictionExists(&c[i].friction) || c[i].kt > 0, s->comm, PETSC_ERR_USER_INPUT,

@@ -8,6 +8,7 @@
 #include <complex.h>
 
 #define SHARED 1e-3 /* of the motion, at least, with a partner */
+#define PAIR_NEAR 0.1 /* of the frequency: a pair whose real modes lie farther off is not alone */
 
 /* z'x[k] of n vectors, 0 where there is none */
 static PetscErrorCode VectorsDot(PetscInt n, Vec z, Vec x[], PetscScalar dot[])
@@ -154,9 +155,10 @@ PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const ModeMechanism *
     PetscCall(PetscViewerASCIIPrintf(viewer, "; a further damping ratio of %.3g %% would stop it",
                                      (double)(100 * mode->sigma / size)));
   PetscCall(PetscViewerASCIIPrintf(viewer, "), %s", MechanismName(m->kind, PETSC_TRUE)));
-  if (m->partner >= 0)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, " with mode %" PetscInt_FMT " (without friction and damping at about %.4g and %.4g Hz)", m->partner + 1,
-      (double)(m->real[0] / (2 * PETSC_PI)), (double)(m->real[1] / (2 * PETSC_PI))));
+  if (m->partner >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, " with mode %" PetscInt_FMT, m->partner + 1));
+  if (m->partner >= 0 && PetscAbsReal(m->real[0] - mode->omega) < PAIR_NEAR * mode->omega &&
+      PetscAbsReal(m->real[1] - mode->omega) < PAIR_NEAR * mode->omega)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (without friction and damping at about %.4g and %.4g Hz)",
+                                     (double)(m->real[0] / (2 * PETSC_PI)), (double)(m->real[1] / (2 * PETSC_PI))));
   PetscFunctionReturn(0);
 }
