@@ -7,8 +7,8 @@
 #include "modes/modesimpl.h"
 #include <complex.h>
 
-#define SHARED 1e-3 /* of the motion, at least, with a partner */
-#define PAIR_NEAR 0.1 /* of the frequency: a pair whose real modes lie farther off is not alone */
+#define SHARED    1e-3 /* of the motion, at least, with a partner */
+#define PAIR_NEAR 0.1  /* of the frequency: a pair whose real modes lie farther off is not alone */
 
 /* z'x[k] of n vectors, 0 where there is none */
 static PetscErrorCode VectorsDot(PetscInt n, Vec z, Vec x[], PetscScalar dot[])
