@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """modes_effects.csv and its fields beside changed matrices solved again by scipy:
 
-    effects.py RESULTS MATRICES MU [--tolerance 1e-6]
+    effects.py RESULTS MATRICES MU [--tolerance 1e-5]
 
 A mass, springs and dashpots at nodes are added to the matrices of -operators_save, with either sign; the central difference of the
 eigenvalue is the rate. The nodes are those of the table and some others; the rows of the table must be the best of each part."""
@@ -119,7 +119,7 @@ def main():
     parser.add_argument("results", type=Path)
     parser.add_argument("matrices", type=Path)
     parser.add_argument("mu", type=float)
-    parser.add_argument("--tolerance", type=float, default=1e-6)
+    parser.add_argument("--tolerance", type=float, default=1e-5)
     args = parser.parse_args()
     (places, of), rows = nodes_of(args.results / "modes_effects.h5"), read(args.results / "modes_effects.csv")
     parts = Provenance(args.results / "scene.yaml").names("parts")
