@@ -128,14 +128,15 @@ def of_map(one, other, limit):
 
 
 def added_columns(one, other):
-    """Names of columns that only the tables of the first folder have."""
+    """Names of tables that only the first folder has, and of columns that only its tables have."""
+    tables = {path.name for path in Path(one).glob("*.csv") if not (other / path.name).exists()}
     rows = [(read(path)[:1], read(other / path.name)[:1]) for path in Path(one).glob("*.csv") if (other / path.name).exists()]
-    return frozenset(name for first, second in rows if first and second for name in first[0].keys() - second[0].keys())
+    return frozenset(name for first, second in rows if first and second for name in first[0].keys() - second[0].keys()) | tables
 
 
 def difference(one, other, limit, added=frozenset()):
-    """The worst of all tables of two folders, but for the columns `added` of the first one."""
-    names = [{path.name for path in Path(folder).glob("*.csv")} for folder in (one, other)]
+    """The worst of all tables of two folders, but for the tables and columns `added` to the first one."""
+    names = [{path.name for path in Path(folder).glob("*.csv")} - added for folder in (one, other)]
     if names[0] != names[1] or not names[0]:
         return Difference(math.inf, f"tables {' '.join(sorted(names[0] ^ names[1])) or 'none'}")
     found = [of_table(name, read(one / name), read(other / name), limit, added) for name in sorted(names[0])]
