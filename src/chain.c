@@ -4,10 +4,8 @@
 #include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
 
-static const char *const analyses[] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle", NULL};
-
 static const Quantity rows[] = {
-  {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = analyses},
+  {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = AnalysisNames},
   {"-squeal_view", "print choices and why, and the time of each stage", NULL, QUANTITY_BOOL, QUANTITY_AT(Chain, view)},
 };
 static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
@@ -31,7 +29,8 @@ static const Quantity views[N_SHOWN] = {
 const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
                                    N_SHOWN, views, .in = 0};
 
-PetscBool ChainIsInTime(const Chain *chain)
+/* Whether the analysis is a run in time, or is made of such runs */
+static PetscBool ChainIsInTime(const Chain *chain)
 {
   const Analysis a = chain->analysis;
 
@@ -145,7 +144,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
 
 Scope ChainGetScope(const Chain *chain)
 {
-  return (Scope){.analysis  = analyses[chain->analysis],
+  return (Scope){.analysis  = chain->analysis,
                  .does      = 1U << chain->analysis,
                  .model     = chain->model,
                  .contact   = chain->contact,

@@ -3,17 +3,6 @@
 
 #include "scope.h"
 
-typedef enum {
-  ANALYSIS_MODES,
-  ANALYSIS_SWEEP,
-  ANALYSIS_STATIC,
-  ANALYSIS_TRANSIENT,
-  ANALYSIS_FRF,
-  ANALYSIS_MAP,
-  ANALYSIS_CYCLE,
-  N_ANALYSES
-} Analysis;
-
 /* What shows itself, on stdout or where its own option says */
 typedef enum {
   SHOWN_MODEL,
@@ -66,8 +55,6 @@ extern const QuantityTable chain_views;
 
 /* The run as scope.h sees it */
 PETSC_INTERN Scope ChainGetScope(const Chain *chain);
-/* Whether the analysis is a run in time, or is made of such runs */
-PETSC_INTERN PetscBool ChainIsInTime(const Chain *chain);
 
 /* chainrun.c - computes, shows and writes what the analysis is for */
 PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);

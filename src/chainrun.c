@@ -1,16 +1,71 @@
-/* What each analysis makes of the chain: solution, view, tables */
+/* What each analysis makes of the chain, in one row: what it needs, solution, view, tables */
 #include "chain.h"
 
-/* The response, and the modes that it is made of */
-static PetscErrorCode ChainWriteFrf(Chain *chain)
+/* The pencil about one point, of modes and frequency responses */
+static PetscErrorCode ChainGivePencil(Chain *chain)
 {
-  PetscInt    n;
-  const Mode *mode;
+  PetscBool components;
 
   PetscFunctionBeginUser;
-  PetscCall(FrfWrite(chain->frf, chain->results));
-  PetscCall(ModesGet(chain->modes, &n, &mode));
-  if (n) PetscCall(ModesWrite(chain->modes, chain->results));
+  PetscCall(ChainLinearise(chain));
+  PetscCall(ModesWantComponents(chain->modes, &components)); /* which ask for another pencil */
+  if (chain->analysis == ANALYSIS_MODES && !components) PetscCall(PencilReleaseTerms(chain->pencil));
+  PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+  PetscCall(FrfSetPencil(chain->frf, chain->pencil));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSolveModes(Chain *chain)
+{
+  PetscBool components;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesSolve(chain->modes));
+  PetscCall(ModesWantComponents(chain->modes, &components));
+  if (components) PetscCall(ModesFindComponents(chain->modes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainWriteModes(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModesWrite(chain->modes, chain->results));
+  PetscFunctionReturn(0);
+}
+
+/* A sweep makes pencils of its own */
+static PetscErrorCode ChainForgetPencil(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PencilDestroy(&chain->pencil));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSolveSweep(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepSolve(chain->sweep, chain->results));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainWriteSweep(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SweepWrite(chain->sweep, chain->results));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSolveStatics(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSolve(chain->statics, chain->p));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainWriteStatics(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StaticsWrite(chain->statics, chain->results));
   PetscFunctionReturn(0);
 }
 
@@ -28,78 +83,88 @@ static PetscErrorCode ChainIntegrate(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* The pencil of those that are about one point */
-static PetscErrorCode ChainGivePencil(Chain *chain)
+static PetscErrorCode ChainJudgeReduced(Chain *chain)
 {
-  PetscBool components;
-
   PetscFunctionBeginUser;
-  if (chain->analysis == ANALYSIS_SWEEP) PetscCall(PencilDestroy(&chain->pencil)); /* a sweep makes its own */
-  if (chain->analysis != ANALYSIS_MODES && chain->analysis != ANALYSIS_FRF) PetscFunctionReturn(0);
-  PetscCall(ChainLinearise(chain));
-  PetscCall(ModesWantComponents(chain->modes, &components)); /* which ask for another pencil */
-  if (chain->analysis == ANALYSIS_MODES && !components) PetscCall(PencilReleaseTerms(chain->pencil));
-  PetscCall(ModesSetPencil(chain->modes, chain->pencil));
-  PetscCall(FrfSetPencil(chain->frf, chain->pencil));
+  PetscCall(ReducedJudgeVerified(chain->reduced));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ChainSolve(Chain *chain)
+static PetscErrorCode ChainSolveFrf(Chain *chain)
 {
-  const Analysis analysis = chain->analysis;
-  PetscBool      components;
-
   PetscFunctionBeginUser;
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesSolve(chain->modes));
-  PetscCall(ModesWantComponents(chain->modes, &components));
-  if (analysis == ANALYSIS_MODES && components) PetscCall(ModesFindComponents(chain->modes));
-  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepSolve(chain->sweep, chain->results));
-  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsSolve(chain->statics, chain->p));
-  if (analysis == ANALYSIS_TRANSIENT) PetscCall(ChainIntegrate(chain));
-  if (analysis == ANALYSIS_FRF) PetscCall(FrfSolve(chain->frf));
-  if (analysis == ANALYSIS_MAP) PetscCall(MapSolve(chain->map, chain->results));
-  if (analysis == ANALYSIS_CYCLE) PetscCall(CycleSolve(chain->cycle, chain->results));
+  PetscCall(FrfSolve(chain->frf));
   PetscFunctionReturn(0);
 }
 
-/* Tables and fields of what is not in time */
-static PetscErrorCode ChainWrite(Chain *chain)
+/* The response, and the modes that it is made of */
+static PetscErrorCode ChainWriteFrf(Chain *chain)
 {
-  const Analysis analysis = chain->analysis;
+  PetscInt    n;
+  const Mode *mode;
 
   PetscFunctionBeginUser;
-  PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-  if (analysis == ANALYSIS_MODES) PetscCall(ModesWrite(chain->modes, chain->results));
-  if (analysis == ANALYSIS_SWEEP) PetscCall(SweepWrite(chain->sweep, chain->results));
-  if (analysis == ANALYSIS_STATIC) PetscCall(StaticsWrite(chain->statics, chain->results));
-  if (analysis == ANALYSIS_FRF) PetscCall(ChainWriteFrf(chain));
-  PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  PetscCall(FrfWrite(chain->frf, chain->results));
+  PetscCall(ModesGet(chain->modes, &n, &mode));
+  if (n) PetscCall(ModesWrite(chain->modes, chain->results));
   PetscFunctionReturn(0);
 }
+
+static PetscErrorCode ChainSolveMap(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MapSolve(chain->map, chain->results));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainJudgeMap(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MapJudge(chain->map));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainSolveCycle(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CycleSolve(chain->cycle, chain->results));
+  PetscFunctionReturn(0);
+}
+
+/* NULL for what an analysis has not. Those in time write as they go, and look for checkpoints before they begin */
+static const struct {
+  SquealStage stage;
+  Shown       shown;
+  PetscErrorCode (*prepare)(Chain *chain);
+  PetscErrorCode (*solve)(Chain *chain);
+  PetscErrorCode (*write)(Chain *chain);
+  PetscErrorCode (*judge)(Chain *chain); /* raises an error where results that are written do not hold */
+} runs[N_ANALYSES] = {
+  [ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, NULL},
+  [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep, NULL},
+  [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics, NULL},
+  [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainJudgeReduced},
+  [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, NULL},
+  [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap},
+  [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, NULL},
+};
 
 PetscErrorCode ChainRun(Chain *chain)
 {
-  static const struct {
-    SquealStage stage;
-    Shown       shown;
-  } run[N_ANALYSES] = {[ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES},
-                       [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP},
-                       [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS},
-                       [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS},
-                       [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF},
-                       [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP},
-                       [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE}};
+  const Analysis a = chain->analysis;
 
   PetscFunctionBeginUser;
-  /* those look for checkpoints before */
-  if (!ChainIsInTime(chain)) PetscCall(ResultsBegin(chain->results, PETSC_FALSE));
-  PetscCall(ChainGivePencil(chain));
-  PetscCall(SquealStageBegin(run[chain->analysis].stage));
-  PetscCall(ChainSolve(chain));
-  PetscCall(SquealStageEnd(run[chain->analysis].stage));
-  PetscCall(ChainShow(chain, run[chain->analysis].shown, PETSC_TRUE));
-  if (!ChainIsInTime(chain)) PetscCall(ChainWrite(chain)); /* which writes as it goes */
-  if (chain->analysis == ANALYSIS_MAP) PetscCall(MapJudge(chain->map));
-  if (chain->analysis == ANALYSIS_TRANSIENT) PetscCall(ReducedJudgeVerified(chain->reduced));
+  if (runs[a].write) PetscCall(ResultsBegin(chain->results, PETSC_FALSE));
+  if (runs[a].prepare) PetscCall(runs[a].prepare(chain));
+  PetscCall(SquealStageBegin(runs[a].stage));
+  PetscCall(runs[a].solve(chain));
+  PetscCall(SquealStageEnd(runs[a].stage));
+  PetscCall(ChainShow(chain, runs[a].shown, PETSC_TRUE));
+  if (runs[a].write) {
+    PetscCall(SquealStageBegin(SQUEAL_RESULTS));
+    PetscCall(runs[a].write(chain));
+    PetscCall(SquealStageEnd(SQUEAL_RESULTS));
+  }
+  if (runs[a].judge) PetscCall(runs[a].judge(chain));
   PetscFunctionReturn(0);
 }

@@ -152,6 +152,7 @@ PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
       PetscCall(IdleAdd("damping of ", scene->parts[i].name, sizeof(text), text));
   for (PetscInt i = 0; i < scene->n_parts && spin; i++)
     if (scene->parts[i].spin.rate != 0) PetscCall(IdleAdd("spin of ", scene->parts[i].name, sizeof(text), text));
-  if (text[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  not used by -analysis %s: %s\n", s->analysis, text));
+  if (text[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  not used by -analysis %s: %s\n", AnalysisNames[s->analysis], text));
   PetscFunctionReturn(0);
 }

@@ -6,16 +6,16 @@
 
 /* A run; model and contact are NULL for matrices without a mesh */
 typedef struct {
-  const char *analysis;
-  unsigned    does; /* RunBit of the analysis */
-  Model       model;
-  Contact     contact;
-  Operators   operators;
-  Modes       linear;
-  Sweep       varied;
-  Dynamics    dynamics;
-  ReducedRun  reduced;
-  LimitCycle  cycle;
+  Analysis   analysis;
+  unsigned   does; /* RunBit of the analysis */
+  Model      model;
+  Contact    contact;
+  Operators  operators;
+  Modes      linear;
+  Sweep      varied;
+  Dynamics   dynamics;
+  ReducedRun reduced;
+  LimitCycle cycle;
 } Scope;
 
 /* All that the run does. Collective. */

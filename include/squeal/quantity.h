@@ -10,34 +10,47 @@
 #include <squeal/options.h>
 #include <stddef.h>
 
-/* What a run does, as bits: who reads a row. The first are the analyses, in the order of -analysis */
+/* What a run computes, -analysis; its words (quantity/visit.c) are in the same order */
 typedef enum {
-  RUN_MODES     = 1 << 0,
-  RUN_SWEEP     = 1 << 1,
-  RUN_STATIC    = 1 << 2,
-  RUN_TRANSIENT = 1 << 3,
-  RUN_FRF       = 1 << 4,
-  RUN_MAP       = 1 << 5,
-  RUN_CYCLE     = 1 << 6,
+  ANALYSIS_MODES,
+  ANALYSIS_SWEEP,
+  ANALYSIS_STATIC,
+  ANALYSIS_TRANSIENT,
+  ANALYSIS_FRF,
+  ANALYSIS_MAP,
+  ANALYSIS_CYCLE,
+  N_ANALYSES
+} Analysis;
+extern const char *const AnalysisNames[N_ANALYSES + 1]; /* NULL at the end */
+
+/* What a run does, as bits: who reads a row. The first N_ANALYSES are the analyses */
+typedef enum {
+  RUN_MODES     = 1 << ANALYSIS_MODES,
+  RUN_SWEEP     = 1 << ANALYSIS_SWEEP,
+  RUN_STATIC    = 1 << ANALYSIS_STATIC,
+  RUN_TRANSIENT = 1 << ANALYSIS_TRANSIENT,
+  RUN_FRF       = 1 << ANALYSIS_FRF,
+  RUN_MAP       = 1 << ANALYSIS_MAP,
+  RUN_CYCLE     = 1 << ANALYSIS_CYCLE,
   RUN_LINEAR    = RUN_MODES | RUN_SWEEP | RUN_FRF,
   RUN_IN_TIME   = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
   RUN_MOVES     = RUN_LINEAR | RUN_IN_TIME,
   /* and what it does within them */
-  RUN_EQUILIBRIUM = 1 << 7,  /* it finds an equilibrium */
-  RUN_SLIDING     = 1 << 8,  /* modes and their like about the sliding state */
-  RUN_IDENTIFY    = 1 << 9,  /* it presses contacts to find their stiffness */
-  RUN_HOLDS       = 1 << 10, /* an equilibrium with pairs that can stick */
-  RUN_WEIGHT      = 1 << 11, /* gravity acts */
-  RUN_FACTORS     = 1 << 12, /* it factorises matrices */
-  RUN_HISTORY     = 1 << 13, /* a transient from its beginning to its end */
-  RUN_MESH        = 1 << 14, /* of the mesh */
-  RUN_REDUCED     = 1 << 15, /* or of a reduced model */
+  RUN_EQUILIBRIUM = 1 << N_ANALYSES,      /* it finds an equilibrium */
+  RUN_SLIDING     = RUN_EQUILIBRIUM << 1, /* modes and their like about the sliding state */
+  RUN_IDENTIFY    = RUN_EQUILIBRIUM << 2, /* it presses contacts to find their stiffness */
+  RUN_HOLDS       = RUN_EQUILIBRIUM << 3, /* an equilibrium with pairs that can stick */
+  RUN_WEIGHT      = RUN_EQUILIBRIUM << 4, /* gravity acts */
+  RUN_FACTORS     = RUN_EQUILIBRIUM << 5, /* it factorises matrices */
+  RUN_HISTORY     = RUN_EQUILIBRIUM << 6, /* a transient from its beginning to its end */
+  RUN_MESH        = RUN_EQUILIBRIUM << 7, /* of the mesh */
+  RUN_REDUCED     = RUN_EQUILIBRIUM << 8, /* or of a reduced model */
 } RunBit;
 
 typedef struct {
-  MPI_Comm    comm;
-  const char *analysis; /* its word */
-  unsigned    does;     /* its RunBits */
+  MPI_Comm comm;
+  Analysis analysis;
+  unsigned does; /* its RunBits */
 } QuantityRun;
 
 typedef enum {

@@ -4,7 +4,8 @@
 #include "row.h"
 #include <string.h>
 
-static const char *const analyses[] = {"modes", "sweep", "static", "transient", "frf", "map", "cycle"};
+const char *const AnalysisNames[N_ANALYSES + 1] = {"modes", "sweep", "static", "transient",
+                                                   "frf",   "map",   "cycle",  NULL};
 
 /* What a run does within an analysis */
 static const struct {
@@ -29,11 +30,11 @@ static PetscErrorCode ReadersDescribe(unsigned in, size_t size, char text[])
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  for (unsigned i = 0, rest = in % (1 << PETSC_STATIC_ARRAY_LENGTH(analyses)); rest; i++) {
+  for (unsigned i = 0, rest = in % (1U << N_ANALYSES); rest; i++) {
     if (!(rest & 1U << i)) continue;
     rest &= ~(1U << i);
     PetscCall(PetscStrlcat(text, text[0] && !rest ? " and " : before, size));
-    PetscCall(PetscStrlcat(text, analyses[i], size));
+    PetscCall(PetscStrlcat(text, AnalysisNames[i], size));
     before = ", ";
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(within); i++) {
@@ -72,7 +73,7 @@ static PetscErrorCode RowExplain(const QuantityRun *run, const QuantityTable *ta
   why[0] = '\0';
   if (in && !(in & run->does)) {
     PetscCall(ReadersDescribe(in, sizeof(readers), readers));
-    PetscCall(PetscSNPrintf(why, size, "not used by -analysis %s%s%s", run->analysis,
+    PetscCall(PetscSNPrintf(why, size, "not used by -analysis %s%s%s", AnalysisNames[run->analysis],
                             unread ? unread : "; it belongs to ", unread ? "" : readers));
     PetscFunctionReturn(0);
   }

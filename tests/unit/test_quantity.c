@@ -127,7 +127,7 @@ static PetscErrorCode TestRefuse(int *failed)
   } runs[] = {
     {RUN_MODES, ""},
     {RUN_STATIC | RUN_EQUILIBRIUM,
-     "-speed 0.5: not used by -analysis test; it belongs to -analysis modes and frf, and -dynamics_model reduced"},
+     "-speed 0.5: not used by -analysis static; it belongs to -analysis modes and frf, and -dynamics_model reduced"},
     {RUN_CYCLE | RUN_REDUCED, ""},
     {RUN_FRF | RUN_SLIDING, "-speed 0.5: not used without -way fast"},
   };
@@ -137,7 +137,7 @@ static PetscErrorCode TestRefuse(int *failed)
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(runs); i++) {
-    QuantityRun    run = {PETSC_COMM_WORLD, "test", runs[i].does};
+    QuantityRun    run = {PETSC_COMM_WORLD, ANALYSIS_STATIC, runs[i].does};
     PetscErrorCode code;
 
     PetscCall(Read(runs[i].does & RUN_FRF ? "-way slow" : "", &o));
