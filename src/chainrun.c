@@ -131,6 +131,18 @@ static PetscErrorCode ChainSolveCycle(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* What a run computes with: nothing is solved, all of the scene is read, paired, assembled, and shown */
+static PetscErrorCode ChainShowScene(Chain *chain)
+{
+  const PetscBool is_shown = chain->view; /* with all else */
+
+  PetscFunctionBeginUser;
+  if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, !is_shown));
+  if (chain->contact) PetscCall(ChainShow(chain, SHOWN_CONTACT, !is_shown));
+  if (!chain->model) PetscCall(ChainShow(chain, SHOWN_OPERATORS, !is_shown));
+  PetscFunctionReturn(0);
+}
+
 /* NULL for what an analysis has not. Those in time write as they go, and look for checkpoints before they begin */
 static const struct {
   SquealStage stage;
@@ -147,6 +159,7 @@ static const struct {
   [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, NULL},
   [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap},
   [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, NULL},
+  [ANALYSIS_CHECK]     = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, NULL, NULL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)
@@ -159,7 +172,7 @@ PetscErrorCode ChainRun(Chain *chain)
   PetscCall(SquealStageBegin(runs[a].stage));
   PetscCall(runs[a].solve(chain));
   PetscCall(SquealStageEnd(runs[a].stage));
-  PetscCall(ChainShow(chain, runs[a].shown, PETSC_TRUE));
+  if (runs[a].shown < N_SHOWN) PetscCall(ChainShow(chain, runs[a].shown, PETSC_TRUE));
   if (runs[a].write) {
     PetscCall(SquealStageBegin(SQUEAL_RESULTS));
     PetscCall(runs[a].write(chain));

@@ -132,6 +132,7 @@ PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
   char              text[1024] = "";
 
   PetscFunctionBeginUser;
+  if (s->does & RUN_CHECK) PetscFunctionReturn(0); /* it uses nothing and shows all */
   PetscCall(ScopeGetRun(PETSC_COMM_SELF, s, &run));
   PetscCall(ModelGetScene(s->model, &scene));
   loads   = run.does & (RUN_IN_TIME | RUN_EQUILIBRIUM) ? PETSC_FALSE : PETSC_TRUE;

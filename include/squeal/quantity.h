@@ -19,6 +19,7 @@ typedef enum {
   ANALYSIS_FRF,
   ANALYSIS_MAP,
   ANALYSIS_CYCLE,
+  ANALYSIS_CHECK,
   N_ANALYSES
 } Analysis;
 extern const char *const AnalysisNames[N_ANALYSES + 1]; /* NULL at the end */
@@ -32,6 +33,7 @@ typedef enum {
   RUN_FRF       = 1 << ANALYSIS_FRF,
   RUN_MAP       = 1 << ANALYSIS_MAP,
   RUN_CYCLE     = 1 << ANALYSIS_CYCLE,
+  RUN_CHECK     = 1 << ANALYSIS_CHECK,
   RUN_LINEAR    = RUN_MODES | RUN_SWEEP | RUN_FRF,
   RUN_IN_TIME   = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
   RUN_MOVES     = RUN_LINEAR | RUN_IN_TIME,

@@ -4,8 +4,8 @@
 #include "row.h"
 #include <string.h>
 
-const char *const AnalysisNames[N_ANALYSES + 1] = {"modes", "sweep", "static", "transient",
-                                                   "frf",   "map",   "cycle",  NULL};
+const char *const AnalysisNames[N_ANALYSES + 1] = {"modes", "sweep", "static", "transient", "frf",
+                                                   "map",   "cycle", "check",  NULL};
 
 /* What a run does within an analysis */
 static const struct {
