@@ -58,10 +58,13 @@ PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted)
 
 PetscErrorCode ChainView(Chain *chain)
 {
+  PetscBool shown;
+
   PetscFunctionBeginUser;
   if (chain->model) PetscCall(ChainShow(chain, SHOWN_MODEL, chain->view));
   if (chain->contact && ChainShows(chain, SHOWN_CONTACT)) PetscCall(ChainShow(chain, SHOWN_CONTACT, chain->view));
-  if (ChainShows(chain, SHOWN_OPERATORS)) PetscCall(ChainShow(chain, SHOWN_OPERATORS, chain->view));
+  shown = chain->view && chain->analysis != ANALYSIS_CHECK ? PETSC_TRUE : PETSC_FALSE; /* may take an equilibrium */
+  if (ChainShows(chain, SHOWN_OPERATORS)) PetscCall(ChainShow(chain, SHOWN_OPERATORS, shown));
   PetscFunctionReturn(0);
 }
 

@@ -234,40 +234,6 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
-    const ContactInterface *c = &contact->interfaces[i];
-    const char             *unit;
-
-    PetscCall(PetscViewerASCIIPrintf(viewer, "contact %s: %s %s on %s, ", c->name, c->slave,
-                                     c->kt > 0 ? "holds" : "slides", c->master));
-    PetscCall(FrictionView(&c->friction, viewer));
-    PetscCall(PetscViewerASCIIPrintf(viewer, ", "));
-    PetscCall(ModelGetUnit(contact->model, c->kt_per_area ? "N/m^3" : "N/m", &unit));
-    if (c->kt > 0)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "pairs that stick %.6g %s%s along it, ", (double)c->kt, unit,
-                                       c->kt_per_area ? "" : " per pair"));
-    PetscCall(ModelGetUnit(contact->model, c->per_area ? "N/m^3" : "N/m", &unit));
-    if (c->identify)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
-    else if (c->law == CONTACT_PENALTY)
-      PetscCall(
-        PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
-    else
-      PetscCall(PetscViewerASCIIPrintf(viewer, "exact constraint by elimination\n"));
-    if (c->n_off)
-      PetscCall(PetscViewerASCIIPrintf(
-        viewer, "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n", c->n_off,
-        c->n_slaves, c->slave));
-  }
-  if (contact->n_interfaces)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " pairs\n", contact->n_pairs_all));
-  PetscCall(ContactTiesView(contact, viewer));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ContactDestroy(Contact *contact)
 {
   PetscFunctionBeginUser;

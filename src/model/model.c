@@ -172,6 +172,7 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
 {
   PetscInt    n_cells = model->mesh.n_cells;
   PetscMPIInt size;
+  const char *unit;
   char        words[256];
 
   PetscFunctionBeginUser;
@@ -185,9 +186,9 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
   for (PetscInt i = 0; i < model->scene.n_parts; i++) PetscCall(PartView(model, i, viewer));
   for (PetscInt i = 0; i < model->scene.n_supports; i++) PetscCall(SupportView(&model->scene.supports[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_springs; i++)
-    PetscCall(GroundedView(&model->scene.springs[i], "spring", viewer));
+    PetscCall(GroundedView(model, &model->scene.springs[i], "spring", viewer));
   for (PetscInt i = 0; i < model->scene.n_dashpots; i++)
-    PetscCall(GroundedView(&model->scene.dashpots[i], "dashpot", viewer));
+    PetscCall(GroundedView(model, &model->scene.dashpots[i], "dashpot", viewer));
   for (PetscInt i = 0; i < model->scene.n_joints; i++) PetscCall(JointView(model, &model->scene.joints[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_points; i++) PetscCall(JointView(model, &model->scene.points[i], viewer));
   for (PetscInt i = 0; i < model->scene.n_loads; i++) PetscCall(LoadView(model, &model->scene.loads[i], viewer));
@@ -195,9 +196,10 @@ PetscErrorCode ModelView(Model model, PetscViewer viewer)
     PetscCall(ModelDescribeMotion(&model->scene.motions[i], sizeof(words), words));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s\n", words));
   }
+  PetscCall(ModelGetUnit(model, "m/s^2", &unit));
   if (ModelHasGravity(model))
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g m/s^2\n", (double)model->scene.gravity[0],
-                                     (double)model->scene.gravity[1], (double)model->scene.gravity[2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  gravity: %.6g, %.6g, %.6g %s\n", (double)model->scene.gravity[0],
+                                     (double)model->scene.gravity[1], (double)model->scene.gravity[2], unit));
   PetscCall(ProbesView(model, viewer));
   PetscCall(CirclesView(model, viewer));
   PetscFunctionReturn(0);

@@ -163,7 +163,7 @@ PETSC_INTERN PetscErrorCode SharesCreate(Model model, const char owner[], const 
 
 /* grounded.c - errors for sets that a spring or dashpot cannot be spread over; a line about it */
 PETSC_INTERN PetscErrorCode GroundedSetUp(Model model);
-PETSC_INTERN PetscErrorCode GroundedView(const Grounded *grounded, const char kind[], PetscViewer viewer);
+PETSC_INTERN PetscErrorCode GroundedView(Model model, const Grounded *grounded, const char kind[], PetscViewer viewer);
 
 /* Values of a set's label: at a point that is in it with all nodes on it and around it, or at one whose own node alone
    is in it (in the middle of an edge or face) */

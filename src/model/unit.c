@@ -75,6 +75,7 @@ PetscErrorCode ModelGetUnit(Model model, const char si[], const char **unit)
                                          {"m^2", "mm^2"},
                                          {"m^3", "mm^3"},
                                          {"m/s", "mm/s"},
+                                         {"m/s^2", "mm/s^2"},
                                          {"s/m", "s/mm"},
                                          {"kg", "t"},
                                          {"kg/m^3", "t/mm^3"},

@@ -61,13 +61,15 @@ PetscErrorCode GroundedSetUp(Model model)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GroundedView(const Grounded *g, const char kind[], PetscViewer viewer)
+PetscErrorCode GroundedView(Model model, const Grounded *g, const char kind[], PetscViewer viewer)
 {
   static const char *const how[] = {" per node", " in all", ""}; /* N/m^3 is per area */
+  const char              *unit;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(model, g->unit, &unit));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %s %s on %s: %.6g, %.6g, %.6g %s%s\n", kind, g->name, g->set,
-                                   (double)g->value[0], (double)g->value[1], (double)g->value[2], g->unit,
+                                   (double)g->value[0], (double)g->value[1], (double)g->value[2], unit,
                                    how[g->spread]));
   PetscFunctionReturn(0);
 }
