@@ -41,8 +41,9 @@ PetscErrorCode SweepSetOperators(Sweep sweep, Operators operators, const PetscRe
    all statuses: what is open at some points and closed at others are further affine terms. Robustness keeps the status
    of the scene's own values. Collective.
 
-   Errors of SweepSolve(): PETSC_ERR_SUP, with -sweep_method reduced or real, where the pencil is not affine
-   (StaticsIsAffine()), or where the status changes and the contact is exact.
+   Where the pencil is not affine (StaticsIsAffine()) and no method is given, SweepSolve() solves each point in full.
+   Errors of SweepSolve(): PETSC_ERR_SUP, with -sweep_method reduced or real given, where the pencil is not affine, or
+   where the status changes and the contact is exact.
 @*/
 PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 

@@ -217,6 +217,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
 
   PetscFunctionBeginUser;
   sweep->results = results;
+  PetscCall(SweepChooseMethod(sweep));
   PetscCall(ResultsGetDirectory(results, &sweep->folder));
   PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
   PetscCall(ModesGetLimit(sweep->modes, &sweep->limit));

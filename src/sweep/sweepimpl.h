@@ -72,8 +72,8 @@ struct _p_Sweep {
   PetscReal      rtol, percent[SWEEP_MAX_UNCERTAIN];
   PetscInt       max_samples, n_real, n_verify, n_groups, n_percent;
   SweepStiffness real_stiffness;
-  PetscBool      linked, onsets, sensitivities, restart; /* linked: -sweep_link is given */
-  PetscBool      max_given, onsets_given;                /* -sweep_max_samples, -sweep_onsets are */
+  PetscBool      linked, onsets, sensitivities, restart;            /* linked: -sweep_link is given */
+  PetscBool      method_given, rtol_given, max_given, onsets_given; /* the option is */
   /* results */
   SweepGrid     grid;
   PointGroups   groups;
@@ -131,6 +131,8 @@ PETSC_INTERN PetscErrorCode SweepAxes(Sweep sweep);
    state; pairs closed at a point (-1 without contact), and whether the point before it has another status; fewest and
    most pairs closed at all places, and whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
+/* grid/sliding.c - full solutions where no basis can follow the sliding state and nobody asks for one */
+PETSC_INTERN PetscErrorCode SweepChooseMethod(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status);
 PETSC_INTERN PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status);
 PETSC_INTERN PetscInt       SweepClosedAt(Sweep sweep, PetscInt point, PetscBool *jump);

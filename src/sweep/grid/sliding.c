@@ -167,13 +167,31 @@ static PetscErrorCode StatusGroupsSet(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SweepChooseMethod(Sweep sweep)
+{
+  PetscBool affine, asked = sweep->method_given || sweep->rtol_given || sweep->max_given ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!sweep->statics || sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
+  PetscCall(StaticsIsAffine(sweep->statics, &affine));
+  if (affine) PetscFunctionReturn(0);
+  if (sweep->n_verify || sweep->uncertain[0] || sweep->sensitivities) asked = PETSC_TRUE; /* not of full solutions */
+  PetscCheck(
+    !asked, sweep->comm, PETSC_ERR_SUP,
+    "a sweep about the sliding state: pairs that hold by friction, friction damping, -static_geometric and "
+    "-static_follower change with it from point to point; give -sweep_method full alone, or -modes_contact all");
+  sweep->method = SWEEP_FULL;
+  PetscCall(PetscPrintf(sweep->comm, "-sweep_method full: pairs that hold by friction, friction damping, geometric "
+                                     "stiffness or follower forces change with the sliding state\n"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepStatuses(Sweep sweep)
 {
   const ContactPair *pair;
   SweepGrid         *grid = &sweep->grid;
   Contact            contact;
   PetscInt           n, n_all;
-  PetscBool          affine;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
@@ -187,10 +205,6 @@ PetscErrorCode SweepStatuses(Sweep sweep)
     PetscFunctionReturn(0);
   }
   if (sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
-  PetscCall(StaticsIsAffine(sweep->statics, &affine));
-  PetscCheck(affine, sweep->comm, PETSC_ERR_SUP,
-             "a sweep about the sliding state: pairs that hold by friction, friction damping, -static_geometric and "
-             "-static_follower change with it from point to point; give -sweep_method full, or -modes_contact all");
   for (PetscInt k = 0; k < grid->n_places; k++)
     PetscCall(SweepStatusSolve(sweep, &grid->place[k], &grid->place[k].status));
   PetscCall(ChangesBracket(sweep));
