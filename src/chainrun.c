@@ -4,12 +4,12 @@
 /* The pencil about one point, of modes and frequency responses */
 static PetscErrorCode ChainGivePencil(Chain *chain)
 {
-  PetscBool components;
+  PetscBool terms;
 
   PetscFunctionBeginUser;
   PetscCall(ChainLinearise(chain));
-  PetscCall(ModesWantComponents(chain->modes, &components)); /* which ask for another pencil */
-  if (chain->analysis == ANALYSIS_MODES && !components) PetscCall(PencilReleaseTerms(chain->pencil));
+  PetscCall(ModesWantTerms(chain->modes, &terms));
+  if (chain->analysis == ANALYSIS_MODES && !terms) PetscCall(PencilReleaseTerms(chain->pencil));
   PetscCall(ModesSetPencil(chain->modes, chain->pencil));
   PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   PetscFunctionReturn(0);

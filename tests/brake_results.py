@@ -10,7 +10,7 @@ BRAKE = ["-options_file", SOURCE / "options/massi2005.yaml", "-rig_disc_elements
 IN_TIME = ["-options_file", SOURCE / "options/massi2005_transient.yaml", "-rig_disc_elements", "8,32,1",
            "-rig_pad_elements", "4,4,2"]
 RUNS = {
-    "modes": [*BRAKE, "-contact_mu", "0.9", "-pad_young", "39.8e9", "-modes_components", "1.2"],
+    "modes": [*BRAKE, "-contact_mu", "0.9", "-pad_young", "39.8e9", "-modes_components", "1.2", "-modes_sensitivities"],
     "modes_quiet": [*BRAKE, "-contact_mu", "0", "-modes_band", "0,6000"],
     "static": [*BRAKE, "-analysis", "static", "-static_view_kkt"],
     "sweep": [*BRAKE, "-analysis", "sweep", "-modes_band", "1000,6000", "-sweep_parameter", "pad_young",

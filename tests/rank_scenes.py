@@ -38,6 +38,8 @@ def modes(scene):
         more += ["-modes_left", "0"]
     if scene.happens(0.2) and scene.damped:
         more += ["-modes_damping", draw.choice(("pep", "project"))]
+    if "-modes_left" not in more and scene.happens(0.3):
+        more += ["-modes_sensitivities"]
     if scene.happens(0.3):
         more += ["-modes_components", draw.choice((0.8, 1.5))]
     return scene.words() + more

@@ -14,10 +14,12 @@ ESTIMATES = "error", "condition", "damping_ratio", "check", "residual", "period_
 # A column with the one that states its error
 VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv": ("growth_rad_s", "error_rad_s"),
           "modes_effects.csv": ("growth_rad_s_per_unit", "error_rad_s_per_unit"),
+          "modes_sensitivities.csv": ("growth_rad_s_per_percent", "error_rad_s_per_percent"),
           "modes_components.csv": ("share_percent", "error_percent")}
 # Columns that have no error of their own: of nodes that are nearly as good another may be named
 FOLLOW = {"modes_effects.csv": {*(f"{axis}_m" for axis in "xyz"), *(f"direction_{axis}" for axis in "xyz"), "freq_hz_per_unit",
-                                "first_order_units_to_zero"}, "modes_components.csv": {"energy_percent"}}
+                                "first_order_units_to_zero"}, "modes_components.csv": {"energy_percent"},
+          "modes_sensitivities.csv": {"freq_hz_per_unit", "growth_rad_s_per_unit", "freq_hz_per_percent"}}
 
 
 def read(path):

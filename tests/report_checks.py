@@ -66,7 +66,9 @@ def check_modes(t, page, key, folder):
     t.check(len(boxes) == 2 * len(rows) and straight(*zip(*seen)), f"{key}: shares of the beam")
     t.check(same_numbers(page, f"{key}-table", "label, %", rows, "label_percent"), f"{key}: what labels explain")
     check_effects(t, page, key, folder / "modes_effects.csv")
-    check_components(t, page, key, folder / "modes_components.csv", {row["mode"] for row in rows if row["unstable"] == "1"})
+    unstable = {row["mode"] for row in rows if row["unstable"] == "1"}
+    check_components(t, page, key, folder / "modes_components.csv", unstable)
+    check_sensitivities(t, page, key, folder / "modes_sensitivities.csv", unstable)
 
 
 def check_components(t, page, key, path, unstable):
@@ -79,6 +81,20 @@ def check_components(t, page, key, path, unstable):
     bars = {box["text"].split(" Hz: ")[1].rsplit(" ", 2)[0]: float(box["height"]) for box in boxes if " Hz: " in box["text"]}
     t.check(bars.keys() == shares.keys() and straight([bars[name] for name in shares], [abs(v) for v in shares.values()]),
             f"{key}: bars {sorted(bars)}, shares {sorted(shares)}")
+
+
+def check_sensitivities(t, page, key, path, unstable):
+    """The parameters of unstable modes: breaks when a row is another mode's, or a larger effect is left out."""
+    if not path.exists():
+        return
+    shown = page.table(f"{key}-sensitivities-table")
+    for mode in unstable:
+        rows = sorted((row for row in rows_of(path) if row["mode"] == mode and float(row["growth_rad_s_per_percent"])),
+                      key=lambda row: -abs(float(row["growth_rad_s_per_percent"])))[:6]
+        own = [cell for cell in shown if cell["mode"] == mode]
+        t.check([cell["parameter"] for cell in own] == [row["parameter"] for row in rows] and all(
+            math.isclose(float(cell["growth, 1/s per %"]), float(row["growth_rad_s_per_percent"]), rel_tol=1e-9)
+            for cell, row in zip(own, rows)), f"{key}: parameters of mode {mode}")
 
 
 def check_effects(t, page, key, path):

@@ -186,6 +186,19 @@ typedef struct {
     caller frees them. Collective. @*/
 PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *vectors, PetscInt *n, PencilForms **forms);
 
+/*@
+   PencilMeasureDerivatives - y' (dQ / dp_j) x, Q(lambda; p) = lambda^2 M + lambda C + K, for each parameter p_j, from
+   which d lambda / d p_j = -y' (dQ / dp_j) x / (y' Q' x). Collective; not after PencilReleaseTerms().
+
+   Input Parameters:
++  sigma, omega - lambda, 1/s and rad/s
+-  vectors      - those of one mode
+   Output Parameter:
+.  derivative   - [parameters of PencilGetParameters()]
+@*/
+PetscErrorCode PencilMeasureDerivatives(Pencil pencil, PetscReal sigma, PetscReal omega, const PencilVectors *vectors,
+                                        PetscComplex derivative[]);
+
 /*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point
    are
     formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other

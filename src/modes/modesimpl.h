@@ -69,7 +69,7 @@ struct _p_Modes {
   PetscInt     most;            /* modes that a band may hold; 0: any number */
   PetscBool    has_most;        /* given */
   PetscReal    max_time;        /* s, of one solution; 0: any */
-  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, keep, filters;
+  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, keep, filters, sensitivities;
   PetscInt     count;
   ModesAbout   about;    /* which pairs are closed */
   PetscBool    loaded;   /* the scene has loads and contacts */
@@ -165,11 +165,12 @@ PETSC_INTERN PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer);
 /* components/bodies.c */
 PETSC_INTERN PetscErrorCode ComponentsDestroy(ModesComponents *components);
 
-/* causes.c - distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond
-   the band */
-PETSC_INTERN PetscReal ModeGap(const Modes modes, PetscInt i);
+/* growth/sensitivity.c - modes_sensitivities.csv; the largest effects on each unstable mode; nothing where they are not
+   asked for. Collective */
+PETSC_INTERN PetscErrorCode ModesWriteSensitivities(Modes modes, Results results);
+PETSC_INTERN PetscErrorCode ModesViewSensitivities(Modes modes, PetscViewer viewer);
 
-/* effects.c - modes_effects.csv, and fields, where modes are unstable. Collective */
+/* growth/effects.c - modes_effects.csv, and fields, where modes are unstable. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, const Mesh *mesh, Results results);
 
 /* quantities.c - rows of the options */

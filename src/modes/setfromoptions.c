@@ -8,6 +8,8 @@ static PetscErrorCode ModesCheckValues(Modes modes)
   PetscFunctionBeginUser;
   PetscCheck(modes->left || !modes->filters, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_filters needs left vectors: leave out -modes_left false");
+  PetscCheck(modes->left || !modes->sensitivities, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_sensitivities needs left vectors: leave out -modes_left false");
   PetscCheck(!modes->has_band || modes->band[1] > modes->band[0], modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
   PetscFunctionReturn(0);

@@ -76,6 +76,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "; %s\n", modes->completeness));
   PetscCall(ModesViewLimit(modes, n[MODE_NEUTRAL] ? PETSC_TRUE : PETSC_FALSE, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ModesViewCauses(modes, viewer));
+  if (n[MODE_UNSTABLE]) PetscCall(ModesViewSensitivities(modes, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ComponentsView(modes, viewer));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
@@ -177,6 +178,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(OperatorsGetMesh(operators, &mesh));
   PetscCall(ModesWriteTable(modes, mesh, results));
   PetscCall(ModesWriteCauses(modes, results));
+  PetscCall(ModesWriteSensitivities(modes, results));
   PetscCall(ModesWriteEffects(modes, operators, mesh, results));
   PetscCall(ComponentsWrite(modes, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));

@@ -33,6 +33,7 @@ static const struct {
   {"modes_effects.h5", NULL},
   {"modes_effects.xmf", NULL},
   {"modes_components.csv", NULL},
+  {"modes_sensitivities.csv", NULL},
   {"robustness.csv", NULL},
   {"parameters.csv", NULL},
   {"frf.csv", NULL},
