@@ -9,7 +9,8 @@
 #include "base/gather.h"
 #include <stdlib.h>
 
-/* A node of the surface and one end of its edges into the body */
+/* A node of the surface and one end of its edges into the body; alike on all ranks that have the node, but for the
+   edges each of them sees, of which BelowReduce() takes the best */
 typedef struct {
   PetscInt  vertex;   /* largest unknown of the node of the surface, at least 0 */
   PetscInt  below[3]; /* unknowns of the other end, -1 where held */
@@ -29,7 +30,9 @@ static PetscInt VertexKey(const PetscInt unknowns[3])
   return PetscMax(unknowns[0], PetscMax(unknowns[1], unknowns[2]));
 }
 
-/* Whether a lies more nearly along the normal than b; position decides where rounding would */
+/* Whether a lies more nearly along the normal than b. Cosines that differ by less than 1e-9 are equal but for
+   rounding (two edges of a tetrahedron, mirror images): the place decides there, the same on every rank and however
+   the mesh is split. */
 static PetscBool BelowIsBetter(const Below *a, const Below *b)
 {
   if (PetscAbsReal(a->cosine - b->cosine) > 1e-9) return a->cosine > b->cosine ? PETSC_TRUE : PETSC_FALSE;
@@ -46,8 +49,8 @@ static int BelowCompare(const void *a, const void *b)
   return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-/* Best edge of node v among those of this rank; normal is outward, of any length. best->vertex is -1 when the node
-   is held or no edge goes inward. */
+/* Best edge of node v among those of this rank, of the largest cosine -e . n / (|e| |n|), e from v to the other end;
+   normal is outward, of any length. best->vertex is -1 when the node is held or no edge goes inward. */
 static PetscErrorCode BelowFind(Model model, PetscInt v, const PetscReal normal[3], Below *best)
 {
   const PetscReal area = PetscSqrtReal(PetscSqr(normal[0]) + PetscSqr(normal[1]) + PetscSqr(normal[2]));
@@ -127,7 +130,8 @@ static PetscErrorCode BelowGather(Model model, MPI_Comm comm, const char set[], 
   PetscFunctionReturn(0);
 }
 
-/* Adds scale n . u of the node below the one with these unknowns; counts it as missing when there is none */
+/* Adds scale n . u of the node below the one with these unknowns to d; counts it as missing when there is none. A
+   node with all three unknowns held cannot be found, and adds nothing: the node below it is taken as held too. */
 static PetscErrorCode BelowAdd(const BelowList *list, const PetscInt unknowns[3], PetscReal scale,
                                const PetscReal normal[3], Vec d, PetscInt *missing)
 {
@@ -145,7 +149,9 @@ static PetscErrorCode BelowAdd(const BelowList *list, const PetscInt unknowns[3]
   PetscFunctionReturn(0);
 }
 
-/* Adds the local pairs of an interface: slave and master are the edges of the two surfaces */
+/* Adds the local pairs of an interface, each with the share 1 / (pairs of the interface on all ranks); slave and
+   master are the edges of the two surfaces. Of two facets the weights sum to 1, so that d . u of a rigid motion of
+   both is 0. */
 static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, const BelowList *slave, const BelowList *master,
                                Vec d)
 {

@@ -1,5 +1,9 @@
 /*
    Contact: interfaces from the options, access to them and their pairs.
+
+   Every number is stored in SI units as the options say it: k_n and k_t per pair (N/m) or per area (N/m^3, has the
+   flag per_area beside it; a pair then has k_n a_p with a_p of cover.c, m^2), tolerance and overhang in m, speed in
+   m/s, rotation in rad/s, force in N. What follows from a pair's place, such as its direction of slip, is of pair.c.
 */
 #include "contactimpl.h"
 #include "base/events.h"
@@ -17,7 +21,9 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
   PetscFunctionReturn(0);
 }
 
-/* The normal stiffness: a number, or the word `identify` */
+/* The normal stiffness: a number in N/m, or the word `identify`, with which kn is 1 until statics has found it. The
+   option is a text because of that word, so that no reader of numbers has checked it: a number with a unit behind it is
+   refused here, of which strtod() would take the number and leave the unit out. */
 static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
 {
   char unit[256], *end;
@@ -46,6 +52,8 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
              "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
   c->friction.speed = c->speed;
+  /* a law mu(s) that changes with the slip speed s has no value in modes without one; with neither slip nor rotation
+     nothing slides as told, and s = 0 m/s holds */
   PetscCheck(!FrictionNeedsSpeed(&c->friction) || c->speed > 0 || Vec3Length(c->rotation) > 0 ||
                Vec3Length(c->slip) == 0,
              comm, PETSC_ERR_USER_INPUT,
@@ -54,7 +62,8 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for parameters that make no sense */
+/* Raises an error for parameters that make no sense or would be ignored. It is called in ContactSetUp(), not where
+   the options are read, since runs in time read the same options and have no penalty law. */
 static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
   PetscFunctionBeginUser;
@@ -128,7 +137,8 @@ PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
-/* Faces of a surface, on all ranks, of each number of nodes */
+/* count[k]: faces of a surface with k nodes, over all ranks. A face belongs to the one rank that has its cell, so
+   that the sum counts none twice. */
 static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt count[CONTACT_MAX_MASTER + 1])
 {
   ModelFaces faces;
@@ -142,8 +152,9 @@ static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt c
   PetscFunctionReturn(0);
 }
 
-/* A warning for slaves of eight nodes a face that can open; an error where second rows of nodes are asked for under
-   faces of second order, whose sides and middles have no edge into the body */
+/* A warning for slaves with faces of eight nodes that can open: int N_i dA is negative at their corners, so that a
+   uniform pressure asks the corners to pull, which the exact law refuses. An error where second rows of nodes are
+   asked for under faces of second order: their sides and middles have no edge into the body (approach.c). */
 static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterface *c)
 {
   PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0;
@@ -202,14 +213,16 @@ PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool 
   for (int d = 0; d < 3; d++) centre[d] = 0;
   *found = contact->n_pairs_all ? PETSC_TRUE : PETSC_FALSE;
   if (!*found) PetscFunctionReturn(0);
+  /* a mean over pairs, not weighted by area: it tells where the contact is, no integral is taken about it */
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (int d = 0; d < 3; d++) centre[d] += contact->pairs[p].x[d] / (PetscReal)contact->n_pairs_all;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, centre, 3, MPIU_REAL, MPI_SUM, contact->comm));
   PetscFunctionReturn(0);
 }
 
-/* What options say: a stiffness that is found by pressing depends on the loads, and counts where it is used, as a value
-   of the sweep */
+/* What options say. A stiffness that is found by pressing depends on the loads, and counts where it is used, as a
+   value of the sweep; here it is 0. The sign of kn and kt tells a stiffness per area from one per pair: both are
+   positive where given, and the same number of the two kinds is another model. */
 PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
 {
   PetscFunctionBeginUser;

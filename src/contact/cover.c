@@ -15,8 +15,10 @@
 #include "base/algebra/vec3.h"
 #include "kernels/contact/overlap.h"
 
-#define COVERED 0.99 /* a face of which more lies over the master counts in full */
-#define BARE    1e-9 /* of the area of all its faces: a node with less has no pair */
+/* a face of which more lies over the master counts in full: chords of one circle by different meshes differ by less */
+#define COVERED 0.99
+/* of the area of all its faces: a node with less has rounding of the overlap, and no pair */
+#define BARE 1e-9
 
 /* The master, its facets near a face, and the area over it that no pair gets, m^2 */
 typedef struct {

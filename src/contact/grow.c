@@ -1,6 +1,11 @@
 /*
-   Growing of the closed part of an interface by rows of nodes. Every rank knows the whole slave surface and the status
-   of all its nodes, and moves the front alike, so that the ranks that share a surface do not matter.
+   Growing of the closed part of an interface by rows of nodes. Every rank knows the whole slave surface and the
+   status of all its nodes, and moves the front alike, so that the ranks that share a surface do not matter.
+
+   With statuses s_v (closed, open, without pair) and facets f as sets of nodes, one row is
+      s_v := closed   where s_v is open and some facet f holds v and a closed node        (rows > 0)
+      s_v := open     where s_v is closed and some facet f holds v and an open node       (rows < 0)
+   all read before any is written. Nodes without pair neither change nor move the front.
 */
 #include "contactimpl.h"
 
@@ -41,6 +46,7 @@ static PetscErrorCode InterfaceGrow(Contact contact, PetscInt interface, PetscIn
     PetscCheck(node[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a pair's slave node is no node of the slave surface");
     status[node[p]] = closed[p] ? NODE_CLOSED : NODE_OPEN;
   }
+  /* one rank alone has the pair of a node, the others have NODE_WITHOUT_PAIR, the least of the three */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, status, (PetscMPIInt)s.n_nodes, MPIU_INT, MPI_MAX, contact->comm));
   for (PetscInt k = 0; k < PetscAbsInt(rows); k++) PetscCall(FrontMove(&s, turn, before, status));
   for (PetscInt p = 0; p < contact->n_pairs; p++)

@@ -23,6 +23,9 @@ static PetscReal Length2(const PetscReal a[2])
   return PetscSqrtReal(a[0] * a[0] + a[1] * a[1]);
 }
 
+/* F (N) and L (m) over all ranks; displacement (m) is the largest of the rank. A pair's closing is its gap now less
+   that of the mesh. Both are of all pairs of all interfaces: a pair that carries little is judged beside those that
+   carry much, since rounding of the solution is of that size. */
 static PetscErrorCode ScaleFind(MPI_Comm comm, PetscInt n, const ContactJudged pair[], PetscReal displacement,
                                 Scale *scale)
 {
@@ -49,7 +52,9 @@ static PetscReal Relative(PetscReal a, PetscReal b)
   return a == 0 ? 0 : a / b;
 }
 
-/* |lambda_t - mu lambda_n d|; any direction d will do where there is no slip */
+/* |lambda_t - mu lambda_n d|, N. Where the interface slides as told, t is d whatever the small slip of the
+   deformation is: the linearised state has it so. Else any direction d will do where there is no slip, and the length
+   alone is judged. */
 static PetscReal SlipResidual(const ContactJudged *pair)
 {
   const ContactState *state = pair->state;
@@ -62,7 +67,8 @@ static PetscReal SlipResidual(const ContactJudged *pair)
   return Length2(rest);
 }
 
-/* Raises the residuals to those of one pair; nan counts as a violation */
+/* Raises the residuals to those of one pair. Infinity stands for what is no number, since PetscMax(0, nan) is 0 and
+   would hide it. With kn infinite (constraint) gap + lambda_n / kn is the gap itself. */
 static void PairRaise(const ContactJudged *pair, const Scale *scale, ContactKKT *kkt)
 {
   const ContactState *state = pair->state;
@@ -93,6 +99,7 @@ PetscErrorCode ContactJudge(MPI_Comm comm, PetscInt n, const ContactJudged pair[
   PetscFunctionBeginUser;
   PetscCall(ScaleFind(comm, n, pair, displacement, &scale));
   for (PetscInt p = 0; p < n; p++) PairRaise(&pair[p], &scale, &worst);
+  /* ContactKKT holds PetscReals alone */
   PetscCallMPI(MPI_Allreduce(&worst, kkt, (PetscMPIInt)(sizeof(worst) / sizeof(PetscReal)), MPIU_REAL, MPI_MAX, comm));
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,9 @@
 /*
-   Forces of the contact at the nodes of the mesh: -lambda_n n + lambda_t t + lambda_b b on the master point, shared by
-   the nodes of its facet with their weights, and the opposite on the slave. Nodes that a support holds are included.
-   And what ties pass on: forces on slaves act on the nodes that they follow.
+   Forces of the contact at the nodes of the mesh, N: f = -lambda_n n + lambda_t[0] t + lambda_t[1] b on the master
+   point, shared by the nodes of its facet with their weights, f_i = w_i f, and -f on the slave: the transpose of u_m
+   - u_s = sum_i w_i u_i - u_s, so that the forces of a pair do the work of the pair and balance (sum_i w_i = 1).
+   Nodes that a support holds are included, for reactions. And what ties pass on: with u_s = sum_i A_i u_i
+   (ContactLink.follow), a force f on the slave acts as A_i' f on the nodes that it follows.
 */
 #include "contactimpl.h"
 
@@ -22,7 +24,8 @@ static PetscErrorCode PairAddForce(const ContactPair *pair, const ContactState *
   PetscFunctionReturn(0);
 }
 
-/* Three numbers a node, ordered by the numbers of the nodes, and the way to a local vector */
+/* Three numbers a node, ordered by the global numbers of the nodes (no unknowns: held nodes have none), each on the
+   rank that owns the node, and the way to a local vector, which has all copies */
 typedef struct {
   Vec        forces;
   VecScatter way;
@@ -45,7 +48,7 @@ static PetscErrorCode NodalCreate(Contact contact, Vec local, Nodal *nodal)
   PetscFunctionReturn(0);
 }
 
-/* Assembles the forces and puts them into a local vector, or adds them */
+/* Assembles the forces and puts them into a local vector, or adds them. Every copy of a node gets the same sum. */
 static PetscErrorCode NodalMove(const Nodal *nodal, InsertMode mode, Vec local)
 {
   PetscFunctionBeginUser;
@@ -76,8 +79,9 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
   PetscFunctionReturn(0);
 }
 
-/* Adds what passes of the force [3] on the slave of a link: to the nodes that it follows, and with the other sign to
-   itself */
+/* Adds what passes of the force f (N, [3]) on the slave of a link: A_i' f to node i that it follows, and -f to
+   itself, but in directions that a support holds, where f stays as its reaction; the rows of A_i of these directions
+   are 0 (tie.c) */
 static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal force[3], Vec forces)
 {
   PetscScalar part[3];
@@ -95,7 +99,7 @@ static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal forc
   PetscFunctionReturn(0);
 }
 
-/* Passes the forces on all slaves one step on; the largest that moves, N */
+/* Passes the forces on all slaves one step on; the largest that moves, N, over all ranks */
 static PetscErrorCode ForcesPass(Contact contact, const Nodal *nodal, Vec local, PetscReal *largest)
 {
   const PetscReal *force;
@@ -111,6 +115,9 @@ static PetscErrorCode ForcesPass(Contact contact, const Nodal *nodal, Vec local,
   PetscFunctionReturn(0);
 }
 
+/* A slave of one tie may be a node that the slaves of another follow, so that forces go on step by step. A chain of
+   ties ends: the last slaves lose f - f = 0 exactly, and the largest, 0, tells it on all ranks. A circle of ties
+   would not end: the operators refuse it before (operators/points/dependents.c). */
 PetscErrorCode ContactPassForces(Contact contact, Vec local)
 {
   PetscReal largest = 1;

@@ -9,8 +9,11 @@
 */
 #include "contactimpl.h"
 
-/* Nodes with their weights, directions, speed and gap; false where the slip has no part in the tangent plane. What is
-   below 1e-9 of the facet's size is rounding of the coordinates, and no gap. */
+/* Nodes with their weights, directions, speed (m/s) and gap (m); false where the slip has no part in the tangent
+   plane. Along a rotation the speed is |w x (x - c)| in the tangent plane, which differs from pair to pair; a
+   direction that is given has the speed of the options everywhere. across = |sum_i w_i a_i| (m^2, or without unit on
+   facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9 of the facet's size is
+   rounding of the coordinates, and 0. */
 static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *surface, const ContactFoot *foot,
                                ContactPair *pair)
 {
@@ -156,8 +159,9 @@ static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for surfaces between which nothing can slide: they share most of their nodes, or one looks
-   where the other does. A line of common nodes, a hinge or the tip of a crack, is no fault: K of such a pair is zero */
+/* Raises the error for surfaces between which nothing can slide: they share most of their nodes, or one looks where
+   the other does. A line of common nodes, a hinge or the tip of a crack, is no fault: u_m - u_s of such a pair is
+   zero. The counts are those of all ranks. */
 static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, PairFailure *failure)
 {
   PetscFunctionBeginUser;
@@ -172,6 +176,7 @@ static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, Pa
   PetscFunctionReturn(0);
 }
 
+/* The largest value of all ranks with its x, on all of them; of equal ones that of the lowest rank (MPI_MAXLOC) */
 PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3])
 {
   struct {
@@ -187,13 +192,16 @@ PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]
   PetscFunctionReturn(0);
 }
 
-/* Counts the slaves beyond the border of the master: an error where they are all */
+/* Counts the slaves beyond the border of the master: an error where they are all. Of the ranks with such slaves the
+   one nearest to the border says where: the largest of -(distance along the surface), so that a rank without any, at
+   -PETSC_MAX_REAL, says nothing. */
 static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *failure)
 {
   PetscReal *const along = failure->nearest, *const x = failure->nearest_x;
   PetscReal order = failure->n_off ? -along[0] : -PETSC_MAX_REAL, away[3] = {along[0], along[1], 0};
 
   PetscFunctionBeginUser;
+  /* n_common, n_towards, n_with, n and n_off stand one after the other in PairFailure */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failure->n_common, 5, MPIU_INT, MPI_SUM, comm));
   c->n_off    = failure->n_off;
   c->n_slaves = failure->n + failure->n_off;
@@ -262,6 +270,8 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscFunctionReturn(0);
 }
 
+/* The pairs of one interface, appended to those before. -X_force F is shared by area, lambda_p = F a_p / sum a: a
+   uniform pressure, until statics tells better. The areas are those over the master, hence after PairsCover(). */
 PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
 {
   ContactInterface     *c       = &contact->interfaces[interface];
@@ -286,6 +296,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscFunctionReturn(0);
 }
 
+/* N/m; kn is an argument, not that of the interface, since a sweep varies it */
 PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn)
 {
   return interface->per_area ? kn * pair->area : kn;

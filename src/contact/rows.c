@@ -1,5 +1,12 @@
 /*
-   Sparse rows d . (u_m - u_s) of pairs: N, T and B of an interface, and rows along any direction.
+   Sparse rows d . (u_m - u_s) = d . (sum_i w_i u_i - u_s) of pairs: N (d = n, closing of the gap), T (d = t) and B (d
+   = b) of an interface, and rows along any direction d (unit vectors, no unit; the row times u is in m). Row i has 3
+   (1 + n_master) entries at most: w_i d at the unknowns of the master's nodes and -d at those of the slave. A
+   direction that a support holds has the unknown -1, which MatSetValues() leaves out: u is 0 there. Values are added,
+   since a node may be slave and master of one pair.
+
+   The transpose takes forces of pairs to nodes: a compressive lambda_n is the internal force N' lambda_n, and acts on
+   the nodes as -N' lambda_n. Rows live on the rank that owns the slave; columns may belong to any.
 */
 #include "contactimpl.h"
 

@@ -22,8 +22,11 @@
 #include "contactimpl.h"
 #include "kernels/contact/arm.h"
 
-#define TIE_SHARE   0.05 /* of the size of a facet: the largest distance where none is given */
-#define TIE_TOUCHES 1e-9 /* of that size: rounding of the places, no gap */
+/* of the size of a facet: the largest distance where none is given; gaps of meshes of one curved surface, whose
+   sagitta is h^2 / (8 R), are below it */
+#define TIE_SHARE 0.05
+/* of that size: rounding of the places, no gap */
+#define TIE_TOUCHES 1e-9
 
 PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record)
 {
@@ -62,7 +65,9 @@ static PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, 
   return length;
 }
 
-/* The nodes that a link follows, with their matrices; those of no weight are left out */
+/* The nodes that a link follows, with their matrices A_i = w_i I + (turning of the facet by node i) x arm, [3][3] by
+   rows. Those with A_i = 0 are left out: on matching meshes without a gap one node of weight 1 remains. A node of
+   weight 0 stays where the arm needs its part of the turning. */
 static void LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
                           ContactLink *link)
 {
@@ -91,7 +96,9 @@ static PetscBool LinkIsCommon(const ContactLink *link)
   return PETSC_FALSE;
 }
 
-/* Drops the directions in which supports hold slave and master; whether they hold the slave alone in one */
+/* Drops the directions in which supports hold slave and master: rows of A_i of these become 0. True where a support
+   holds the slave alone, in which case u_s = 0 and sum_i w_i u_i = 0 would be an equation on the master, which no
+   elimination of slaves makes. */
 static PetscBool LinkDropHeld(ContactLink *link)
 {
   PetscBool alone = PETSC_FALSE;
@@ -220,7 +227,8 @@ static PetscErrorCode TieCheckMotions(Contact contact, const ContactTie *tie, co
   PetscFunctionReturn(0);
 }
 
-/* Appends the links of one tie, of the slave nodes that this rank owns */
+/* Appends the links of one tie, of the slave nodes that this rank owns. Every rank has the whole master, so that feet
+   need no exchange; errors are raised by all ranks from counts that are summed before. */
 static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
 {
   ContactTie *tie  = &contact->ties[t];
@@ -241,6 +249,7 @@ static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
   }
   PetscCall(PetscFree(vertex));
   PetscCall(ContactSurfaceDestroy(&work.master));
+  /* n, n_common, n_far and n_beyond, then offset and beyond, stand one after the other in ContactTie */
   PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 4, MPIU_INT, MPI_SUM, contact->comm));
   PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, contact->comm));
   PetscCall(TieCheck(contact->comm, tie, &work.failure));

@@ -4,7 +4,7 @@
 */
 #include "contactimpl.h"
 
-/* Over the pairs of one interface, on all ranks */
+/* Over the pairs of one interface, on all ranks; least and most are unset where there is none */
 typedef struct {
   PetscInt  n;
   PetscReal area, least, most; /* m^2; gaps, m */

@@ -1,12 +1,18 @@
 /*
    What holds the bodies. Two bodies hang together by ties, contacts, bushings and points that have nodes of both; a
    body is held by supports, motions, springs, dashpots, and by bushings and points that stand on the ground. Bodies
-   that hang together with no other ones and on nothing are said, and nodes in one place that nothing joins (touch.c). A
-   scene that is free as a whole is none of these.
+   that hang together with no other ones and on nothing are said, and nodes in one place that nothing joins (touch.c).
+   A scene that is free as a whole is none of these.
+
+   The pieces are the connected components of a graph with a node per body and one more, n, for the ground, kept as a
+   forest (parent[]; union of roots). Every rank has the whole graph: what a rank sees of a set is marked in has[],
+   the marks are reduced over all ranks, and then each rank joins the same bodies in the same order. Notes are no
+   errors: a free body is meant in a scene of impact or of free modes.
 */
 #include "bodiesimpl.h"
 
-#define MAX_LINES 4 /* of a kind */
+/* of a kind: a mesh of a thousand loose pieces is one fault, not a thousand lines */
+#define MAX_LINES 4
 
 static PetscInt RootOf(const PetscInt parent[], PetscInt b)
 {
@@ -28,7 +34,8 @@ static PetscErrorCode SetMark(BodyGraph *b, const char set[])
   PetscFunctionReturn(0);
 }
 
-/* The bodies that are marked on any rank hang together, or each on the ground; clears the marks */
+/* The bodies that are marked on any rank hang together (each with the one marked before), or each on the ground;
+   clears the marks. Collective. */
 static PetscErrorCode MarkedJoin(BodyGraph *b, PetscBool ground)
 {
   PetscMPIInt count;
@@ -83,7 +90,9 @@ static PetscErrorCode SurfaceBodies(const BodyGraph *b, const ContactSurface *s,
   PetscFunctionReturn(0);
 }
 
-/* Marks the bodies on which the pairs of an interface have a foot, of slaves of one body, and that one */
+/* Marks the bodies on which the pairs of an interface have a foot, of slaves of one body, and that one;
+   slave[n_pairs] has the body of each pair's slave. An interface of several bodies, such as two pads on a disc, joins
+   only those that face. */
 static PetscErrorCode PairsMark(BodyGraph *b, PetscInt interface, const PetscInt slave[], PetscInt body,
                                 const ContactSurface *s, const PetscInt of[])
 {
@@ -155,7 +164,8 @@ static PetscErrorCode ContactsJoin(BodyGraph *b)
   PetscFunctionReturn(0);
 }
 
-/* What joins bodies: bushings, points, ties by the nodes that follow, contacts by their pairs */
+/* What joins bodies: bushings, points, ties by the nodes that follow, contacts by their pairs. together[] is kept
+   before the ground is joined, since two bodies that both stand on the ground do not hang together (touch.c). */
 static PetscErrorCode GraphJoin(BodyGraph *b)
 {
   const Contact     c = b->contact;

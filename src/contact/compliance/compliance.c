@@ -1,13 +1,23 @@
-/* ContactCompliance: what it owns, the order of the methods, reports */
+/*
+   ContactCompliance: what it owns, the order of the methods, reports. W is [3 n][3 n] (m/N) in columns as BLAS has
+   it; it is symmetric, so that rows are columns.
+
+   Inside, forces are lengths: l = lambda / kappa_p with kappa_p = 3 / trace W_pp (N/m), the stiffness of pair p
+   alone, so that l and v = r - slip0 are of one size at each pair: the diagonal blocks of W kappa have the trace 3,
+   whatever the units and however stiff one body is beside the other.
+*/
 #include "complianceimpl.h"
 
-#define COMPLIANCE_RTOL      1e-12
-#define COMPLIANCE_SYMMETRIC 1e-10 /* of the larger of two diagonals */
-#define COMPLIANCE_DEFINITE  1e-10 /* of the largest diagonal */
-#define COMPLIANCE_POWER     30    /* iterations for the largest eigenvalue */
-#define COMPLIANCE_MAX_IT    40    /* of Newton's method */
+/* relative residual of the laws; chord.c goes on to 1e-15 where rounding lets it */
+#define COMPLIANCE_RTOL 1e-12
+/* of the larger of two diagonals: what sums of modes and static solutions leave by rounding */
+#define COMPLIANCE_SYMMETRIC 1e-10
+/* of the largest diagonal: eigenvalues that are negative by less are rounding */
+#define COMPLIANCE_DEFINITE 1e-10
+#define COMPLIANCE_POWER    30 /* iterations for the largest eigenvalue */
+#define COMPLIANCE_MAX_IT   40 /* of Newton's method */
 
-/* Finite, symmetric, with a diagonal that is not negative */
+/* Finite, symmetric, with a diagonal that is not negative. The conditions are written so that nan fails them. */
 static PetscErrorCode MatrixCheck(PetscInt n, const PetscReal W[])
 {
   PetscFunctionBeginUser;
@@ -26,7 +36,8 @@ static PetscErrorCode MatrixCheck(PetscInt n, const PetscReal W[])
   PetscFunctionReturn(0);
 }
 
-/* kappa = 3 / trace W_pp; that of the mean where a pair is held in all directions */
+/* kappa = 3 / trace W_pp, N/m; that of the mean where a pair is held in all directions, W_pp = 0, whose force is any
+   that the laws ask for */
 static void StiffnessSet(ContactCompliance c)
 {
   const PetscInt N   = 3 * c->n;
@@ -41,9 +52,10 @@ static void StiffnessSet(ContactCompliance c)
   }
 }
 
-/* Statuses are decided by l - a v, a = 1 / sqrt(largest eigenvalue of W kappa): between what a pair feels alone, 1, and
-   what all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their
-   statuses. */
+/* Statuses are decided by l - a v, a = 1 / sqrt(largest eigenvalue of W kappa): between what a pair feels alone, 1,
+   and what all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their
+   statuses. Power iteration in the inner product x' kappa y, in which W kappa is symmetric, from a vector that is no
+   mode of a symmetric scene. A rough value is enough: any a > 0 has the same solutions. */
 static void WeightSet(ContactCompliance c)
 {
   const PetscReal    zero = 0, one = 1;
@@ -143,7 +155,8 @@ PetscErrorCode ContactComplianceSetTolerance(ContactCompliance c, PetscReal rtol
   PetscFunctionReturn(0);
 }
 
-/* Motions without forces, and the guess; a guess that pulls or drives is none */
+/* Motions without forces, free = q - (0, slip0), m, and the guess; a guess that pulls or drives is none. Not finite
+   is an error here, before it can run through all four methods. */
 static PetscErrorCode StepBegin(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                 const PetscReal lambda[])
 {
@@ -177,7 +190,8 @@ static void StepEnd(ContactCompliance c, const PetscReal slip0[], PetscReal lamb
   }
 }
 
-/* Adds the report of the step to that of all */
+/* Adds the report of the step to that of all. The residual is relative to scale + noise / rtol, hence below rtol
+   exactly where ComplianceIsSolved() says so. The route of all is the last resort that any step took. */
 static void StepReport(ContactCompliance c, const ComplianceMiss *miss)
 {
   ComplianceReport *one = &c->report, *all = &c->totals;

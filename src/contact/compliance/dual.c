@@ -12,10 +12,15 @@
 */
 #include "complianceimpl.h"
 
-#define DUAL_PIVOT 1e-8 /* smallest of Cholesky's pivots, 1 on the diagonal before, that V is made with */
-#define DUAL_GAIN  0.7  /* rows beside those of linear.c that pay for two products with V */
+/* smallest of Cholesky's pivots, 1 on the diagonal before, that V is made with: rounding of V is then below 1e-8 of
+   it, which the steps of Newton's method take out again */
+#define DUAL_PIVOT 1e-8
+/* rows beside those of linear.c that pay for two products with V: factors of 0.7 of the rows take 0.34 of the time */
+#define DUAL_GAIN 0.7
 
-/* V, or none where W is nearly singular; [3 n][3 n] */
+/* V, or none where W is nearly singular; [3 n][3 n], N/m. It inverts D W D with D = sqrt(kappa), without unit and
+   with diagonals of order 1, so that the pivots tell how near to singular W is; V = D (D W D)^-1 D. Made once: W does
+   not change. */
 static PetscErrorCode DualInvert(ContactCompliance c)
 {
   const PetscInt     N    = 3 * c->n;
@@ -77,7 +82,9 @@ static void DualAddRow(ContactCompliance c, PetscInt p, const PetscReal along[3]
   c->dual.x[r]   = value;
 }
 
-/* Rows of all pairs, and the motions that are known, into dv */
+/* Rows of all pairs, and the motions that are known, into dv (m). linear.c's rows are Q dz + a dv = rhs; with Q = 0
+   along n and, in stick, along the tangents, dv = rhs / a is known. Across the slip its Q[1][1] = 1 - alpha, alpha
+   the factor by which the trial force is shortened to the cone. */
 static void DualSetRows(ContactCompliance c)
 {
   PetscInt k = 0;
@@ -114,7 +121,8 @@ static void DualForce(ContactCompliance c)
   BLASgemv_("N", &rows, &rows, &one, c->dual.V, &rows, c->dual.dv, &inc, &zero, c->dual.force, &inc);
 }
 
-/* A and the right-hand side of the rows */
+/* A x = b of the free motions: A[r][s] = test_r . (V along_s) at the pair of r, and own_r on the diagonal; b takes
+   off what the known motions dv make there */
 static void DualAssemble(ContactCompliance c)
 {
   ComplianceDual *d = &c->dual;

@@ -1,11 +1,19 @@
 /*
    The laws of all pairs at forces l (divided by the stiffness of their pair, m) and motions v = free + W kappa l
    (kernels/contact/coulomb.h, with w = -v); (1 - t) W kappa + t I stands for W kappa on the way of path.c.
+
+   Residual of a pair, m: the root of the squares of
+
+      l_n - max(0, l_n - v_n)   and   p - Proj(p + d)  on the disc of radius mu l_n,   p = -l_T, d = v_T
+
+   It is 0 where the laws hold and there alone, continuous, and needs no status.
 */
 #include "complianceimpl.h"
 
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
+/* mu of the slip speed |v_T| / dt (m/s) at the present v, and how it falls per length of w: d mu / d|w_T| = mu'(s) /
+   (dt weight), 1/m, since |w_T| = weight |v_T|. k infinite: the pair has no compliance of its own, it is in W. */
 CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
   PetscReal   slip;
@@ -19,6 +27,7 @@ CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal w
   return pair;
 }
 
+/* v = free + [(1 - t) W kappa + t I] l; columns of pairs without force are left out, most of them when few are closed */
 PetscErrorCode ComplianceMove(ContactCompliance c)
 {
   const PetscInt N = 3 * c->n;
@@ -37,6 +46,8 @@ PetscErrorCode ComplianceMove(ContactCompliance c)
   PetscFunctionReturn(0);
 }
 
+/* noise: v of a closed pair is a small difference of free and W kappa l. What rounding of the two leaves is not the
+   method's fault, and a residual below it cannot be asked for. */
 void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
 {
   PetscReal sum = 0, size = 0;
@@ -68,6 +79,8 @@ PetscBool ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *mi
   return miss->largest <= c->rtol * miss->scale + miss->noise ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Friction per normal force where pair p slides at the present l, v: -mu times the direction of the trial slip; 0
+   where that has no length */
 void ComplianceTurn(const ContactCompliance c, PetscInt p, PetscReal d[2])
 {
   PetscReal         w[3];

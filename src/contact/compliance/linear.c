@@ -13,9 +13,12 @@
 */
 #include "complianceimpl.h"
 
-#define SINGULAR_SHIFT 1e-10 /* of the diagonal, which is of order 1 */
-#define SINGULAR_PIVOT 1e-13 /* smallest pivot beside the largest */
-#define FAST_PIVOT     1e-8  /* the same where rows are not exchanged */
+/* of the diagonal, which is of order 1: far above rounding of some hundred rows, far below what a step needs */
+#define SINGULAR_SHIFT 1e-10
+/* smallest pivot beside the largest, some hundred roundings */
+#define SINGULAR_PIVOT 1e-13
+/* the same where rows are not exchanged: rounding grows by its inverse, and the next step still gains eight figures */
+#define FAST_PIVOT 1e-8
 
 /* Rows of closed pair k */
 static inline PetscInt LinearRows(const ContactCompliance c, PetscInt k)
@@ -23,7 +26,9 @@ static inline PetscInt LinearRows(const ContactCompliance c, PetscInt k)
   return c->row[k + 1] - c->row[k];
 }
 
-/* A law along (n, across e, e) */
+/* A law along (n, across e, e): with F = [e_across'; e'] (orthonormal), rows of Q and q0 become F Q F', F q0, columns
+   of P become P F'; l stays along (n, t, b). After it Q is diagonal, and column 2 of P is 0 where friction does not
+   change with the slip. */
 static void LinearTurn(const PetscReal e[2], CoulombLaw *law)
 {
   const PetscReal F[2][2] = {{-e[1], e[0]}, {e[0], e[1]}};
@@ -69,7 +74,9 @@ void ComplianceAlongRows(const ContactCompliance c, PetscInt k, const PetscReal 
   if (LinearRows(c, k) == 3) y[2] = x[2];
 }
 
-/* z of a closed pair at its present l, v: the point where its law was linearised; of its rows */
+/* z of a closed pair at its present l, v, of its rows: the point where its law was linearised. Normal and stick: z =
+   l. Slip: z_T = (mu l_n - |q|) e with q = v_T - l_T and e = q / |q|, so that -e e'z is the slip (coulomb.h). The
+   system is linear: any z0 gives the same z0 + dz but for rounding. */
 static void LinearPoint(const ContactCompliance c, PetscInt k, PetscReal z[3])
 {
   const PetscInt    p = c->closed[k];
@@ -87,7 +94,8 @@ static void LinearPoint(const ContactCompliance c, PetscInt k, PetscReal z[3])
   ComplianceAlongRows(c, k, x, z);
 }
 
-/* Room for the matrix of m rows */
+/* Room for the matrix of m rows, half as many more, and never beyond all pairs and the border; contents are lost,
+   since an assembly follows */
 static PetscErrorCode LinearReserve(ContactCompliance c, PetscInt m)
 {
   PetscFunctionBeginUser;
@@ -98,7 +106,8 @@ static PetscErrorCode LinearReserve(ContactCompliance c, PetscInt m)
   PetscFunctionReturn(0);
 }
 
-/* The columns of closed pair k */
+/* The columns of closed pair k of Q + a [(1 - t) W kappa + t I] P, two or three; column j sums three columns of W
+   with the weights a (1 - t) kappa_p P[.][j], so that W P is never formed */
 static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
 {
   const PetscInt    p = c->closed[k], N = 3 * c->n;
@@ -124,6 +133,8 @@ static void LinearColumns(ContactCompliance c, PetscInt k, PetscInt rows)
   }
 }
 
+/* The right-hand side -(Q z0 + q0 + a v), with v at l = P z0 + p0. That l is left in c->l, and 0 at open pairs: what
+   a step adds to it (ComplianceTake()) is P dz alone. */
 PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border)
 {
   PetscFunctionBeginUser;
@@ -170,6 +181,7 @@ void ComplianceShift(ContactCompliance c, PetscInt border)
   for (PetscInt i = 0; i < rows; i++) c->A[i * (rows + border + 1)] += SINGULAR_SHIFT;
 }
 
+/* Factors in the place of A, which is lost: where they are not good it is assembled again */
 void ComplianceFactorFast(ContactCompliance c, PetscInt rows, PetscBool *good)
 {
   *good        = ComplianceLUFactor(rows, c->A) > FAST_PIVOT ? PETSC_TRUE : PETSC_FALSE;

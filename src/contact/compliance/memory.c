@@ -1,4 +1,8 @@
-/* What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept */
+/*
+   What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept.
+   The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
+   (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base.
+*/
 #include "complianceimpl.h"
 
 PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)
@@ -20,6 +24,7 @@ PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, Pets
   PetscFunctionReturn(0);
 }
 
+/* Indices are whole numbers below 4 n, which a PetscReal holds exactly */
 PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const PetscReal values[])
 {
   ComplianceChord *h = &c->chord;

@@ -7,12 +7,15 @@
 */
 #include "complianceimpl.h"
 
-#define NEWTON_PATIENCE 8       /* steps in a row without a lower residual */
-#define NEWTON_MEMORY   5       /* norms that a damped step is compared with */
-#define NEWTON_ENOUGH   1e-4    /* of the decrease that a step promises */
-#define NEWTON_REFINE   3       /* steps at most on what is solved, */
-#define NEWTON_ALONG    100     /* tolerances: until friction is along slip to this part of the largest force */
-#define NEWTON_SHORTEST 1. / 64 /* of a step */
+/* steps in a row without a lower residual: a semismooth method may rise for some steps while statuses settle */
+#define NEWTON_PATIENCE 8
+#define NEWTON_MEMORY   5 /* norms that a damped step is compared with */
+/* of the decrease that a step promises (the usual constant of Armijo's rule) */
+#define NEWTON_ENOUGH 1e-4
+#define NEWTON_REFINE 3   /* steps at most on what is solved, */
+#define NEWTON_ALONG  100 /* tolerances: until friction is along slip to this part of the largest force */
+/* of a step; below it the step is given up */
+#define NEWTON_SHORTEST 1. / 64
 
 /* The matrix at the present laws, as it was before: l and v are what it is made of */
 static PetscErrorCode NewtonAssembleAgain(ContactCompliance c)
@@ -43,7 +46,8 @@ static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
   PetscFunctionReturn(0);
 }
 
-/* One step on l, v */
+/* One step on l, v: statuses of the present l, v, their laws, the linear system, the new l, and v of it anew (not v +
+   dv, whose rounding would stay). l0, v0 keep the point before. */
 static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
 {
   PetscBool solved;
@@ -63,7 +67,9 @@ static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
   PetscFunctionReturn(0);
 }
 
-/* Shortens the step from l0, v0, along which v is linear, until the norm is below `above`; true where it is */
+/* Shortens the step from l0, v0, along which v is linear, until the norm of the natural map is below (1 - 1e-4 t)
+   `above`, t the part of the step that is left; true where it is. v is halved with l instead of multiplied by W
+   again. */
 static PetscBool NewtonShorten(ContactCompliance c, PetscReal above, ComplianceMiss *miss)
 {
   for (PetscReal t = 1; t > NEWTON_SHORTEST; t /= 2) {
@@ -121,6 +127,8 @@ static PetscReal NewtonDirection(ContactCompliance c, const ComplianceMiss *miss
   return off / miss->scale;
 }
 
+/* Steps on what is solved, until friction is along the slip; one that does not lower the residual is taken back.
+   c->best holds the point before. */
 PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss)
 {
   const PetscInt N = 3 * c->n;

@@ -37,7 +37,9 @@
 #define PATH_POLISH   20    /* proximal points at most */
 #define PATH_TRY_IT   20    /* of Newton then */
 
-/* Newton on the plane across the tangent from the predicted point; true where it converges not far from there */
+/* Newton on the plane across the tangent from the predicted point. *it is the number of iterations, beyond
+   PATH_MAX_IT where it does not converge within `step` of that point (in (l / |l|, x)): it may be on another piece of
+   the path then. */
 static PetscErrorCode PathCorrect(ContactCompliance c, const CompliancePath *path, PetscReal step, PetscReal *x,
                                   PetscInt *it)
 {
@@ -165,7 +167,9 @@ static PetscErrorCode PathPolish(ContactCompliance c, PetscReal *free, Complianc
   PetscFunctionReturn(0);
 }
 
-/* One step along the path, or less next time, or round a kink */
+/* One step along the path, or less next time, or round a kink. The step doubles after an easy step, up to
+   PATH_LONGEST, and halves after one that is not taken. `cost` adds the cube of the rows for each iteration, in
+   proportion to the time of its factors. */
 static PetscErrorCode PathAdvance(ContactCompliance c, CompliancePath *path, PetscReal *step, CompliancePath *before,
                                   PetscBool *taken)
 {

@@ -1,5 +1,7 @@
 /*
-   A point of the path of path.c, its tangent, and Newton's system there, with the border of the path.
+   A point of the path of path.c, its tangent, and Newton's system there, with the border of the path. y = (l, x), l
+   in m over `size` = |l| of the accepted point, x = log(t / (1 - t)) without unit, so that both are of order 1; dt/dx
+   = t (1 - t).
 */
 #include "complianceimpl.h"
 
@@ -78,7 +80,9 @@ PetscErrorCode CompliancePathCopy(ContactCompliance c, const CompliancePath *fro
   PetscFunctionReturn(0);
 }
 
-/* Takes the point l, x, as the laws of its piece have it, and the tangent there */
+/* Takes the point l, x, as the laws of its piece have it, and the tangent there: the solution of the bordered system
+   for the unit vector of the border, scaled to length 1. Its direction is ahead where the determinant of the system
+   has the sign it had at the beginning of the path. */
 PetscErrorCode CompliancePathTangent(ContactCompliance c, CompliancePath *path, PetscReal x)
 {
   PetscReal ahead, length, size = path->size;
@@ -94,7 +98,8 @@ PetscErrorCode CompliancePathTangent(ContactCompliance c, CompliancePath *path, 
   PetscCall(PetscArrayzero(c->l, 3 * c->n));
   ComplianceTake(c);
   PetscCall(PetscArraycpy(path->tangent, c->l, 3 * c->n));
-  path->t_x  = c->rhs[c->row[c->n_closed]] / size;
+  path->t_x = c->rhs[c->row[c->n_closed]] / size;
+  /* forces may vanish on the way; the scale must not */
   path->size = PetscMax(CompliancePathNorm(c, path->l), PETSC_SQRT_MACHINE_EPSILON * size);
   length     = PetscSqrtReal(PetscSqr(path->t_x) + PetscSqr(CompliancePathNorm(c, path->tangent) / path->size));
   if (!path->sign) path->sign = PathSign(c);

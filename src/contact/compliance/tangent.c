@@ -9,7 +9,8 @@
 */
 #include "complianceimpl.h"
 
-/* A, factored, at the solution; v and l, which the assembly uses, are as before */
+/* A, factored, at the solution; v and l, which the assembly uses, are as before. Rows are always exchanged here, and
+   nothing is shifted: a derivative that does not exist is an error, where a force may be any of several. */
 static PetscErrorCode TangentFactor(ContactCompliance c)
 {
   PetscBool singular;

@@ -1,6 +1,8 @@
 /*
-   Friction laws: the table of them, and what other rooms ask of one (include/squeal/frictionlaw.h). A new law is a file
-   like coulombs.h, included here, and its row in the table.
+   Friction laws: the table of them, and what other rooms ask of one (include/squeal/frictionlaw.h). A new law is a
+   file like coulombs.h, included here, and its row in the table. mu has no unit; s, the slip speed, is in m/s, and
+   mu' = d mu / d s in s/m. A law is linearised about its stated speed: mu(s) near it is mu(speed) + mu'(speed) (s -
+   speed).
 */
 #include "coulombs.h"
 #include "statickinetic.h"
@@ -9,7 +11,8 @@
 
 static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law, &stribeck_law};
 
-#define LARGEST_MU 1.5 /* of rubber on dry concrete */
+/* of rubber on dry concrete; what is above it is more often a number in per cent */
+#define LARGEST_MU 1.5
 #define N_KINDS    ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(kinds))
 
 static const FrictionKind *KindOf(const FrictionLaw *law)
@@ -51,6 +54,7 @@ void FrictionDerive(const FrictionLaw *law, FrictionDerivative *derivative)
   KindOf(law)->derive(law, law->speed, derivative);
 }
 
+/* Whether any coefficient is not 0; a speed or a decay without a coefficient is no friction */
 PetscBool FrictionExists(const FrictionLaw *law)
 {
   for (PetscInt j = 0; j < KindOf(law)->n; j++)
@@ -80,6 +84,7 @@ PetscBool FrictionIsValid(const FrictionLaw *law)
   return PETSC_TRUE;
 }
 
+/* mu times a factor at all speeds: coefficients are factors of mu, speeds of the law stay */
 void FrictionScale(FrictionLaw *law, PetscReal factor)
 {
   for (PetscInt j = 0; j < KindOf(law)->n; j++)

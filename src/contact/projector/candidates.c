@@ -3,14 +3,19 @@
    (contact/surface/search.c). Their nodes and all slaves are the active nodes.
 
    A search is due when some slave has moved by half a margin, relative to the mean motion of the active nodes of the
-   master and what these move against each other. Nodes that are no candidates are unseen in between, so that a few of
-   each master, the outermost ones along the axes, are always active and stand for them. All is in the frame of the
-   master, in m.
+   master and what these move against each other:
+
+      |d_s - d_s(search) - mean| > margin / 2 - max_i |u_i - u_i(search) - mean|,     all in the frame of the master, m
+
+   A slave then has not yet left its candidates at the next step, since it moves by far less than half a facet in one.
+   Nodes that are no candidates are unseen in between, so that a few of each master, the outermost ones along the
+   axes, are always active and stand for them.
 */
 #include "projectorimpl.h"
 #include "base/events.h"
 
-#define MARGIN 1.0 /* mean sizes of the facets */
+/* mean sizes of the facets: larger ones have more candidates and active nodes a step, smaller ones more searches */
+#define MARGIN 1.0
 
 /* The outermost nodes of a surface along each axis are active, and the nodes of live facets */
 static void MasterActivate(const ProjectorMaster *m, const ProjectorNodes *nodes, PetscBool is_active[])
@@ -98,6 +103,7 @@ static PetscReal MasterMotion(const ContactProjector p, const ProjectorMaster *s
   return PetscSqrtReal(largest);
 }
 
+/* Pairs are ordered by interface (surface.c): limit and mean are found anew where the interface changes */
 PetscBool ProjectorNeedsSearch(ContactProjector p, const PetscReal u[])
 {
   PetscInt  interface = -1;

@@ -48,7 +48,9 @@ INTO_VERSIONS PetscReal MasterCompliance(const ProjectorNodes *nodes, const Proj
   return sum;
 }
 
-/* Compliance W_pp */
+/* W_pp = e M_s^-1 e' + e (sum_i w_i^2 M_i^-1) e', 1/kg, the first with the directions turned to the ground. Where
+   each node has one mass in all directions (even) that is w I with w = 1/M_s + sum_i w_i^2 / M_i: the cone of such a
+   pair is solved by a projection, without a search for the direction of slip (project.c). */
 static void PairSetCompliance(const ProjectorNodes *nodes, ProjectorPair *pair)
 {
   const PetscReal *slave = &nodes->minv[3 * pair->slave];
@@ -67,7 +69,8 @@ static void PairSetCompliance(const ProjectorNodes *nodes, ProjectorPair *pair)
     }
 }
 
-/* Sliding velocity along n, t, b in this step: prescribed, or that of the frame */
+/* Sliding velocity along n, t, b in this step, m/s: prescribed, the ramp at the middle of the step as velocities are;
+   or that of the frame, the change of the slave's place in it over the step, exact for any turn */
 static void PairSetDrift(const ContactProjector p, const ContactStep *step, const PetscReal d_old[3],
                          const PetscReal d_new[3], ProjectorPair *pair)
 {
@@ -82,7 +85,9 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
   pair->drift[1] = pair->speed * RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
 }
 
-/* Friction coefficient at the slip speed at t_n */
+/* Friction coefficient at the slip speed at t_n: s_n = s_{n-1/2} + (s_{n-1/2} - s_{n-3/2}) / 2 = 1.5 s_{n-1/2} - 0.5
+   s_{n-3/2}, not below 0. It is explicit: the slip that the step finds does not enter, so that mu is one number in
+   Gauss-Seidel and its cones stay convex. A pair without a slip before has s_n = s_{n-1/2}. */
 static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
 {
   const ContactInterface *c = &p->contact->interfaces[pair->interface];
@@ -132,6 +137,8 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
   for (int i = 0; i < 2; i++) pair->natural[i] = foot.natural[i];
 }
 
+/* The gap of the mesh and n . (d - sum_i w_i u_i), the latter as n . (d - u_0 - sum_{i>0} w_i (u_i - u_0)): a common
+   motion of both bodies, of metres perhaps, cancels before it is multiplied */
 PetscReal PairGap(ContactProjector p, const ProjectorPair *pair, const PetscReal d[3], const PetscReal u[])
 {
   const ContactFacet *f = &p->master[pair->interface].surface->facet[pair->facet];

@@ -12,7 +12,9 @@
 #include "base/algebra/versions.h"
 #include "projectorimpl.h"
 
-#define NOISE 16 /* roundings of a relative velocity, by its terms */
+/* roundings of a relative velocity, by its terms: five products and sums in three directions, and what the velocities
+   carry of the sweeps before */
+#define NOISE 16
 
 void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3])
 {
@@ -39,7 +41,8 @@ static void PairSlip(const ProjectorPair *pair, const PetscReal v[], PetscReal q
   for (int i = 0; i < 3; i++) q[i] += pair->offset[i];
 }
 
-/* Velocities of the nodes after an impulse along n, t, b */
+/* Velocities of the nodes after an impulse p (N s) along n, t, b: on the slave p, on the master's nodes -w_i p; minv
+   = 0 of directions that are held keeps these still */
 static void PairPush(const ProjectorPair *pair, const PetscReal p[3], const PetscReal minv[], PetscReal v[])
 {
   PetscReal slave[3], master[3];
@@ -53,7 +56,8 @@ static void PairPush(const ProjectorPair *pair, const PetscReal p[3], const Pets
     for (int d = 0; d < 3; d++) v[3 * pair->node[k] + d] -= pair->weight[k] * minv[3 * pair->node[k] + d] * master[d];
 }
 
-/* Solves one pair; returns the square of what its impulse has changed by, N s */
+/* Solves one pair; returns the square of what its impulse has changed by, N^2 s^2. W may couple the directions
+   (masses that differ by direction, or more than four nodes): ConeSolve() finds the direction of slip. */
 static PetscReal PairSolve(ProjectorPair *pair, const PetscReal minv[], PetscReal v[])
 {
   PetscReal q[3], p[3], change = 0;
@@ -107,7 +111,8 @@ INTO_VERSIONS void RowPush(const ProjectorRow *row, const PetscReal p[3], PetscR
   for (int i = 0; i < 3; i++) s[i] += h[4] * (D[i] * p[0] + D[3 + i] * p[1] + D[6 + i] * p[2]);
 }
 
-/* Projects z on the cone */
+/* Projects z on the cone |z_T| <= mu z_n: along the tangent plane, not the nearest point. z_n stays, since Coulomb's
+   law is not associated; a z that pulls becomes 0 */
 INTO_VERSIONS ContactStatus RowProject(const ProjectorRow *row, PetscReal z[3])
 {
   const PetscReal normal = row->n[0] * z[0] + row->n[1] * z[1] + row->n[2] * z[2], cone = row->mu * normal;
@@ -170,7 +175,8 @@ INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
   return q[0];
 }
 
-/* Rounding of the relative velocity of a pair as an impulse, N s */
+/* Rounding of the relative velocity of a pair as an impulse, N s: NOISE eps mass times the sum of the terms' sizes
+   (m/s) */
 INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
 {
   const ProjectorPair *pair = &p->pair[k];
@@ -185,7 +191,9 @@ INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
   return NOISE * PETSC_MACHINE_EPSILON * PairMass(pair) * sum;
 }
 
-/* The guesses act; the pairs that have one, or that the motion closes, are to be visited */
+/* The guesses act; the pairs that have one, or that the motion closes, are to be visited. All pairs are looked at
+   before any guess acts, so that which ones are visited does not depend on their order. scale: the largest guess,
+   noise: of any pair, N s. */
 static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscReal *noise)
 {
   PetscInt n = 0;
@@ -237,7 +245,8 @@ INTO_VERSIONS PetscReal PairMiss(ContactProjector p, PetscInt k)
   return PetscSqrtReal(change[0] * change[0] + change[1] * change[1] + change[2] * change[2]);
 }
 
-/* Slip velocities and largest residual (N s) of all pairs; pairs that need force join the visited ones */
+/* Slip velocities and largest residual (N s) of all pairs; pairs that need force (their gap would be negative) join
+   the visited ones. nan is kept once it is there: the comparison with it is never true. */
 static VERSIONS PetscReal PairsCheck(ContactProjector p, PetscInt *n, PetscInt *worst)
 {
   PetscReal largest = 0;
@@ -295,6 +304,9 @@ static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before
   }
 }
 
+/* Converged where the residual of all pairs is at most PROJECTOR_RTOL times the largest impulse plus noise. Sweeps
+   alone do not tell that: each sees a pair before the later ones have moved its nodes. The loop ends, since sweeps
+   only grow; without any pair to visit PairsCheck() finds residuals of 0 or adds one. */
 void PairsSolve(ContactProjector p, ProjectorConvergence *c)
 {
   PetscReal before, scale, residual;

@@ -2,6 +2,10 @@
    ContactProjector: life cycle, start, and the step as all ranks see it: values of the active nodes go to the root,
    which solves all pairs (project.c), and the forces come back. Whether the next step begins with a search comes with
    them, so that all ranks know it; for that step all nodes are active.
+
+   One rank solves since Gauss-Seidel is sequential, and its order of pairs must not hang on the ranks. Contact is
+   some per cent of a step; beside it the exchange of two messages is the cost. Errors are raised by all ranks, from
+   what the root says in `head`.
 */
 #include "projectorimpl.h"
 
@@ -99,7 +103,8 @@ PetscErrorCode ProjectorActivate(ContactProjector p)
   PetscFunctionReturn(0);
 }
 
-/* Whether a node has one mass in all directions; what is rounding of turned components goes */
+/* Whether a node has one mass in all directions; differences below 1e-12 of it are rounding of turned components, and
+   go. m is 1/mass, 1/kg. */
 static PetscBool MassIsEven(PetscReal m[3])
 {
   const PetscReal largest = PetscMax(m[0], PetscMax(m[1], m[2])), least = PetscMin(m[0], PetscMin(m[1], m[2]));

@@ -10,7 +10,8 @@
 #include "base/algebra/versions.h"
 #include "projectorimpl.h"
 
-/* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss */
+/* How far a constant, a line and a parabola through the forces before miss this one, squares added to miss, N^2. With
+   equal steps the next value is a, 2 a - b and 3 a - 3 b + c of the last three a, b, c. */
 INTO_VERSIONS void GuessesMeasure(const ProjectorPair *pair, const PetscReal lambda[3], PetscReal miss[PROJECTOR_PAST])
 {
   for (int d = 0; d < 3; d++) {
@@ -60,7 +61,9 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
     if (miss[i] < miss[p->order]) p->order = i;
 }
 
-/* State of a pair; one whose impulse is rounding, which bodies leave that touch and move together, is open */
+/* State of a pair: gap = q_n dt (m), lambda_n = p_n / kick (N); friction on the master is the opposite of that on the
+   slave. One whose impulse is rounding, which bodies leave that touch and move together, is open. A slave that faces
+   nothing has an infinite gap. */
 INTO_VERSIONS void StateSet(const ProjectorPair *pair, const ContactStep *step, PetscReal noise, ContactState *state)
 {
   *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
@@ -79,7 +82,8 @@ typedef struct {
   PetscReal along[3], friction[3];
 } Directions;
 
-/* Adds one closed pair to the sums of its interface */
+/* Adds one closed pair to the sums of its interface: V = (v_{n-1/2} + v_{n+1/2}) / 2 without the offset that q has,
+   works dt lambda . V (J). */
 INTO_VERSIONS void InterfaceSumsAdd(const ContactProjector p, const ProjectorPair *pair, const ContactState *state,
                                     PetscReal dt, ContactSums *sums, Directions *directions)
 {
@@ -121,7 +125,8 @@ void ContactSumsMark(ContactSums *sums)
   for (int i = 0; i < CONTACT_N_STATUS; i++) sums->mark[i] = sums->n[i];
 }
 
-/* Pairs that are open or stick now and were not at the mark, or the other way round, by their numbers */
+/* Pairs that are open or stick now and were not at the mark, or the other way round, by their numbers: at least that
+   many pairs have changed, and an exchange of two is not seen */
 void ContactSumsCompare(ContactSums *sums)
 {
   PetscReal most = 0;

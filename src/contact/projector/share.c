@@ -7,6 +7,8 @@
 #include "projectorimpl.h"
 #include "base/gather.h"
 
+/* number[n]: of the local nodes, ~number where another rank owns the node. Buffers hold three fields of three values
+   of all nodes and the head, so that no step allocates. */
 PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share)
 {
   PetscInt *counts, total;
@@ -35,6 +37,9 @@ PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], Pr
   PetscFunctionReturn(0);
 }
 
+/* Lists of a message, made on every rank alike. Counts and places to the root are in records (one node,
+   MPI_Type_contiguous), those back in reals, since the head comes with them. The list before stays valid for the step
+   that is under way. */
 PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[])
 {
   PetscInt    n_send = 0, n_back = 0;
@@ -112,6 +117,7 @@ static void SharePack(const ProjectorShare *share, const PetscReal root[], const
   }
 }
 
+/* Every rank gets the same head: what is decided by it is decided alike */
 PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD], PetscReal local[])
 {
   PetscReal *message = share->buffer[0];

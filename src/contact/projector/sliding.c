@@ -47,7 +47,9 @@ PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const Cont
   PetscFunctionReturn(0);
 }
 
-/* D = R' - I for a turn of the master by `angle`: -sin K + (1 - cos) K^2, K a = axis x a */
+/* D = R' - I for a turn of the master by `angle` (rad): -sin K + (1 - cos) K^2, K a = axis x a (Rodrigues). 1 - cos
+   is 2 sin^2 of the half angle, which keeps its figures at small angles; D itself, not R, is stored for the same
+   reason. */
 static void FrameTurn(const PetscReal axis[3], PetscReal angle, PetscReal D[3][3])
 {
   const PetscReal K[3][3] = {{0, -axis[2], axis[1]}, {axis[2], 0, -axis[0]}, {-axis[1], axis[0], 0}};
@@ -89,6 +91,7 @@ PetscErrorCode ContactProjectorGetDelay(ContactProjector p, PetscInt interface, 
   PetscFunctionReturn(0);
 }
 
+/* Without interfaces *arms stays as the caller set it */
 PetscErrorCode ContactProjectorGetArms(ContactProjector p, ContactArms *arms)
 {
   PetscFunctionBeginUser;

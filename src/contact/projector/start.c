@@ -6,7 +6,8 @@
 #include "base/gather.h"
 #include <stdlib.h>
 
-#define START_REACH 10 /* margins within which bodies that interpenetrate are found */
+/* margins within which bodies that interpenetrate are found: a slave deeper than ten mean facets is not seen */
+#define START_REACH 10
 
 /* What is wrong at the start: the deepest pair, one that nothing can move along its normal, and one across which the
    given sliding velocity has no part in the surface */

@@ -47,7 +47,8 @@ static PetscErrorCode SurfaceVerticesFind(Contact contact, PetscInt *n, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* The nodes of all ranks: unique[n] ascending global node numbers, and who has them */
+/* The nodes of all ranks: unique[n] ascending global node numbers, and who has them. A node's number of its own is
+   its place in unique[]; ~ marks a copy, as 0 has no sign. */
 static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt **unique)
 {
   ProjectorShare *share = &p->share;

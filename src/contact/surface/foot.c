@@ -1,16 +1,23 @@
 /*
    The foot of a slave on a master surface: the point x(xi) with x - x(xi) parallel to the normal n(xi) of the surface
-   at rest.
+   at rest. On a facet that is two equations in the natural coordinates xi (-1..1 on quadrilaterals, 2 is a facet),
+
+      (x - sum_i w_i(xi) x_i) x n(xi) = 0,     n = sum_i w_i a_i / |sum_i w_i a_i|
+
+   solved by Newton's method in kernels/contact/drop.h. n is continuous across edges, so that the foot moves
+   continuously when x does; the nearest point with the facet's own normal would jump at each edge.
 
    It walks from a facet across edges, until it lies within one; on an edge (to 1e-9 of a facet) it stays where it is.
-   Between two facets that both have it beyond their common edge (a ridge) it faces the edge, on the facet of the lower
-   number. Beyond the border of the surface it faces the border, up to ContactEdge().
+   Between two facets that both have it beyond their common edge (a ridge) it faces the edge, on the facet of the
+   lower number. Beyond the border of the surface it faces the border, up to ContactEdge().
 */
 #include "contact/contactimpl.h"
 #include "kernels/contact/drop.h"
 
-#define INSIDE 1e-9 /* natural coordinates: on an edge */
-#define STEPS  64   /* facets of one walk */
+/* natural coordinates: on an edge; above rounding of drop.h, far below a facet */
+#define INSIDE 1e-9
+/* facets of one walk; a slave moves by less than a facet between two calls */
+#define STEPS 64
 
 /* How far natural coordinates are beyond edges where the surface ends */
 static PetscReal BeyondBorder(const ContactFacet *f, const PetscReal natural[2])
@@ -23,8 +30,8 @@ static PetscReal BeyondBorder(const ContactFacet *f, const PetscReal natural[2])
   return beyond;
 }
 
-/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour; of two edges
-   alike that of the even number */
+/* The neighbour beyond whose edge the point is most, -1 where it is beyond none that has a neighbour. Of two edges
+   alike, beyond a corner, that of the even number: rounding does not decide between them where meshes match. */
 static PetscInt Neighbour(const ContactFacet *f, const PetscReal natural[2])
 {
   const FacetShape *shape = FacetShapeOf(f->n);
@@ -60,7 +67,8 @@ static void Middle(const ContactFacet *f, PetscReal natural[2])
   for (int d = 0; d < 2; d++) natural[d] = FacetShapeOf(f->n)->middle[d];
 }
 
-/* Ends a walk at its facet, at the edge where the point is a little beyond */
+/* Ends a walk at its facet; a foot beyond the border by more than ContactEdge() allows is none. One a little beyond
+   is moved onto the edge. */
 static void WalkEnd(const ContactShape *shape, ContactFoot *foot)
 {
   const ContactFacet *facet = &shape->surface->facet[foot->facet];
@@ -70,6 +78,8 @@ static void WalkEnd(const ContactShape *shape, ContactFoot *foot)
   FacetClamp(facet->n, foot->natural);
 }
 
+/* From foot->facet, which must exist. On each facet the search begins at foot->natural, those given for the first and
+   the middle for the others. A step back to the facet before is a ridge, and ends the walk. */
 void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoot *foot)
 {
   PetscInt before = -1;
@@ -98,6 +108,8 @@ void ContactFootWalk(const ContactShape *shape, const PetscReal x[3], ContactFoo
   foot->facet = -1;
 }
 
+/* n here is sum_i w_i a_i without its division: gap and length (both times |n|) are compared by their ratio. The gap
+   is n . (x - point) / |n| in m, negative below the surface. */
 void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3], PetscReal deepest, ContactFoot *foot)
 {
   const ContactFacet *facet = &shape->surface->facet[f];
@@ -123,7 +135,8 @@ void ContactFootTry(const ContactShape *shape, PetscInt f, const PetscReal x[3],
   if (gap >= -deepest * facet->size * PetscSqrtReal(length) && here.distance < foot->distance) *foot = here;
 }
 
-/* Distance along the surface, across its normal, from a foot on the border, m; 0 for a foot within */
+/* Distance along the surface, across its normal, from a foot on the border, m: sqrt(distance^2 - gap^2), which
+   rounding may make negative; 0 for a foot within */
 static PetscReal FootAcross(const ContactSurface *surface, const ContactFoot *foot, const PetscReal x[3])
 {
   const ContactFacet *f       = &surface->facet[foot->facet];
@@ -136,6 +149,9 @@ static PetscReal FootAcross(const ContactSurface *surface, const ContactFoot *fo
   return PetscSqrtReal(PetscMax(0, PetscSqr(foot->distance) - PetscSqr(gap)));
 }
 
+/* The walk starts at the nearest point, so that of several parts of a surface that all face x the nearest is taken.
+   snap() moves natural coordinates that differ from a node's or side's by rounding onto it: matching meshes get
+   weights that are exactly 0 and 1. */
 void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], ContactFoot *foot)
 {
   const ContactShape rest = {.surface = surface};
@@ -152,7 +168,8 @@ void ContactFootFind(const ContactSurface *surface, const PetscReal x[3], Contac
   FacetShapeOf(surface->facet[foot->facet].n)->snap(foot->natural);
 }
 
-/* Unit vector across n and the axis that is most nearly across it */
+/* Unit vector across n and the axis that is most nearly across it: of the least |n_d|, below 1 / sqrt(3), so that the
+   division is never by a small number */
 static void AnyTangent(const PetscReal n[3], PetscReal t[3])
 {
   PetscReal length;
@@ -166,7 +183,8 @@ static void AnyTangent(const PetscReal n[3], PetscReal t[3])
   t[(least + 2) % 3] = -n[(least + 1) % 3] / length;
 }
 
-/* t along a vector, b = n x t; returns the length of the part of the vector across n, 0 where it is none */
+/* t along a vector v less its part along n, b = n x t; returns |v - n (n . v)| in the unit of v. Where that is below
+   1e-6 |v| (squares: 1e-12) it is what rounding leaves of v along n: t is any tangent then, and 0 is returned. */
 static PetscReal TangentsSet(const PetscReal along[3], PetscReal e[3][3])
 {
   const PetscReal dot  = along[0] * e[0][0] + along[1] * e[0][1] + along[2] * e[0][2];
@@ -202,6 +220,8 @@ PetscReal ContactBasis(const ContactFacet *f, const PetscReal natural[2], const 
   return TangentsSet(along, e);
 }
 
+/* n . (x - x_0 - sum_{i>0} w_i (x_i - x_0)): differences of places first, so that a gap of 1e-9 m at places of 1 m
+   keeps its figures, and two nodes in one place have exactly 0 */
 PetscReal ContactGap(const ContactFacet *f, const PetscReal w[], const PetscReal n[3], const PetscReal x[3])
 {
   PetscReal gap = 0;
@@ -216,6 +236,7 @@ PetscReal ContactGap(const ContactFacet *f, const PetscReal w[], const PetscReal
   return gap;
 }
 
+/* -w x (x - c): the rotation w (rad/s) is of the master, and v is of the slave relative to it */
 void ContactSlideAlong(const ContactInterface *c, const PetscReal x[3], PetscReal v[3])
 {
   const PetscReal *w = c->rotation;

@@ -1,6 +1,10 @@
 /*
    Facets of a master surface: corners, area vectors, neighbours across edges, size and flatness. All ranks have those
-   of all, ordered by place (a surface is small beside its body).
+   of all, ordered by place (a surface is small beside its body: n_facets of the order of n_nodes^(2/3)), so that a
+   foot is found without an exchange, and the same facet by every rank.
+
+      a_i = sum_f int_f N_i n dA  (m^2) over the facets f around node i (kernels/contact/facet.h)
+      size = sqrt(|area vector of the facet's middle|), m
 */
 #include "contact/contactimpl.h"
 #include "base/gather.h"
@@ -28,6 +32,8 @@ PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, Co
       PetscCall(PetscArraycpy(f->across[i], &normals[3 * node[i]], 3));
       PetscCall(PetscArraycpy(f->unknowns[i], &mesh->unknown[3 * node[i]], 3));
       f->node[i] = mesh->number[node[i]];
+      /* of second order: area vectors of corners and sides differ in length, and would leave n of first order
+         (surface.h) */
       if (ContactFacetCorners(f) < f->n) (void)Vec3Normalise(f->across[i]);
     }
   }
@@ -50,7 +56,9 @@ static int FacetEdgeCompare(const void *left, const void *right)
   return (x->facet > y->facet) - (x->facet < y->facet);
 }
 
-/* Facets that share an edge, by its corners, become neighbours */
+/* Facets that share an edge, by its corners, become neighbours. All edges are sorted by their corners: the two of one
+   edge stand side by side. Of three facets at one edge, a branching surface, the middle one keeps the last: a walk
+   takes one way. */
 static PetscErrorCode SurfaceSetNeighbours(ContactSurface *s)
 {
   FacetEdge *edge;
@@ -78,7 +86,8 @@ static PetscErrorCode SurfaceSetNeighbours(ContactSurface *s)
   PetscFunctionReturn(0);
 }
 
-/* By the sum of the corners, so that the order does not depend on the ranks */
+/* By the sum of the corners, which has the same bits from whichever corner a rank counts (ContactFacetMiddle()), so
+   that the order does not depend on the ranks */
 static int FacetCompare(const void *left, const void *right)
 {
   const ContactFacet *f = (const ContactFacet *)left, *g = (const ContactFacet *)right;
@@ -91,8 +100,8 @@ static int FacetCompare(const void *left, const void *right)
   return ContactPlaceCompare(a, b);
 }
 
-/* Size and normal; flat where the facet's own normal and that of the surface differ from it by rounding alone at all
-   nodes */
+/* Size and normal; flat where the facet's own normal and that of the surface differ from it by rounding alone (1e-13
+   of unit vectors) at all nodes. On a flat facet n is one vector, and the foot is linear or bilinear in x. */
 static void FacetMeasure(ContactFacet *f)
 {
   const FacetShape *shape = FacetShapeOf(f->n);
@@ -151,7 +160,8 @@ PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSu
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a node of a master where the faces around it cancel, so that it has no normal */
+/* Raises the error for a node of a master where the faces around it cancel, |a_i| below 1e-9 of a facet's area, so
+   that it has no normal: both sides of a sheet in one set. All ranks have the same facets, and fail together. */
 static PetscErrorCode MasterCheck(MPI_Comm comm, const ContactInterface *c, const ContactSurface *s)
 {
   PetscFunctionBeginUser;

@@ -36,7 +36,8 @@ static void FacetEntries(const ContactFacet *facet, TurningEntries *e)
   }
 }
 
-/* Area vectors A_i of facets of second order at their nodes, summed in the places of their rows */
+/* Area vectors A_i (m^2) of facets of second order at their nodes, summed in the places of their rows; 0 at nodes of
+   other facets alone. They are summed anew, since facet->across has unit vectors there. */
 static PetscErrorCode AreasCreate(Mat turning, PetscInt n, const ContactFacet facet[], Vec *areas)
 {
   PetscFunctionBeginUser;
@@ -54,7 +55,9 @@ static PetscErrorCode AreasCreate(Mat turning, PetscInt n, const ContactFacet fa
   PetscFunctionReturn(0);
 }
 
-/* The derivatives of A_i of facets of second order become those of the unit vectors along them */
+/* The derivatives of A_i of facets of second order become those of the unit vectors along them: rows of node i are
+   multiplied by P_i = (I - a_i a_i') / |A_i| (1/m^2), a_i = A_i / |A_i|, a block of 3 by 3; P_i = I where A_i = 0, on
+   facets of first order */
 static PetscErrorCode TurningNormalise(PetscInt n, const ContactFacet facet[], Mat *turning)
 {
   const PetscScalar *area;
@@ -109,6 +112,7 @@ static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turn
     room += 6 * facets[f].n * facets[f].n;
     if (ContactFacetCorners(&facets[f]) < facets[f].n) second = PETSC_TRUE;
   }
+  /* the product below is collective: a rank without faces of second order takes part */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &second, 1, MPIU_BOOL, MPI_LOR, contact->comm));
   PetscCall(PetscMalloc3(room, &e.row, room, &e.column, room, &e.value));
   for (PetscInt f = 0; f < n; f++) FacetEntries(&facets[f], &e);
@@ -124,7 +128,7 @@ static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turn
 }
 
 /* sum_i w_i d . a_i / |a| for the pairs of an interface, d = t or b by its offset in ContactPair; other rows are
-   empty */
+   empty. d is across n, so that the projection (I - n n') of the header needs no factor of its own. */
 static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, size_t offset, PetscInt n_columns,
                                           Mat *P)
 {

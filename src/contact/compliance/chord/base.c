@@ -1,11 +1,19 @@
 /*
    The linear system of chord.c: its indices in the frames of their pairs, the factors of a base set, and what borders
-   them.
+   them. Index 4 p + kind belongs to pair p; kinds 0 to 3 are those of chord.c's table.
+
+      A(i, j) = r_i' (W kappa) t_j + c [i = j of kind 1],     r_i the row of index i at its pair, t_j the force of a unit of j
+
+   Without unit, since W kappa has none. Base and border: with A0 the base's matrix, V = A0^-1 [A_0B, E_D] and the
+   Schur complement S = [A_BB, 0; 0, 0] - [A_B0; E_D'] V, one row and column for each index that joined (B) or left
+   (D).
 */
 #include "base/algebra/versions.h"
 #include "contact/compliance/complianceimpl.h"
 
-#define CHORD_SHARE 8     /* a base of m indices is bordered by m / CHORD_SHARE at most */
+/* a base of m indices is bordered by m / CHORD_SHARE at most: a column of V costs a solution, 2 m^2 operations, so
+   that these many cost m^3 / 4 beside the 2 m^3 / 3 of new factors */
+#define CHORD_SHARE 8
 #define CHORD_LEAST 8     /* or by this */
 #define CHORD_PIVOT 1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
 
@@ -84,7 +92,8 @@ static PetscErrorCode ChordSolveBorder(PetscInt m, const PetscReal S[], const Pe
   PetscFunctionReturn(0);
 }
 
-/* Columns that a base of m indices may be bordered by */
+/* Columns that a base of m indices may be bordered by; V is kept for them, in the order they were asked for, until
+   the base is renewed */
 static inline PetscInt ChordMost(PetscInt m)
 {
   return PetscMax(CHORD_LEAST, m / CHORD_SHARE);
@@ -142,7 +151,8 @@ PetscErrorCode ComplianceChordSetBase(ContactCompliance c)
   PetscFunctionReturn(0);
 }
 
-/* Indices of the present statuses in ascending order */
+/* Indices of the present statuses in ascending order: of a closed pair 0; of one that slides 1, unless it is weak; of
+   one that sticks 2 and 3 */
 static PetscInt ChordWant(const ContactCompliance c, PetscInt want[])
 {
   PetscInt n = 0;
@@ -157,7 +167,8 @@ static PetscInt ChordWant(const ContactCompliance c, PetscInt want[])
   return n;
 }
 
-/* The frames of all pairs at the present l, v; those that are open belong to the weak */
+/* The frames of all pairs at the present l, v: e along the trial slip, mu of the present slip speed, and c = |v_T| /
+   (mu l_n), without unit, capped at COMPLIANCE_WEAK; those that are open belong to the weak */
 static void ChordTurnFrames(ContactCompliance c)
 {
   for (PetscInt p = 0; p < c->n; p++) {
@@ -298,7 +309,8 @@ PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
-/* What index i has to make 0, at the present l, v */
+/* What index i has to make 0, m, at the present l, v: v_n, v_x, v_e, or v_x + c l_x with the present c = |v_T| /
+   |l_T|, while the matrix has the c of the frame */
 static PetscReal ChordMiss(const ContactCompliance c, PetscInt i)
 {
   const PetscReal *v = &c->v[3 * (i / 4)], *l = &c->l[3 * (i / 4)];
@@ -313,7 +325,8 @@ static PetscReal ChordMiss(const ContactCompliance c, PetscInt i)
   return r[1] * (v[1] + slip * l[1]) + r[2] * (v[2] + slip * l[2]);
 }
 
-/* A dz of the present set against what its rows miss; dz [4 n], zero elsewhere */
+/* A dz of the present set against what its rows miss; dz [4 n], m, zero elsewhere. b = A0^-1 b0, then S s = b_B -
+   [A_B0; E_D'] b, then x0 = b - V s. Indices that left have dz = 0 to rounding by the border, and exactly 0 here. */
 PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[])
 {
   ComplianceChord *h = &c->chord;

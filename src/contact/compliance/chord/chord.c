@@ -32,7 +32,7 @@
 #define CHORD_PATIENCE 4   /* slow iterations */
 #define CHORD_WORTH    16. /* new factors of m indices take the time of m / CHORD_WORTH iterations */
 
-/* A pair has the force l from now on, and v follows */
+/* A pair has the force l (m) from now on, and v follows by three columns of W instead of the whole product */
 static void ChordPut(ContactCompliance c, PetscInt p, const PetscReal l[3])
 {
   const PetscInt N = 3 * c->n;
@@ -68,7 +68,8 @@ static PetscBool ChordChoose(ContactCompliance c)
   return changed;
 }
 
-/* Friction of a pair that slides, dz across, put on its cone: turned to where it slides where it is weak */
+/* Friction of a pair that slides, dz across, put on its cone |l_T| = mu l_n: scaled to the cone of the new l_n,
+   turned by dz, and scaled again. mu is that of the present slip speed. */
 static void ChordSlide(ContactCompliance c, PetscInt p, PetscReal dz)
 {
   const ComplianceFrame *f = &c->chord.frame[p];
@@ -109,7 +110,8 @@ static void ChordTake(ContactCompliance c, const PetscReal dz[])
 }
 
 /* Whether new factors, after which one or two iterations are enough, take less time than the iterations that are left
-   at the rate of the last one */
+   at the rate of the last one, log(goal / now) / log(now / last); a residual that does not fall has no end, and asks
+   for new ones */
 static PetscBool ChordIsWorth(const ContactCompliance c, const ComplianceMiss *miss, PetscReal last)
 {
   const PetscReal goal = c->rtol * miss->scale + miss->noise, rate = miss->largest / last;

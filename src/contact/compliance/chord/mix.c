@@ -6,8 +6,11 @@
 */
 #include "contact/compliance/complianceimpl.h"
 
-#define MIX_ALIKE 1e-8 /* a difference that is new by less says nothing */
-#define MIX_AGAIN 0.1  /* one that keeps less of its length is made orthogonal once more */
+/* of its length: a difference of which less is new says nothing, rounding of two products apart */
+#define MIX_ALIKE 1e-8
+/* one that keeps less of its length is made orthogonal once more; twice is enough (W. Kahan, in B. N. Parlett, The
+   Symmetric Eigenvalue Problem, 1980) */
+#define MIX_AGAIN 0.1
 
 static PetscReal MixDot(PetscInt n, const PetscReal x[], const PetscReal y[])
 {
@@ -33,7 +36,9 @@ static void MixTake(PetscInt N, PetscInt n, const PetscReal A[], const PetscReal
   if (n) BLASgemv_("N", &rows, &columns, &minus, A, &rows, y, &inc, &one, x, &inc);
 }
 
-/* Adds the difference to the iterate before; where there is no room the basis begins anew */
+/* Adds the difference to the iterate before: b = f - f_before, s = (x + f) - (x_before + f_before) of G(x), both less
+   the same combination of the columns kept, and both divided by |b|. Where there is no room the basis begins anew
+   with this one difference. A difference that is not new becomes a column of zeros. */
 static void MixExtend(ContactCompliance c, const PetscReal x[], const PetscReal f[])
 {
   ComplianceChord *h = &c->chord;
