@@ -143,6 +143,13 @@ static PetscErrorCode ChainShowScene(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ChainWriteScene(Chain *chain)
+{
+  PetscFunctionBeginUser;
+  if (chain->contact) PetscCall(ContactWrite(chain->contact, chain->results));
+  PetscFunctionReturn(0);
+}
+
 /* NULL for what an analysis has not. Those in time write as they go, and look for checkpoints before they begin */
 static const struct {
   SquealStage stage;
@@ -159,7 +166,7 @@ static const struct {
   [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, NULL},
   [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap},
   [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, NULL},
-  [ANALYSIS_CHECK]     = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, NULL, NULL},
+  [ANALYSIS_CHECK]     = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, NULL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)

@@ -26,6 +26,7 @@
 #include <squeal/contactstatus.h>
 #include <squeal/frictionlaw.h>
 #include <squeal/model.h>
+#include <squeal/results.h>
 
 typedef struct _p_Contact *Contact;
 
@@ -275,6 +276,10 @@ PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool 
 
 /*@ ContactAddChecksum - adds surfaces and parameters of each interface. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactAddChecksum(Contact contact, Checksum checksum);
+
+/*@ ContactWrite - check.h5 and check.xmf: the surfaces of the contacts and the gaps of the mesh as it is. Collective; after
+    ContactSetUp(). @*/
+PetscErrorCode ContactWrite(Contact contact, Results results);
 
 /*@ ContactView - interfaces in words. Collective. @*/
 PetscErrorCode ContactView(Contact contact, PetscViewer viewer);

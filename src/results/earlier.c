@@ -20,6 +20,8 @@ static const struct {
   {"filters.xmf", NULL},
   {"modes.h5", NULL},
   {"modes.xmf", NULL},
+  {"check.h5", NULL},
+  {"check.xmf", NULL},
   {"static.csv", NULL},
   {"static.h5", NULL},
   {"static.xmf", NULL},
