@@ -1,4 +1,4 @@
-# Completion of squeal's command line in bash. All names and values come from the program itself: from squeal -help, with
+# Completion of squeal's command line in bash. All names and values come from the program itself: from squeal -help_json, with
 # the options files that stand on the line, so that the names of their parts and contacts are completed too. An answer is
 # kept until the program or one of those files changes. Bash reads this file where the package bash-completion is
 # installed; else: source it.
@@ -7,14 +7,16 @@
 _squeal_read()
 {
   OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_ess_singleton_isolated=1 \
-    "$@" -help 2>/dev/null </dev/null | awk '
-    /^  -/ {
-      name = $1; value = $2; kind = "any"
-      if (match($0, /\(one of [^)]*\)/)) kind = "words " substr($0, RSTART + 8, RLENGTH - 9)
-      else if (value == "TRUE" || value == "FALSE") kind = "words true false"
-      else if ($0 ~ /[Ff]older/) kind = "folder"
-      else if ($0 ~ / [Ff]ile/) kind = "file"
-      print name "\t" kind
+    "$@" -help_json 2>/dev/null </dev/null | awk '
+    function member(name, ends) { # of the object of an option, which has a line
+      return match($0, "\"" name "\": " ends) ? substr($0, RSTART + length(name) + 5, RLENGTH - length(name) - 6) : ""
+    }
+    /^  \{"name"/ {
+      kind = "any"; words = member("choices", "\\[[^]]*\\]"); gsub(/[",]/, "", words)
+      if (words != "") kind = "words " words
+      else if (member("type", "\"[^\"]*\"") == "logical") kind = "words true false"
+      else if (member("path", "\"[^\"]*\"") != "") kind = member("path", "\"[^\"]*\"")
+      print "-" member("name", "\"[^\"]*\"") "\t" kind
     }'
 }
 
@@ -78,7 +80,7 @@ _squeal()
     [ "${#COMPREPLY[@]}" -gt 0 ] || [ "$kind" != any ] || compopt -o default 2>/dev/null
     return
   fi
-  mapfile -t COMPREPLY < <(compgen -W "-options_file -help -help_all -h -version -log_view
+  mapfile -t COMPREPLY < <(compgen -W "-options_file -help -help_all -help_json -h -version -log_view
     $(cut -f 1 <<<"$_squeal_options")" -- "${word:--}")
 }
 

@@ -17,7 +17,8 @@ static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STA
 static const Quantity views[N_SHOWN] = {
   VIEW(SHOWN_MODEL, "-model_view", "show mesh, parts, supports, springs and loads", 0),
   VIEW(SHOWN_CONTACT, "-contact_view", "show interfaces and their pairs", RUN_LINEAR | RUN_STATIC | RUN_CHECK),
-  VIEW(SHOWN_OPERATORS, "-operators_view", "show the pencil of modes and sweeps, and its parameters", RUN_LINEAR | RUN_CHECK),
+  VIEW(SHOWN_OPERATORS, "-operators_view", "show the pencil of modes and sweeps, and its parameters",
+       RUN_LINEAR | RUN_CHECK),
   VIEW(SHOWN_STATICS, "-static_view", "show the equilibrium", RUN_STATIC),
   VIEW(SHOWN_MODES, "-modes_view", "show the modes found", RUN_MODES | RUN_FRF),
   VIEW(SHOWN_SWEEP, "-sweep_view", "show what a sweep found", RUN_SWEEP),
@@ -156,10 +157,10 @@ Scope ChainGetScope(const Chain *chain)
                  .cycle     = chain->cycle};
 }
 
-/* Shows the rows of all rooms, in their order */
-static PetscErrorCode ChainVisit(Chain *chain, const QuantityVisitor *visitor)
+PetscErrorCode ChainVisit(MPI_Comm comm, Chain *chain, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
+  PetscCall(SquealVisit(comm, visitor));
   PetscCall(QuantitiesVisit(visitor, &chain_quantities, NULL, chain, NULL));
   PetscCall(QuantitiesVisit(visitor, &chain_views, NULL, chain, NULL));
   PetscCall(OperatorsVisit(chain->operators, visitor));
@@ -186,7 +187,7 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
   PetscFunctionBeginUser;
   if (chain->analysis == ANALYSIS_CHECK) PetscFunctionReturn(0); /* which reads what any analysis would */
   PetscCall(ScopeGetRun(comm, &scope, &run));
-  PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
+  PetscCall(ChainVisit(comm, chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
   PetscCall(ScopeCheck(&scope, &run));
   PetscFunctionReturn(0);
 }

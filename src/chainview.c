@@ -83,3 +83,18 @@ PetscErrorCode ChainSayUnits(Chain *chain)
       comm, "units %s, by density and modulus of the parts: read mm, t, MPa, mJ where m, kg, Pa, J stand\n", units));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ChainWriteRows(MPI_Comm comm, void *ctx)
+{
+  QuantityJson json  = {.comm = comm};
+  Chain        chain = {0};
+
+  PetscFunctionBeginUser;
+  (void)ctx;
+  PetscCall(ChainCreate(comm, &chain));
+  PetscCall(QuantitiesBeginJson(&json));
+  PetscCall(ChainVisit(comm, &chain, &(QuantityVisitor){QuantitiesWriteJson, &json}));
+  PetscCall(QuantitiesEndJson(&json));
+  PetscCall(ChainDestroy(&chain));
+  PetscFunctionReturn(0);
+}

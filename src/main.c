@@ -55,7 +55,7 @@ static PetscErrorCode Answer(MPI_Comm comm, PetscBool no_arguments)
   PetscBool help;
 
   PetscFunctionBeginUser;
-  PetscCall(SquealViewOptions(comm, ReadAgain, NULL, &help));
+  PetscCall(SquealViewOptions(comm, ReadAgain, ChainWriteRows, NULL, &help));
   if (help) PetscFunctionReturn(0);
   if (no_arguments) PetscCall(SquealViewUsage(comm));
   PetscCall(Run(comm));

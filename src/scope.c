@@ -106,9 +106,6 @@ static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
 PetscErrorCode ScopeCheck(const Scope *s, const QuantityRun *run)
 {
   PetscFunctionBeginUser;
-  if (!(run->does & (RUN_FACTORS | RUN_CYCLE)))
-    PetscCall(
-      OptionsRefuse(run->comm, "-squeal_memory", "not used where no matrix is factorised, as by a run in time"));
   if (s->does & RUN_LINEAR && !(s->does & RUN_FRF)) /* which takes both */
     PetscCall(ScopeCheckEigensolver(run->comm, s));
   PetscFunctionReturn(0);

@@ -52,18 +52,16 @@ LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPus
 ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
     ("src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
 # Options that are read without a row, and why
-UNROWED = dict.fromkeys("squeal_traceback squeal_log squeal_progress squeal_memory log_file progress skip_petscrc help help_all".split(),
-                        "read by base/, on which rows stand") | \
+UNROWED = dict.fromkeys("skip_petscrc help help_all help_json".split(), "asked by base/ before all else") | \
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
                   "PETSc's own: looked at, read by PETSc") | \
-    {"ts_central_b": "read by TSSetFromOptions()", "contacts": "a list of the scene, in an array of the room",
-     "terms": "whether it is given"}
+    {"terms": "whether it is given"}
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
 UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
     contact_mu dense scale modes_components sweep_rtol sweep_percent kn_per_area slip map_rtol dynamics_growth_rtol cycle_rtol
     cycle_range cycle_amplitude mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c
-    operators_dense_h""".split())
+    operators_dense_h ts_central_b""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 

@@ -5,7 +5,7 @@
               it prints the modes that the installed program writes, and its errors are one line
   scripts     every script of scripts/plot and each on top that is not for the sources alone is there as squeal-NAME, answers
               --help, and those for modes make their files from results of the installed program
-  manual      every option of -help stands in squeal.1, with its default; man has no warning
+  manual      every option stands in squeal.1, with its default; man has no warning
   completion  bash is offered the options of the program, the names of a scene, the words of a choice, files
   scenes      of each scene that reads a mesh the line in its head makes the mesh, and the scene runs (not the brake of 50,000
               unknowns, of which test_brake_mesh.py is)
@@ -30,7 +30,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from small_brake import SCENE as BRAKE
-from squeal.help_text import ask, options_of
+from squeal.options import default_of, options_of
 
 FOR_SOURCES = {"run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
                "completion.bash", "README.md"}
@@ -103,12 +103,12 @@ def check_scripts(top, bin_dir, faults):
 
 
 def check_manual(place, squeal, faults):
-    """The page beside -help of the program that is installed."""
+    """The page beside what the program that is installed tells of its options."""
     page = next(place.rglob("man1/squeal.1"))
-    options = options_of(ask(squeal, "-help", folder=place))
+    options = options_of([squeal], folder=place)
     text = page.read_text().replace("\\-", "-").replace("\\(aq", "'")
     lost = [option.name for option in options if f".B -{option.name}\n" not in text
-            or option.default and f"[default {option.default}]" not in text.partition(f".B -{option.name}\n")[2].partition(".TP")[0]]
+            or f"[default {default_of(option)}]" not in "[default ]" + text.partition(f".B -{option.name}\n")[2].partition(".TP")[0]]
     faults.check(len(options) > 150 and not lost, f"manual: {len(options)} options with their defaults, missing {lost}")
     if shutil.which("man"):
         done = subprocess.run(["man", "-l", "--warnings", page], capture_output=True, text=True, check=False,

@@ -1,48 +1,52 @@
 #!/usr/bin/env python3
-"""Every option that `squeal -help` lists stands in options/README.md with its default, its meaning and an example of its
-own, and the other way round. Breaks when an option or a default changes and the page does not.
+"""options/README.md has every option that the program tells by -help_json, with its default, unit, meaning and choices, as
+scripts/manual --reference writes them, and an example of its own for each. Breaks when an option or a default changes and the
+page does not. -help shows the same options with the same sentences.
 
     test_options.py SQUEAL"""
 
+import difflib
 import re
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.help_text import ask, options_of
+SOURCE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "scripts"))
+from squeal.options import ask, options_of
 
-PAGE = Path(__file__).resolve().parents[1] / "options/README.md"
-
-
-def of_help(squeal):
-    """Name -> (default, text) as -help prints them."""
-    with tempfile.TemporaryDirectory() as folder:
-        return {option.name: (option.default, option.text) for option in options_of(ask([squeal], "-help", folder=folder))}
+PAGE = SOURCE / "options/README.md"
 
 
-def of_page():
-    """The same of the page, with the example."""
-    row = re.compile(r"^\| `-(\w+)` \| (?:`([^`]*)`)? *\| (.*) \| `(.*)` \|$")
-    found = [row.match(line) for line in PAGE.read_text().splitlines()]
-    return [(match[1], match[2] or "", match[3], match[4]) for match in found if match]
+def faults_of(squeal, folder):
+    """What is wrong with the page, and with -help."""
+    options = options_of([squeal], folder=folder)
+    text = PAGE.read_text()
+    now = subprocess.run([sys.executable, SOURCE / "scripts/manual", "--reference", PAGE, squeal], capture_output=True, text=True,
+                         cwd=folder, check=True).stdout
+    yield from (line for line in difflib.unified_diff(text.splitlines(), now.splitlines(), "page", "program", lineterm="", n=0))
+    for name, example in re.findall(r"^\| `-(\w+)` \|.*\| `(.*)` \|$", now, re.MULTILINE):
+        if not re.match(rf"-{name}( \S|$)", example):
+            yield f"-{name}: '{example}' is no example of it"
+    told = [option.name for option in options]
+    shown = ask([squeal], "-help", folder=folder)
+    yield from (f"-{name} is told {told.count(name)} times" for name in set(told) if told.count(name) > 1)
+    for option in options:
+        line = re.search(rf"^  -{option.name} .*$", shown, re.MULTILINE)
+        if not line or option.help.partition(" (")[0].partition(";")[0] not in line[0] or (option.unit or "") not in line[0]:
+            yield f"-{option.name} is not in -help as in its row"
+    if len(told) < 200 or len(re.findall(r"^  -\w", shown, re.MULTILINE)) != len(told):
+        yield f"{len(told)} options told, others shown"
 
 
 def main():
-    help_options, rows = of_help(Path(sys.argv[1]).resolve()), of_page()
-    faults = [f"-{name} stands twice" for name in {row[0] for row in rows} if [row[0] for row in rows].count(name) > 1]
-    faults += [f"-{name} is not in the page" for name in help_options if name not in {row[0] for row in rows}]
-    for name, default, meaning, example in rows:
-        if name not in help_options:
-            faults.append(f"-{name} of the page is no option")
-        elif default != help_options[name][0]:
-            faults.append(f"-{name}: default {default} in the page, {help_options[name][0]} in squeal")
-        elif meaning != help_options[name][1].replace("|", "or"):
-            faults.append(f"-{name}: '{meaning}' in the page, '{help_options[name][1]}' in squeal")
-        elif not re.match(rf"-{name}( \S|$)", example):
-            faults.append(f"-{name}: '{example}' is no example of it")
-    print("\n".join(faults) or f"{len(rows)} options")
-    return 1 if faults or len(rows) < 100 else 0
+    with tempfile.TemporaryDirectory() as folder:
+        faults = list(faults_of(Path(sys.argv[1]).resolve(), folder))
+    print("\n".join(faults) or "the page is that of the program")
+    if faults:
+        print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/README.md PROGRAM")
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":

@@ -77,8 +77,9 @@ typedef struct {
   const char        *help; /* one sentence, without the unit */
   const char        *unit; /* e.g. "Hz"; NULL for what has none */
   QuantityKind       kind;
-  PetscReal          initial;     /* default of a number, a logical, a word, or the first of a list */
-  const char        *text;        /* default of a text, of a list for its help; NULL: empty */
+  PetscReal          initial;     /* default of a number, a logical, a word */
+  const char        *text;        /* default of a text, of a list "0.02,0.08"; NULL: empty, zeros */
+  const char        *path;        /* of a text: it names a "file" or a "folder"; NULL: neither */
   size_t             at;          /* offset in the owner's struct */
   size_t             size;        /* in bytes */
   size_t             given;       /* offset of a PetscBool: whether it is given; 0 for none */
@@ -178,3 +179,19 @@ PetscErrorCode QuantitiesReadVisited(const QuantityTable *table, const char name
    that the run does not read. Files may give such options. Collective. @*/
 PetscErrorCode QuantitiesRefuse(const QuantityTable *table, const char name[], void *owner, const char why[],
                                 void *run);
+
+/* What writes rows as JSON, a visitor's context */
+typedef struct {
+  MPI_Comm comm;
+  PetscInt n; /* rows until now */
+} QuantityJson;
+
+/*@ QuantitiesBeginJson, QuantitiesWriteJson, QuantitiesEndJson - print the rows of all tables that a visitor is shown,
+   with a QuantityJson for its context, as one JSON object on stdout (quantity/json.c says its members). Collective. @*/
+PetscErrorCode QuantitiesBeginJson(QuantityJson *json);
+PetscErrorCode QuantitiesWriteJson(const QuantityTable *table, const char name[], void *owner, const char why[],
+                                   void *json);
+PetscErrorCode QuantitiesEndJson(QuantityJson *json);
+
+/*@ SquealVisit - shows the rows of what concerns every room, which SquealSetFromOptions() reads. Collective. @*/
+PetscErrorCode SquealVisit(MPI_Comm comm, const QuantityVisitor *visitor);

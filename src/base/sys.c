@@ -9,6 +9,7 @@
 #include <squeal/options.h>
 #include "base/algebra/blas.h"
 #include "events.h"
+#include "base/settings.h"
 #include "base/options/help.h"
 #include "base/process/interrupt.h"
 #include "base/process/print.h"
@@ -127,8 +128,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscFunctionReturn(0);
 }
 
-/* Says what gives options to a run that is not on its command line; scene.yaml has them */
-static PetscErrorCode EnvironmentSay(MPI_Comm comm)
+PetscErrorCode SquealSayEnvironment(MPI_Comm comm)
 {
   static const char *const variables[]                 = {"PETSC_OPTIONS", "PETSC_OPTIONS_YAML"};
   char                     file[3][PETSC_MAX_PATH_LEN] = {"", ".petscrc", "petscrc"};
@@ -154,27 +154,9 @@ static PetscErrorCode EnvironmentSay(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SquealSetFromOptions(MPI_Comm comm)
+void SquealTrace(PetscBool trace)
 {
-  char      log[PETSC_MAX_PATH_LEN] = "";
-  PetscBool has_log, has_file;
-
-  PetscFunctionBeginUser;
-  PetscCall(OptionsCheckNumbers());
-  PetscCall(EnvironmentSay(comm));
-  PetscOptionsBegin(comm, NULL, "squeal", NULL);
-  PetscCall(OptionsGetBool(PetscOptionsObject, "-squeal_traceback",
-                           "show PETSc's traceback of an error, for developers", &traced));
-  PetscCall(PetscOptionsString(
-    "-squeal_log",
-    "file that all that is printed goes to as well, never in place of a file that is no log; also -log_file", "sys.h",
-    log, log, sizeof(log), &has_log));
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-log_file", has_log ? NULL : log, sizeof(log), &has_file));
-  PetscOptionsEnd();
-  if (has_log || has_file) PetscCall(PrintSetLog(comm, log));
-  PetscCall(ProgressSetFromOptions(comm));
-  PetscCall(MemorySetFromOptions(comm));
-  PetscFunctionReturn(0);
+  traced = trace;
 }
 
 PetscErrorCode SquealStageBegin(SquealStage stage)

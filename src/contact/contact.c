@@ -41,12 +41,12 @@ static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
   PetscFunctionReturn(0);
 }
 
-/* Parameters of one interface, whose name is set */
-static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c)
+PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
 {
+  Contact           contact = owner;
+  ContactInterface *c       = record;
+
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesInit(&contact_quantities, c));
-  PetscCall(QuantitiesReadOf(comm, c->name, &contact_quantities, c));
   PetscCall(StiffnessParse(comm, c));
   PetscCheck(!c->has_kt || !c->kt_per_area, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
@@ -59,6 +59,8 @@ static PetscErrorCode InterfaceSetFromOptions(MPI_Comm comm, ContactInterface *c
              comm, PETSC_ERR_USER_INPUT,
              "contact %s: friction depends on the sliding speed: give a positive -%s_speed (m/s) with -%s_slip",
              c->name, c->name, c->name);
+  if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
+  if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
   PetscFunctionReturn(0);
 }
 
@@ -101,25 +103,11 @@ PetscErrorCode ContactDampFriction(Contact contact)
 
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
-  char   **names;
-  PetscInt n;
-
   PetscFunctionBeginUser;
-  PetscCall(
-    OptionsGetNames(contact->comm, "-contacts", "frictional interfaces, each the prefix of its options", &n, &names));
-  PetscCheck(n <= CONTACT_MAX, contact->comm, PETSC_ERR_USER_INPUT,
-             "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh", n,
-             CONTACT_MAX);
-  for (PetscInt i = 0; i < n; i++) {
-    ContactInterface *c = &contact->interfaces[i];
-
-    c->name = names[i];
-    PetscCall(InterfaceSetFromOptions(contact->comm, c));
-    if (c->slave) PetscCall(ModelKeepTogether(contact->model, c->slave));
-    if (c->master) PetscCall(ModelKeepTogether(contact->model, c->master));
-  }
-  contact->n_interfaces = n;
-  PetscCall(PetscFree(names));
+  PetscCall(QuantitiesReadList(contact->comm, &contacts_list, contact, &contact->n_interfaces, &contact->interfaces));
+  PetscCheck(contact->n_interfaces <= CONTACT_MAX, contact->comm, PETSC_ERR_USER_INPUT,
+             "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh",
+             contact->n_interfaces, CONTACT_MAX);
   PetscCall(QuantitiesReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
   PetscFunctionReturn(0);
 }
@@ -127,12 +115,9 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
 PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
-    ContactInterface *c = &contact->interfaces[i];
-
-    PetscCall(QuantitiesVisit(visitor, &contact_quantities, c->name, c, NULL));
-    PetscCall(FrictionVisit(&c->friction, c->name, visitor));
-  }
+  PetscCall(QuantitiesVisitList(visitor, &contacts_list, contact->n_interfaces, contact->interfaces));
+  for (PetscInt i = 0; i < contact->n_interfaces; i++)
+    PetscCall(FrictionVisit(&contact->interfaces[i].friction, contact->interfaces[i].name, visitor));
   PetscCall(QuantitiesVisitList(visitor, &ties_list, contact->n_ties, contact->ties));
   PetscFunctionReturn(0);
 }
@@ -257,6 +242,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].master));
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
   }
+  PetscCall(PetscFree((*contact)->interfaces));
   PetscCall(PetscFree((*contact)->pairs));
   PetscCall(ContactTiesDestroy(*contact));
   PetscCall(PetscFree(*contact));

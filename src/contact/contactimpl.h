@@ -8,16 +8,16 @@
 #define CONTACT_MAX 16 /* interfaces of one scene */
 
 struct _p_Contact {
-  MPI_Comm         comm;
-  Model            model;
-  PetscInt         n_interfaces;
-  ContactInterface interfaces[CONTACT_MAX];
-  PetscInt         n_pairs, n_pairs_all; /* on this rank, on all ranks */
-  ContactPair     *pairs;                /* ordered by interface */
-  ContactSurface   surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
-  PetscInt         n_ties, n_links;      /* links of this rank */
-  ContactTie      *ties;
-  ContactLink     *links; /* ordered by tie */
+  MPI_Comm          comm;
+  Model             model;
+  PetscInt          n_interfaces;
+  ContactInterface *interfaces;
+  PetscInt          n_pairs, n_pairs_all; /* on this rank, on all ranks */
+  ContactPair      *pairs;                /* ordered by interface */
+  ContactSurface    surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
+  PetscInt          n_ties, n_links;      /* links of this rank */
+  ContactTie       *ties;
+  ContactLink      *links; /* ordered by tie */
 };
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
@@ -30,11 +30,11 @@ PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, P
 PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
                                               ContactPair pair[], PetscReal *lost);
 
-/* quantities.c - options of an interface, and the list of ties; tie.c - what their rows do not say */
+/* quantities.c - the lists of interfaces and ties; contact.c, tie.c - what their rows do not say */
 /* Why nobody reads how it slides in time, where it does not slide as told */
 #define CONTACT_STILL "not used where nothing slides as told: give -@slip or -@rotation"
-extern const QuantityTable  contact_quantities;
-extern const QuantityList   ties_list;
+extern const QuantityList   contacts_list, ties_list;
+PETSC_INTERN PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);
 /* tie.c - adds surfaces and distances; in words. Collective. */

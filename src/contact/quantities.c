@@ -104,9 +104,15 @@ static const Quantity tie[] = {
   {"-far", "nodes farther off are an error, or stay free", NULL, QUANTITY_WORD, TIE(free), .words = fars},
 };
 
-static const QuantityTable ties        = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};
-const QuantityTable contact_quantities = {"Contact", "contact.h", PETSC_STATIC_ARRAY_LENGTH(interface), interface,
-                                          .in = 0};
-const QuantityList  ties_list          = {
-            "-ties", "surfaces glued to others, each the prefix of its -surfaces", sizeof(ContactTie), &ties, TieCheckNames,
-            .in = 0};
+static const QuantityTable ties          = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};
+static const QuantityTable contacts      = {"Contact", "contact.h", PETSC_STATIC_ARRAY_LENGTH(interface), interface,
+                                            .in = 0};
+const QuantityList         contacts_list = {"-contacts",
+                                            "frictional interfaces, each the prefix of its options",
+                                            sizeof(ContactInterface),
+                                            &contacts,
+                                            InterfaceCheckOptions,
+                                            .in = 0};
+const QuantityList         ties_list     = {
+              "-ties", "surfaces glued to others, each the prefix of its -surfaces", sizeof(ContactTie), &ties, TieCheckNames,
+              .in = 0};

@@ -43,6 +43,7 @@ PetscErrorCode DynamicsVisit(Dynamics d, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisit(visitor, &dynamics_quantities, NULL, d, NULL));
+  PetscCall(TSCentralVisit(d->ts, visitor));
   PetscCall(HistoryVisit(d->history, visitor));
   if (d->external) PetscCall(ExternalVisit(d->external, visitor));
   if (d->projector) PetscCall(ContactProjectorVisit(d->projector, visitor));

@@ -13,7 +13,6 @@ PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf)
   PetscCall(PetscCalloc1(1, frf));
   (*frf)->comm = comm;
   PetscCall(QuantitiesInit(&frf_quantities, *frf));
-  PetscCall(PetscStrncpy((*frf)->directions, "xyz", sizeof((*frf)->directions)));
   PetscFunctionReturn(0);
 }
 

@@ -20,7 +20,7 @@ static const char *FrfIdleModal(const void *frf, const QuantityRun *run)
 static const Quantity rows[] = {
   {"-frf_force", "where a force of 1 N acts: a probe and x, y, z or three numbers", NULL, QUANTITY_TEXT, FRF_AT(force)},
   {"-frf_directions", "in which the response is recorded: some of x, y, z", NULL, QUANTITY_TEXT, FRF_AT(directions),
-   .given = offsetof(struct _p_Frf, has_directions)},
+   .text = "xyz", .given = offsetof(struct _p_Frf, has_directions)},
   {"-frf_frequencies", "low:high:n, low:high:n:log, or f1,f2,...", "Hz", QUANTITY_TEXT, FRF_AT(frequencies)},
   {"-frf_times", "of the answer to an impulse of 1 N s: low:high:n, or t1,t2,...", "s", QUANTITY_TEXT, FRF_AT(times)},
   {"-frf_method", "superposition of modes, or the whole system at each frequency", NULL, QUANTITY_WORD, FRF_AT(method),

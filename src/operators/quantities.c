@@ -28,9 +28,9 @@ static const Quantity rows[] = {
    "for",
    NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors, .in = RUN_LINEAR, .idle = OperatorsIdleFactors},
   {"-operators_save", "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)", NULL, QUANTITY_TEXT,
-   OPERATORS_OPTION(save)},
+   OPERATORS_OPTION(save), .path = "folder"},
   {"-operators_nodes", "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes", NULL,
-   QUANTITY_PATH, OPERATORS_OPTION(nodes)},
+   QUANTITY_PATH, OPERATORS_OPTION(nodes), .path = "file"},
 };
 static const Quantity loaded[] = {
   {"-contact_mu", "friction coefficient of K + mu H", NULL, QUANTITY_REAL, OPERATORS_OPTION(loaded_mu)},
@@ -38,7 +38,12 @@ static const Quantity loaded[] = {
 
 /* Of one matrix: the file, or all entries */
 #define MATRIX(letter, meaning, i)                                                                                     \
-  {"-operators_load_" letter, "PETSc binary file of the " meaning, NULL, QUANTITY_PATH, OPERATORS_OPTION(load[i])},    \
+  {"-operators_load_" letter,                                                                                          \
+   "PETSc binary file of the " meaning,                                                                                \
+   NULL,                                                                                                               \
+   QUANTITY_PATH,                                                                                                      \
+   OPERATORS_OPTION(load[i]),                                                                                          \
+   .path = "file"},                                                                                                    \
   {                                                                                                                    \
     "-operators_dense_" letter, "small dense matrix of the " meaning ", rows one after another", NULL, QUANTITY_MANY,  \
       OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .most = OPERATORS_MAX_DENSE      \
@@ -58,7 +63,7 @@ static const char *const symmetries[] = {
   [MATRIX_ANY] = "any", [MATRIX_EVEN] = "symmetric", [MATRIX_SKEW] = "skew", NULL};
 
 static const Quantity term[] = {
-  {"-file", "PETSc binary file of the matrix", NULL, QUANTITY_PATH, TERM(file)},
+  {"-file", "PETSc binary file of the matrix", NULL, QUANTITY_PATH, TERM(file), .path = "file"},
   {"-dense", "or all entries of a small matrix, rows one after another", NULL, QUANTITY_MANY, TERM(dense),
    .count = offsetof(MatrixTerm, n_dense), .most = OPERATORS_MAX_DENSE},
   {"-kind", "what it is part of (required)", NULL, QUANTITY_WORD, TERM(kind), .initial = 3, .words = kinds},

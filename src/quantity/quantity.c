@@ -1,5 +1,6 @@
 /* Rows of options: checked and summed; row.c reads them, visit.c refuses them */
 #include "row.h"
+#include <stdlib.h>
 #include <string.h>
 
 /* An upper limit of rounding alone: nobody comes near it */
@@ -77,6 +78,28 @@ static PetscErrorCode QuantityJudge(MPI_Comm comm, const char name[], const Quan
   PetscFunctionReturn(0);
 }
 
+/* The values of a text "0.02,0.08" */
+static PetscErrorCode ListInit(const Quantity *row, void *value)
+{
+  PetscReal *const real    = row->kind == QUANTITY_INTS ? NULL : value;
+  PetscInt *const  integer = value;
+  char            *end     = NULL;
+  PetscInt         i       = 0;
+
+  PetscFunctionBeginUser;
+  for (const char *at = row->text; at && *at; at = *end ? end + 1 : end, i++) {
+    const double x = strtod(at, &end);
+
+    PetscCheck(end != at && (size_t)i * (real ? sizeof(*real) : sizeof(*integer)) < row->size, PETSC_COMM_SELF,
+               PETSC_ERR_PLIB, "%s: '%s' is no list for it", row->name, row->text);
+    if (real)
+      real[i] = x;
+    else
+      integer[i] = (PetscInt)x;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
 {
   PetscFunctionBeginUser;
@@ -87,10 +110,11 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
     if (row->kind == QUANTITY_INT) *(PetscInt *)value = (PetscInt)row->initial;
     if (row->kind == QUANTITY_REAL) *(PetscReal *)value = row->initial;
     if (row->kind == QUANTITY_BOOL || row->kind == QUANTITY_WORD) *(int *)value = (int)row->initial;
-    if (row->kind == QUANTITY_LIST) *(PetscReal *)value = row->initial;
     if (row->kind == QUANTITY_NAME)
       PetscCall(PetscStrallocpy(row->text ? row->text : "", (char **)value));
-    else if (row->text && row->kind != QUANTITY_LIST && row->kind != QUANTITY_INTS)
+    else if (row->kind == QUANTITY_REALS || row->kind == QUANTITY_LIST || row->kind == QUANTITY_INTS)
+      PetscCall(ListInit(row, value));
+    else if (row->text && row->kind != QUANTITY_MANY)
       PetscCall(PetscStrncpy(value, row->text, row->size));
   }
   PetscFunctionReturn(0);

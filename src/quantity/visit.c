@@ -12,6 +12,7 @@ static const struct {
   unsigned    bit;
   const char *words;
 } within[] = {
+  /* in the order of the bits */
   {RUN_EQUILIBRIUM, "-analysis static, and modes, sweeps and transients about the sliding state"},
   {RUN_SLIDING, "modes, sweeps and frequency responses about the sliding state"},
   {RUN_IDENTIFY, "-..._kn identify"},
@@ -22,6 +23,11 @@ static const struct {
   {RUN_MESH, "transients of the mesh (-analysis transient, -dynamics_model full)"},
   {RUN_REDUCED, "-dynamics_model reduced"},
 };
+
+const char *RunBitWords(unsigned i)
+{
+  return i < N_ANALYSES + PETSC_STATIC_ARRAY_LENGTH(within) ? within[i - N_ANALYSES].words : NULL;
+}
 
 /* Who reads a row, in words: "-analysis modes, sweep and frf, and -dynamics_model reduced" */
 static PetscErrorCode ReadersDescribe(unsigned in, size_t size, char text[])

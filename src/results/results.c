@@ -13,7 +13,7 @@ struct _p_ResultsTable {
 
 static const Quantity rows[] = {
   {"-output_dir", "folder of all files, made where it is missing", NULL, QUANTITY_TEXT,
-   QUANTITY_AT(struct _p_Results, dir), .text = "results"},
+   QUANTITY_AT(struct _p_Results, dir), .text = "results", .path = "folder"},
   {"-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", NULL, QUANTITY_BOOL,
    QUANTITY_AT(struct _p_Results, fields), .initial = PETSC_TRUE},
 };

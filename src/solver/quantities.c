@@ -25,7 +25,6 @@ static const Quantity rows[] = {
   OPTIONS("-ts_exact_final_time", RUN_HISTORY | RUN_MAP),
   OPTIONS("-ts_init_time", RUN_HISTORY | RUN_MAP),
   OPTIONS("-ts_max_steps", RUN_HISTORY),
-  OPTIONS("-ts_central_b", RUN_MESH),
   OPTIONS("-ts_monitor", RUN_MESH),
   OPTIONS("-ts_view", RUN_MESH),
   OPTIONS("-ts_trajectory_", RUN_MESH),

@@ -313,31 +313,35 @@ static PetscErrorCode HelpPrint(MPI_Comm comm, const HelpList *list, PetscBool e
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HelpIsAsked(PetscBool *asked, PetscBool *all)
+PetscErrorCode HelpIsAsked(HelpKind *kind)
 {
+  PetscBool list, all, json;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasHelp(NULL, asked));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", all));
-  *asked = *asked || *all ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscOptionsHasHelp(NULL, &list));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", &all));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_json", &json));
+  *kind = json ? HELP_JSON : all ? HELP_ALL : list ? HELP_LIST : HELP_NONE;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
-                                 PetscBool *asked)
+PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *),
+                                 PetscErrorCode (*write)(MPI_Comm, void *), void *ctx, PetscBool *asked)
 {
   HelpList  list = {0};
-  PetscBool all, given;
+  HelpKind  kind;
+  PetscBool given;
 
   PetscFunctionBeginUser;
-  PetscCall(HelpIsAsked(asked, &all));
+  PetscCall(HelpIsAsked(&kind));
+  *asked = kind == HELP_NONE ? PETSC_FALSE : PETSC_TRUE;
   if (!*asked) PetscFunctionReturn(0);
   PetscCall(SceneIsGiven(&given));
   if (!given) PetscCall(PetscOptionsInsertString(NULL, names_of_all));
-  if (all) {
-    PetscCall(HelpForce(PETSC_TRUE));
-    PetscCall((*read_again)(comm, ctx));
-    PetscFunctionReturn(0);
-  }
+  if (kind == HELP_ALL) PetscCall(HelpForce(PETSC_TRUE));
+  if (kind == HELP_ALL) PetscCall((*read_again)(comm, ctx));
+  if (kind == HELP_JSON) PetscCall((*write)(comm, ctx));
+  if (kind != HELP_LIST) PetscFunctionReturn(0);
   PetscCall(HelpCollect(comm, read_again, ctx, &list));
   PetscCall(PetscPrintf(comm, "squeal %s: friction-induced vibration of bodies in sliding contact\n", SQUEAL_VERSION));
   PetscCall(HelpPrint(comm, &list, given ? PETSC_FALSE : PETSC_TRUE));

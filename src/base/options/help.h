@@ -22,8 +22,10 @@ typedef struct {
 PETSC_INTERN PetscBool HelpAnswer(int argc, char *const argv[]);
 /* Keeps PETSc from printing what it knows of -help at its start, which HelpPrint() does */
 PETSC_INTERN void HelpHush(int argc, char *const argv[]);
-/* Whether -help or -help_all asks what there is, so that a scene need not be complete */
-PETSC_INTERN PetscErrorCode HelpIsAsked(PetscBool *asked, PetscBool *all);
+/* What asks for the options: -help, -help_all, -help_json */
+typedef enum { HELP_NONE, HELP_LIST, HELP_ALL, HELP_JSON } HelpKind;
+/* Which of them is given, so that a scene need not be complete */
+PETSC_INTERN PetscErrorCode HelpIsAsked(HelpKind *kind);
 /* All options that read_again() reads, with values; n = 0 before, free list->option with free() */
 PETSC_INTERN PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
                                         HelpList *list);

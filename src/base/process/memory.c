@@ -156,7 +156,7 @@ int MemoryRanks(void)
   return machine_ranks;
 }
 
-PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
+PetscErrorCode MemoryAllow(MPI_Comm comm, PetscReal megabytes)
 {
   MPI_Comm machine;
 
@@ -164,14 +164,7 @@ PetscErrorCode MemorySetFromOptions(MPI_Comm comm)
   PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
   PetscCallMPI(MPI_Comm_size(machine, &machine_ranks));
   PetscCallMPI(MPI_Comm_free(&machine));
-  PetscOptionsBegin(comm, NULL, "Memory", NULL);
-  PetscCall(
-    OptionsGetReal(PetscOptionsObject, "-squeal_memory",
-                   "MB that factors, or models over -cycle_parameter, may take on one machine, of all ranks there "
-                   "(0: what is free)",
-                   allowed, &allowed, NULL));
-  PetscOptionsEnd();
-  PetscCheck(allowed >= 0, comm, PETSC_ERR_USER_INPUT, "-squeal_memory %.6g must not be negative (MB)", allowed);
+  allowed = megabytes;
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,4 @@
-/* Private to base/: memory that may not be had */
+/* Private to base/ and what sets it: memory that may not be had */
 #pragma once
 
 #include <petscsys.h>
@@ -15,8 +15,8 @@ PETSC_INTERN double MemoryPeak(void);
 /* Gives freed memory back to the system, which the C library keeps otherwise */
 PETSC_INTERN void MemoryReturn(void);
 
-/* Reads -squeal_memory */
-PETSC_INTERN PetscErrorCode MemorySetFromOptions(MPI_Comm comm);
+/* What factors and models may take on one machine, MB; 0: what is free */
+PETSC_INTERN PetscErrorCode MemoryAllow(MPI_Comm comm, PetscReal megabytes);
 /* MB that factors or models may take on this machine, all ranks there together: -squeal_memory where given, else what
    is free, infinite where nothing tells */
 PETSC_INTERN double MemoryRoom(PetscBool *given);

@@ -3,7 +3,6 @@
    -squeal_progress 1, a line every five seconds.
 */
 #include "progress.h"
-#include <squeal/options.h>
 #include <petsctime.h>
 #include <unistd.h>
 
@@ -16,22 +15,14 @@ static struct {
   PetscLogDouble begun, shown; /* of the run; of the last line */
 } screen;
 
-PetscErrorCode ProgressSetFromOptions(MPI_Comm comm)
+PetscErrorCode ProgressShow(MPI_Comm comm, PetscBool given, PetscBool show)
 {
   PetscMPIInt rank;
-  PetscBool   given, other = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   screen.terminal = isatty(STDERR_FILENO) ? PETSC_TRUE : PETSC_FALSE;
-  screen.on       = screen.terminal;
-  PetscOptionsBegin(comm, NULL, "Progress", NULL);
-  PetscCall(OptionsGetBool(
-    PetscOptionsObject, "-squeal_progress",
-    "show the time left (default: on in a terminal; otherwise one line every 5 s); also -progress", &screen.on));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-squeal_progress", &given));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-progress", given ? &other : &screen.on, NULL));
-  PetscOptionsEnd();
+  screen.on       = given ? show : screen.terminal;
   if (rank) screen.on = PETSC_FALSE;
   if (!screen.begun) PetscCall(PetscTime(&screen.begun));
   PetscFunctionReturn(0);

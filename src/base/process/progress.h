@@ -10,8 +10,8 @@ typedef struct {
   PetscLogDouble begun;
 } Progress;
 
-/* Whether and how progress shows in this run: -squeal_progress */
-PETSC_INTERN PetscErrorCode ProgressSetFromOptions(MPI_Comm comm);
+/* Whether and how progress shows in this run: as told, else where stderr is a terminal */
+PETSC_INTERN PetscErrorCode ProgressShow(MPI_Comm comm, PetscBool given, PetscBool show);
 /* Tells which stage of the flow begins */
 PETSC_INTERN PetscErrorCode ProgressStage(const char name[]);
 PETSC_INTERN PetscErrorCode ProgressBegin(Progress *progress, const char what[], PetscInt expected);

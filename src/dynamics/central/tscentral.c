@@ -6,7 +6,7 @@
 #include "base/algebra/versions.h"
 #include "tscentral.h"
 #include "base/events.h"
-#include <squeal/options.h>
+#include <squeal/quantity.h>
 #include <petsc/private/tsimpl.h>
 
 typedef struct {
@@ -169,17 +169,26 @@ static PetscErrorCode TSDestroy_Central(TS ts)
   PetscFunctionReturn(0);
 }
 
+static const Quantity rows[] = {
+  {"-ts_central_b", "1/2: central differences; up to 1: dissipative", NULL, QUANTITY_REAL, QUANTITY_AT(TS_Central, b),
+   .initial = 0.5, QUANTITY_WITHIN(0.5, 1), .why = "0.5 are central differences"},
+};
+static const QuantityTable central_quantities = {"Central differences", "dynamics.h", 1, rows, .in = RUN_MESH};
+
+PetscErrorCode TSCentralVisit(TS ts, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &central_quantities, NULL, ts->data, NULL));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TSSetFromOptions_Central(TS ts, OptionsItems PetscOptionsObject)
 {
   TS_Central *c = (TS_Central *)ts->data;
 
   PetscFunctionBegin;
-  PetscOptionsHeadBegin(PetscOptionsObject, "Central differences");
-  PetscCall(OptionsGetReal(PetscOptionsObject, "-ts_central_b", "1/2: central differences; up to 1: dissipative", c->b,
-                           &c->b, NULL));
-  PetscOptionsHeadEnd();
-  PetscCheck(c->b >= 0.5 && c->b <= 1, PetscObjectComm((PetscObject)ts), PETSC_ERR_USER_INPUT,
-             "-ts_central_b %.6g must lie between 0.5 (central differences) and 1", (double)c->b);
+  (void)PetscOptionsObject;
+  PetscCall(QuantitiesRead(PetscObjectComm((PetscObject)ts), &central_quantities, c));
   PetscFunctionReturn(0);
 }
 
@@ -261,7 +270,7 @@ static PetscErrorCode TSCreate_Central(TS ts)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&c));
-  c->b                    = 0.5;
+  PetscCall(QuantitiesInit(&central_quantities, c));
   ts->data                = c;
   ts->ops->setup          = TSSetUp_Central;
   ts->ops->step           = TSStep_Central;

@@ -10,6 +10,7 @@
 */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <petscts.h>
 
 #define TSCENTRAL "central"
@@ -33,6 +34,8 @@ PETSC_INTERN PetscErrorCode TSCentralRegister(void);
  * NULL) */
 PETSC_INTERN PetscErrorCode TSCentralSetForces(TS ts, Vec minv, CentralForce force, CentralForce constraint, void *ctx);
 
+/* Shows its rows. Collective */
+PETSC_INTERN PetscErrorCode TSCentralVisit(TS ts, const QuantityVisitor *visitor);
 /* b of the scheme: option -ts_central_b */
 PETSC_INTERN PetscErrorCode TSCentralGetB(TS ts, PetscReal *b);
 

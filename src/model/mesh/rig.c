@@ -66,12 +66,7 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 PetscErrorCode RigSetFromOptions(MPI_Comm comm, Rig *rig)
 {
   PetscFunctionBeginUser;
-  *rig = (Rig){.pad_size    = {0.01, 0.01, 0.01},
-               .pad_n       = {10, 10, 10},
-               .beam_rows   = {0.02, 0.08},
-               .disc_nr     = 21,
-               .disc_ntheta = 100,
-               .disc_nz     = 3};
+  PetscCall(PetscArrayzero(rig, 1));
   PetscCall(QuantitiesInit(&rig_quantities, rig));
   PetscCall(QuantitiesRead(comm, &rig_quantities, rig));
   if (!rig->patch && !rig->has_disc_elements) rig->disc_nr = 16, rig->disc_ntheta = 160, rig->disc_nz = 4;

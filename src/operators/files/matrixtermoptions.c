@@ -103,12 +103,12 @@ const QuantityList operators_terms = {"-terms",
 
 PetscErrorCode MatrixTermsSetFromOptions(Operators o)
 {
-  PetscBool help, all;
+  HelpKind help;
 
   PetscFunctionBeginUser;
   PetscCall(QuantitiesReadList(o->comm, &operators_terms, NULL, &o->n_named, &o->named));
-  PetscCall(HelpIsAsked(&help, &all));
-  for (PetscInt t = 0; t < o->n_named && !help; t++) PetscCall(MatrixTermCheck(o->comm, &o->named[t]));
+  PetscCall(HelpIsAsked(&help));
+  for (PetscInt t = 0; t < o->n_named && help == HELP_NONE; t++) PetscCall(MatrixTermCheck(o->comm, &o->named[t]));
   PetscFunctionReturn(0);
 }
 
