@@ -1,11 +1,11 @@
 /*
-   Equilibrium of given forces: the contact problem, then displacements of all unknowns, then one step of iterative
-   refinement of both. With residuals of what was found,
+   Equilibrium of given forces: the contact problem, then displacements of all unknowns, then EQUILIBRIUM_REFINE steps
+   of iterative refinement of both and one more of the displacements. With residuals of what was found,
 
-      r = f - K u - G'l + S' D l,   e = w - G u,
+      r = f - K u - G'l + S' D l  (N),   e = w - G u  (m),
 
-   corrections obey the same small system with rhs = G K_a^-1 (r + kappa G'e) - e at the same status. Several load steps
-   matter for Coulomb's law only, where slip counts from the step before.
+   corrections obey the same small system with rhs = G K_a^-1 (r + kappa G'e) - e at the same status. Several load
+   steps matter for Coulomb's law only, where slip counts from the step before.
 */
 #include "staticsimpl.h"
 
@@ -43,7 +43,8 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for what was not found: nothing proves that there is none */
+/* Raises the error for what was not found: nothing proves that there is none. Where already pressing without friction
+   failed, it is told whether that at least is proven to have no equilibrium. */
 static PetscErrorCode EquilibriumComplain(const Active *a, ActiveOutcome outcome)
 {
   Certificate without = {.proven = PETSC_FALSE};
@@ -80,7 +81,8 @@ static PetscErrorCode EquilibriumResidual(const Active *a, Vec u, Vec r)
   PetscFunctionReturn(0);
 }
 
-/* K_a^-1 (r + kappa G'e) of the residuals, into the work vector of the compliance, and e [rows] */
+/* K_a^-1 (r + kappa G'e) of the residuals, into the work vector of the compliance, m, and e [rows], m. What r has
+   along free motions is taken out before: the pins would answer it with reactions. */
 static PetscErrorCode EquilibriumMissing(const Active *a, PetscReal e[])
 {
   Vec r;

@@ -82,6 +82,8 @@ static PetscErrorCode FollowerCreateOperators(Contact contact, PetscInt n, Mat A
   PetscFunctionReturn(0);
 }
 
+/* The six products of the header, N/m, in its order: T'L Theta_t, B'L Theta_b, their transposes, N'F_t Theta_t, N'F_b
+   Theta_b. force: 0 L, 1 F_t, 2 F_b. Open pairs have the force 0 and drop out; the pattern stays that of all pairs. */
 PetscErrorCode FollowerStiffnessCreate(Operators operators, const ContactState state[], Mat *K)
 {
   /* left' diag(force) right */

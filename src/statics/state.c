@@ -5,9 +5,12 @@
 #include "staticsimpl.h"
 #include "base/algebra/vec3.h"
 
-#define STATICS_LOOSE 1e-6 /* of the loads, unbalanced */
+/* of the loads, unbalanced: beyond it forces have no more than six figures, and nothing that follows from them is of
+   use */
+#define STATICS_LOOSE 1e-6
 
-/* States of all pairs from w = G u (m) and l (m) */
+/* States of all pairs from w = G u (m) and l (m): gap g0 - w_n (m), lambda_n = kappa l_n (N), friction on the master
+   mu lambda_n along t where the pair slides as told, else -kappa l_T, and slip of the slave -(w_T - w_T0) (m) */
 static void StaticsSetPairs(const PairRows *rows, PetscReal kappa, const ContactStatus status[], const PetscReal l[],
                             const PetscReal w[], ContactState state[])
 {
@@ -78,8 +81,9 @@ static PetscErrorCode StaticsSetResultants(Statics s)
   PetscFunctionReturn(0);
 }
 
-/* |f + contact forces - K u| over the larger of |f| and |contact forces|; much of it is left where next to nothing
-   resists the loads, and displacements are so large that forces drown in their rounding */
+/* |f + contact forces - K u| over the larger of |f| and |contact forces|, 2-norms of nodal forces, N; much of it is
+   left where next to nothing resists the loads, and displacements are so large that forces drown in their rounding.
+   Forces by which followers are held to what they follow are none of the residual. */
 static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscReal l[])
 {
   PetscReal norm, load, contact;

@@ -1,5 +1,7 @@
 /*
-   Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states.
+   Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states. One object solves at many points
+   p of the parameters, one after the other: the statuses of the last solution begin the next, and the factorisation
+   of K_a is kept as long as no parameter of the bodies changes (friction, contact stiffness and loads are not in it).
 */
 #include "staticsimpl.h"
 #include "base/events.h"
@@ -45,8 +47,8 @@ PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
   PetscFunctionReturn(0);
 }
 
-/* Pairs, rows and room for the results; all pairs closed */
-/* Motions that nothing resists are sought body by body: a point must not join two bodies rigidly */
+/* Motions that nothing resists are sought body by body (bodies/rigid.c): a point must not join two bodies rigidly.
+   The least and the largest body of its nodes over all ranks are one where it does not. */
 static PetscErrorCode StaticsCheckRigid(Statics s)
 {
   const ModelScene *scene;
@@ -74,6 +76,7 @@ static PetscErrorCode StaticsCheckRigid(Statics s)
   PetscFunctionReturn(0);
 }
 
+/* Pairs, rows and room for the results; all pairs closed, those of Coulomb's law without slip */
 static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
@@ -107,7 +110,8 @@ PetscErrorCode StaticsSetUp(Statics s, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
-/* Nothing moves without loads on what can move, unless bodies interfere */
+/* Nothing moves without loads on what can move, unless bodies interfere, g0 < 0 with all motions done. Both numbers
+   are those of all ranks. The laws are set again in the first load step. */
 static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
 {
   PetscReal least = 0, size;
@@ -123,7 +127,8 @@ static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
   PetscFunctionReturn(0);
 }
 
-/* Keeps the factorisation of the call before where no parameter of the bodies has changed since */
+/* Keeps the factorisation of the call before where no parameter of the bodies has changed since. kappa stays with it;
+   the laws of the pairs, whose k is k_n / kappa, are set anew. */
 static PetscErrorCode StaticsFactor(Statics s)
 {
   const OperatorsParameter *parameters;

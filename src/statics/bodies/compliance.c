@@ -19,10 +19,13 @@
 #include "operators/terms/terms.h"
 #include "solver/block/orthonormal.h"
 
-#define KAPPA_SHARE      0.1 /* of the stiffness of a node */
-#define COMPLIANCE_BLOCK 64  /* right-hand sides at once */
+/* of the stiffness of a node: the spectra of W and I - W, see above */
+#define KAPPA_SHARE 0.1
+/* right-hand sides at once: triangular solves in blocks, with memory of 64 vectors of all unknowns */
+#define COMPLIANCE_BLOCK 64
 
-/* Mean of n' diag(K) n at the slaves, N/m */
+/* kappa, N/m: KAPPA_SHARE of the mean of n' diag(K) n at the slaves. A held direction counts as 0. It depends on the
+   pairs and the bodies alone, not on what is closed, so that the factorisation serves all statuses. */
 static PetscErrorCode ComplianceFindKappa(Mat K, const PairRows *rows, PetscReal *kappa)
 {
   PetscReal          sum[2] = {0, 0};
@@ -75,7 +78,8 @@ PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, P
   PetscFunctionReturn(0);
 }
 
-/* Stores kappa R Y, the columns from `first` on, into local rows [rows][n_all] */
+/* Stores kappa R Y (without unit: N/m times m/N), the columns from `first` on, into local rows [rows][n_all]. W is
+   symmetric, so that its rows, gathered one rank after the other, are its columns. */
 static PetscErrorCode ComplianceTakeRows(const Compliance *c, Mat R, Mat Y, PetscInt first, PetscReal local[])
 {
   const PairRows    *rows = c->rows;
@@ -110,6 +114,7 @@ static PetscErrorCode ComplianceInvert(const Compliance *c, Vec b, Vec u)
   PetscFunctionReturn(0);
 }
 
+/* u = Z q: of a residual r only Z'r must vanish. E Z'r puts it at the unknowns that q stands for (E'Z = I). */
 PetscErrorCode ComplianceDropConstraint(const Compliance *c, Vec r)
 {
   PetscFunctionBeginUser;
@@ -135,7 +140,8 @@ static PetscErrorCode ComplianceProject(Mat Z, Mat *A)
   PetscFunctionReturn(0);
 }
 
-/* W and V. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V */
+/* W and V, n_all solutions with K_a in blocks. K_a is symmetric: the rows of S K_a^-1 G' are the columns of V = kappa
+   G K_a^-1 S'. Memory: 8 n_all^2 bytes for each, on every rank. */
 static PetscErrorCode ComplianceFormDense(Compliance *c)
 {
   const PairRows *rows  = c->rows;
@@ -172,6 +178,8 @@ static PetscErrorCode ComplianceFormDense(Compliance *c)
   PetscFunctionReturn(0);
 }
 
+/* Order: pins are chosen from K + kappa G'G of all pairs, that is of motions which no pair resists even when all are
+   closed, before followers are eliminated */
 PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows, PetscInt max_rows,
                                 Progress *progress, Compliance *c)
 {

@@ -5,7 +5,8 @@
 */
 #include "statics/staticsimpl.h"
 
-#define RESISTED 1e-8 /* force along a free motion beside all forces */
+/* force along a free motion beside all forces: rounding of sums of loads is far below it */
+#define RESISTED 1e-8
 
 /* Entry i of r, on all ranks */
 static PetscErrorCode EntryGet(Vec r, PetscInt i, PetscScalar *entry)
@@ -40,7 +41,9 @@ static PetscErrorCode LargestEntry(PetscInt n, const Vec r[], PetscInt *which, P
   PetscFunctionReturn(0);
 }
 
-/* Unknowns at which the free motions are held, by elimination with full pivoting */
+/* Unknowns at which the free motions are held, by elimination with full pivoting: the largest entry of what is left
+   of all motions becomes the next pin, so that the matrix of motions at the pins is as well conditioned as can be had
+   cheaply. Without this a pin near the axis of a rotation would hardly hold it. */
 static PetscErrorCode PinsChoose(Hold *hold)
 {
   Vec *r;
@@ -65,6 +68,8 @@ static PetscErrorCode PinsChoose(Hold *hold)
   PetscFunctionReturn(0);
 }
 
+/* Stiffness of a pin: the mean of A's diagonal, N/m. Any would do, since its reaction vanishes; one of this size
+   keeps the condition of A what it is. */
 PetscErrorCode HoldCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold)
 {
   PetscScalar sum;
@@ -122,7 +127,8 @@ static PetscErrorCode UnknownFind(Operators operators, PetscInt unknown, Unknown
   PetscFunctionReturn(0);
 }
 
-/* What f would move, sum of (f . r) r: its largest entry, where that is, and the work of f along it */
+/* What f would move, the motion m = sum (r_i . f) r_i: its largest entry, where that is, and the work f . m. work /
+   largest is the force (N) that pushes the place which moves most. */
 static PetscErrorCode HoldMove(const Hold *hold, Vec f, PetscInt *at, PetscScalar *largest, PetscScalar *work)
 {
   PetscInt    which;

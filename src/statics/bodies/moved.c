@@ -74,6 +74,8 @@ PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows)
   PetscFunctionReturn(0);
 }
 
+/* At a part of the motions g0 = gap - part m_n. Slip counts from w + before m of the step before: in w, which has no
+   m, from w - (part - before) m. */
 void PairRowsMove(PairRows *rows, PetscReal part, PetscReal before, const PetscReal w[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {

@@ -8,15 +8,19 @@
 #include "base/algebra/dense.h"
 
 #define RIGID_MAX_BODIES 64
-#define RIGID_DEPENDENT  1e-6  /* norm left of a candidate that is one of the others */
-#define RIGID_FREE       1e-13 /* energy beside that of the same motion with all its neighbours held */
+/* norm left of a candidate that is one of the others: rotations of a body whose free nodes are on a line */
+#define RIGID_DEPENDENT 1e-6
+/* energy beside that of the same motion with all its neighbours held, diag(A): rounding of r'A r, which cancels from
+   terms of diag(A), is some 1e-16 of it; a spring of 1e-13 of the body's stiffness counts as none */
+#define RIGID_FREE 1e-13
 
 /* Where a body is */
 typedef struct {
   PetscReal centre[3], length; /* m; half its extent */
 } RigidBody;
 
-/* Displacement d of point x in rigid motion k of a body: translations, then rotations about c over length */
+/* Displacement d of point x in rigid motion k of a body: translations, then rotations about c over length, e_axis x
+   (x - c) / length. Entries are of order 1 for both kinds, without unit. */
 static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const RigidBody *rigid)
 {
   const PetscReal *c    = rigid->centre;
@@ -77,8 +81,9 @@ static PetscErrorCode RigidSetMotion(Model model, const PetscInt body[], PetscIn
   PetscFunctionReturn(0);
 }
 
-/* Makes r orthonormal to the n vectors before it in the inner product of the weights (D may be a diagonal, as Vec, or a
-   Mat); false when nothing is left */
+/* Makes r orthonormal to the n vectors before it in the inner product of M, or of a diagonal of weights where M is
+   NULL; false when nothing is left. Pass 0 measures the length before, passes 1 and 2 are Gram-Schmidt twice, after
+   which orthogonality is that of rounding. */
 static PetscErrorCode RigidOrthonormalise(Mat M, Vec weights, PetscInt n, const Vec before[], Vec r, PetscBool *good)
 {
   PetscReal   norm[2];
@@ -142,7 +147,8 @@ static PetscErrorCode RigidCandidates(Operators operators, Mat A, PetscInt *n, V
   PetscFunctionReturn(0);
 }
 
-/* Adds (c_i, c_j) in diag(A) to energies [n * n], c = r - Z E'r: by how much followers do not follow */
+/* Adds (c_i, c_j) in diag(A) to energies [n * n], c = r - Z E'r: by how much followers do not follow. A tie has no
+   stiffness in A; this term makes a motion that parts what it joins cost as much as one against its neighbours. */
 static PetscErrorCode RigidAddParted(Operators operators, Mat A, PetscInt n, const Vec motion[], PetscReal energy[])
 {
   Mat          Z, E;
@@ -175,7 +181,8 @@ static PetscErrorCode RigidAddParted(Operators operators, Mat A, PetscInt n, con
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j and of what parts, [n * n] */
+/* Eigenvalues ascending and vectors (in place) of the energies r_i'A r_j and of what parts, [n * n], without unit:
+   between 0 and about 1 since motions are orthonormal in diag(A) */
 static PetscErrorCode RigidEnergies(Operators operators, Mat A, PetscInt n, const Vec motion[], PetscReal energy[],
                                     PetscReal vectors[])
 {
@@ -193,6 +200,8 @@ static PetscErrorCode RigidEnergies(Operators operators, Mat A, PetscInt n, cons
   PetscFunctionReturn(0);
 }
 
+/* The eigenvectors of energies below RIGID_FREE are the free motions, then made orthonormal in M (r in 1 / sqrt(kg)),
+   in which hold.c projects */
 PetscErrorCode FreeMotionsCreate(Operators operators, const PetscReal p[], Mat A, Hold *hold)
 {
   PetscInt   n;

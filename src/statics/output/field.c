@@ -24,7 +24,8 @@ static PetscErrorCode NodesScatter(const Mesh *mesh, Vec values, PetscReal local
   PetscFunctionReturn(0);
 }
 
-/* The pressures of the nodes of a surface with faces of second order, by -F . n of each, N; else they stay */
+/* The pressures (Pa) of the nodes of a surface with faces of second order, by -F . n of each, N; else they stay what
+   they are, force over the node's area */
 static PetscErrorCode PressureSpread(Model model, const char set[], const PetscReal along[], PetscReal pressure[])
 {
   const Mesh *mesh;

@@ -12,7 +12,8 @@ typedef struct {
   PetscReal force, approach;
 } IdentifyReading;
 
-/* k, its residual and the range of the force */
+/* k = sum (d - mean d) (F - mean F) / sum (d - mean d)^2, N/m: differences from the means first, since d carries a
+   common offset where there was a gap. The residual is the largest |F - k d - c| over the last force. */
 static void IdentifyFit(PetscInt n, const IdentifyReading reading[], StaticsStiffness *k)
 {
   PetscReal mean[2] = {0, 0}, product = 0, square = 0, offset;
@@ -46,7 +47,8 @@ static void IdentifySetLaws(PairRows *rows, ContactStatus status[])
   }
 }
 
-/* One step of the ramp: part of the load */
+/* One step of the ramp: part of the load. Each begins with the statuses of the step before, which `whole` and its
+   copy share. */
 static PetscErrorCode IdentifyPress(Statics s, const Active *whole, PetscInt interface, Vec d, PetscReal part,
                                     IdentifyReading *reading)
 {

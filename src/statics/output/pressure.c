@@ -36,7 +36,8 @@ static void MassAddFace(MassEntries *e, int n, const PetscInt number[], const Pe
     if (second || k % (n + 1) == 0) MassAdd(e, number[k / n], number[k % n], second ? mass[k] : share[k / n]);
 }
 
-/* Faces around each node, in the places of a vector of the nodes */
+/* Faces around each node, in the places of a vector of the nodes: 0 tells nodes that are not on the surface, on any
+   rank */
 static PetscErrorCode FacesCount(const Mesh *mesh, const ModelFaces *faces, Vec count)
 {
   PetscFunctionBeginUser;

@@ -11,7 +11,9 @@
 */
 #include "statics/staticsimpl.h"
 
-/* Internal forces minus loads and contact forces at all local nodes, three values each */
+/* Internal forces minus loads and contact forces at all local nodes, three values each, N: 0 at free nodes in
+   equilibrium, the reaction at held ones. Forces of followers are passed on last, with their loads and contact
+   forces. */
 static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
   PetscReal weight[3], size;
@@ -114,6 +116,7 @@ static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec dis
   PetscCall(VecGetLocalSize(*forces, &n));
   PetscCall(VecGetArrayRead(displacement, &u));
   PetscCall(VecGetArray(*forces, &f));
+  /* backwards: the share of a node stands in its first value, which is read for all three and overwritten last */
   for (PetscInt i = n - 1; i >= 0; i--) f[i] = f[i - i % 3] * stiffness[i % 3] * u[i];
   PetscCall(VecRestoreArray(*forces, &f));
   PetscCall(VecRestoreArrayRead(displacement, &u));

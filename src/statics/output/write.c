@@ -23,7 +23,8 @@ static int StaticsCompareRecords(const void *one, const void *other)
   return Vec3ComparePlaces(a->x, b->x);
 }
 
-/* Pressures of the pairs of one interface on this rank, Pa: what all nodes of the slave surface have (pressure.c) */
+/* Pressures of the pairs of one interface on this rank, Pa: lambda_n over the pair's area, or on faces of second
+   order what all nodes of the slave surface have (pressure.c). Collective, also on ranks without pairs. */
 static PetscErrorCode StaticsSetPressure(Statics s, PetscInt interface, StaticsRecord local[])
 {
   const PairRows *rows = &s->rows;

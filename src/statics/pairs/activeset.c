@@ -6,15 +6,21 @@
 */
 #include "statics/staticsimpl.h"
 
+/* of the largest displacement, force or gap: rounding of w = G u and of the small system */
 #define ACTIVE_ROUNDING 1e-13
 /* rows up to which single changes with friction, and small steps of it, are worth the time */
-#define FEW             1000
-#define SLIPPING        1e-12 /* residual of Coulomb's law at convergence, relative */
-#define EXACT           1e-13 /* of GMRES */
-#define ROUGH           1e-6  /* of GMRES while statuses still change */
-#define CORRECT         1e-8  /* of GMRES for corrections */
-#define MIN_DAMP        (1.0 / 128)
-#define SURE_ROUNDING   1e-11 /* where statuses have gone round in circles */
+#define FEW 1000
+/* residual of Coulomb's law at convergence, relative: Newton's method is quadratic there, and ends at rounding */
+#define SLIPPING 1e-12
+#define EXACT    1e-13 /* of GMRES */
+/* of GMRES while statuses still change: they need no more, and the last iterations are solved to EXACT */
+#define ROUGH 1e-6
+/* of GMRES for corrections, which are small beside what they correct */
+#define CORRECT 1e-8
+/* least part of a step */
+#define MIN_DAMP (1.0 / 128)
+/* where statuses have gone round in circles rounding may have done it: pairs nearer to a border stay what they are */
+#define SURE_ROUNDING   1e-11
 #define SAFEGUARD_TRIES 10
 #define ONE_BY_ONE      10 /* times max_it, when single pairs change */
 
@@ -50,7 +56,8 @@ static StatusChange SafeguardChoose(Safeguard *s, PetscInt n_wrong)
   return s->tries-- > 0 ? CHANGE_ALL : CHANGE_LAST;
 }
 
-/* Whether a hasty iteration gives up: where more pairs are wrong than there were before it may go round for long */
+/* Whether a hasty iteration gives up: where more pairs are wrong than there were before it may go round for long, and
+   the continuation costs less */
 static PetscBool SafeguardGivesUp(Safeguard *s, PetscInt n_wrong)
 {
   if (n_wrong > s->least) return PETSC_TRUE;
@@ -58,7 +65,8 @@ static PetscBool SafeguardGivesUp(Safeguard *s, PetscInt n_wrong)
   return PETSC_FALSE;
 }
 
-/* Laws of all rows at the present status */
+/* Laws l = P z + p0, w = Q z + q0 of all rows at the present status, lengths in m, P and Q without unit. Coulomb's
+   slip is linearised at the present l, w; all others do not depend on them. */
 static void LawsSet(const Active *a, LawRow law[])
 {
   const PairRows *rows = a->rows;
@@ -135,7 +143,8 @@ PetscErrorCode ActiveFindScale(Active *a)
   PetscFunctionReturn(0);
 }
 
-/* How wrong the status of pair p is, m; *next = what it should be */
+/* How wrong the status of pair p is, m; *next = what it should be. Between open and closed it is the length by which
+   the normal law fails, between stick and slip the residual of Coulomb's law. */
 static PetscReal Wrongness(const Active *a, PetscInt p, ContactStatus *next)
 {
   const PetscInt   first = a->rows->first[p];
@@ -149,7 +158,8 @@ static PetscReal Wrongness(const Active *a, PetscInt p, ContactStatus *next)
   return CoulombResidual(&pair, l, w);
 }
 
-/* Wrong pairs over all ranks, and the one that changes alone: the most wrong or the last */
+/* Wrong pairs over all ranks, and the one that changes alone: the most wrong or the last by its row. Of equally wrong
+   ones that of the lowest rank is taken (MPI_MAXLOC); within a rank the first. */
 static PetscErrorCode StatusFindWrong(const Active *a, PetscBool last, PetscInt *n_wrong, WrongPair *one)
 {
   PetscMPIInt rank;
@@ -239,6 +249,7 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
   PetscFunctionReturn(0);
 }
 
+/* Without friction, and without any pair that has some, the determinant is positive (small.c): nothing to compute */
 PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *reversed)
 {
   Active  at = *a;
@@ -255,6 +266,9 @@ PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *revers
   PetscFunctionReturn(0);
 }
 
+/* One iteration: laws of the statuses, l and w that obey them, new statuses. It has converged where no status changes
+   and Coulomb's law holds, after a last system solved to EXACT, and where its determinant has the right sign. Bounds:
+   max_it iterations, ten times as many where single pairs change. */
 PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
 {
   const PetscInt max_it    = sure ? ONE_BY_ONE * a->max_it : a->max_it;

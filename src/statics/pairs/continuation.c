@@ -12,10 +12,12 @@
 */
 #include "statics/staticsimpl.h"
 
-#define MIN_STEP   (1.0 / 1024)
+/* least step of the factor of friction, in small problems */
+#define MIN_STEP (1.0 / 1024)
+/* and in large ones, each of whose steps costs solutions with K_a */
 #define LARGE_STEP (1.0 / 16)
 
-/* All pairs closed, without slip */
+/* All pairs closed, without slip; l = w = 0, so that nothing of a failed try is left */
 static PetscErrorCode Restart(Active *a)
 {
   PetscFunctionBeginUser;
@@ -59,7 +61,9 @@ static PetscErrorCode RaiseOutcome(Active *a, ActiveOutcome *outcome)
   PetscFunctionReturn(0);
 }
 
-/* Raises friction in steps from the equilibrium without it */
+/* Raises friction in steps from the equilibrium without it: the factor `reached` goes from 0 to 1, first by a
+   quarter, half as much after a failure, 1.5 times as much after a success. The state before a failed step is taken
+   back whole. */
 static PetscErrorCode Raise(Active *a, ActiveOutcome *outcome)
 {
   const PetscBool few      = ActiveIsFew(a);

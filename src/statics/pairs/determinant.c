@@ -13,11 +13,14 @@
 
 /* Percent of workspace beyond MUMPS' estimate: at first, and before it is given up */
 #define DETERMINANT_SPACE 50
-#define DETERMINANT_MOST  5000
+/* percent: 51 times the estimate */
+#define DETERMINANT_MOST 5000
 
 /* One factor of the laws as a matrix of all rows: a (P - Q), a P of sliding pairs, or a Q */
 typedef enum { LAW_DIFFERENCE, LAW_SLIDE, LAW_DISPLACEMENT } LawFactor;
 
+/* One factor of the laws as a matrix of all rows, blocks of a pair's 1 or 3 on its diagonal: kappa (P - Q) or -kappa
+   friction D P (N/m), or Q */
 static PetscErrorCode LawMatrix(const SmallSystem *s, LawFactor which, Mat *A)
 {
   const PairRows *rows = s->compliance->rows;
@@ -74,8 +77,10 @@ static PetscErrorCode ProjectBlocks(Mat Z, Mat block[4])
   PetscFunctionReturn(0);
 }
 
-/* Factors A with a percentage of extra workspace and takes the sign of its determinant, which a singular
-   matrix has not: pairs share a force. reason is MUMPS' INFOG(1); percent becomes that of another try, 0 for none. */
+/* Factors A with a percentage of extra workspace and takes the sign of its determinant, which a singular matrix has
+   not: pairs share a force. MUMPS: ICNTL(33) = 1 computes the determinant, whose mantissa is RINFOG(12) (the exponent
+   in INFOG(34) is not needed); ICNTL(14) is the percentage; ICNTL(24) = 1 finds null pivots, INFOG(28) counts them.
+   reason is INFOG(1); percent becomes that of another try, 0 for none. */
 static PetscErrorCode DeterminantTry(Mat A, PetscInt *percent, PetscInt *reason, PetscBool *negative)
 {
   MatFactorInfo info;

@@ -33,7 +33,8 @@ typedef struct {
   PetscReal *T;
 } PivotTableau;
 
-/* A / k and the rest of B, A, and rhs - A g0, by columns; rhs is overwritten */
+/* B, A, and rhs - A g0 (m), by columns, [n][n] and [n]; rhs is overwritten. A and B have no unit: l and g are both in
+   m. */
 static void PivotSystem(const Compliance *c, PetscInt n, const PivotLaw law[], PetscReal A[], PetscReal B[],
                         PetscReal rhs[])
 {
@@ -127,7 +128,9 @@ static PetscInt PivotRow(const PivotTableau *t, PetscInt column)
   return best;
 }
 
-/* Pivots until z0 leaves; false where it does not */
+/* Pivots until z0 leaves; false where it does not. z0 enters in the row of the most negative right-hand side, after
+   which all are positive. PIVOT_MOST bounds what the lexicographic rule makes finite: Lemke's method may need 2^n
+   pivots, in practice a few n. */
 static PetscBool PivotComplement(PivotTableau *t)
 {
   const PetscInt n = t->n, z0 = 2 * n;
@@ -179,6 +182,8 @@ static PetscErrorCode PivotGather(const PairRows *rows, PetscReal friction, Pivo
   PetscFunctionReturn(0);
 }
 
+/* Every rank pivots the same tableau, of 2 n^2 numbers, from the same bits, so that all decide alike; each pivot
+   costs 4 n^2 operations */
 PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, const PetscReal rhs[], ContactStatus status[],
                           PetscBool *found)
 {

@@ -5,10 +5,14 @@
 */
 #include "statics/staticsimpl.h"
 
-#define REPEAT_SAME 1e-9 /* change of an iterate that repeats, relative */
+/* change of an iterate that repeats, relative: Newton's method on its way to a solution changes by more, or has
+   converged */
+#define REPEAT_SAME 1e-9
 
 PetscErrorCode RepeatFind(const Active *a, Repeat *seen, PetscBool *repeats)
 {
+  /* a status is told by sum_p (1 + status_p) frac(golden (row_p + 1)): multiples of 1 / golden ratio are spread
+     evenly, and different statuses agree in the sum by accident only */
   const PetscReal golden = 0.61803398874989484820;
   const PetscBool linear = ActiveIsLinear(a);
   PetscReal       sum[2] = {0, 0};

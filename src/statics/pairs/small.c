@@ -12,14 +12,18 @@
 #include "base/gather.h"
 #include "base/algebra/dense.h"
 
-#define SMALL_PIVOT      1e-13 /* smallest pivot beside the largest */
-#define SMALL_REDUNDANT  1e-12 /* singular value beside the largest that is none */
-#define SMALL_CONSISTENT 1e-10 /* residual of a singular system that has solutions */
+/* smallest pivot beside the largest: some hundred roundings */
+#define SMALL_PIVOT 1e-13
+/* singular value beside the largest that is none */
+#define SMALL_REDUNDANT 1e-12
+/* residual of a singular system that has solutions: pairs which share a force, not a motion that nothing resists */
+#define SMALL_CONSISTENT 1e-10
 #define GMRES_ENOUGH     1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
 #define GMRES_RESTART    300
 #define GMRES_STEPS      300
 
-/* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j */
+/* Adds column z_j, and with j < 0 the constants p0, q0 (subtracted): y += Q_j + (W - V D) P_j - W Q_j. A row with P =
+   Q takes no column of W, and one without friction none of V: with most pairs at one status the sum over r is short. */
 static void SmallAddColumn(const Compliance *c, PetscReal friction, PetscInt n, const LawRow law[], PetscInt j,
                            PetscReal y[])
 {
@@ -35,7 +39,8 @@ static void SmallAddColumn(const Compliance *c, PetscReal friction, PetscInt n, 
   }
 }
 
-/* Factors A in place and solves; whether it is singular, and the sign of the determinant */
+/* Factors A in place and solves; whether it is singular, and the sign of the determinant: negative pivots and
+   exchanges of rows each turn it */
 static PetscErrorCode SmallFactor(PetscInt n, PetscReal A[], PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
   PetscReal     least = PETSC_MAX_REAL, largest = 0;

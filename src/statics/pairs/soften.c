@@ -72,6 +72,7 @@ static PetscErrorCode KeptDestroy(Kept *kept)
   PetscFunctionReturn(0);
 }
 
+/* soft without unit: slip (m) over friction / kappa (m); an open pair pulls with PULL soft of its gap */
 static void SoftenSet(Active *a, PetscReal soft)
 {
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
@@ -85,7 +86,8 @@ static void DragSet(Active *a, PetscReal drag)
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) a->rows->law[p].drag = drag;
 }
 
-/* Statuses that l and w ask for, and the 2-norm of the residuals of all laws, m */
+/* Statuses that l and w ask for, and the 2-norm of the residuals of all laws, m. The normal law of a closed pair is
+   measured in the larger of force and displacement, as a length: l / k - w + g0 for k > 1, l - k (w - g0) else. */
 static PetscErrorCode SoftenMeasure(Active *a, PetscReal *residual)
 {
   PetscReal sum = 0;
@@ -165,7 +167,8 @@ static PetscErrorCode SoftenEnough(const Active *a, PetscReal soft, PetscReal *e
 }
 
 /* Newton's method at a softness; l and w are in equilibrium (balanced), or the first step is a whole one from the
-   statuses given */
+   statuses given. Where a step does not lower the residual it is tried again with a drag, friction that grows along
+   the slip; the drag falls by DRAG_FACTOR after each step that does. */
 static PetscErrorCode SoftenIterate(Active *a, PetscReal soft, PetscBool balanced, PetscBool *converged)
 {
   PetscReal    residual = PETSC_MAX_REAL, drag = 0, enough;

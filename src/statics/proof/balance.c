@@ -1,10 +1,12 @@
 /*
-   How much of the loads on rigid motions forces of the pairs can balance: minimise |push - sum_p rate_p' l_p| over all
-   forces l_p that pair p can carry, l_n >= 0 with l_t = mu l_n where it slides, |l_t| <= mu l_n else. What is left
-   obeys rate_p . left in the polar of each cone, and left . push = |left|^2 (J. J. Moreau's decomposition).
+   How much of the loads on rigid motions forces of the pairs can balance: minimise |push - sum_p rate_p' l_p| over
+   all forces l_p that pair p can carry, l_n >= 0 with l_t = mu l_n where it slides, |l_t| <= mu l_n else. push_j =
+   f'r_j and rate_p = [N r_j, T r_j, B r_j] of the m motions r_j, orthonormal in M. What is left obeys rate_p . left
+   in the polar of each cone, and left . push = |left|^2 (J. J. Moreau's decomposition).
 
-   Non-negative least squares (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23) on edges of the
-   cones, each made when it is the one that helps most.
+   Non-negative least squares (C. L. Lawson, R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23) on edges of
+   the cones, each made when it is the one that helps most. m is small, six for each body, so that at most m edges are
+   in use and the fits cost next to nothing beside the loop over the pairs.
 */
 #include "statics/staticsimpl.h"
 #include "base/algebra/dense.h"
@@ -32,7 +34,8 @@ static PetscReal EdgeNorm(PetscInt n, const PetscReal a[])
   return PetscSqrtReal(EdgeDot(n, a, a));
 }
 
-/* The edge of pair p's cone that works most along c: n + s t + r b */
+/* The edge of pair p's cone that works most along c: n + s t + r b, with (s, r) = (-mu, 0) where it slides and mu
+   times the direction of (t . c, b . c) under Coulomb's law */
 static void BalanceEdge(const RigidPairs *k, PetscReal friction, PetscInt p, const PetscReal c[], PetscReal edge[])
 {
   const PetscReal *head = &k->pair[p * k->width], *n = head + 2, *t = n + k->m, *b = t + k->m;

@@ -55,7 +55,8 @@ static PetscErrorCode BodyMeasure(Model model, const PetscInt body[], PetscInt b
   PetscFunctionReturn(0);
 }
 
-/* t and w of a body, turns counted in ways at half its size: normal equations of at most 6 numbers */
+/* t and w of a body, turns counted in ways at half its size: normal equations of at most 6 numbers, [6][6] and [6],
+   summed over the ranks. They square the condition, which is of order 1 here; three figures are printed. */
 static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt body[], PetscInt b, Vec r, BodyMotion *m)
 {
   const PetscScalar *value;
@@ -87,7 +88,7 @@ static PetscErrorCode BodyFit(const Mesh *mesh, MPI_Comm comm, const PetscInt bo
   PetscFunctionReturn(0);
 }
 
-/* x to four digits beside `size`, for reading: no -0 and no rounding */
+/* x to four digits beside `size`, for reading: the same text from all ranks and libraries, no -0 and no rounding */
 static double Readable(PetscReal x, PetscReal size)
 {
   const PetscReal digits = 1e4 * x / size;
