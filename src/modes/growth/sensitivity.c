@@ -29,10 +29,10 @@ PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted)
   PetscFunctionReturn(0);
 }
 
-/* Whether matrices depend on it otherwise than by the sliding state */
+/* Whether the matrices follow it at once: neither the sliding state nor the stress of a spin alone depends on it */
 static PetscBool ParameterIsListed(const OperatorsParameter *q)
 {
-  return q->state || q->internal ? PETSC_FALSE : PETSC_TRUE;
+  return q->state || q->internal || q->stressing ? PETSC_FALSE : PETSC_TRUE;
 }
 
 static PetscErrorCode SensitivityMeasure(Modes modes, PetscInt i, const PetscReal p[], ModeSensitivity *s)
