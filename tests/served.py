@@ -27,11 +27,21 @@ PATIENCE = 5  # a run may take so many times its limit of processor time by the 
 ENDED = "squeal: error: stopped by SIGTERM"
 # What a process alone does not need, and costs half of its start: networks, and to look for devices
 LEAN = {"OMPI_MCA_ess_singleton_isolated": "1", "OMPI_MCA_btl": "self", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^psm,psm2,ofi",
-        "OMPI_MCA_orte_create_session_dirs": "0", "HWLOC_COMPONENTS": "-pci,-linuxio,-opencl,-gl"}
+        "OMPI_MCA_orte_create_session_dirs": "0", "HWLOC_COMPONENTS": "-pci,-linuxio,-opencl,-gl",
+        "HWLOC_PLUGINS_PATH": "/nonexistent"}
+# Components of Open MPI 4 that each start would load; Open MPI 5 has them in its library
+COMPONENTS = re.compile(r"mca_(allocator|bml|btl_(self|sm|vader)|coll|errmgr|ess_(pmi|singleton)|mpool|op|osc_(monitoring|rdma|sm)|pmix|"
+                        r"pml_ob1|rcache|reachable|schizo|shmem|state)(_\w+)?\.so")
 # Open MPI 5 cannot be told to be quiet: remarks between dashes, each ended by a zero byte, which may come late; and now
 # and then a line of its daemon, "[host:pid] PMIX ERROR", or of libevent, "[warn] Epoll"
 MPIRUN_REMARK = re.compile(r"^-{40,}\n.*?^-{40,}$|^\[\S+:\d+\] PMIX ERROR[^\n]*$|^\[warn\] Epoll[^\n]*$",
                            re.MULTILINE | re.DOTALL)
+
+
+def bound_before():
+    """The environment by which a loop loads and links, once, what each of its children would."""
+    files = Path("/usr/lib").glob("*/openmpi/lib/openmpi*/mca_*.so")
+    return {"LD_BIND_NOW": "1", "FAULT_LOAD": ":".join(str(file) for file in sorted(files) if COMPONENTS.fullmatch(file.name))}
 
 
 def own_words(stderr):
@@ -118,7 +128,7 @@ class Served(Line):
         with socket.socket(socket.AF_UNIX) as listener:
             listener.bind(self.socket)
             listener.listen(64)
-            environment = {**os.environ, **ONE_THREAD, "LD_PRELOAD": preload, "FAULT_SERVE": str(listener.fileno())}
+            environment = {**os.environ, **ONE_THREAD, **bound_before(), "LD_PRELOAD": preload, "FAULT_SERVE": str(listener.fileno())}
             self.loop = subprocess.Popen([str(program)], env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
                                          pass_fds=[listener.fileno()])
         super().__init__(program, self.socket, folder, limit)

@@ -1,8 +1,8 @@
 /*
    Starts the program again and again: instead of main() runs a loop that forks a child for each request, in which main()
    begins with other arguments, when FAULT_SERVE is the number of a file, a socket that listens. The libraries, two thirds
-   of what a tiny scene costs, are then loaded once. Nothing of the program has run before the fork. The loop ends with
-   its standard input.
+   of what a tiny scene costs, are then loaded once, those of FAULT_LOAD too. Nothing of the program has run before the
+   fork. The loop ends with its standard input.
 
    Who connects sends requests, one after the other. A request is a number of bytes (int32) and as many bytes, strings that
    end in a zero each: folder to work in, files for standard output and error, number of lines of the environment, these
@@ -12,6 +12,7 @@
 */
 #define _GNU_SOURCE
 #include "inject.h"
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -115,10 +116,20 @@ static int Answer(int connection)
   _exit(0);
 }
 
+/* Libraries that the program would load by name at each start, in a list with colons: a child finds them loaded */
+static void LoadBefore(const char list[])
+{
+  char *names = strdup(list ? list : ""), *rest = NULL;
+
+  for (char *name = strtok_r(names, ":", &rest); name; name = strtok_r(NULL, ":", &rest)) (void)dlopen(name, RTLD_NOW | RTLD_GLOBAL);
+  free(names);
+}
+
 static int Serve(int listener)
 {
   struct pollfd watched[2] = {{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = listener, .events = POLLIN}};
 
+  LoadBefore(getenv("FAULT_LOAD"));
   while (poll(watched, 2, -1) > 0 && !watched[0].revents) {
     const int connection = accept4(listener, NULL, NULL, SOCK_CLOEXEC);
 
