@@ -74,9 +74,13 @@ def check_names(r):
         r.refused(done, [f"out/{name}", "no regular file"], f"a link {name}")
     os.link(r.folder / "precious", r.fresh() / "modes.csv.part")
     (r.folder / "out/modes.h5").symlink_to(r.folder / "precious")
-    done = r.run(*SMALL, "-output_dir", "out")
+    done = r.run(*SMALL, "-output_dir", "out", "-output_overwrite", "false")
     r.check(done.returncode == 0 and r.files() == WRITTEN and not (r.folder / "out/modes.h5").is_symlink(),
-            "links with the final name are replaced", done)
+            "links with the final name are replaced, and a folder without a run's results is written to", done)
+    kept = (r.folder / "out/scene.yaml").read_text()
+    r.refused(r.run(*SMALL, "-output_dir", "out", "-output_overwrite", "false", ranks=2),
+              ["-output_dir out has the results of an earlier run"], "results that are not to be written over")
+    r.check(r.files() == WRITTEN and (r.folder / "out/scene.yaml").read_text() == kept, "they are as they were")
     r.check((r.folder / "precious").read_text() == "mine", "what links lead to stays as it is")
     os.mkfifo(r.fresh() / "checkpoint.bin")
     done = r.run(*LONG, "-output_dir", "out", "-dynamics_checkpoint_interval", "10")

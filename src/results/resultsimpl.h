@@ -25,7 +25,7 @@
 struct _p_Results {
   MPI_Comm  comm;
   char      dir[PETSC_MAX_PATH_LEN];
-  PetscBool fields;
+  PetscBool fields, overwrite;
   PetscInt  n_kept, n_earlier, n_notes;
   char    **kept;        /* names of files in the folder that belong to this run */
   char    **earlier;     /* those that earlier runs wrote and this one does not keep, on the first rank */
