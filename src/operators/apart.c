@@ -1,8 +1,15 @@
 /*
-   The pencil of the bodies: every pair open, neither damping nor spin, on request no bushing between two sets.
+   The pencil of the bodies: every pair open, neither damping nor spin, on request no bushing between two sets,
+
+      lambda^2 M + K,   K of the parts, springs, points and bushings,
+
+   at a point p where the parameters of damping and spin that belong to the bodies are 0,
+   whose modes are named and in which those of the coupled bodies are expanded.
 */
 #include "pencilimpl.h"
 
+/* Damping and spin are told by the unit of their parameter, which no stiffness, mass or density has: alpha (1/s),
+   beta (s), dashpots (N s/m, in total or per area N s/m^3, N m s/rad), spin (rad/s) */
 PetscErrorCode OperatorsUnitIsGyration(const char unit[], PetscBool *is)
 {
   static const char *const units[] = {"1/s", "s", "N s/m", "N s/m^3", "N m s/rad", "rad/s"};

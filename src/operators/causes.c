@@ -37,6 +37,7 @@ static PetscErrorCode CauseFind(Pencil pencil, const char kind[], const char nam
 }
 
 /* Keeps a term, with the coefficient at the present point and its cause */
+/* the term's coefficient is folded into scale here, since shares are asked for after the point may have moved on */
 static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
 {
   Terms                  *causing = &pencil->causing;
@@ -57,6 +58,7 @@ static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
   PetscFunctionReturn(0);
 }
 
+/* At the present point. Terms that are released keep what was formed before (PencilReleaseTerms() calls this first). */
 PetscErrorCode PencilFormCauses(Pencil pencil)
 {
   const PetscReal *p = pencil->parameters.p;
@@ -90,7 +92,8 @@ typedef struct {
   Vec x[2], y;
 } CauseVector;
 
-/* re + i im = x^H A x */
+/* re + i im = x^H A x with x = x_r + i x_i: re = x_r'A x_r + x_i'A x_i, im = x_r'A x_i - x_i'A x_r, which is 0 but
+   for rounding where A is symmetric */
 static PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
 {
   PetscScalar d[2] = {0, 0};
@@ -128,7 +131,8 @@ static PetscErrorCode VectorDestroy(CauseVector *v)
   PetscFunctionReturn(0);
 }
 
-/* What a term adds to -sigma D and to D, of form = x^H A x */
+/* What a term adds to -sigma D, and to D where it is damping, of form = x^H A x times the coefficient (N m, N s m, kg
+   m^2 with u in m). sigma in 1/s, omega in rad/s, so that growth[] is in rad/s. */
 static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal omega, const PetscReal form[2],
                            PetscReal *D)
 {
@@ -151,6 +155,7 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal ome
   Mat         M;
 
   PetscFunctionBeginUser;
+  /* D vanishes with omega, and the imaginary part of the equation with it */
   PetscCheck(omega > 0, pencil->comm, PETSC_ERR_ARG_OUTOFRANGE, "a real eigenvalue has no balance of this kind");
   PetscCall(PencilGetMass(pencil, &M));
   PetscCall(VecDuplicate(ur, &u.y));

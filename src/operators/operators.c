@@ -1,5 +1,8 @@
 /*
-   Operators: life cycle, parameters, and the matrices of the bodies alone.
+   Operators: life cycle, parameters, and the matrices of the bodies alone. A mesh makes terms (bodies/assemble.c,
+   points/joint.c, bodies/spin.c), matrices from files are terms themselves (files/); K, M and C of any point p are
+   sums of them (terms/sum.c). Parameters stand in the order: those of the parts, N_PART_PARAMETERS each, springs and
+   dashpots, bushings and points, spins, contacts, loads; other files count on the first two (bodies/force.c).
 */
 #include "operators/files/matrixterm.h"
 #include "operators/files/nodetable.h"
@@ -107,6 +110,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
     OperatorsParameter *q = &operators->parameters.list[i];
 
     if (operators->model) PetscCall(ModelGetUnit(operators->model, q->unit, &q->unit));
+    /* MATRIX_LARGEST: products of a few such numbers must stay finite */
     PetscCheck(PetscIsInfReal(q->value) || PetscAbsReal(q->value) <= MATRIX_LARGEST, operators->comm,
                PETSC_ERR_USER_INPUT, "-%s %.6g must be of at most %g", q->name, (double)q->value, MATRIX_LARGEST);
   }

@@ -1,5 +1,11 @@
 /*
-   Pencil: life cycle, point, access. What is handed out is a sum of terms at the present point, formed when asked for.
+   Pencil: life cycle, point, access. What is handed out is a sum of terms at the present point, formed when asked
+   for:
+
+      lambda^2 M + lambda C + K,   K = K_even + sum_i mu_i (...),   in q where u = Z_r q
+
+   K in N/m, C in N s/m, M in kg. A matrix that was handed out is valid until PencilSetParameters(). Terms are shared
+   with the operators by reference.
 */
 #include "pencilimpl.h"
 
@@ -52,6 +58,7 @@ static PetscErrorCode PencilCheckTerms(Pencil pencil)
   PetscFunctionReturn(0);
 }
 
+/* Nothing is formed here. Where p is the present point bitwise, sums and factors stay. */
 PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
 {
   const PetscInt n = pencil->parameters.n;
@@ -81,6 +88,7 @@ PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **
   PetscFunctionReturn(0);
 }
 
+/* What the pencil will be asked for is formed before the terms go */
 PetscErrorCode PencilReleaseTerms(Pencil pencil)
 {
   Operators      o = pencil->operators;

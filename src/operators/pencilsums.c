@@ -21,7 +21,9 @@ static const struct {
   [PENCIL_C]    = {{OPERATORS_DAMPING, TERMS_ALL, 1}, PETSC_FALSE, SUM_C},
 };
 
-/* One of the sums at the present point (borrowed); NULL when it vanishes */
+/* One of the sums at the present point (borrowed); NULL when it vanishes. Without constraints the sums in u and in q
+   are one and the same, so that one of each pair is formed (`unprojected`). H is the unsymmetric stiffness over the
+   largest mu of the interfaces, N/m: K + mu H with a mu for all. */
 static PetscErrorCode PencilFormSum(Pencil pencil, PencilSum which, Mat *A)
 {
   const PencilSum  at        = pencil->Zr ? which : sums[which].unprojected;
@@ -90,7 +92,8 @@ static PetscBool DampingIsSymmetric(const Terms *terms, const PetscReal p[])
   return PETSC_TRUE;
 }
 
-/* K as a symmetric matrix and the product of two with a row for each pair, as far as it is such a sum */
+/* K as a symmetric matrix and the product of two with a row for each pair, as far as it is such a sum: not with the
+   exact constraint, whose left null space depends on mu, and not where loaded matrices are unsymmetric by themselves */
 static PetscErrorCode PencilGetFactors(Pencil pencil, PencilMatrices *m)
 {
   PetscFunctionBeginUser;
@@ -139,6 +142,7 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   PetscFunctionReturn(0);
 }
 
+/* u = Zr q, or of a left vector u = Zl q = Zr q + sum_i mu_i Zl_i q at the present point */
 PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
 {
   Vec part;
@@ -159,6 +163,7 @@ PetscErrorCode PencilExpand(Pencil pencil, PetscBool left, Vec q, Vec u)
   PetscFunctionReturn(0);
 }
 
+/* g = Zl' f, equations being taken from the left; of the transposed problem Zr' f */
 PetscErrorCode PencilProjectForce(Pencil pencil, PetscBool transposed, Vec f, Vec g)
 {
   Vec part;
@@ -179,6 +184,7 @@ PetscErrorCode PencilProjectForce(Pencil pencil, PetscBool transposed, Vec f, Ve
   PetscFunctionReturn(0);
 }
 
+/* q = E'u reads q off a u = Zr q, since E'Zr = I */
 PetscErrorCode PencilRestrict(Pencil pencil, Vec u, Vec q)
 {
   PetscFunctionBeginUser;

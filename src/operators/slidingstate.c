@@ -46,7 +46,8 @@ static PetscErrorCode StateCheckGroups(Pencil pencil, const ContactPair pairs[],
   PetscFunctionReturn(0);
 }
 
-/* Groups and normal forces of the local pairs, and the sums of the forces over each interface */
+/* Groups and normal forces (N) of the local pairs, and the sums of the forces over each interface on all ranks. The
+   parameter <contact>_force becomes that sum where the state has forces: friction damping is proportional to it. */
 static PetscErrorCode StateTakePairs(Pencil pencil, const SlidingState *state)
 {
   const ContactPair      *pairs;

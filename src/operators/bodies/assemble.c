@@ -18,7 +18,9 @@ static void MassLump(const Element *element, PetscReal mass[])
   for (PetscInt i = 0; i < n * n; i++) mass[i] = i % n == i / n ? lumped[i / n / 3] : 0;
 }
 
-/* Adds local cell c to K_p and M_p */
+/* Adds local cell c to K_p and M_p, with E = 1 and rho = 1. Rows and columns of held directions are -1, which
+   MatSetValues() leaves out. Cells live on one rank each: entries of nodes that other ranks own go there in the
+   assembly. */
 static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
 {
   const Element *element;
@@ -57,7 +59,8 @@ static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Ma
   PetscFunctionReturn(0);
 }
 
-/* Parameters and terms of one part */
+/* Parameters and terms of one part: E K_p, rho M_p, alpha rho M_p and beta E K_p share two matrices. With `omit` the
+   parameters are made alone, in the same order. */
 static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
 {
   const struct {

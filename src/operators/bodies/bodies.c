@@ -23,6 +23,7 @@ PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material)
 {
+  /* parameters of the parts come first, N_PART_PARAMETERS of each (operators.c) */
   const PetscReal *value = &OperatorsPoint(operators, p)[N_PART_PARAMETERS * part];
 
   PetscFunctionBeginUser;

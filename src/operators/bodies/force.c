@@ -6,7 +6,9 @@
 */
 #include "operators/operatorsimpl.h"
 
-/* Adds the forces of local cell c; u and f hold three values per local node */
+/* Adds the forces of local cell c, f_i += sum_j K_ij (u_j - u_0), u_0 of its first node; u (m) and f (N) hold three
+   values per local node. The rows of K_e sum to 0 over the nodes in each direction, so that u_0 takes nothing away
+   but rounding. */
 static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
                                             PetscScalar f[])
 {
@@ -102,6 +104,8 @@ static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, const Elas
   PetscFunctionReturn(0);
 }
 
+/* The consistent mass in all runs: lumped or not, a body weighs the same. E = 1, nu = 0 stand in for a stiffness that
+   is not used. total (N) counts what falls on held directions too. */
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3])
 {
   const ModelScene *scene;
@@ -156,7 +160,8 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
   PetscFunctionReturn(0);
 }
 
-/* f += forces of the springs */
+/* f += forces of the springs, N: stiffness terms whose first parameter comes after those of the parts and before
+   those of bushings and points */
 static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[], Vec u, Vec f)
 {
   const ModelScene *scene;

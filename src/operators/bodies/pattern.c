@@ -8,7 +8,8 @@
 */
 #include "operators/operatorsimpl.h"
 
-/* Cells of a part around each local node as lists: those of node v are cell[first[v]] .. cell[first[v + 1] - 1] */
+/* Cells of a part around each local node as lists: those of node v are cell[first[v]] .. cell[first[v + 1] - 1].
+   Counts are first put two places on, so that filling the lists leaves first[] where it is read. */
 typedef struct {
   PetscInt *first, *cell;
 } PatternStar;
@@ -118,6 +119,7 @@ static PetscErrorCode PatternAllocate(Model model, const PetscInt inside[], cons
   n_all = mesh->n_unknowns;
   PetscCall(PetscMalloc2(n_own, &own, n_own, &other));
   for (PetscInt i = 0; i < n_own; i++) {
+    /* shared neighbours count once for each rank that sees them: never more than there are columns */
     own[i]   = PetscMin(n_own, directions * inside[i]);
     other[i] = PetscMin(n_all - n_own, directions * outside[i]);
   }

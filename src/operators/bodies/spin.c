@@ -18,9 +18,12 @@
 #include "kernels/element/spin.h"
 #include <petscksp.h>
 
-#define SHIFT    1e-10 /* s, of the largest K_ii / M_ii */
-#define RESIDUAL 1e-8  /* of f */
-#define ATTEMPTS 20
+/* s, of the largest K_ii / M_ii, (rad/s)^2: K + s M can be factored where K has rigid motions, and each step divides
+   what is left of f in elastic motions of eigenvalue kappa by 1 + kappa / s */
+#define SHIFT 1e-10
+/* of f */
+#define RESIDUAL 1e-8
+#define ATTEMPTS 20   /* steps at most */
 #define UNROUND  1e-2 /* of f, which may be rigid */
 #define SHARE    1e-4 /* of f, which a stiffness may carry without being counted */
 
@@ -45,7 +48,7 @@ PetscErrorCode OperatorsAddSpinParameters(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Entries [n][n] times the 3 x 3 identity into a matrix */
+/* Entries [n][n] times the 3 x 3 identity into a matrix: G and Q act on each Cartesian component alone (spin.h) */
 static PetscErrorCode SpinSetCell(PetscInt n, const PetscInt rows[], const PetscReal entry[], Mat A)
 {
   PetscFunctionBeginUser;
@@ -171,7 +174,8 @@ static PetscErrorCode SpinSolve(Operators o, const char name[], Mat K, KSP ksp, 
   PetscFunctionReturn(0);
 }
 
-/* Marks the parameters on which the stress depends that the load f makes, u = K^-1 f */
+/* Marks the parameters on which the stress depends that the load f makes, u = K^-1 f: of stiffness terms with |c_t
+   A_t u| above SHARE |f|. One alone is not marked: then u ~ 1 / E, and the stress E u does not depend on it. */
 static PetscErrorCode SpinMarkStressing(Operators o, Vec f, Vec u)
 {
   PetscInt  n_stressing = 0, *stressing;
@@ -197,7 +201,9 @@ static PetscErrorCode SpinMarkStressing(Operators o, Vec f, Vec u)
   PetscFunctionReturn(0);
 }
 
-/* Terms of one part; K of the bodies, and its factors */
+/* Terms of one part, Omega rho G (unsymmetric by nature, N s/m) and Omega^2 rho (K_sigma - Q) (N/m); K of the bodies,
+   and its factors. u is of unit rho and Omega: K_sigma is linear in the stress, so that the product of parameters
+   scales it. */
 static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[], Mat K, KSP ksp)
 {
   const PetscInt spin = o->spin_of_part[part], density = N_PART_PARAMETERS * part + PART_DENSITY;

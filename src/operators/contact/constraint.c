@@ -65,7 +65,8 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
   PetscFunctionReturn(0);
 }
 
-/* Marks of followers become marks of all that they follow */
+/* Marks of followers become marks of all that they follow: a row of Z names these. Marks are values of a vector,
+   since an unknown may live on another rank than what marks it. */
 static PetscErrorCode MarksPass(Operators o, Vec marks)
 {
   const PetscScalar one = 1e6;
@@ -93,8 +94,9 @@ static PetscErrorCode MarksPass(Operators o, Vec marks)
   PetscFunctionReturn(0);
 }
 
-/* Marks the unknowns of eliminated slaves and of their masters; an unknown that is both, or slave of two pairs, is an
-   error */
+/* Marks the unknowns of eliminated slaves (1 for each pair) and of their masters (1e6, once); an unknown that is
+   both, or slave of two pairs, is an error: slaves (1 + masters) is then 2 or more. G G = 0 and one E for all pairs
+   rest on it. */
 static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const ContactPair **list)
 {
   const PetscScalar one = 1, large = 1e6;
@@ -133,8 +135,9 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscFunctionReturn(0);
 }
 
-/* E (part NULL): kept unknowns one to one, columns q1, q2 with t and b at each slave. Else F_i: part [n] times n in the
-   columns q1 */
+/* E (part NULL): kept unknowns one to one, columns q1, q2 with t and b at each slave, so that a pair has two columns
+   for its three unknowns. Else F_i: part [n] times n in the columns q1. Columns of pairs stand before those of the
+   kept unknowns of the rank. Followers have no column. */
 static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[],
                                       Mat *E)
 {
@@ -238,7 +241,7 @@ static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPa
   PetscFunctionReturn(0);
 }
 
-/* Zl_i of each speed of one interface */
+/* Zl_i of each speed of one interface: part_p = L_k(v_p), 0 for pairs of other interfaces */
 static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface)
 {
   const InterfaceParameters *q = &pencil->operators->interface[interface];

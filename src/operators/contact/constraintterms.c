@@ -2,7 +2,8 @@
    mu_i (Zl_i' A Zr) of a term c A of all unknowns */
 #include "operators/pencilimpl.h"
 
-/* L' AZ; NULL where it is zero */
+/* L' AZ; NULL where it is exactly zero, as mostly: friction at an interface touches the terms of the bodies beside it
+   alone */
 static PetscErrorCode ProjectFromLeft(Mat L, Mat AZ, Mat *projected)
 {
   PetscReal norm;
@@ -68,6 +69,7 @@ PetscErrorCode PencilProjectTerms(Pencil pencil)
     const OperatorsTerm *term   = &pencil->base.term[t];
     PetscInt             shared = 0;
 
+    /* K_p of a part is a term of stiffness and one of damping: each matrix is projected once */
     while (pencil->base.term[shared].A != term->A) shared++;
     if (shared == t) PetscCall(TermProject(pencil, term->A, &image[t * n_images]));
     PetscCall(ImagesAdd(pencil, term, &image[shared * n_images]));

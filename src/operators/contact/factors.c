@@ -172,6 +172,8 @@ static PetscErrorCode AddFriction(Pencil pencil, PetscReal c, Mat A, TermsSum *s
 }
 
 /* sum = half + shift M */
+/* half holds K_even - shift M (upper half) as it was factored, so that half + shift M is K_even but for rounding of
+   |shift| M */
 static PetscErrorCode AddMass(Pencil pencil, TermsSum *sum)
 {
   const Mat M = pencil->sum[pencil->Zr ? PROJECTED_M : SUM_M].A;

@@ -15,6 +15,7 @@
 #include "base/algebra/vec3.h"
 #include <math.h>
 
+/* R is copied where it is weighted: T is also the left factor of other terms */
 PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
 {
   Mat WR = R;
@@ -74,7 +75,8 @@ static PetscErrorCode FrictionGroupDestroy(FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
-/* Weights of the pairs at speed k: along = L_k N0 / N, across = L_k N0 / N V / v */
+/* Weights of the pairs at speed k: along = L_k N0 / N, across = L_k N0 / N V / v, so that with the
+   parameters N (N), V (m/s, or rad/s beside a V / v in rad/m) and mu, mu' the terms are N s/m */
 static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec across, Vec along)
 {
   const PetscReal    speed = g->q.stated;
@@ -98,7 +100,9 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, P
   PetscFunctionReturn(0);
 }
 
-/* Terms of the friction damping at speed k */
+/* Terms of the friction damping at speed k: mu' N T'T_w and |mu| N / V B'B_w. The factor 0 of both is the law's, by
+   TermsSetFriction(); -1 stands in its place until then. |mu|: damping across the slip dissipates whichever way
+   friction acts. */
 static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
 {
   const PetscInt slope[] = {-1, g->q.force, g->closed}, mu[] = {-1, g->q.force, g->q.speed, g->closed};
@@ -171,7 +175,7 @@ static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, 
   PetscFunctionReturn(0);
 }
 
-/* The term of friction at speed k */
+/* The term of friction at speed k, k_n mu(v_k) T' (-L_k A N), unsymmetric, with its two factors for factors.c */
 static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
 {
   const PetscInt mu[] = {g->q.kn, -1, g->closed};
@@ -251,6 +255,8 @@ static PetscErrorCode HoldAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
+/* n_rows is the number of pairs on all ranks: the products are collective, and groups that no rank has are left out
+   by all */
 PetscErrorCode PencilAddContact(Pencil pencil)
 {
   const ContactInterface *c;

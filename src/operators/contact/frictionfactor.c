@@ -15,10 +15,13 @@
 #include "base/algebra/vec3.h"
 #include <math.h>
 
-#define FRICTION_RTOL    1e-10
-#define FRICTION_MISS    1e-8 /* most at other parameters */
-#define FRICTION_NODES   32   /* at most */
-#define FRICTION_PLACES  101  /* at which mu is looked at */
+/* of the largest mu: as good as the eigenvalues */
+#define FRICTION_RTOL  1e-10
+#define FRICTION_MISS  1e-8 /* most at other parameters */
+#define FRICTION_NODES 32   /* at most */
+/* at which mu is looked at: three for each of the most nodes */
+#define FRICTION_PLACES 101
+/* from V / 8 to 8 V */
 #define FRICTION_OCTAVES 3
 
 /* The law at p */
@@ -60,7 +63,8 @@ PetscBool FrictionFactorDepends(const OperatorsFriction *f, PetscInt parameter)
   return f->speed == parameter ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* L_k at a ratio of speeds */
+/* L_k at a ratio of speeds, prod_{i != k} (r - r_i) / (r_k - r_i); of Chebyshev points the sum of |L_k| is of order
+   log n, and rounding does not grow */
 static PetscReal NodePolynomial(PetscInt n, const OperatorsFriction node[], PetscInt k, PetscReal ratio)
 {
   PetscReal L = 1;
@@ -192,7 +196,7 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
   PetscFunctionReturn(0);
 }
 
-/* n Chebyshev points of the ratios from a to b */
+/* n Chebyshev points (of the first kind) of the ratios from a to b, ascending; node[0] has what all share */
 static void NodesSet(PetscReal a, PetscReal b, PetscInt n, OperatorsFriction node[])
 {
   for (PetscInt k = 0; k < n; k++) {
@@ -201,7 +205,8 @@ static void NodesSet(PetscReal a, PetscReal b, PetscInt n, OperatorsFriction nod
   }
 }
 
-/* What n nodes miss of mu and v mu' at speeds V, of the largest mu */
+/* What n nodes miss of mu and v mu' at speeds V, of the largest mu: v mu' has mu's unit, and is what damping along
+   the slip is made of */
 static PetscReal NodesMiss(const OperatorsFriction node[], PetscInt n, const PetscReal range[2], PetscReal V)
 {
   PetscReal miss = 0, size = 0;
@@ -272,7 +277,8 @@ PetscErrorCode OperatorsCheckFriction(Operators o, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
-/* Speeds at which mu is a factor */
+/* Speeds at which mu is a factor: one where all pairs of all ranks slide alike to rounding, or the law knows no
+   speed */
 static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const ContactInterface *c,
                                         InterfaceParameters *q)
 {

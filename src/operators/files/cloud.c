@@ -44,7 +44,7 @@ static PetscErrorCode CloudTabulate(struct _p_Cloud *c, const NodeTable *table, 
   PetscFunctionReturn(0);
 }
 
-/* What brings the values of the unknowns to the nodes */
+/* What brings the values of the unknowns, which live with the rows of the matrices, to the nodes, which do not */
 static PetscErrorCode CloudConnect(Operators o, struct _p_Cloud *c, PetscInt n)
 {
   PetscInt m = 0, *unknown;

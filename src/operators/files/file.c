@@ -21,7 +21,8 @@ PetscErrorCode           OperatorsLoadFromOptions(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Rows of a matrix in any order */
+/* Rows of a matrix in any order: one number a row, of its number, columns and values, so that the sum does not hang
+   on how the rows are spread over the ranks */
 static PetscErrorCode MatrixAddChecksum(Mat A, Checksum c)
 {
   PetscInt  begin, end;
@@ -138,7 +139,8 @@ PetscErrorCode OperatorsLoad(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Writes one matrix or vector under a temporary name, then renames it */
+/* Writes one matrix or vector under a temporary name, then renames it: a reader sees the old file or the whole new
+   one. PETSc's error handler is silenced, since a full disk is said here in one line; the reason is that of errno. */
 static PetscErrorCode PencilSaveObject(Operators o, const char name[], PetscObject A)
 {
   char           file[PETSC_MAX_PATH_LEN], part[PETSC_MAX_PATH_LEN];

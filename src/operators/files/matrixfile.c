@@ -11,6 +11,7 @@
 #include <errno.h>
 #include <sys/stat.h>
 
+/* integers at a time: 16 kB on the stack */
 #define MATRIX_FILE_CHUNK 4096
 #define MATRIX_MAX_ROWS   100000000 /* 1e8: a larger number is none of rows */
 
@@ -153,7 +154,8 @@ static PetscErrorCode MatrixFileCheck(MPI_Comm comm, const char option[], const 
   PetscFunctionReturn(0);
 }
 
-#define MASS_ROUNDING 1e-10 /* of the diagonal: what is smaller, of the mass along a direction, is none */
+/* of the diagonal: what is smaller, of the mass along a direction, is none. Files may hold ten figures alone. */
+#define MASS_ROUNDING 1e-10
 
 /* How many eigenvalues of a symmetric matrix M + shift diag(M) are negative or zero: signs of the pivots of L D L' (J.
    J. Sylvester) */
@@ -222,6 +224,9 @@ static PetscErrorCode MassCountEmpty(Mat S, PetscInt *empty)
   PetscFunctionReturn(0);
 }
 
+/* S = M + M', twice the symmetric part: only its signs count. A diagonal S needs no factors: |S|_F is then |diag S|.
+   Else the pivots of S - 1e-10 diag(S) tell whether directions have no mass, and, where they do, those of S + 1e-10
+   diag(S) whether any has a negative one. Rows without entries (multipliers) count in both, and are taken off. */
 PetscErrorCode MassCheck(Mat M, PetscBool *singular)
 {
   PetscInt  empty, bad = 0;

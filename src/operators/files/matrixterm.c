@@ -8,7 +8,7 @@
 #include "operators/pencilimpl.h"
 #include <math.h>
 
-/* |A - sign A'| / |A|, Frobenius norms */
+/* |A - sign A'| / |A|, Frobenius norms: 0 for a symmetric A with sign 1, for a skew one with sign -1 */
 static PetscErrorCode MatrixSkewness(Mat A, PetscReal sign, PetscReal *part)
 {
   PetscReal norm;
@@ -110,6 +110,7 @@ static PetscErrorCode MatrixTermAdd(Operators o, const MatrixTerm *term)
   PetscFunctionReturn(0);
 }
 
+/* o->symmetric: the symmetric terms alone are a system, with a stiffness and only symmetric masses */
 PetscErrorCode MatrixTermsAdd(Operators o)
 {
   const char *first = o->terms.n ? "what -operators_load_k and its like give" : o->named[0].name;

@@ -10,9 +10,11 @@
 */
 #include "operators/pencilimpl.h"
 
-#define SCALED_FROM 1024 /* a d beyond it, or below its inverse: else nothing is scaled */
+/* a d beyond it, or below its inverse, three figures of sixteen: else nothing is scaled */
+#define SCALED_FROM 1024
 
-/* Geometric mean of |K_ii| over the rows where M has entries; zero where there is none */
+/* Geometric mean of |K_ii| over the rows where M has entries, on all ranks; zero where there is none. The arithmetic
+   one would be that of the stiffest spring. */
 static PetscErrorCode MeanStiffness(Mat K, Vec mass, PetscReal *mean)
 {
   PetscReal          sum[2] = {0, 0};

@@ -15,7 +15,8 @@
 
 #define NODES_MAX_LINE    4096
 #define NODES_MAX_COLUMNS 32
-#define NODES_LARGEST     1e30 /* m: places beyond are none */
+/* m: places beyond are none, and their squares overflow no sum */
+#define NODES_LARGEST 1e30
 
 enum { COLUMN_UNKNOWN, COLUMN_NODE, COLUMN_DIRECTION, COLUMN_X, COLUMN_Y, COLUMN_Z, COLUMN_PART, N_COLUMNS };
 

@@ -88,7 +88,8 @@ static PetscErrorCode DependentsInject(Operators o, const Dependents *d)
   PetscFunctionReturn(0);
 }
 
-/* Keeps of y what follows some of what y has, which are never more; how many are left over all ranks */
+/* Keeps of y what follows some of what y has, which are never more; how many are left over all ranks. (D y)_i is 0
+   where i follows nothing that is left. */
 static PetscErrorCode ChainsShorten(const Dependents *d, Vec y, Vec product, PetscInt *left)
 {
   const PetscScalar *to;
@@ -110,7 +111,8 @@ static PetscErrorCode ChainsShorten(const Dependents *d, Vec y, Vec product, Pet
 }
 
 /* Raises an error where a chain of followers comes back to where it began: what is at the ends of chains is taken off
-   until none is left, or all that are follow one of themselves */
+   until none is left, or all that are follow one of themselves. y has irrational entries, so that rows of D with
+   weights of both signs do not sum to 0 by accident. Each pass takes off one or ends. */
 static PetscErrorCode DependentsCheckChains(Operators o, const Dependents *d)
 {
   PetscScalar *y;
@@ -138,7 +140,7 @@ static PetscErrorCode DependentsCheckChains(Operators o, const Dependents *d)
   PetscFunctionReturn(0);
 }
 
-/* Z = E + D E + D^2 E + ... */
+/* Z = E + D E + D^2 E + ..., one product for each link of the longest chain; D^k E is exactly 0 then */
 static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
 {
   Mat       power = o->E, next;

@@ -67,7 +67,8 @@ static PetscErrorCode JointColumnsCreate(Operators o, const Joint *joint, JointC
   PetscFunctionReturn(0);
 }
 
-/* Row i of B'WB: columns and values that are not zero */
+/* Row i of B'WB: columns and values that are not zero; B is [6][unknowns of the sets], W in N/m, N m/rad and the
+   like. The same sums for (i, j) and (j, i) but for rounding. */
 static PetscInt JointRow(const JointColumns *c, const PetscReal W[36], PetscInt i, PetscInt column[],
                          PetscScalar value[])
 {
@@ -89,7 +90,8 @@ static PetscInt JointRow(const JointColumns *c, const PetscReal W[36], PetscInt 
   return n;
 }
 
-/* B'WB, W [6][6] symmetric */
+/* B'WB, W [6][6] symmetric. Every rank has all columns of the joint and fills its own rows: once to count, once to
+   set. */
 static PetscErrorCode JointMatrixCreate(Operators o, const Joint *joint, const PetscReal W[36], Mat *A)
 {
   const Mesh  *mesh;
@@ -136,7 +138,8 @@ static PetscErrorCode JointHalfCreate(Operators o, const void *of, const PetscBo
   PetscFunctionReturn(0);
 }
 
-/* Term of the mass of a point, with a parameter, and of its inertia, without */
+/* Term of the mass of a point (kg), with a parameter, and of its inertia (kg m^2), without. inertia[] is xx, yy, zz,
+   xy, xz, yz; at[] makes the symmetric [3][3] of it. */
 static PetscErrorCode PointAddMass(Operators o, const Joint *joint, PetscInt *index)
 {
   static const int at[9]  = {0, 3, 4, 3, 1, 5, 4, 5, 2};

@@ -11,7 +11,8 @@
 #include "base/gather.h"
 #include "base/algebra/dense.h"
 
-#define RIGID_TIE 1e-9 /* rows as long as another one but for rounding */
+/* rows as long as another one but for rounding: the first of them is kept, whatever the order of sums */
+#define RIGID_TIE 1e-9
 
 /* A node of a set */
 typedef struct {
@@ -63,7 +64,8 @@ static void RigidMotions(PetscInt n, const RigidNode node[], PetscReal phi[])
     }
 }
 
-/* The kept unknowns, their numbers in the set: six times the longest row, whose direction then leaves all others */
+/* The kept unknowns, their numbers in the set: six times the longest row, whose direction then leaves all others
+   (Gram-Schmidt with pivoting). All ranks have the same nodes in the same order, and choose alike. */
 static PetscErrorCode RigidChoose(PetscInt n, const PetscReal phi[], PetscInt kept[6])
 {
   PetscReal *row;

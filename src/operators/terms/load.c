@@ -43,7 +43,7 @@ PetscErrorCode OperatorsAddLoadParameters(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* What p makes of the size of the scene */
+/* What p makes of the size of the scene, p / p_scene; a size that is 0 in the scene is no parameter, and stays */
 static PetscReal SizeFactor(Operators o, const PetscReal p[], PetscInt parameter)
 {
   return parameter < 0 ? 1 : OperatorsPoint(o, p)[parameter] / o->parameters.p[parameter];

@@ -1,5 +1,7 @@
 /*
-   Parameters: the numbers of the scene that matrices depend on, in the order of the scene, with their limits.
+   Parameters: the numbers of the scene that matrices depend on, in the order of the scene, with their limits: lower <
+   p (<= where closed) and p < upper; `upper` 0 stands for none. Names are <owner>_<what>, those of the options
+   without the dash, units SI until the scene's units are put in for views.
 */
 #include "terms.h"
 #include <math.h>

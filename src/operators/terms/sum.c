@@ -107,7 +107,8 @@ static PetscErrorCode SumArraysCreate(const Terms *terms, const PetscBool has[],
   PetscFunctionReturn(0);
 }
 
-/* The matrix of such arrays: on one rank it works in them and takes them along, on several it copies them */
+/* The matrix of such arrays: on one rank it works in them and takes them along (MatCreateSeqAIJWithArrays() frees
+   nothing, a container does), on several it copies them */
 static PetscErrorCode SumCreateMatrix(MPI_Comm comm, PetscInt n_rows, PetscInt n_columns, SumArrays *arrays, Mat *A)
 {
   PetscMPIInt    size;
@@ -146,7 +147,7 @@ static PetscErrorCode SumCreateUnion(const Terms *terms, const PetscBool has[], 
 }
 
 /* Coefficients [terms] of the chosen terms, zero for others; all_zero = whether none remains, constant = the only
-   chosen term if it never changes, else NULL */
+   chosen term if it never changes and has the factor 1, else NULL: that is handed out itself, without a copy */
 static void SumCoefficients(const Terms *terms, const TermsSumKind *kind, const PetscReal p[], PetscReal c[],
                             PetscBool *all_zero, Mat *constant)
 {

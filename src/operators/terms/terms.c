@@ -110,7 +110,8 @@ static PetscBool FactorDepends(const OperatorsTerm *term, PetscInt i, PetscInt p
   return term->factor[i].parameter == parameter ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Derivative of factor i by a parameter that it depends on */
+/* Derivative of factor i by a parameter that it depends on: inner power |b|^(power - 1) sign(b), b the parameter, mu
+   or mu', inner = db/dp */
 static PetscReal FactorDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt i, PetscInt parameter)
 {
   const OperatorsFriction *friction = term->factor[i].friction;
