@@ -17,6 +17,7 @@
 #include "base/algebra/synchronize.h"
 #include <slepceps.h>
 
+/* changes of s = 2 / dt, each with a Lanczos iteration from the eigenvector before */
 #define CRITICAL_MAX_IT 50
 #define CRITICAL_RTOL   1e-6 /* of dt */
 
@@ -27,6 +28,7 @@ typedef struct {
   PetscReal *scale, *x, *kx, *cx;
 } StepPencil;
 
+/* scale = M^-1/2 (kg^-1/2), 0 in held directions, which thereby drop out of the operator */
 static PetscErrorCode StepPencilCreate(Dynamics d, StepPencil *p)
 {
   const PetscInt n = d->layout->n;
@@ -61,6 +63,7 @@ static PetscErrorCode StepPencilApply(StepPencil *p, Vec x)
   PetscFunctionReturn(0);
 }
 
+/* y = M^-1/2 (K + s C) M^-1/2 x, (rad/s)^2: symmetric, where M^-1 K is not, so that Lanczos' short recurrence holds */
 static PetscErrorCode StepPencilMult(Mat A, Vec x, Vec y)
 {
   StepPencil *p;
@@ -139,6 +142,8 @@ static PetscReal CriticalVectorStep(PetscReal b, PetscReal k, PetscReal c)
   return (2 / b) / (c + PetscSqrtReal(c * c + 2 * k / b));
 }
 
+/* From s = 0, without damping, dt = sqrt(2 / (b lambda)), then alternately x at 2 / dt and dt of x, until dt stands
+   still. lambda exceeds x'(K + s C)x by the tolerance: what it exceeds is put to k, so that the step keeps it. */
 static PetscErrorCode StepPencilFindStep(StepPencil *p, EPS eps, Vec x, PetscReal b, CriticalStep *critical)
 {
   PetscReal lambda, k, c, dt, last = 0;
@@ -160,7 +165,9 @@ static PetscErrorCode StepPencilFindStep(StepPencil *p, EPS eps, Vec x, PetscRea
 }
 
 /* Largest dt that the elements allow each by itself, dt^2 bound(2 / dt) = 2 / b, from the assembled one downwards:
-   every iteration halves the error at least, since bound(s) is linear in s at most */
+   every iteration halves the error at least, since bound(s) is linear in s at most. Three figures are enough for a
+   check. The assembled step can only be larger (elementbound.c): a smaller bound of it than the elements' means
+   that Lanczos has missed the largest eigenvalue. */
 static PetscErrorCode CriticalElementStep(Dynamics d, CriticalStep *critical)
 {
   PetscReal last = 0, bound;
@@ -191,6 +198,7 @@ PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
   PetscCall(StepPencilCreateSolver(&pencil, &A, &eps));
   PetscCall(EPSSetFromOptions(eps));
   PetscCall(OperatorsCreateVec(d->operators, &x));
+  /* a start with a part along every eigenvector; dt has six digits, so that which one it is does not show */
   PetscCall(VecSetRandom(x, NULL));
   PetscCall(StepPencilFindStep(&pencil, eps, x, d->b, &d->critical));
   PetscCall(CriticalElementStep(d, &d->critical));

@@ -46,7 +46,8 @@ PetscErrorCode DynamicsSetOperators(Dynamics d, Operators operators, Statics sta
   PetscFunctionReturn(0);
 }
 
-/* Nodes of the contact surfaces, their work arrays and masses */
+/* Nodes of the contact surfaces, their work arrays and masses. 1/m in Cartesian directions c is sum_j q_jc^2 / m_j
+   of the node's own components j (1/kg): exact where all m_j of a node are one, or held directions are axes. */
 static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
 {
   DynamicsSurface *s = &d->surface;
@@ -170,7 +171,9 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscFunctionReturn(0);
 }
 
-/* After every step: checkpoints where they are due, and the end where a signal asks for it, never without one */
+/* After every step: checkpoints where they are due, and the end where a signal asks for it, never without one. A
+   signal may reach one rank alone: all agree every STOP_INTERVAL steps, since a message in each would cost more
+   than it is worth. */
 static PetscErrorCode DynamicsAfterStep(TS ts)
 {
   Dynamics  d;

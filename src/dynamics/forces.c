@@ -10,7 +10,8 @@
 #include "dynamicsimpl.h"
 #include "base/events.h"
 
-#define CHECK_INTERVAL 200 /* steps between two looks at the ledger where no row is due */
+/* steps between two looks at the ledger where no row is due: a reduction over the ranks is then no part of the cost */
+#define CHECK_INTERVAL 200
 
 /* A step with its arrays, [layout n] */
 typedef struct {
@@ -63,7 +64,7 @@ static PetscErrorCode DynamicsComplainNaN(Dynamics d, const ForceArrays *a)
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FP, "energy is no number after step %" PetscInt_FMT ", %.6g s", n_step, time);
 }
 
-/* Sum of v'(f - f_old) over this rank, shared nodes counted once; held directions have no acceleration */
+/* Sum of v'(f - f_old) over this rank, W, shared nodes counted once; held directions have no acceleration */
 static PetscReal DynamicsIntegratorPower(const Layout *l, const ForceArrays *a)
 {
   PetscReal power = 0;
@@ -120,7 +121,8 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Predicted velocities of the active nodes, Cartesian */
+/* Predicted velocities of the active nodes, v* = v + M^-1 (kick f + kick_old f_old), m/s, from the components of
+   each node (rows q_j of its basis) to Cartesian ones */
 static void SurfacePredict(const DynamicsSurface *s, const Layout *l, const ForceArrays *a, PetscInt n,
                            const PetscInt active[])
 {
@@ -187,7 +189,8 @@ static PetscErrorCode DynamicsGetSums(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* The ledger up to the half step before t_n; the contact forces of the step from t_n must not be known yet */
+/* The ledger up to the half step before t_n; the contact forces of the step from t_n must not be known yet, since
+   the sums of the projector would have their works, which end at t_{n+1/2} */
 static PetscErrorCode DynamicsBalance(Dynamics d, const CentralStep *step, PetscInt n)
 {
   const PetscReal fraction = step->dt / d->critical.assembled;

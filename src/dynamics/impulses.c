@@ -10,6 +10,7 @@ typedef struct {
   PetscReal steps, changed, most;
 } ImpulseEffect;
 
+/* The largest over the contacts, not the sum: one step in which two contacts change counts once */
 static ImpulseEffect ImpulseMeasure(PetscInt n_interfaces, const ContactSums sums[])
 {
   ImpulseEffect effect = {0, 0, 0};

@@ -4,6 +4,7 @@
 */
 #include "dynamicsimpl.h"
 
+/* state = Q get(x), rows of Q the basis of each node; what get() leaves at held directions is taken along */
 static PetscErrorCode StateVectorFrom(Model model, const Layout                                        *layout,
                                       PetscErrorCode (*get)(Model model, Vec x, PetscReal nodal[]), Vec x,
                                       PetscReal state[])

@@ -4,7 +4,8 @@
 */
 #include "dynamicsimpl.h"
 
-/* Part that has most cells at a surface: the one that the surface belongs to */
+/* Part that has most nodes of cells at a surface, over all ranks: the one that the surface belongs to. Parts that
+   share its border have a few. */
 static PetscErrorCode DynamicsFindPart(Dynamics d, const char set[], PetscInt *part)
 {
   const Mesh *mesh;

@@ -11,13 +11,22 @@
 */
 #include "sweepimpl.h"
 
-#define CONFIRMED    1e-7 /* relative change of the critical value by a further full correction */
-#define ONSET_WIDTH  1e-2 /* half width of the frequencies around the pair, relative */
-#define ONSET_DROP   1e-9
-#define ONSET_STEPS  5
-#define ONSET_SPREAD 16  /* c up to which factors serve */
-#define ONSET_BLOCK  16  /* onsets corrected together */
-#define ONSET_FALLS  0.1 /* of a change by the next one, as long as factors of another point serve */
+#define CONFIRMED 1e-7 /* relative change of the critical value by a further full correction */
+/* Half width of the window around the pair, relative: the modes in it are corrected, and its upper end is the shift
+   of an onset's own factors. */
+#define ONSET_WIDTH 1e-2
+/* Directions of corrections that are left out, beside their M-norm; far below the greedy choice's, as an onset is
+   wanted to CONFIRMED. */
+#define ONSET_DROP  1e-9
+#define ONSET_STEPS 5
+/* c up to which factors of another point serve: the error of an eigenvalue falls by ((16 - 1) / (16 + 1))^2 = 0.78
+   at worst, and by ONSET_FALLS in practice or they are given up. */
+#define ONSET_SPREAD 16
+/* Onsets corrected together: bounds the right-hand sides that are in memory at once. */
+#define ONSET_BLOCK 16
+/* Least fall of the change from one correction to the next as long as factors of another point serve; slower than
+   that, factors of its own cost less. */
+#define ONSET_FALLS 0.1
 
 /* An onset on its way */
 typedef struct {
@@ -37,7 +46,9 @@ static PetscBool OnsetIsLocated(const BranchEvent *event)
   return event->found && !event->jumps ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Finds the value on the reduced model, and the modes there; alike on all ranks */
+/* Finds the value on the reduced model, and the modes there. Every rank computes, but rank 0 decides: the iteration
+   takes branches on rounding, and what follows is collective. The event holds no pointers, so that its bytes are
+   all of it. */
 static PetscErrorCode OnsetReduced(Sweep sweep, const BranchLine *line, BranchEvent *event, ReducedModes *critical)
 {
   PetscFunctionBeginUser;
@@ -85,7 +96,10 @@ static PetscErrorCode OnsetCollect(Sweep sweep, OnsetWork *w, CorrectionBlock *b
   PetscFunctionReturn(0);
 }
 
-/* Finds the value again after a correction; spread = condition of the factors there */
+/* Finds the value again after a correction; spread = c of the factors there. change becomes the error that remains,
+      |p_now - p_before| max(1, (c - 1)^2 / (4 c)),
+   in the unit of the parameter: with factors of its own (c = 1) the change itself, which the next correction would
+   undercut. Changes of less than CONFIRMED |p| end it, ONSET_STEPS corrections do so unconfirmed. */
 static PetscErrorCode OnsetAgain(Sweep sweep, PetscReal spread, OnsetWork *w)
 {
   const PetscReal before = w->event->critical, change = w->change, rest = PetscSqr(spread - 1) / (4 * spread);
@@ -138,7 +152,9 @@ static PetscErrorCode OnsetFactor(Sweep sweep, OnsetWork *w, OnsetWork **owner)
   PetscFunctionReturn(0);
 }
 
-/* Corrects until nothing is pending */
+/* Corrects until nothing is pending. Onsets are taken in their order; the others of a block are those for which the
+   factors of its first one serve, so that one factorisation is shared by as many as possible. It ends: each pass
+   raises n_corrected of its first onset, which ONSET_STEPS bounds. */
 static PetscErrorCode OnsetsConverge(Sweep sweep, PetscInt n, OnsetWork work[])
 {
   const Correction *correction = &sweep->greedy.correction;
@@ -183,7 +199,8 @@ static PetscErrorCode OnsetStart(Sweep sweep, PetscInt e, OnsetWork *w)
   PetscFunctionReturn(0);
 }
 
-/* What became of an onset */
+/* What became of an onset. About the sliding state the reduced model was made for the contact status of its
+   segment: the critical value counts only if the status there is the same one. */
 static PetscErrorCode OnsetEnd(Sweep sweep, OnsetWork *w)
 {
   BranchEvent *event     = w->event;
@@ -220,6 +237,7 @@ static PetscBool OnsetIsAfter(Sweep sweep, PetscInt e)
   return event[0].critical > event[1].critical ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* By insertion: there are few, and the confirmations move with their events. */
 void SweepSortOnsets(Sweep sweep)
 {
   for (PetscInt i = 1; i < sweep->events.n; i++)

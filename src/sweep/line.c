@@ -6,6 +6,8 @@
 #include "line.h"
 #include "base/algebra/dense.h"
 
+/* A line has at least its n[0] points of the grid, in order, and between them the ends of brackets of a change of
+   status (grid/sliding.c). */
 PetscErrorCode LineCreate(Sweep sweep, PetscInt line, LinePoints *points)
 {
   const SweepGrid *grid         = &sweep->grid;
@@ -48,6 +50,8 @@ PetscErrorCode LineDestroy(LinePoints *points)
   PetscFunctionReturn(0);
 }
 
+/* Rank 0 has followed the branches; the counts go first, as the others need room for the events. Events before
+   n_before are alike on all ranks already. */
 PetscErrorCode SweepShareEvents(Sweep sweep, PetscInt n_before)
 {
   BranchEvents *events = &sweep->events;
@@ -95,7 +99,9 @@ static PetscErrorCode PointsLink(Sweep sweep, const LinePoints *before, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* The record of each point */
+/* The record of each point, and the largest relative error of the places between, which belong to no point.
+   condition = 1 / |y^T D x| >= 1 is by what factor errors of the matrices count in lambda; infinite at a defective
+   pair. */
 static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
 {
   PetscFunctionBeginUser;
@@ -121,6 +127,8 @@ static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
   PetscFunctionReturn(0);
 }
 
+/* Names come from the shapes on the mesh: the complex coordinates of n modes are lifted as 4 n real columns in one
+   product with V, which reads V once. */
 PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes, char label[][32])
 {
   const PetscInt n = modes->n;
@@ -225,7 +233,8 @@ static PetscBool LabelIsDisc(Sweep sweep, PetscInt branch)
   return branch >= 0 && sweep->label[branch].text[0] == '(' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether modes k - 1 and k are the two members of a lock-in pair, mirror images in the growth */
+/* Whether modes k - 1 and k are the two members of a lock-in pair, lambda and -conj(lambda): mirror images in the
+   growth, equal within what sorting calls an equal frequency (PAIR of dense/reduced.c). */
 static PetscBool ModesArePair(const ReducedModes *modes, PetscInt k)
 {
   const PetscComplex a = modes->lambda[k - 1], b = modes->lambda[k];
@@ -296,6 +305,8 @@ PetscErrorCode LineFinish(Sweep sweep, PetscInt first_new, PetscInt first_event,
   PetscFunctionReturn(0);
 }
 
+/* Lines one after the other, as the first point of each is matched with that of the line before. Branch numbers
+   begin at n_before and events at first_event on each line; both are alike on all ranks after TrackBroadcast(). */
 PetscErrorCode SweepLines(Sweep sweep)
 {
   LinePoints before = {0}, points;

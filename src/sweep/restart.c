@@ -32,7 +32,8 @@ static PetscErrorCode GridAddChecksum(const SweepGrid *grid, Checksum c)
   PetscFunctionReturn(0);
 }
 
-/* What a sweep must share with the one that it goes on with */
+/* What a sweep must share with the one that it goes on with. The number of ranks is among it: vectors are kept by
+   rank, and other ranges of rows would put them in the wrong places. */
 static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
 {
   const SweepGrid          *grid = &sweep->grid;
@@ -135,6 +136,8 @@ static BasisHeader HeaderOf(Sweep sweep)
                        .n_blocks  = basis->n_blocks};
 }
 
+/* Collective; called after each full solution. Only the new vectors [first, n) are written, n_local values a vector
+   and rank; a file that cannot be written ends the keeping, not the sweep. */
 PetscErrorCode SweepKeep(void *ctx)
 {
   Sweep       sweep = (Sweep)ctx;
@@ -167,7 +170,9 @@ PetscErrorCode SweepKeep(void *ctx)
   PetscFunctionReturn(0);
 }
 
-/* Whether what a header says can be: its vectors follow those that there are, and the model has all but corrections */
+/* Whether what a header says can be: its vectors follow those that there are, no more samples than may be made,
+   blocks within bounds. JournalTake() has told damage and other sweeps; this tells files of two runs of the same
+   sweep. One rank's doubt is that of all. */
 static PetscErrorCode HeaderFits(Sweep sweep, const BasisHeader *h, PetscInt n_values, PetscBool *fits)
 {
   const Basis *basis = &sweep->basis;
@@ -233,6 +238,8 @@ static PetscErrorCode FileResume(Sweep sweep, PetscBool *taken)
   PetscFunctionReturn(0);
 }
 
+/* Files are taken in order until one is missing or does not follow; what comes behind it is worth nothing, since
+   its vectors are orthogonal to those that are lost. */
 PetscErrorCode SweepResume(Sweep sweep)
 {
   PetscBool taken = PETSC_TRUE;

@@ -1,14 +1,23 @@
 /*
-   Robustness: parameters known to some percent only. The reduced model is first made good at the corners of the box
-   around the scene's own values (the greedy choice takes in a corner only where the estimate asks for it); then the
-   corners and a Halton sequence inside the box are looked at, and the modes that become unstable anywhere are listed.
-   Combinations between those looked at are not excluded.
+   Robustness: parameters known to some percent only, the box p_k (1 +- h_k) around the scene's own values. The
+   reduced model is first made good at the corners of the box (the greedy choice takes in a corner only where the
+   estimate asks for it); then the corners and a Halton sequence inside the box are looked at,
+
+      p_k = p_k0 (1 + h_k (2 u_k - 1)),   u_k(i) = sum_j d_j b_k^-(j+1),   i = sum_j d_j b_k^j,   b_k the k-th prime
+
+   (J. H. Halton, Numerische Mathematik 2, 1960), which fills the box more evenly than random numbers and is the
+   same in every run. The modes that become unstable anywhere are listed. Combinations between those looked at are
+   not excluded.
 */
 #include "sweepimpl.h"
 #include <squeal/options.h>
 
-#define MAX_CORNERS 64  /* of a box in many dimensions, only the first are looked at */
-#define N_INSIDE    200 /* points of the Halton sequence */
+/* Of a box in more than six dimensions the first 64 corners are looked at: those with the seventh and further
+   parameters at their lower ends. */
+#define MAX_CORNERS 64
+/* Points of the Halton sequence. A region of one percent of the box escapes 200 random points with probability
+   0.99^200 = 0.13. */
+#define N_INSIDE 200
 
 /* The box: parameters, and half widths relative to their values. What a link holds is moved together, each by the same
    part of its own value. */
@@ -18,7 +27,8 @@ typedef struct {
   PetscReal       half[SWEEP_MAX_UNCERTAIN];
 } ParameterBox;
 
-/* What parameter k of the box moves */
+/* What parameter k of the box moves: itself, or all of the link that the axis of the sweep with it moves. A
+   percentage of 0 is 0, hence the refusal. */
 static PetscErrorCode BoxLink(Sweep sweep, const char name[], ParameterBox *box, PetscInt k)
 {
   const SweepGrid          *grid = &sweep->grid;
@@ -88,7 +98,7 @@ PetscErrorCode SweepUncertainCheck(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Element i of the van der Corput sequence in the given base, in [0, 1) */
+/* Element i of the van der Corput sequence in the given base, in [0, 1): the digits of i mirrored at the point. */
 static PetscReal VanDerCorput(PetscInt i, PetscInt base)
 {
   PetscReal value = 0, digit = 1;
@@ -108,7 +118,8 @@ static void BoxMove(const ParameterBox *box, PetscInt k, PetscReal side, PetscRe
   for (PetscInt m = 0; m < box->n_moved[k]; m++) p[box->moved[k][m]] *= 1 + side * box->half[k];
 }
 
-/* Point i: 0 the scene itself, then corners, then the inside */
+/* Point i: 0 the scene itself, then corners by the bits of i - 1, then the inside. The primes are those of as many
+   parameters as may be named. */
 static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners,
                      PetscInt i, PetscReal p[])
 {
@@ -169,6 +180,8 @@ static PetscErrorCode RisksKeep(Sweep sweep, const PetscReal p[], const ReducedM
   PetscFunctionReturn(0);
 }
 
+/* The greedy choice goes on with the basis of the sweep and may add as many full solutions again. All ranks hold
+   all modes after PointsSolve(), and match them alike. */
 PetscErrorCode SweepRobustness(Sweep sweep)
 {
   const PetscInt n_parameters = sweep->grid.n_parameters;

@@ -4,6 +4,9 @@
 */
 #include "line.h"
 
+/* rename [new branches of the segment] = an older number, or -1 for one of their own. Numbers stay without gaps:
+   those that keep their own are moved up to follow first_new, in the points up to last and in the events from
+   first_event on. rename is overwritten. */
 PetscErrorCode LineRename(Sweep sweep, PetscInt first_new, PetscInt rename[], PetscInt last, PetscInt first_event,
                           LinePoints *points)
 {
@@ -48,6 +51,7 @@ static PetscErrorCode SegmentLink(Sweep sweep, PetscInt first_new, PetscInt k, P
   PetscFunctionReturn(0);
 }
 
+/* Each segment is followed by itself, with numbers of its own, and then linked to the place before it. */
 PetscErrorCode LineTrackSegments(Sweep sweep, LinePoints *points)
 {
   const SweepPlace *place = &sweep->grid.place[points->first];

@@ -6,7 +6,10 @@
 #include <petsctime.h>
 #include <string.h>
 
-#define MAX_TRAIN  100 /* points that the greedy choice looks at */
+/* Points that the greedy choice looks at: each of its estimates solves the dense problem of every one of them. */
+#define MAX_TRAIN 100
+/* Passes over all places. Each but the first begins by enlarging the basis where the one before found errors above
+   rtol. */
 #define MAX_ROUNDS 4
 
 PetscErrorCode SweepCreate(MPI_Comm comm, Sweep *sweep)
@@ -65,6 +68,8 @@ static PetscErrorCode SweepCheckMethod(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+/* One group for each rank where none are asked for. Methods and options that exclude each other are refused here,
+   before anything costs time. */
 PetscErrorCode SweepSetFromOptions(Sweep sweep)
 {
   PetscMPIInt size;
@@ -90,6 +95,8 @@ PetscErrorCode SweepVisit(Sweep sweep, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
+/* Whether the sweep varies damping is read from the names of its parameters: those of the operators contain one of
+   these. */
 PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
 {
   static const char *const factors[] = {"_alpha", "_beta", "_viscosity", "_spin"};
@@ -121,7 +128,11 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
   PetscFunctionReturn(0);
 }
 
-/* The reduced model */
+/* The reduced model: the basis is orthonormal in M of the first point; a small system takes all unit vectors, a
+   larger one greedy samples. Room for samples is that of the sweep and of SweepRobustness(), max_samples each, and
+   of the points that are only looked at. With contact statuses max_samples is no less than the places, as in the
+   worst case each has a status of its own. Where modes beyond the growth that was asked for were found
+   (greedy.reach), window.rtol admits those whose estimated error, POINTS_MARGIN included, is below rtol. */
 static PetscErrorCode ModelMake(Sweep sweep)
 {
   PetscReal *p;
@@ -156,7 +167,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* All points; the basis grows again where one of them exceeds rtol, which only some were asked for */
+/* All points; the basis grows again where one of them exceeds rtol, which only some were asked for. The largest
+   error is alike on all ranks (PointsSolve()), so that all decide alike. */
 static PetscErrorCode LinesSolve(Sweep sweep)
 {
   PetscFunctionBeginUser;
@@ -210,6 +222,8 @@ static PetscErrorCode ReducedSweep(Sweep sweep, PetscLogDouble *since)
   PetscFunctionReturn(0);
 }
 
+/* The order matters: the axes before the statuses, which need the places; the statuses before the pencil, whose
+   terms they divide; the pencil before the basis. Frequencies are Hz in the options and rad/s from here on. */
 PetscErrorCode SweepSolve(Sweep sweep, Results results)
 {
   PetscReal      band[2];

@@ -8,7 +8,8 @@
 #include "base/algebra/versions.h"
 #include "bodiesimpl.h"
 
-#define AHEAD 8192 /* bytes of blocks, that are asked for before their turn */
+/* bytes of blocks that are asked for before their turn, some 110 blocks: the latency of memory at its speed */
+#define AHEAD 8192
 
 /* Sum of the first three numbers */
 STENCIL_INLINE PetscReal BlockRowsSum(const StencilLanes *x)
@@ -34,7 +35,8 @@ STENCIL_INLINE void BlockRowsLoad(const PetscReal a[], StencilLanes *row)
   *row = *(const volatile StencilLanes *)a;
 }
 
-/* y [n][4] += row i and its mirror image, column i, times x; x of node 0 */
+/* y [n][4] += row i and its mirror image, column i, times x; x of node 0. The diagonal block comes first in a row,
+   and is symmetric. Reads of four numbers take one of the next node along: value[] and vectors are padded for it. */
 STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const PetscReal x[], PetscReal y[])
 {
   const PetscReal *u = &x[3 * i], *a = &rows->value[9 * rows->start[i]];
@@ -73,7 +75,8 @@ STENCIL_INLINE void GeneralStore(const StencilLanes *x, PetscReal y[])
   for (int j = 0; j < 3; j++) y[j] = (*x)[j];
 }
 
-/* Node i with g = K v and h = C v without the part of the mass */
+/* Node i with g = K v and h = C v without the part of the mass, N/s and N: strain with the K u of before, then ku
+   += dt g, d = h + alpha M v, f = -ku - d */
 STENCIL_INLINE void GeneralAdvanceNode(const General *general, PetscInt i, const StencilLanes *g, const StencilLanes *h,
                                        const BodiesWork *w, GeneralSums *sums)
 {

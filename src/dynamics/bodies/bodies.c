@@ -6,7 +6,8 @@
 #include "base/events.h"
 #include <squeal/quantity.h>
 
-/* Masses of this rank's cells, then complete ones; held directions have no inverse */
+/* Lumped masses (kg) of this rank's cells (part), complete ones (total, summed over the ranks that share a node),
+   and 1 / total (minv), 0 where a component has a part along a held direction */
 static PetscErrorCode BodiesSetMasses(Bodies b)
 {
   Layout *l = &b->layout;
@@ -121,7 +122,8 @@ PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
   PetscFunctionReturn(0);
 }
 
-/* The kernels on the nodes that ranks share, or on the others */
+/* The kernels on the nodes that ranks share (early), or on the others. ku and d of a shared node stay the part of
+   this rank; f alone is summed over the ranks. */
 static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;
@@ -132,6 +134,7 @@ static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork
   PetscFunctionReturn(0);
 }
 
+/* The sum at shared nodes is under way while the others are advanced; the sums of energies are of this rank */
 PetscErrorCode BodiesAdvance(Bodies b, const BodiesStep *step, BodiesSums *sums)
 {
   /* v is written to at its padding alone, which is as before in the end */
@@ -156,6 +159,8 @@ static void BodiesClearHeld(Bodies b, PetscReal x[])
     if (b->layout.minv[i] == 0) x[i] = 0;
 }
 
+/* A step of dt = 1 from ku = 0 with v = x leaves K x in ku and C x in d: the kernels serve as operators of their
+   own critical step */
 PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscReal cx[])
 {
   PetscReal *const k = kx ? kx : b->work[0], *const c = cx && b->damped ? cx : NULL;
@@ -176,6 +181,8 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
   PetscFunctionReturn(0);
 }
 
+/* K u by another way than the kernels that are checked by it, and free of the rounding that u of a body far off has
+   in them */
 PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], PetscReal ku[])
 {
   PetscFunctionBeginUser;

@@ -50,7 +50,8 @@ void BodiesTurnCell(const Layout *layout, BodiesCell *cell)
                           &cell->stiffness[3 * a * n + 3 * b]);
 }
 
-/* Displacements (m) of a cell's nodes relative to the first one, Cartesian; whether there are any */
+/* Displacements (m) of a cell's nodes relative to the first one, Cartesian; whether there are any: cells at rest or
+   in translation need no matrices. Backwards, since node 0 is taken off last. */
 static PetscBool BodiesCellMoves(const Layout *layout, PetscInt n_nodes, const PetscInt vertex[], const PetscReal u[],
                                  PetscReal relative[])
 {

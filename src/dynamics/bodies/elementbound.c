@@ -7,7 +7,7 @@
 #include "bodiesimpl.h"
 #include <petscblaslapack.h>
 
-/* A = M_e^-1/2 K_e M_e^-1/2, 1/s^2 */
+/* A = M_e^-1/2 K_e M_e^-1/2, 1/s^2, with the cell's own lumped masses: those of its nodes in the mesh are larger */
 static void BoundScale(const BodiesCell *cell, PetscReal a[])
 {
   const PetscInt n = 3 * cell->n_nodes;
@@ -99,6 +99,7 @@ static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
 
     if (BoundIsRepeated(n_nodes, vertex, first, swept) || BoundIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
+    /* most cells are below the largest so far, and need no eigenvalues */
     PetscCall(BoundIsBelow(&cell, (*largest - s * cell.alpha) / (1 + s * cell.beta), &below));
     if (below) continue;
     PetscCall(BoundOfCell(&cell, &lambda));

@@ -109,7 +109,8 @@ static PetscErrorCode BlockRowsAdd(const GeneralCells *cells, const BodiesCell *
   PetscFunctionReturn(0);
 }
 
-/* Stiffness, masses and damping factors of all cells; beta is -1 where no cell was yet, and -2 where cells differ */
+/* Stiffness, masses (kg), alpha M (kg/s) and beta (s) of all cells; beta is -1 where no cell was yet, and -2 where
+   cells differ */
 static PetscErrorCode GeneralSum(Bodies b, const GeneralCells *cells)
 {
   General *g = &b->general;

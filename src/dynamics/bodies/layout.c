@@ -9,7 +9,8 @@
 #include "bodiesimpl.h"
 #include "base/algebra/vec3.h"
 
-#define SAME_AXIS  1e-8 /* of centres that ranks find, relative to the mesh */
+/* of centres that ranks find, relative to the mesh: each fits its own cells, to rounding of coordinates */
+#define SAME_AXIS  1e-8
 #define NODES_LEAF 256  /* nodes, with their sums about 15 kB */
 #define TILT       0.02 /* of planes of nodes: few of a regular mesh share one, which quicksort is slow with */
 
@@ -137,7 +138,8 @@ static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[])
   PetscFunctionReturn(0);
 }
 
-/* Frames of all bodies, the same on every rank */
+/* Frames of all bodies, the same on every rank: proposed by one, kept where all ranks agree and the supports can be
+   said in them. A copy of a shared node must have one basis everywhere, since forces are summed by components. */
 static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
 {
   PetscReal  scale;
@@ -162,7 +164,7 @@ static PetscErrorCode BodiesFindFrames(Bodies b, ModelLines *const lines[])
   PetscFunctionReturn(0);
 }
 
-/* Rows along the axis, radial, tangential at a place */
+/* Rows along the axis, radial, tangential at a place off the axis (BodiesFrameSuits()): right-handed */
 static void FrameTurnedBasis(const BodiesFrame *frame, const PetscReal x[3], PetscReal q[9])
 {
   const PetscReal *along = &frame->row[3 * frame->axis];

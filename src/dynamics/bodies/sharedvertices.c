@@ -5,9 +5,11 @@
 */
 #include "bodiesimpl.h"
 
+/* any: the communicator is a copy of its own */
 #define SHARED_TAG 5501
 
-/* Vertices that this rank has in common with each other one, and all of these in its own name */
+/* Vertices that this rank has in common with each other one, in an order that both have alike
+   (ISLocalToGlobalMappingGetInfo()), and all of these in its own name. Ranks ascend, so that the sums do. */
 static PetscErrorCode SharedFindRanks(Shared *share, const Mesh *mesh)
 {
   ISLocalToGlobalMapping map;

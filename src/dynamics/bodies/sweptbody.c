@@ -63,7 +63,8 @@ STENCIL_INLINE void SweptTakeMissing(const double missing[3], const double at[],
   for (int i = 0; i < 3; i++) StencilAdd(-missing[i], StencilLoad(at), &g[i]);
 }
 
-/* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding */
+/* g = K v, or likewise with other coefficients, at nodes k .. k + 7 of a line, zero in the padding. The stencil is
+   that of an inner node: at the ends of an open line the cells that are not there (`missing`) are taken off again. */
 STENCIL_INLINE void SweptApply(const SweptPass *pass, const StencilLine *line, const ptrdiff_t row[3], PetscInt k,
                                StencilVector g[3])
 {
@@ -132,7 +133,8 @@ static void SweptAdvanceRange(const SweptBody *s, const SweptRange *range, Bodie
     SweptAdvanceLines(s, range, PETSC_FALSE, w);
 }
 
-/* Ghosts of a closed body: the last node before the first one and the reverse; or zeros */
+/* Ghosts of a closed body: the last node before the first one and the reverse; or zeros, as padding has to be
+   between calls */
 static void SweptSetGhosts(const SweptBody *s, PetscBool zero, PetscReal v[])
 {
   const PetscInt n = s->lines->n_nodes;

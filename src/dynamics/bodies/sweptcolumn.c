@@ -6,7 +6,8 @@
 */
 #include "bodiesimpl.h"
 
-#define MIRROR_TOLERANCE 1e-10 /* relative to the largest coefficient */
+/* relative to the largest coefficient: rounding of K_e; a tapered or twisted cell differs by far more */
+#define MIRROR_TOLERANCE 1e-10
 
 /* Blocks of a line and its neighbour, in the components p, q, c */
 typedef struct {
@@ -143,7 +144,8 @@ static PetscErrorCode ColumnSectionSum(Bodies b, const SweptBody *s, ColumnSecti
   PetscFunctionReturn(0);
 }
 
-/* Whether the blocks of the one side are those of the other, mirrored: x = S y S */
+/* Whether the blocks of the one side are those of the other, mirrored in the plane across the sweep: x = S y S, S =
+   diag(1, 1, -1) in the components p, q, c */
 static PetscBool ColumnBlocksMirror(const PetscReal x[9], const PetscReal y[9], PetscReal scale)
 {
   for (int i = 0; i < 9; i++) {
@@ -170,7 +172,8 @@ static PetscBool ColumnSectionMirrors(const ColumnSection *section)
   return PETSC_TRUE;
 }
 
-/* E0, E1, O1 of the blocks */
+/* E0 = A0 after + before, E1 = (A+ + A-) / 2 on the even entries, O1 = (A+ - A-) / 2 on the odd ones: 14 numbers
+   for the 27 of three blocks, the others vanishing by the mirror symmetry */
 static void SweptSetCoefficients(const ColumnBlocks *blocks, double c[STENCIL_COEFFICIENTS], double before[9])
 {
   static const int even[5] = {0, 1, 3, 4, 8}, odd[4] = {2, 5, 6, 7};
@@ -214,8 +217,8 @@ static void SweptDampLine(SweptBody *s, PetscInt n_keys, PetscInt l)
   s->damping[l].before += n_keys;
 }
 
-/* Masses of the nodes (kg), and damping factors of the lines: alpha weighted by mass, beta where all cells have the
-   same */
+/* Masses of the nodes (kg), and damping factors of the lines: alpha (1/s) weighted by mass, beta (s) where all
+   cells have the same. The ends of an open line have the masses of one side alone. */
 static PetscErrorCode SweptSetMasses(SweptBody *s, const ColumnSection *section)
 {
   const PetscInt n_lines = s->lines->n_lines, last = s->lines->n_nodes - 1;

@@ -19,6 +19,8 @@ typedef struct {
   Vec          f, f_old;   /* forces of this step and the last; f_old NULL for b = 1/2 */
 } TS_Central;
 
+/* kick and kick_old (s) of the step. Where the length of steps changes, velocities of half steps are `mean` =
+   (dt_old + dt) / 2 apart. The first step goes half the way, dt / 2, from v_0 to v_{1/2}; it has no f before. */
 static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
 {
   const TS_Central *c     = (TS_Central *)ts->data;
@@ -36,7 +38,8 @@ static PetscErrorCode CentralDescribe(TS ts, CentralStep *step)
   PetscFunctionReturn(0);
 }
 
-/* f_n with the forces of the constraint; f_{n-1} is kept where the scheme needs it */
+/* f_n with the forces of the constraint; f_{n-1} is kept where the scheme needs it, by exchange of the two vectors.
+   When force() is called f still holds what was f_{n-2}, which completes the work of the integrator (forces.c). */
 static PetscErrorCode CentralComputeForces(TS ts, CentralStep *step)
 {
   TS_Central *c = (TS_Central *)ts->data;
@@ -62,7 +65,8 @@ typedef struct {
   PetscScalar       *v, *u;
 } CentralArrays;
 
-/* v += kick minv f, u += dt v */
+/* v += kick minv f, u += dt v: one pass over memory, three vectors read and two written. Held directions have minv
+   = 0 and the velocity that force() gives them. */
 static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const PetscScalar *restrict minv,
                                   const PetscScalar *restrict f, PetscScalar *restrict v, PetscScalar *restrict u)
 {
@@ -74,7 +78,7 @@ static VERSIONS void KickAndDrift(PetscInt n, const CentralStep *step, const Pet
   }
 }
 
-/* v += minv (kick f + kick_old f_old), u += dt v */
+/* v += minv (kick f + kick_old f_old), u += dt v, for b > 1/2 */
 static VERSIONS void KickAndDriftTwo(const CentralStep *step, const CentralArrays *a)
 {
   const PetscReal kick = step->kick, kick_old = step->kick_old, dt = step->dt;

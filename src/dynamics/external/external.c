@@ -70,6 +70,8 @@ PetscErrorCode ExternalAdvance(External external, const ExternalStep *step, Exte
   PetscFunctionReturn(0);
 }
 
+/* What the scene says of the loads, N, for a check of what was assembled: weight, loads at time t, impulses over
+   dt. Not known with inertial forces of frames, nor with the weight of points. Collective. */
 PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal force[3], PetscBool *known)
 {
   const ModelScene *scene;

@@ -1,5 +1,7 @@
 /*
-   Nodal forces of a fixed distribution in the components of their nodes (forcepattern.h).
+   Nodal forces of a fixed distribution in the components of their nodes (forcepattern.h): a list of places in the
+   state vector and values (N, or N s of an impulse), those of owned nodes first, so that their power sums over the
+   ranks count each node once while all copies of a node get the same force.
 */
 #include "forcepattern.h"
 

@@ -69,7 +69,8 @@ static PetscErrorCode ImpulseFindCopy(Model model, PetscInt *vertex)
   PetscFunctionReturn(0);
 }
 
-/* The place of the node that is hit on every rank, and whether it moves in a direction of J */
+/* The place of the node that is hit on every rank, and whether it moves in a direction of J: sum |minv J_j| > 0
+   over all copies */
 static PetscErrorCode ImpulsePlace(External external, PetscInt vertex, Impulse *hit, PetscBool *moves)
 {
   const ForcePattern *p = &hit->pattern;

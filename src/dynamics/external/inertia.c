@@ -62,7 +62,8 @@ PetscErrorCode InertiaSetUp(External external)
   PetscFunctionReturn(0);
 }
 
-/* Constant, hence the same power for `old` and `now`; no `old` before the first step */
+/* f += m g; power m g . v (W) of owned nodes. Constant, hence the same power for `old` and `now`; no `old` before
+   the first step. */
 static void InertiaGravityAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   const PetscReal *weight = external->weight, *own = external->own_weight, *v = step->v;

@@ -41,6 +41,7 @@ PetscErrorCode ExternalCheckDelay(External external, const char name[], PetscRea
 
 PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge)
 {
+  /* t_n of the last step; 1e-12 keeps an end that is a whole number of steps but for rounding from one more */
   const PetscReal last = dt * (PetscCeilReal(end / dt * (1 - 1e-12)) - 1);
   Late            step = {.option = "time", .why = "the last step of the run begins", .last = last};
 

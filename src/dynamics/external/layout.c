@@ -35,6 +35,9 @@ static PetscReal *ExternalTakeMemory(PetscReal **next, PetscInt n)
   return here;
 }
 
+/* begun, power of the drives (W), factor of each load, (1/dt, time) of each impulse, forces of the frames. Pointers
+   of the kinds go into this array; it moves when it grows, and all are set again. New numbers are at the end, and
+   0. */
 PetscErrorCode ExternalLayMemory(External external)
 {
   const PetscInt n_before = external->n_memory;

@@ -14,7 +14,8 @@
 #include <petscbt.h>
 #include <squeal/options.h>
 
-#define SHARE_TOLERANCE 1e-8 /* of s, from 0 and 1 */
+/* of s, from 0 and 1: rounding of bases */
+#define SHARE_TOLERANCE 1e-8
 
 PetscErrorCode MotionsSetFromOptions(External external)
 {
@@ -33,7 +34,7 @@ PetscErrorCode MotionsSetFromOptions(External external)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a jump */
+/* Raises the error for a jump, whose velocity d / dt would depend on the step */
 static PetscErrorCode MotionCheckRamp(MPI_Comm comm, const Drive *motion)
 {
   const PetscReal *x = motion->prescribed->displacement;

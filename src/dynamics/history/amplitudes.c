@@ -21,7 +21,7 @@ PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **head
   PetscFunctionReturn(0);
 }
 
-/* Velocities v_n of all entries of the layout */
+/* Velocities v_n (m/s) of all entries of the layout: v_{n-1/2} and what of the kick lies before t_n (motion.c) */
 static void AmplitudesVelocity(const HistoryState *state, PetscInt n, PetscReal v[])
 {
   const PetscReal kick = state->dt * state->b, kick_old = state->dt * (0.5 - state->b);

@@ -6,7 +6,8 @@
 #include "historyimpl.h"
 
 #define CIRCLE_ROOM 288
-#define ON_AXIS     1e-3 /* of a circle's radius */
+/* of a circle's radius: nearer to the axis a contact has no angle */
+#define ON_AXIS 1e-3
 
 static PetscInt CirclesCount(History history)
 {

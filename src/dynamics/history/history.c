@@ -46,8 +46,9 @@ PetscErrorCode HistorySetUp(History history, const HistorySource *source, PetscR
   const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  history->source        = *source;
-  history->live.end      = end;
+  history->source   = *source;
+  history->live.end = end;
+  /* a twentieth of the run, at most 1 ms: several periods of what squeals above 1 kHz */
   history->growth.window = end > 0 ? PetscMin(end / 20, 1e-3) : 1e-3;
   PetscCall(ModelGetScene(source->model, &scene));
   history->n_probes  = scene->n_probes;
@@ -83,7 +84,7 @@ PetscBool HistoryIsDue(History history, PetscReal t, PetscReal dt)
            : PETSC_FALSE;
 }
 
-/* A mark as reals, and back */
+/* A mark as reals, and back: halves of 32 bits, which a real holds exactly */
 static void MarkKeep(const ResultsMark *mark, PetscReal kept[3])
 {
   kept[0] = (PetscReal)mark->bytes;

@@ -10,7 +10,8 @@
 */
 #include "ledger.h"
 
-#define LEDGER_RTOL 1e-6 /* of the throughput */
+/* of the throughput: rounding of 1e6 steps is far below, a step beyond the critical one above it soon */
+#define LEDGER_RTOL 1e-6
 #define LEDGER_MADE 0.1  /* of the energy that others give: what contact may make of nothing within the steps */
 #define LAWS_MOST   1e-3 /* an error beyond is no rounding: the run ends */
 
@@ -85,6 +86,7 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
   PetscFunctionReturn(0);
 }
 
+/* Steps 10, 100, 1000, ... and every multiple of the interval: early faults are found early, and looks cost nothing */
 PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
 {
   PetscReal ten = 10;
@@ -94,6 +96,10 @@ PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
   return (PetscReal)n == ten || n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Four checks, in this order: numbers; what is left over; damping that gives energy; and the sum of the kinetic
+   energy at the half step and u_{n}'K u_{n-1} / 2. The last may be negative, down to -kinetic omega^2 dt^2 / 4 of a
+   mode of omega: at a fraction x of the critical step at least (1 - x^2) of the kinetic energy remains, of which
+   half is asked for. */
 PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *l, PetscReal fraction, PetscInt step, PetscReal time)
 {
   const PetscReal scale = LEDGER_RTOL * (l->throughput + l->predicted);

@@ -24,7 +24,8 @@ static int HistoryPairCompare(const void *one, const void *other)
   return order ? order : (a->number > b->number) - (a->number < b->number); /* two nodes may be in one place */
 }
 
-/* Records of all ranks in order, on every rank */
+/* Records of all ranks in order, on every rank; gap m (inf where a slave faces nothing), lambda_n N, lambda_t the
+   length of the friction, N */
 static PetscErrorCode HistoryGatherPairs(MPI_Comm comm, const HistoryPairs *p, PetscInt *n_all, HistoryPairRecord **all)
 {
   HistoryPairRecord *local;

@@ -18,6 +18,7 @@ PetscBool ScheduleIsDue(const Schedule *schedule, PetscReal t, PetscReal dt)
   return schedule->interval > 0 && t >= schedule->next * schedule->interval - 0.5 * dt ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* next: the first multiple k that was not met yet */
 PetscBool ScheduleMeet(Schedule *schedule, PetscReal t, PetscReal dt)
 {
   PetscReal k;

@@ -73,7 +73,8 @@ static PetscErrorCode DynamicsSumScene(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* What is kept; contact and history are the caller's */
+/* What is kept; contact and history are the caller's. ku is kept, since it is a sum over steps that K u does not
+   give bitwise; damping and f_old since the next step needs those of the last. */
 static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscScalar *const a[],
                                         JournalItem item[N_ITEMS])
 {

@@ -5,14 +5,16 @@
 #include "dynamics/dynamicsimpl.h"
 #include "base/algebra/vec3.h"
 
-#define LAWS_NOISE 16 /* roundings */
+/* roundings of each term */
+#define LAWS_NOISE 16
 
 /* Which numbers of a state vector count: those of this rank's nodes, or of its copies, too; free or held directions */
 typedef struct {
   PetscBool copies, free, held;
 } LawsWhich;
 
-/* Adds scale x to the sums; x are forces at the nodes, or with weight velocities */
+/* Adds scale x to the sums; x are forces (N) at the nodes, or with weight (kg) velocities. value: resultant and
+   moment about the origin, N and N m; size: the sums of the lengths, beside which their errors are seen. */
 static void LawsAdd(Dynamics d, const PetscReal x[], const PetscReal weight[], const LawsWhich *which, PetscReal scale,
                     LawsSum *sum)
 {
@@ -57,7 +59,8 @@ static PetscErrorCode LawsAreDue(Dynamics d, const CentralStep *step, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* Internal forces, which must be those of the ground: f = -K u - C v */
+/* Internal forces must be those of the ground: f = -K u - C v sums, in all directions, to what springs, dashpots
+   and bushings exert, since the forces within bodies balance in pairs */
 static PetscErrorCode LawsLookAtBodies(Dynamics d, const PetscReal u[])
 {
   Laws      *l      = &d->laws;
@@ -208,7 +211,8 @@ static void LawsAddNoise(Dynamics d, const PetscReal u[], const PetscReal v[], P
   }
 }
 
-/* Momentum at the end of the step, and the errors of both momenta beyond rounding */
+/* Momentum at the end of the step, and the errors of both momenta beyond rounding: M v_{n+1/2} = M v_{n-1/2} + kick
+   f + kick_old f_old in all, over kick (N) */
 static PetscErrorCode LawsEndMomentum(Dynamics d, const PetscReal u[], const PetscReal v[])
 {
   Laws       *l     = &d->laws;

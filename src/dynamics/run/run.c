@@ -77,6 +77,7 @@ PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], Pets
   PetscFunctionReturn(0);
 }
 
+/* dt at most the run; with matchstep the longest dt up to it of which the run is a whole number */
 PetscErrorCode DynamicsFitEnd(Dynamics d, PetscReal *dt, PetscReal *end)
 {
   TSExactFinalTimeOption match;

@@ -13,6 +13,7 @@ static struct sigaction      before[N_SIGNALS];
 static PetscBool             listening = PETSC_FALSE;
 static volatile sig_atomic_t requested = 0;
 
+/* what a signal handler may do (C17 7.14.1.1): set a volatile sig_atomic_t */
 static void NoteRequest(int number)
 {
   (void)number;

@@ -52,7 +52,7 @@ static PetscInt CsvColumn(const char header[], const char name[])
   return -1;
 }
 
-/* Finds the row of a mode */
+/* Finds the row of a mode: lambda = growth (1/s), 2 pi freq (rad/s) */
 static PetscErrorCode ShapeFindRow(FILE *file, const char name[], const ShapeSource *source, PetscReal lambda[2],
                                    Fault *fault)
 {
@@ -211,7 +211,8 @@ static PetscErrorCode ShapeCheckCells(const ShapeFile *from, const Shape *shape,
   PetscFunctionReturn(0);
 }
 
-/* Checks by the title of the shape, "7: 3458.21 Hz, ...", that it belongs to the table, freq in Hz */
+/* Checks by the title of the shape, "7: 3458.21 Hz, ...", that it belongs to the table, freq in Hz, to the digits
+   of a title */
 static PetscErrorCode ShapeCheckTitle(const ShapeFile *from, const char key[], double freq)
 {
   char   path[128], title[256] = "";

@@ -7,7 +7,7 @@
 #include "dynamics/dynamicsimpl.h"
 #include "shape.h"
 
-/* Lays a weight on a state vector, every unknown on one rank, begin <= row < end */
+/* Lays a weight on a state vector, every unknown on one rank, begin <= row < end: copies would count twice in a'u */
 static PetscErrorCode FilterLay(Dynamics d, const PetscInt range[2], PetscReal weight[], PetscReal state[])
 {
   const Mesh *mesh;

@@ -8,7 +8,8 @@
 */
 #include "shape.h"
 
-#define TOLERANCE 1e-9 /* of positions, relative to the diagonal of the mesh */
+/* of positions, relative to the diagonal of the mesh: files hold all digits */
+#define TOLERANCE 1e-9
 
 /* Powers -1, -2 and -4 of the plastic number (p^3 = p + 1): a unit vector without small rational ratios */
 static const PetscReal oblique[3] = {0.754877666246692760, 0.569840290998053266, 0.324717957244746026};

@@ -129,7 +129,7 @@ static PetscErrorCode StartAddShape(Dynamics d, PetscReal u[], PetscReal v[])
   PetscFunctionReturn(0);
 }
 
-/* 1e-10 of the model's size, m: rounding of coordinates is no penetration */
+/* 1e-10 of the largest extent about the origin, m: rounding of coordinates is no penetration */
 static PetscErrorCode StartFindSlack(Dynamics d, PetscReal *slack)
 {
   const Mesh *mesh;

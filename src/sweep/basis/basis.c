@@ -1,12 +1,16 @@
 /*
-   The reduced basis: its first vectors make the model, others tell its error; what rounding in the stiffness terms does
-   to it.
+   The reduced basis: V [unknowns][n], V' M V = I with M (kg, frictionless) of the pencil's parameters when it was
+   made. The first n_used vectors make the model, A_t -> V' A_t V for every term t of the pencil, in the unit of the
+   term over kg; the others tell its error (dense/estimate.c). D_t = V' |diag A_t| V of the stiffness terms tells
+   what rounding in them does (dense/rounding.c).
 */
 #include "basis.h"
 #include "base/events.h"
 #include "solver/block/orthonormal.h"
 #include "solver/factor/shiftinvert.h"
 
+/* M is singular where there are unknowns without mass, along which no vector has a length. The terms keep the order
+   of the pencil, so that reduced.A[t] belongs to term[t] for good. */
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
 {
   PencilMatrices frictionless;
@@ -44,7 +48,8 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* One V' |diag A| V, extended likewise */
+/* One V' |diag A| V, [n][n] by columns, extended by the block of vectors first to n - 1: H = V' |diag A| block
+   gives the last columns, and, transposed, the last rows. A diagonal matrix is symmetric between any vectors. */
 static PetscErrorCode DiagonalExtend(Basis *basis, PetscInt t, BV block, PetscInt first, PetscInt n)
 {
   PetscReal      **reduced = &basis->reduced.D[t];
@@ -74,7 +79,8 @@ static void BasisFollow(Basis *basis)
   r->n = basis->space.n;
 }
 
-/* The vectors first to n - 1 in a block of their own; all n are active then */
+/* The vectors first to n - 1 in a block of their own; all n are active then. A copy, since products of a BV with a
+   part of itself would need both parts active at once. */
 static PetscErrorCode BasisCopyBlock(Basis *basis, PetscInt first, PetscInt n, BV *block)
 {
   PetscFunctionBeginUser;
@@ -118,6 +124,7 @@ PetscErrorCode BasisUse(Basis *basis, PetscInt n)
   PetscFunctionReturn(0);
 }
 
+/* The ends of blocks stay those of what is left: the last block ends at n. */
 PetscErrorCode BasisTruncate(Basis *basis)
 {
   Reduced *r = &basis->reduced;
@@ -130,6 +137,8 @@ PetscErrorCode BasisTruncate(Basis *basis)
   PetscFunctionReturn(0);
 }
 
+/* n_added <= columns of the block: what V holds already, or what is shorter than drop in M, adds nothing. Every
+   block that added something is noted, so that a restart repeats the same sums. */
 PetscErrorCode BasisAdd(Basis *basis, BV block, PetscReal drop, PetscInt *n_added)
 {
   PetscInt n;

@@ -6,8 +6,8 @@
 #include <squeal/modes.h>
 #include "basis/subspace.h"
 
-/* [V Z], orthonormal in the mass matrix of the scene's own parameters. The leading reduced.n_used vectors are the
-   model (those added become part of it by BasisUse()), the others estimate its error. */
+/* [V Z], orthonormal in the frictionless mass matrix of the pencil's parameters when it was made. The leading
+   reduced.n_used vectors are the model (those added become part of it by BasisUse()), the others estimate its error. */
 #define BASIS_MAX_BLOCKS 1024
 
 typedef struct {

@@ -15,8 +15,13 @@
 #include "base/events.h"
 #include "basis/residual.h"
 
-#define COUNT_AWAY 1e-7 /* relative move of the end of a band that an eigenvalue lies on */
+/* Relative move of the end of a band that an eigenvalue lies on, outwards at both ends, where K - s M would be
+   singular; the basis is asked for the moved band. */
+#define COUNT_AWAY 1e-7
 
+/* P = K - s M at p with s = high^2, (rad/s)^2. Damping is left out: P is then real, and symmetric without friction;
+   the corrections differ by the factor P^-1 Q alone. Inertia is asked for, as the same factors count the modes
+   below s. */
 PetscErrorCode CorrectionFactor(Pencil pencil, const PetscReal p[], const ReducedWindow *window, Progress *progress,
                                 Correction *c)
 {
@@ -55,6 +60,10 @@ PetscErrorCode CorrectionMove(Pencil pencil, const PetscReal p[], Correction *c)
   PetscFunctionReturn(0);
 }
 
+/* c of P^-1 Q from the coefficients alone: for sums P = sum_t a_t A_t and Q = sum_t b_t A_t of symmetric positive
+   semidefinite A_t the eigenvalues of P^-1 Q lie between the least and the largest b_t / a_t, and c is at most
+   their ratio. Friction and -s M are no such terms, for which it is an estimate. Infinite where a term comes, goes
+   or changes its sign. */
 PetscReal CorrectionSpread(const Correction *c, const Reduced *reduced, const PetscReal p[])
 {
   PetscReal least = PETSC_MAX_REAL, largest = 0;
@@ -71,7 +80,8 @@ PetscReal CorrectionSpread(const Correction *c, const Reduced *reduced, const Pe
   return largest > 0 ? largest / least : 1;
 }
 
-/* Whether mode i needs vectors of its own: of a pair of conjugates of kappa, one is enough */
+/* Whether mode i needs vectors of its own: of a pair of conjugates of kappa, lambda and -conj(lambda), one is
+   enough, as its real and imaginary parts span those of the other. */
 static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool damped)
 {
   const PetscReal close = 1e-7 * cabs(modes->lambda[i]);
@@ -136,6 +146,8 @@ PetscErrorCode CorrectionCollect(const Correction *c, const ReducedModes *modes,
   PetscFunctionReturn(0);
 }
 
+/* Collective. One solve for all columns of both sides, then one orthogonalisation; the blocks of residuals are
+   freed before the vectors of the basis grow, which is the largest memory of a sweep. */
 PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis, CorrectionBlock *block,
                                PetscInt *n_added)
 {
@@ -158,7 +170,8 @@ PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis
   PetscFunctionReturn(0);
 }
 
-/* Relative error of the entry of `before` that is nearest to lambda; infinite where there is none */
+/* Relative error of the entry of `before` that is nearest to lambda, without rounding, which no correction lowers;
+   infinite where there is none. By distance and not by index, since a better basis may have gained a mode. */
 static PetscReal ErrorBefore(const ReducedModes *before, PetscComplex lambda)
 {
   PetscReal nearest = PETSC_MAX_REAL, error = PETSC_MAX_REAL;
@@ -188,6 +201,9 @@ PetscErrorCode CorrectionDropSettled(const ReducedModes *before, PetscReal toler
   PetscFunctionReturn(0);
 }
 
+/* Modes in the window by the inertia of K - s M at both ends, and by the basis, each without friction and damping:
+   with them the pencil is not symmetric and Sylvester's law does not hold. -1, -1 where some of either cannot be
+   turned off. A window that begins below half of its end is counted from zero. */
 PetscErrorCode CorrectionCount(const Basis *basis, const PetscReal p[], const ReducedWindow *window,
                                ShiftInvert *counter, PetscInt *full, PetscInt *by_basis)
 {

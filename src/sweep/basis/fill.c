@@ -14,8 +14,11 @@
 #include "solver/factor/shiftinvert.h"
 #include <slepceps.h>
 
-#define WHOLE         200   /* unknowns up to which the basis is the whole space */
-#define REAL_RTOL     1e-11 /* of the real modes */
+/* Unknowns up to which the basis is the whole space: so small a dense problem costs no more than one on a basis of
+   a large mesh. */
+#define WHOLE 200
+/* Relative residual of the real modes; far below the errors of the projection, which are to be compared. */
+#define REAL_RTOL     1e-11
 #define REAL_RESTARTS 200
 
 PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block)
@@ -48,6 +51,8 @@ static PetscErrorCode BasisTake(Basis *basis, BV *block, PetscInt *n_added)
   PetscFunctionReturn(0);
 }
 
+/* Unit vectors are orthonormalised in M like any others; the model is then exact, and there is nothing to estimate.
+   Not whole where M lets some of them vanish. */
 PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
 {
   PetscInt n, first, last, n_added;
@@ -71,7 +76,8 @@ PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
   PetscFunctionReturn(0);
 }
 
-/* (A + A')/2, which is A itself where A is symmetric */
+/* S = (A + A')/2, which is A itself where A is symmetric; a reference then, so that the caller destroys it in both
+   cases. */
 static PetscErrorCode SymmetricPart(Mat A, PetscBool symmetric, Mat *S)
 {
   PetscFunctionBeginUser;
@@ -87,7 +93,9 @@ static PetscErrorCode SymmetricPart(Mat A, PetscBool symmetric, Mat *S)
   PetscFunctionReturn(0);
 }
 
-/* The n_modes eigenvalues kappa next to the shift of a symmetric problem, with factors there */
+/* The n_modes eigenvalues kappa, (rad/s)^2, next to the shift of a symmetric problem, with factors there. Ranks
+   take the same decisions in the projected problem (SolverSynchronize()); fewer converged than asked for is an
+   error, since the basis would silently be another one. */
 static PetscErrorCode RealSolve(const PencilMatrices *m, PetscInt n_modes, ShiftInvert *si, EPS *eps)
 {
   PetscInt n, n_found;

@@ -17,10 +17,15 @@
 */
 #include "greedywork.h"
 
-#define GUARD       0.03 /* relative width beyond the band of modes that the basis holds */
-#define GREEDY_DROP 1e-3 /* vectors shorter than this beside the root of rtol add nothing to the model */
+/* Relative width beyond the band of modes that the basis holds: a mode that crosses the edge between two points
+   must be in the basis before it is in the band. */
+#define GUARD 0.03
+/* Vectors shorter than this beside the root of rtol add nothing to the model: the error of an eigenvalue is of
+   second order in that of the vectors, |z|^2 <= 1e-6 rtol. */
+#define GREEDY_DROP 1e-3
 
-/* Distance of point i from the nearest full solution, in parts of the extent */
+/* Distance of point i from the nearest full solution, in parts of the extent: sqrt(sum_k ((a_k - b_k) /
+   scale_k)^2), along a range measured in ratios (scale < 0) with log(a_k / b_k). No unit. */
 static PetscReal PointDistance(const GreedyWork *run, PetscInt i)
 {
   const PetscInt   n_parameters = run->basis->reduced.n_parameters;
@@ -40,7 +45,8 @@ static PetscReal PointDistance(const GreedyWork *run, PetscInt i)
   return nearest;
 }
 
-/* The point farthest from all full solutions, and how far */
+/* The point farthest from all full solutions, and how far. Equal distances are those within 1e-12: the first of
+   them is taken, on all ranks, whatever rounding says. */
 static PetscInt PointFarthest(const GreedyWork *run, PetscReal *farthest)
 {
   PetscInt best = 0;
@@ -56,7 +62,8 @@ static PetscInt PointFarthest(const GreedyWork *run, PetscReal *farthest)
   return best;
 }
 
-/* The next point to look at, or -1 */
+/* The next point to look at, or -1. First by distance, which needs no solution, then by the estimate at all points
+   (collective). A point whose own factors were made twice is not chosen again. */
 static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
 {
   Greedy         *g = run->greedy;
@@ -123,8 +130,9 @@ static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const Pet
   return run->greedy->sample[run->first].p;
 }
 
-/* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and close
-   at every status: what one lacks says little of another */
+/* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and
+   close at every status: what one lacks says little of another. The points looked at stand among the samples for
+   the distances only and are taken out in the end; the vectors found stay, as Z of the estimate. */
 static PetscErrorCode PointsLook(GreedyWork *run)
 {
   Greedy *const   g         = run->greedy;
@@ -169,6 +177,8 @@ static PetscErrorCode GreedyWorkDestroy(GreedyWork *run)
   PetscFunctionReturn(0);
 }
 
+/* The loop ends: each pass adds a sample, of which there are max_samples. Called again with other points it goes on
+   with the samples that there are. Collective; distances and estimates are alike on all ranks. */
 PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], Basis *basis)
 {
   const PetscReal low = greedy->window.low, high = greedy->window.high;

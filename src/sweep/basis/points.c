@@ -5,7 +5,7 @@
 #include "points.h"
 #include "base/process/progress.h"
 
-/* The rank that solves point i */
+/* The rank that solves point i: groups in turn, each on its first rank, spread evenly over the ranks. */
 static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
 {
   PetscMPIInt size;
@@ -14,6 +14,8 @@ static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
   return (PetscMPIInt)((i % groups->n_groups) * size / groups->n_groups);
 }
 
+/* max (error - noise) / |lambda| of the modes in the window; with rounding, error / |lambda|. Rounding is left out
+   where more vectors are to be decided on: no basis lowers it. */
 PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *window, PetscBool rounding)
 {
   PetscReal worst = 0;
@@ -24,6 +26,8 @@ PetscReal ReducedModesWorst(const ReducedModes *modes, const ReducedWindow *wind
   return worst;
 }
 
+/* Lengths first, then the arrays as numbers of twice the length where complex. On other ranks what they held is
+   replaced. `sharp` is not sent: it serves inside the estimate alone. */
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes)
 {
   PetscInt    length[2] = {modes->n, modes->size};
@@ -48,6 +52,8 @@ PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedMo
   PetscFunctionReturn(0);
 }
 
+/* Each rank solves its own points without the others; the results are sent afterwards, in order, so that no rank
+   waits inside the loop. */
 PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[])
 {
@@ -69,6 +75,8 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
   PetscFunctionReturn(0);
 }
 
+/* The same with nothing but the largest error of each point sent: one reduction of n numbers in place of all
+   vectors. */
 PetscErrorCode PointsEstimate(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window,
                               PetscInt n, const PetscReal points[], PetscReal worst[])
 {

@@ -4,8 +4,9 @@
 #include "greedywork.h"
 
 /* Asked where corrections are made, beside rtol: a tenth of what POINTS_MARGIN leaves of it at other points */
-#define SAFE         (1. / 30)
-#define SETTLED      (0.3 * SAFE) /* beside rtol: a mode that needs no more corrections at this point */
+#define SAFE    (1. / 30)
+#define SETTLED (0.3 * SAFE) /* beside rtol: a mode that needs no more corrections at this point */
+/* Corrections of one point at most. */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
 
@@ -62,6 +63,9 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
   PetscFunctionReturn(0);
 }
 
+/* One correction of what the basis gives at p: solve, drop what is settled, residuals, block solve, more vectors,
+   estimate. worst = largest relative error before the new vectors are part of the model, which they tell: n_used
+   does not change here. */
 PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added, PetscReal *worst)
 {
   ReducedModes    before = *modes;
@@ -80,7 +84,9 @@ PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *mod
   PetscFunctionReturn(0);
 }
 
-/* Whether the basis has as many frictionless modes at p as the full problem */
+/* Whether the basis has as many frictionless modes at p as the full problem; both -1, and so equal, where that
+   cannot be counted. The dense count is taken from rank 0, as an eigenvalue on the edge may fall either way by
+   rounding. */
 static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
 {
   PetscInt full, by_basis;
@@ -107,6 +113,8 @@ static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
+/* How many samples have exactly the values p: of those with factors made there, or of all. Values are copies of one
+   another, so that equality is meant bit by bit. */
 PetscInt PointTimes(const GreedyWork *run, const PetscReal p[], PetscBool factored)
 {
   PetscInt times = 0;
@@ -156,6 +164,10 @@ static PetscErrorCode FactorFirst(GreedyWork *run, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
+/* A full solution by corrections at p; first = the largest relative error that the basis had there before. A step
+   is saved where the fall of earlier ones, fall = the largest error_after / error_before so far, already promises
+   less than SAFE rtol. n_passed counts points in a row that needed nothing and had all modes; a missing mode calls
+   the eigensolver and begins the count anew. */
 PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
 {
   const PetscReal drop  = run->drop;

@@ -6,9 +6,11 @@
 */
 #include "points.h"
 
-#define STORE_MOST 128 /* points */
+/* Points: at 200 vectors and 60 modes each takes some 0.4 MB. More than the greedy choice looks at. */
+#define STORE_MOST 128
 
-/* Forgets all solutions where they are not those of this model and window */
+/* Forgets all solutions where they are not those of this model and window. Vectors in use change the model, n_used
+   with them; vectors that are only added do not. */
 static PetscErrorCode PointStoreReset(PointStore *store, const Reduced *reduced, const ReducedWindow *window)
 {
   const PetscInt n_used = reduced->n_used;
@@ -48,7 +50,7 @@ static PetscErrorCode PointStoreFind(const PointStore *store, PetscInt n_paramet
   PetscFunctionReturn(0);
 }
 
-/* Estimated errors, with the margin */
+/* error = POINTS_MARGIN (error - noise) + noise, rad/s: the margin is on what the basis lacks, not on rounding. */
 static PetscErrorCode EstimateWithMargin(const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
   PetscFunctionBeginUser;
@@ -58,6 +60,8 @@ static PetscErrorCode EstimateWithMargin(const Reduced *reduced, const PetscReal
   PetscFunctionReturn(0);
 }
 
+/* Not collective. The eigenvalues are kept with the model, the errors with the size of the whole basis: after
+   vectors were added the errors alone are computed again. The caller gets a copy. */
 PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const ReducedWindow *window,
                                const PetscReal p[], ReducedModes *modes)
 {

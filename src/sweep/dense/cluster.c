@@ -13,8 +13,11 @@
 #include "estimate.h"
 
 #define PLANE_PARALLEL 1e-11 /* least independent part of a vector that is more than rounding */
-#define OFF_CENTRE     1e-4  /* shift of the inverse iteration beside the mean, relative */
-#define ITERATIONS     4
+/* Shift of the inverse iteration beside the mean, relative, into the complex plane: at the mean itself Q is
+   singular. Each step multiplies other modes by 1e-4 |lambda| over their distance. */
+#define OFF_CENTRE 1e-4
+/* With modes 1e-2 |lambda| away four steps leave some (1.4e-2)^4 = 4e-8 of them. */
+#define ITERATIONS 4
 
 /* The plane of m modes */
 typedef struct {
@@ -73,7 +76,9 @@ static PetscErrorCode InverseIterate(const Plane *plane, PetscBool transposed, P
   PetscFunctionReturn(0);
 }
 
-/* Orthonormal basis of the vectors x of the modes list[m] in the standard form */
+/* Orthonormal basis of the vectors x of the modes list[m] in the standard form. Where vectors are parallel, fewer
+   than m directions are independent and the others are found by inverse iteration, left ones with the transposed
+   factors. */
 static PetscErrorCode PlaneFill(const Plane *plane, const PetscInt list[], const PetscComplex x[], PetscBool left,
                                 PetscComplex X[])
 {
@@ -108,7 +113,8 @@ static PetscErrorCode PlaneCreate(const Estimate *e, PetscInt m, const PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* F_ij in F[j * m + i] */
+/* F [m][m], F_ij = y_i^T Q_vz Q_zz^-1 Q_zv x_j in F[j * m + i], first blocks of X and Y, at the mean lambda: one
+   factorisation of Q_zz for all modes of the plane. */
 static PetscErrorCode FormF(const Plane *plane, PetscComplex F[], PetscBool *singular)
 {
   const Estimate *e = plane->e;
@@ -146,7 +152,8 @@ static PetscErrorCode PlaneEigenvalues(const Plane *plane, const PetscComplex F[
   PetscFunctionReturn(0);
 }
 
-/* Orders s[m] like the modes list[m]: repeatedly the nearest pair of those left */
+/* Orders s[m] like the modes list[m]: repeatedly the nearest pair of those left. The order of two values means
+   nothing by itself; the nearest one is the least change that both could have had. */
 static PetscErrorCode MatchNearest(const Plane *plane, const PetscInt list[], PetscComplex s[])
 {
   const PetscInt m = plane->m;

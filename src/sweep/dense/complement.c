@@ -13,7 +13,7 @@
 #include "estimate.h"
 #include <petscblaslapack.h>
 
-/* Y [m][rows] -= op(A) X, X [m][columns] */
+/* Y [m][rows] -= op(A) X, X [m][columns], of a block of a larger matrix, in place by its stride. */
 static PetscErrorCode Subtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[])
 {
   const PetscReal minus = -1, one = 1;
@@ -54,7 +54,8 @@ static PetscErrorCode ComplementMatrix(const Estimate *e, const PetscReal A[], P
   PetscFunctionReturn(0);
 }
 
-/* T and T' from Q(h) */
+/* T and T', [n_z][n_v], from Q(h) by one LU of Q_vv; a singular Q_vv leaves Z as it is (T = T' = 0), which makes
+   the estimate coarser, not wrong. */
 static PetscErrorCode ComplementVectors(Estimate *e, const PetscReal Q[])
 {
   const PetscInt v = e->n_v, z = e->n_z, n = e->pencil.n;
@@ -79,6 +80,9 @@ static PetscErrorCode ComplementVectors(Estimate *e, const PetscReal Q[])
   PetscFunctionReturn(0);
 }
 
+/* h, rad/s, is real: everything stays in real arithmetic. K of the complement comes from Q(h), where the couplings
+   vanish, by subtraction of h C + h^2 M: directly formed it would need the stiffness couplings, whose difference is
+   what is small. */
 PetscErrorCode EstimateComplement(Estimate *e, PetscReal h)
 {
   const PetscInt v = e->n_v, z = e->n_z, n = e->pencil.n;

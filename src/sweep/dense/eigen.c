@@ -5,11 +5,15 @@
 #include "eigen.h"
 #include "base/events.h"
 
-#define RIGID_FLOOR 100  /* kappa below this many times its rounding error is a rigid mode */
+/* kappa below this many times its rounding error is a rigid mode: where more than a percent of it is rounding it
+   cannot be told from zero. */
+#define RIGID_FLOOR 100
 #define SAME_VECTOR 1e-3 /* a vector closer than this to those before is the second one of a double zero */
-#define WINDOW_EDGE 1e-8 /* relative tolerance on the ends of the window */
+/* Relative tolerance on the ends of the window, so that a mode on an edge does not come and go by rounding. */
+#define WINDOW_EDGE 1e-8
 
-/* Shift, rad/s: the middle of the window, but not above the largest K_ii / M_ii */
+/* Shift h, rad/s, of (K + h C + h^2 M): real, at the geometric middle of the window; not above the largest
+   sqrt(K_ii / M_ii), beyond which K is small beside h^2 M and loses digits in the sum. */
 static PetscReal ShiftChoose(const DensePencil *pencil, const ReducedWindow *window)
 {
   const PetscReal high = window->high, low = PetscMax(window->low, 0.01 * high);
@@ -21,6 +25,8 @@ static PetscReal ShiftChoose(const DensePencil *pencil, const ReducedWindow *win
   return largest > 0 ? PetscMin(middle, PetscSqrtReal(largest)) : middle > 0 ? middle : 1;
 }
 
+/* Change of y^T K x by a relative rounding of each K_ii, eps sqrt(sum |K_ii| |x_i|^2 sum |K_ii| |y_i|^2): the
+   leading n rows of q. Divided by |y^T D x| it is that of kappa, (rad/s)^2. */
 PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex x[], const PetscComplex y[])
 {
   PetscReal sum_x = 0, sum_y = 0;
@@ -34,7 +40,10 @@ PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex 
   return PETSC_MACHINE_EPSILON * PetscSqrtReal(sum_x) * PetscSqrtReal(sum_y);
 }
 
-/* Whether lambda is zero within rounding: of K, here and on the mesh, and of the shifted solution */
+/* Whether lambda is zero within rounding of K, here and on the mesh, and of the shifted solution:
+      |lambda|^2 x^H M x <= 100 (noise of the dense K + eps x^H E x + eps h^2 x^H M x),
+   the last since eigenvalues come from those of a problem shifted by h. E = NULL: the mesh is left to
+   RoundingMarkRigid(). */
 static PetscErrorCode IsRigid(const DenseShifted *w, const PetscReal E[], PetscComplex lambda, const PetscComplex x[],
                               PetscBool *rigid)
 {
@@ -117,6 +126,8 @@ static PetscErrorCode List(const DenseShifted *w, const PetscReal E[], const Red
   PetscFunctionReturn(0);
 }
 
+/* Not collective. All eigenvalues of the dense problem are computed, N = n undamped or 2 n damped; left vectors
+   only of those that are listed, and with a symmetric pencil they are the right ones. */
 PetscErrorCode DensePencilEigen(const DensePencil *pencil, const PetscReal E[], const ReducedWindow *window,
                                 ReducedModes *modes)
 {

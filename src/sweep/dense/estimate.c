@@ -36,8 +36,10 @@
 #define MESH_ROUNDING   3    /* roundings of K on the mesh: its terms in a sum, products with it, their sums */
 #define SOLVER_ROUNDING 16   /* errors of LU and QR of a dense problem beside rounding in its matrix: 8 were measured */
 #define MEETING         1e-4 /* modes closer than this, relative, may meet */
-#define ESTIMATE_ABOVE  1.7  /* shift of the complement, times the largest |lambda| */
-#define EQUAL           1e-9 /* closer than this, relative, they always do */
+/* Shift of the complement, times the largest |lambda|: Q_vv(h) = K + h C + h^2 M has no eigenvalue at a real h
+   above all of them. Just above, a factor near 1 could meet a mode outside the window. */
+#define ESTIMATE_ABOVE 1.7
+#define EQUAL          1e-9 /* closer than this, relative, they always do */
 
 /* Qx [m][n] = Q(lambda) V x, or Q(lambda)^T V x, in coordinates of the whole basis */
 static PetscErrorCode PencilTimes(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
@@ -60,6 +62,8 @@ static PetscErrorCode PencilTimes(const Estimate *e, PetscComplex lambda, PetscB
   PetscFunctionReturn(0);
 }
 
+/* r [m][n_z] = Z_l^T Q(lambda) V x, or Z_r^T Q^T V y: with Qx of the whole basis and Z_l = Z - V T' the rows of Z
+   less T'^T times those of V. The right side takes T' (left), the left side T (right). */
 PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
                               const PetscComplex x[], PetscComplex r[])
 {
@@ -97,6 +101,8 @@ static PetscErrorCode SolveReal(const Estimate *e, PetscReal square, PetscInt m,
   PetscFunctionReturn(0);
 }
 
+/* r := Q_zz(lambda)^-1 r, [m][n_z]; undamped with a real lambda^2 by a real factorisation of both parts, at a
+   quarter of the cost. */
 PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m, PetscComplex r[], PetscBool *singular)
 {
   const PetscInt     n_z    = e->n_z;
@@ -194,8 +200,9 @@ static PetscInt ModesMeeting(const ReducedModes *modes, PetscInt i)
   return PetscMax(2, m);
 }
 
-/* |change| of kappa by a perturbation of size f of K: f / |y^T D x|, but not more than the m-th root that m modes
-   meeting at a defective point have */
+/* |change| of kappa by a perturbation of size f, (rad/s)^2, of K: f / |y^T D x|, but not more than |kappa| (f /
+   |kappa|)^(1/m), the m-th root that m modes meeting at a defective point have (V. B. Lidskii, USSR Comput. Math.
+   Math. Phys. 6, 1966): near it y^T D x tends to zero and the first would be without bound. */
 static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
 {
   const PetscReal size = cabs(modes->lambda[i]) * cabs(modes->lambda[i]), product = cabs(modes->product[i]);
@@ -204,7 +211,8 @@ static PetscReal KappaChange(const ReducedModes *modes, PetscInt i, PetscReal f)
   return f < root * product ? f / product : root;
 }
 
-/* |change| of lambda from that of kappa */
+/* |change| of lambda, rad/s, from that of kappa = -lambda^2: dkappa / (2 |lambda|), or its root where that is
+   larger than kappa itself. */
 static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal change)
 {
   const PetscReal size = cabs(modes->lambda[i]);
@@ -212,7 +220,8 @@ static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal c
   return modes->rigid[i] || change > size * size ? PetscSqrtReal(change) : change / (2 * size);
 }
 
-/* change [modes] of each mode alone in the unit of s, error of lambda */
+/* change [modes] of each mode alone in the unit of s, error of lambda. A singular Q_zz means a mode of the
+   complement at lambda itself: the error is then of the size of lambda. */
 static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal change[])
 {
   PetscFunctionBeginUser;
@@ -261,7 +270,8 @@ static PetscReal EstimateDistance(const Estimate *e, PetscComplex lambda, PetscC
   return sum > 0 ? cabs(d) / sum : 0;
 }
 
-/* Errors of the modes of cluster number first, if it has more than one */
+/* Errors of the modes of cluster number first, if it has more than one; what they were alone is replaced, except
+   where Q_zz is singular. */
 static PetscErrorCode Together(const Estimate *e, PetscInt first, const PetscInt cluster[], ReducedModes *modes)
 {
   PetscInt     *list, m = 0;
@@ -301,6 +311,8 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
   PetscFunctionReturn(0);
 }
 
+/* Not collective. error, sharp and noise of all modes, rad/s, are overwritten. Without Z (n = n_used) rounding
+   alone is left. Cost: one LU of Q_zz(lambda) a mode, n_z^3, and one real LU of Q_vv. */
 PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
   Estimate   e;
@@ -325,6 +337,8 @@ PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], Redu
   PetscFunctionReturn(0);
 }
 
+/* Modes beyond the growth of the window stay only where the basis knows them: estimated error at most window->rtol
+   |lambda|, which needs vectors Z. All stay with rtol = PETSC_MAX_REAL, for a basis that is the whole space. */
 PetscErrorCode ReducedDropInexact(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                   ReducedModes *modes)
 {

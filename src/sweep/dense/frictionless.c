@@ -1,6 +1,7 @@
 /*
-   The frictionless, undamped system among the values of the parameters: what friction and damping are proportional to
-   (mu, alpha, beta, viscosity, ...) is set to zero.
+   The frictionless, undamped system among the values of the parameters: what friction and damping are proportional
+   to (mu, alpha, beta, viscosity, ...) is set to zero, so that the sum of the terms is a symmetric K and M alone.
+   Where some parameter is in a term that stays as well, or a term has no parameter, it cannot be turned off.
 */
 #include "reduced.h"
 
@@ -34,6 +35,8 @@ static void FrictionVanish(const Reduced *reduced, const OperatorsFriction *fric
       ParameterVanish(reduced, friction->parameter[j], p);
 }
 
+/* p is overwritten term by term; false as soon as one that must vanish has a coefficient left, with p then of no
+   use. Powers below zero do not vanish with their parameter and are left alone. */
 PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[])
 {
   for (PetscInt t = 0; t < reduced->n_terms; t++) {

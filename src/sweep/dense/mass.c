@@ -6,8 +6,12 @@
 #include "reduced.h"
 #include <petscblaslapack.h>
 
-#define MASS_LEAST 1e-12 /* of sum_t |c_t| |v' A_t v|: less than that is rounding */
+/* Of sum_t |c_t| |v' A_t v|: less than that is rounding of the sum of the terms, n eps of some hundred vectors with
+   a margin. */
+#define MASS_LEAST 1e-12
 
+/* Whether a mass term has this parameter in its coefficient; -1 for any: without one M(p) is that of the full
+   solutions, checked there. */
 static PetscBool MassDepends(const Reduced *reduced, PetscInt parameter)
 {
   for (PetscInt t = 0; t < reduced->n_terms; t++) {
@@ -46,6 +50,8 @@ static PetscErrorCode MassRefuse(const Reduced *reduced, const PetscReal p[])
           text);
 }
 
+/* Cholesky factors of Ms - 1e-12 diag(sum_t |c_t| |v_i' A_t v_i|) exist exactly where that is positive definite;
+   n^3 / 3 operations, few beside the eigenproblem. Not collective: one rank may fail alone, with the error of all. */
 PetscErrorCode ReducedCheckMass(const Reduced *reduced, const PetscReal p[], const PetscReal Ms[])
 {
   const PetscInt n = reduced->n_used;

@@ -13,9 +13,11 @@
 */
 #include "eigen.h"
 
-#define PAIR       1e-7  /* relative difference of equal frequencies */
-#define SAME_VALUE 1e-9  /* relative difference of equal eigenvalues */
-#define DEFECTIVE  1e-10 /* least pivot, relative, of the products of a cluster that is not defective */
+#define PAIR       1e-7 /* relative difference of equal frequencies */
+#define SAME_VALUE 1e-9 /* relative difference of equal eigenvalues */
+/* Least pivot, relative, of the products y_i^T D x_j of a cluster that is not defective: below it their inverse
+   would have no more digits than vectors of modes SAME_VALUE apart have. */
+#define DEFECTIVE 1e-10
 
 void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[])
 {
@@ -95,7 +97,8 @@ PetscBool ReducedIsDamped(const Reduced *reduced, const PetscReal p[])
   return PETSC_FALSE;
 }
 
-/* Symmetric terms of M; symmetric = whether the pencil has no others */
+/* Ms [n][n] = symmetric terms of M, which lengths are measured in: positive definite, while M with unsymmetric
+   terms need give no norm. symmetric = whether the pencil has no others, so that y = x. */
 static PetscErrorCode SumSymmetric(const Reduced *reduced, const PetscReal p[], PetscReal Ms[], PetscBool *symmetric)
 {
   const PetscInt n = reduced->n_used;
@@ -168,7 +171,8 @@ static PetscErrorCode FactorProducts(PetscInt m, PetscComplex G[], PetscBLASInt 
   PetscFunctionReturn(0);
 }
 
-/* Left vectors of the cluster list[m] := G^-1 y, G_ij = y_i^T D x_j, unless that is defective; Dx [modes][n] */
+/* Left vectors of the cluster list[m] := G^-1 y, G_ij = y_i^T D x_j, unless that is defective; Dx [modes][n].
+   Afterwards y_i^T D x_j = 1 for i = j, else 0, until lengths are set. */
 static PetscErrorCode ClusterBiorthogonalise(PetscInt m, const PetscInt list[], const PetscComplex Dx[],
                                              ReducedModes *modes)
 {
@@ -217,7 +221,8 @@ static PetscErrorCode ClustersTreat(const PetscComplex Dx[], ReducedModes *modes
   PetscFunctionReturn(0);
 }
 
-/* Scales all vectors X [m][n] to X^H Ms X = 1 */
+/* Scales all vectors X [m][n] to X^H Ms X = 1: with a basis orthonormal in M of kg the shapes on the mesh have unit
+   modal mass, 1/sqrt(kg). */
 static PetscErrorCode VectorsNormalise(PetscInt n, PetscInt m, const PetscReal Ms[], PetscComplex X[])
 {
   PetscReal *square;
@@ -234,7 +239,8 @@ static PetscErrorCode VectorsNormalise(PetscInt n, PetscInt m, const PetscReal M
   PetscFunctionReturn(0);
 }
 
-/* ClustersTreat, lengths and products */
+/* Right vectors first, as D x must be of the final length; products after both have theirs. Then |y^T D x| <= 1 for
+   a symmetric M without damping. */
 static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[], ReducedModes *modes)
 {
   const PetscInt n = modes->size, m = modes->n;
@@ -257,6 +263,8 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
   PetscFunctionReturn(0);
 }
 
+/* K, C, M [n][n] at p, with the basis orthonormal in M: K (rad/s)^2, C rad/s, M without unit. n <= reduced->n
+   leading vectors. */
 PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
 {
   PetscFunctionBeginUser;
@@ -269,6 +277,8 @@ PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscI
   PetscFunctionReturn(0);
 }
 
+/* Not collective: each rank solves points of its own. Modes are inside the window with its tolerance, sorted,
+   scaled and biorthogonal; errors are 0 until ReducedEstimate(), unless modes beyond the growth had to be judged. */
 PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                             ReducedModes *modes)
 {
@@ -294,7 +304,8 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscFunctionReturn(0);
 }
 
-/* Vectors to begin with: those of the first mode of from, or numbers without structure */
+/* Vectors to begin with: those of the first mode of from, longer ones filled up with zeros as V has grown; or
+   numbers without structure, alike on all ranks, which no vector is orthogonal to. */
 static void FollowBegin(PetscInt n, const ReducedModes *from, PetscComplex x[], PetscComplex y[])
 {
   for (PetscInt i = 0; i < n; i++) {

@@ -9,6 +9,8 @@
 #include "reduced.h"
 #include "base/algebra/dense.h"
 
+/* E [n_v][n_v] in the unit of the reduced stiffness, (rad/s)^2. Terms whose D is NULL have no more rounding than
+   the dense matrices. */
 void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
 {
   const PetscInt n_v = reduced->n_used;
@@ -22,6 +24,8 @@ void RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[])
   }
 }
 
+/* product [m] = eps sqrt(x^H E x) sqrt(y^H E y), which over |y^T D x| is the change of kappa. A sum that rounding
+   made negative counts as zero. */
 PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[],
                                 const PetscComplex Y[], PetscReal product[])
 {
@@ -37,6 +41,8 @@ PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, con
   PetscFunctionReturn(0);
 }
 
+/* Marks modes of an undamped system that are zero: |lambda|^2 |y^T M x| <= ROUNDING_RIGID noise. Modes are sorted
+   by frequency, so that it ends at the first that is not small; E is formed only if there are such. */
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes)
 {

@@ -10,7 +10,8 @@
 #include "reduced.h"
 #include "base/algebra/dense.h"
 
-/* The derivative of lambda by the coefficient of term t */
+/* d lambda / d c_t = -lambda^k y^T A_t x / (2 lambda y^T D x), rad/s per unit of the coefficient; one product with
+   A_t for all parameters that are in it. */
 static PetscErrorCode TermDerivative(const Reduced *reduced, PetscInt t, const ReducedModes *modes, PetscInt i,
                                      PetscComplex Ax[], PetscComplex *derivative)
 {

@@ -15,11 +15,13 @@ PetscInt StandardSize(const StandardForm *f)
   return f->damped ? 2 * f->n : f->n;
 }
 
+/* s of lambda: kappa = -lambda^2, (rad/s)^2, or lambda, rad/s. */
 PetscComplex StandardValue(const StandardForm *f, PetscComplex lambda)
 {
   return f->damped ? lambda : -lambda * lambda;
 }
 
+/* lambda of s, of the two roots that with omega >= 0; a negative kappa gives the growing one, +sqrt(-kappa). */
 PetscComplex StandardLambda(const StandardForm *f, PetscComplex s)
 {
   const PetscComplex lambda = f->damped ? s : csqrt(-s);
@@ -27,6 +29,8 @@ PetscComplex StandardLambda(const StandardForm *f, PetscComplex s)
   return cimag(lambda) < 0 ? -lambda : lambda;
 }
 
+/* z [N] of x [n]. The second block is divided by scale, rad/s, a frequency of the size of |lambda|, so that both
+   blocks are of one size. */
 void StandardVector(const StandardForm *f, PetscComplex lambda, const PetscComplex x[], PetscComplex z[])
 {
   for (PetscInt i = 0; i < f->n; i++) {

@@ -6,9 +6,11 @@
 #include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
-#define FOLLOW_DROP  1e-8 /* directions of the basis that are left out beside the longest vector */
-#define FOLLOW_PARTS 4    /* real and imaginary parts of right and left vectors */
-#define FOLLOW_SUMS  5    /* K, friction, M and both C */
+/* Directions of the basis that are left out beside the longest vector. Products of modes are compared with
+   thresholds of 0.1 and more, and 1e-8 is far below them. */
+#define FOLLOW_DROP  1e-8
+#define FOLLOW_PARTS 4 /* real and imaginary parts of right and left vectors */
+#define FOLLOW_SUMS  5 /* K, friction, M and both C */
 
 /* The columns xr, xi, yr, yi of each mode of the eigensolver, as far as there are any */
 typedef struct {
@@ -45,8 +47,10 @@ static void TakeCoordinates(PetscInt size, const PetscScalar H[], const PetscInt
     x[r] = CMPLX(H[column[0] * size + r], column[1] < 0 ? 0 : H[column[1] * size + r]);
 }
 
-/* V = [V0, Q], orthonormal, of n0 vectors and what the columns hold beyond them, which they are replaced by; H
-   [.][size] are their coordinates, size that of V */
+/* V = [V0, Q], orthonormal in the plain dot product, of n0 vectors and what the columns hold beyond them, which
+   they are replaced by; H [.][size] are their coordinates, size that of V: columns = V H. The columns of H were
+   made with room for n0 + m rows and are moved together to size rows, from the first on, each to the left of where
+   it was. */
 static PetscErrorCode BasisJoin(BV V0, PetscInt n0, BV block, BV *V, PetscScalar **H, PetscInt *size)
 {
   PetscInt     m, n;
@@ -72,6 +76,8 @@ static PetscErrorCode BasisJoin(BV V0, PetscInt n0, BV block, BV *V, PetscScalar
   PetscFunctionReturn(0);
 }
 
+/* The modes as the eigensolver has them, with vectors as coordinates in V; those of rank 0 for all, as sums of dot
+   products may differ in the last digit. The memory gets room for as many branches as there are modes. */
 PetscErrorCode FollowRead(Sweep sweep, const FollowPoint *from, const ReducedModes *found, FollowPoint *point)
 {
   ModeColumns   columns;
@@ -141,6 +147,10 @@ static PetscErrorCode PencilGetAll(Pencil pencil, PencilParts *parts)
   PetscFunctionReturn(0);
 }
 
+/* The model between the two points, all V' A V [n][n] with V orthonormal: K, mu H and M of this point, C of this
+   one with the factor p[0] and C of the one before with p[1]. Frames take (0, 1) for the point before and (1, 0)
+   for this one: each has its own damping, both the stiffness and mass of the later one. C is copied, as the pencil
+   is gone when the next point is solved. */
 PetscErrorCode FollowModel(Pencil pencil, const FollowPoint *from, FollowPoint *point, Reduced *reduced)
 {
   const PetscInt n = point->modes.size;
@@ -171,6 +181,8 @@ PetscErrorCode FollowModelDestroy(Reduced *reduced)
   PetscFunctionReturn(0);
 }
 
+/* The modes in another basis: coordinates filled up with zeros where that has more vectors (U = NULL), or U' x with
+   U [size][old] orthonormal rows. Products and noise are not taken along; frames do not read them. */
 PetscErrorCode FollowMove(const ReducedModes *modes, PetscInt size, const PetscReal U[], ReducedModes *to)
 {
   const PetscInt   n = modes->n, old = modes->size;
@@ -202,6 +214,8 @@ static PetscErrorCode ModesTurn(PetscInt size, const PetscReal U[], ReducedModes
   PetscFunctionReturn(0);
 }
 
+/* V keeps what the modes and the remembered branches span, at most 4 real vectors each, by an orthonormal basis U
+   of their coordinates; else it would grow from point to point. Rank 0's U is that of all. */
 PetscErrorCode FollowShrink(FollowPoint *point)
 {
   const PetscInt      size = point->modes.size, n = point->modes.n, n_all = n + point->memory.modes.n;

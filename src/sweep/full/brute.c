@@ -27,7 +27,7 @@ static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
   PetscFunctionReturn(0);
 }
 
-/* Modes of the pencil at place i of the line, and, with left vectors, their branches */
+/* Branches need left vectors: without them the modes of each point stand alone, with branch -1. */
 static PetscErrorCode PencilSolve(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow)
 {
   PetscBool nearest, left;
@@ -41,7 +41,8 @@ static PetscErrorCode PencilSolve(Sweep sweep, Pencil pencil, PetscInt i, LinePo
   PetscFunctionReturn(0);
 }
 
-/* Modes at place i of the line, about the sliding state there where statics tell it */
+/* The pencil about a sliding state belongs to its point alone, and is freed with it; statics let go of their
+   factors before the eigensolver makes its own. */
 static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, LinePoints *points, Follow *follow)
 {
   const PetscReal *p = &points->p[i * sweep->grid.n_parameters];
@@ -65,6 +66,7 @@ static PetscErrorCode PointSolve(Sweep sweep, PetscInt i, LinePoints *points, Fo
   PetscFunctionReturn(0);
 }
 
+/* Points in order, each collective; those that an earlier run kept are taken up without a solution. */
 PetscErrorCode SweepBrute(Sweep sweep)
 {
   LinePoints points;
@@ -117,7 +119,8 @@ static PetscReal LargestDistance(PetscInt n, const Mode full[], PetscReal growth
   return largest;
 }
 
-/* True errors beside the sum of what the two solutions state */
+/* ratio = |lambda_full - lambda_reduced| / (error_full + error_reduced), the largest of all modes, and how many
+   exceed 1. A NaN counts as exceeding, hence the comparisons by !(<=). */
 static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced, SweepCheck *check)
 {
   for (PetscInt i = 0; i < n; i++) {
@@ -190,6 +193,9 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscFunctionReturn(0);
 }
 
+/* Check i lies in the middle of gap (2 i + 1) gaps / (2 n_checks) of the first axis, so that checks are spread
+   evenly and two of them never share a gap; along a second axis gaps are taken in another order, (7 j + 3) mod
+   gaps, off the diagonal of the grid. */
 PetscErrorCode SweepCheckPlaces(Sweep sweep)
 {
   const SweepGrid *grid = &sweep->grid;

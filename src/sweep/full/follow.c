@@ -11,7 +11,7 @@
 */
 #include "follow.h"
 
-/* Branches of the modes of a point from those of another one, in the same basis */
+/* p of the model are the factors of the damping of this point and of the one before (FollowModel()). */
 static PetscErrorCode PointStepFrom(Sweep sweep, StepKind kind, const Reduced *reduced, const FollowPoint *from,
                                     FollowPoint *point)
 {
@@ -42,7 +42,8 @@ static PetscErrorCode PointShare(Sweep sweep, PetscInt n_before, FollowPoint *po
   PetscFunctionReturn(0);
 }
 
-/* Branches of all modes of a point from those of another one (NULL: none), and events on the way */
+/* The first point of all begins a branch with each mode. The one before is brought into the longer basis of this
+   one: its coordinates are those of the leading vectors, zeros follow. */
 static PetscErrorCode PointFollow(Sweep sweep, Pencil pencil, StepKind kind, const FollowPoint *from,
                                   FollowPoint *point)
 {
@@ -99,6 +100,8 @@ static PetscErrorCode PointCreate(Sweep sweep, const FollowPoint *from, PetscInt
   PetscFunctionReturn(0);
 }
 
+/* The points kept: the one before, and with two axes the first one of the line, to which the next line is linked.
+   Both may be the same point, which is then freed once. */
 PetscErrorCode FollowTake(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow)
 {
   const SweepPlace *place = &sweep->grid.place[points->first + i];

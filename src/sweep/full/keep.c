@@ -22,7 +22,8 @@ static PetscErrorCode FollowModesMove(JournalPack *pack, ReducedModes *modes)
   PetscFunctionReturn(0);
 }
 
-/* Rows of this rank: where they begin, [rows + 1], columns and values */
+/* Rows of this rank in the order of the matrix: where they begin, [rows + 1], columns and values; NULL for what is
+   not wanted. */
 static PetscErrorCode RowsGet(Mat C, PetscInt begin[], PetscInt column[], PetscScalar value[])
 {
   PetscInt first, last;
@@ -44,6 +45,8 @@ static PetscErrorCode RowsGet(Mat C, PetscInt begin[], PetscInt column[], PetscS
   PetscFunctionReturn(0);
 }
 
+/* Collective on reading: the matrix is made of the same rows on the same ranks. Only the preallocation of the type
+   that C has takes effect. */
 static PetscErrorCode DampingMove(MPI_Comm comm, const FollowHeader *h, JournalPack *pack, Mat *C)
 {
   PetscInt    *begin, *column;
@@ -110,6 +113,8 @@ static PetscErrorCode HeaderMake(MPI_Comm comm, const FollowHeader *h, FollowPoi
   PetscFunctionReturn(0);
 }
 
+/* One function for both directions, so that what is read is in the order in which it was written; the vectors are
+   an item of their own, [size][n_local]. */
 PetscErrorCode FollowPointMove(MPI_Comm comm, JournalPack *pack, FollowPoint *point, JournalItem *vectors)
 {
   FollowHeader h;

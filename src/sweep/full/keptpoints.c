@@ -19,7 +19,8 @@ typedef struct {
   PetscInt n_places, n_events, n_statuses, has_before, has_first, same;
 } StateHeader;
 
-/* Moves place i of the line behind those before it, or back */
+/* Moves place i of the line behind those before it, or back. Reading sets the counts of branches and events as they
+   were after that place, so that LineFinish() does the same as then. */
 static PetscErrorCode PlaceMove(Sweep sweep, PetscInt i, LinePoints *points)
 {
   JournalPack  *pack  = &sweep->places;
@@ -85,6 +86,8 @@ static PetscErrorCode StateMove(Sweep sweep, StateHeader *h, JournalPack *pack, 
   PetscFunctionReturn(0);
 }
 
+/* Collective. The pack of places grows with each; the file is written anew when it is due (JournalIsDue()), as
+   writing all places after each would cost the square of their number. */
 PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follow *follow)
 {
   JournalPack pack = {.write = PETSC_TRUE};
@@ -118,6 +121,8 @@ PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follo
   PetscFunctionReturn(0);
 }
 
+/* Reading goes on until the pack is at its end and turns to writing: the places after it are solved and put behind
+   the same pack. */
 PetscErrorCode SweepTakePlace(Sweep sweep, PetscInt i, LinePoints *points, PetscBool *taken)
 {
   PetscFunctionBeginUser;

@@ -1,14 +1,18 @@
 /*
-   Projection on real modes, for comparison with other programs: at each point the pencil is projected on real modes of
-   that point (basis/fill.c), as a deck for each value does it. Nothing joins two points: there are no branches and no
-   onsets.
+   Projection on real modes, for comparison with other programs: at each point the pencil is projected on the n_real
+   lowest real modes X of that point (basis/fill.c), as a deck for each value does it,
+
+      (lambda^2 X' M X + lambda X' C X + X' K X) z = 0,
+
+   lambda in rad/s. Nothing joins two points: there are no branches and no onsets, and no error is known.
 */
 #include "follow.h"
 
 #define SHIFT_LOW  0.1  /* of the lower end of the band, */
 #define SHIFT_HIGH 1e-3 /* or of the upper one: distance of the shift below zero, where zeros are regular */
 
-/* The basis at a point, which is all that the sweep then knows of */
+/* The shift is -omega^2, (rad/s)^2: below zero, so that zeros of free bodies are regular, and the nearest modes are
+   the lowest. */
 static PetscErrorCode RealBasisMake(Sweep sweep, const PetscReal p[])
 {
   const PetscReal omega    = PetscMax(SHIFT_LOW * sweep->window.low, SHIFT_HIGH * sweep->window.high);
@@ -23,6 +27,7 @@ static PetscErrorCode RealBasisMake(Sweep sweep, const PetscReal p[])
   PetscFunctionReturn(0);
 }
 
+/* Replaces the basis of the sweep. One group: rank 0 solves the dense problem of the one point. */
 PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], const ReducedWindow *window, ReducedModes *modes)
 {
   const PointGroups groups = {sweep->comm, 1, NULL};

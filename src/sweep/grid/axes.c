@@ -8,7 +8,8 @@
 #include "base/options/axes.h"
 #include <string.h>
 
-#define MAX_POINTS 1000000 /* of a grid */
+/* Of a grid: more points are a mistake in the values, not a sweep. */
+#define MAX_POINTS 1000000
 
 /* Raises an error for the stiffness damping of a part with a loss factor, which is part of it */
 static PetscErrorCode AxisCheckLoss(Sweep sweep, Model model, const char name[])
@@ -29,7 +30,8 @@ static PetscErrorCode AxisCheckLoss(Sweep sweep, Model model, const char name[])
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a parameter that would be overwritten at every point */
+/* Raises the error for a parameter that would be overwritten at every point: a stiffness that is identified, a
+   force that the sliding state gives. */
 static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
 {
   const ContactInterface *interfaces;
@@ -73,7 +75,8 @@ static PetscErrorCode AxisCheckLoad(Sweep sweep, const char option[], const char
   PetscFunctionReturn(0);
 }
 
-/* A parameter of axis k */
+/* A parameter of axis k. One that changes modes through the sliding state alone (a load, mu with statics) needs
+   -modes_contact static. */
 static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[], PetscInt k, const char **unit)
 {
   const Sweep               sweep = ctx;

@@ -1,11 +1,16 @@
 /*
-   The values of a sweep: ranges and lists from the options, and the grid that one or two of them span.
+   The values of a sweep: ranges and lists from the options, and the grid that one or two of them span. Points are
+   numbered with the first parameter running fastest, point = i_0 + n_0 i_1; places are the points and, between
+   them, those that a change of contact status needs (place->point = -1), in the order of the line. at [points] =
+   place of each point.
 */
 #include "grid.h"
 #include "sweep/basis/points.h"
 #include <squeal/options.h>
 #include <string.h>
 
+/* Ends of one sign that differ by more than RATIO_FROM make an axis of ratios, also where the option did not ask
+   for one: distances and middles are then logarithmic. */
 PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char text[], PetscInt *n, PetscReal *value[],
                                PetscBool *ratio)
 {
@@ -73,6 +78,7 @@ static void GridNumber(SweepGrid *grid, PetscInt k)
     if (grid->place[k].point >= 0) grid->at[grid->place[k].point] = k;
 }
 
+/* Places behind k move up by one, and the points among them are told where they now are. */
 PetscErrorCode GridInsert(SweepGrid *grid, PetscInt k, const SweepPlace *place)
 {
   PetscFunctionBeginUser;
@@ -99,6 +105,8 @@ PetscInt GridAxisOf(const SweepGrid *grid, PetscInt parameter)
   return -1;
 }
 
+/* All parameters of a place, each in its own unit: the scene's, then closed_g = 0 or 1 of the groups for the
+   status, then what the axes move; NULL: the scene itself with the first status. */
 void GridFill(const SweepGrid *grid, const SweepPlace *place, PetscReal p[])
 {
   const PetscInt first = grid->n_parameters - grid->n_groups, status = place ? place->status : 0;
@@ -114,6 +122,7 @@ void GridPoint(const SweepGrid *grid, PetscInt point, PetscReal p[])
   GridFill(grid, &grid->place[grid->at[point]], p);
 }
 
+/* Arithmetic middle, or the geometric one, of the sign of both, on an axis of ratios. */
 PetscReal GridMiddle(const SweepGrid *grid, PetscInt axis, PetscReal a, PetscReal b)
 {
   return grid->ratio[axis] ? (a < 0 ? -1 : 1) * PetscSqrtReal(a * b) : 0.5 * (a + b);

@@ -9,9 +9,12 @@
 */
 #include "sweep/sweepimpl.h"
 
-#define MAX_BISECTIONS 30   /* of a sweep */
-#define BRACKET_WIDTH  1e-4 /* relative width of a bracket that is not divided any more */
+/* Of a sweep, each a contact problem of statics. */
+#define MAX_BISECTIONS 30
+/* Relative width of a bracket that is not divided any more. From steps of a tenth it takes 10 bisections. */
+#define BRACKET_WIDTH 1e-4
 
+/* Pairs of no group (-1) are open. The number of the status is alike on all ranks (StatusListAdd()). */
 PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt *status)
 {
   PetscBool *closed;
@@ -24,6 +27,7 @@ PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt 
   PetscFunctionReturn(0);
 }
 
+/* place = NULL: the scene's own values. */
 PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status)
 {
   SlidingState state;
@@ -57,7 +61,9 @@ static PetscInt WidestChange(const SweepGrid *grid)
   return at;
 }
 
-/* Narrows the brackets */
+/* Narrows the brackets: a middle of one of the two statuses halves one; of a third status makes two. What is left
+   of bisections are places amid their own status, which tell nothing and are taken out, from the back, so that
+   indices stay right. */
 static PetscErrorCode ChangesBracket(Sweep sweep)
 {
   SweepGrid *grid = &sweep->grid;
@@ -126,7 +132,8 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
   PetscFunctionReturn(0);
 }
 
-/* Forms the matrices with all groups closed, so that their pattern holds every term, whichever point comes first */
+/* Forms the matrices with all groups closed, with and without friction, so that their pattern holds every term,
+   whichever point comes first: no later sum then meets an entry without a place. */
 static PetscErrorCode StatusGroupsFormPattern(Sweep sweep)
 {
   const SweepGrid *grid = &sweep->grid;
@@ -167,6 +174,8 @@ static PetscErrorCode StatusGroupsSet(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
+/* The reduced model needs a pencil that is affine in closed_g. Where statics say it is not, the method falls back
+   to full solutions, unless something was asked for that only the reduced one has. */
 PetscErrorCode SweepChooseMethod(Sweep sweep)
 {
   PetscBool affine, asked = sweep->method_given || sweep->rtol_given || sweep->max_given ? PETSC_TRUE : PETSC_FALSE;

@@ -15,7 +15,7 @@ PetscErrorCode StatusListCreate(MPI_Comm comm, PetscInt n_local, StatusList *lis
   PetscFunctionReturn(0);
 }
 
-/* The status of the list that equals this one on all ranks, or -1 */
+/* The status of the list that equals this one on all ranks, or -1. One reduction for all statuses of the list. */
 static PetscErrorCode StatusFind(const StatusList *list, const PetscBool closed[], PetscInt *index)
 {
   PetscMPIInt n;
@@ -50,7 +50,8 @@ PetscErrorCode StatusListAdd(StatusList *list, const PetscBool closed[], PetscIn
   PetscFunctionReturn(0);
 }
 
-/* Divides the n groups of pairs by status s */
+/* Divides the n groups of pairs by status s: group g gives 2 g (open there) and 2 g + 1 (closed), of which those
+   that some rank has pairs of are numbered anew, in this order on all ranks. n never exceeds the number of pairs. */
 static PetscErrorCode GroupsDivide(const StatusList *list, PetscInt s, PetscInt *n, PetscInt group[])
 {
   const PetscBool *closed = list->closed + s * list->n_local;
@@ -70,7 +71,8 @@ static PetscErrorCode GroupsDivide(const StatusList *list, PetscInt s, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* history [n][statuses] = 1 where the group is closed */
+/* history [n][statuses] = 1 where the group is closed. All pairs of a group agree; ranks without pairs of it have
+   zeros, hence the maximum. */
 static PetscErrorCode GroupsHistory(const StatusList *list, PetscInt n, const PetscInt group[], PetscInt history[])
 {
   PetscMPIInt length;
@@ -85,6 +87,8 @@ static PetscErrorCode GroupsHistory(const StatusList *list, PetscInt n, const Pe
   PetscFunctionReturn(0);
 }
 
+/* group [pairs]: -1 open everywhere, 0 closed everywhere, else 1, 2, ... of n_groups; value [statuses][n_groups] =
+   closed_g. */
 PetscErrorCode StatusListGroup(const StatusList *list, PetscInt group[], PetscInt *n_groups, PetscReal **value)
 {
   PetscInt *history, *number, n = 1;

@@ -63,7 +63,8 @@ static PetscErrorCode BranchScore(const Branch *branch, const ModeFrame *b, Pets
   PetscFunctionReturn(0);
 }
 
-/* Hands the vectors on */
+/* Hands the vectors on. A branch is joined from when it shares a cluster whose component had several clusters at a,
+   and keeps the vectors from before until it is alone again: in the common plane vectors are any combinations. */
 static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, const Match *match)
 {
   PetscFunctionBeginUser;
@@ -78,6 +79,9 @@ static PetscErrorCode BranchListUpdate(BranchList *list, const ModeFrame *b, con
   PetscFunctionReturn(0);
 }
 
+/* Modes are assigned by strength, joined branches by their score with remembered vectors; order = frequency that a
+   branch had before it joined, so that the order within the plane is that before. Modes of b without a partner
+   begin branches. */
 PetscErrorCode BranchListContinue(BranchList *list, const ModeFrame *a, ModeFrame *b, Match *match)
 {
   const PetscInt na = a->modes.n, nb = b->modes.n;
@@ -121,6 +125,8 @@ static PetscErrorCode BranchRecall(Branch *branch, const ModeFrame *frame, const
   PetscFunctionReturn(0);
 }
 
+/* The branches as they were after point a, from the modes there and the remembered vectors of joined ones; those
+   without a mode at a have no vectors and never match again. */
 PetscErrorCode BranchListResume(BranchList *list, PetscInt n_branches, const ModeFrame *a, const BranchMemory *memory)
 {
   PetscFunctionBeginUser;

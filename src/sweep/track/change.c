@@ -13,7 +13,7 @@ static PetscErrorCode BranchEventsAdd(BranchEvents *events, const BranchEvent *e
 }
 
 /* The branch with which mode i of an unstable point interacts: its partner of the pair, with damping the nearest
-   eigenvalue */
+   eigenvalue within a tenth of |lambda|; -1 for none. */
 static PetscInt EventPartner(const ModeFrame *frame, PetscInt i)
 {
   const PetscComplex lambda  = frame->modes.lambda[i];
@@ -40,6 +40,8 @@ static BranchEvent EventOf(const ModeFrame *frame, PetscInt i, const ModeFrame *
                        .branch    = {frame->branch[i], EventPartner(frame, i)}};
 }
 
+/* frame is the point where the mode is unstable. begins: with growing values of the parameter the mode becomes
+   unstable, whichever way the line runs. A real eigenvalue is a divergence. */
 PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
 {
   const PetscBool begins = frame->value > other->value ? PETSC_TRUE : PETSC_FALSE;
@@ -54,6 +56,7 @@ PetscErrorCode ChangeAdd(const ModeFrame *frame, PetscInt i, const ModeFrame *ot
   PetscFunctionReturn(0);
 }
 
+/* Across a change of status there is no value to find: the middle of the step, its half width as the error. */
 PetscErrorCode ChangeAddJump(const ModeFrame *frame, PetscInt i, const ModeFrame *other, BranchEvents *events)
 {
   BranchEvent event = EventOf(frame, i, other);

@@ -14,6 +14,8 @@
 #define CLOSE     1e-6 /* relative difference of eigenvalues of one cluster */
 #define CONJUGATE 1e-7 /* relative difference of frequencies of a pair */
 
+/* The mode at -conj(lambda) within CONJUGATE |lambda|, or -1; with damping, or for lambda on an axis, there is
+   none. */
 PetscInt ModeFramePartner(const ModeFrame *f, PetscInt i)
 {
   const PetscComplex lambda = f->modes.lambda[i];
@@ -29,7 +31,8 @@ PetscInt ModeFramePartner(const ModeFrame *f, PetscInt i)
   return best;
 }
 
-/* Whether the vectors of modes i and j mean nothing one by one */
+/* Whether the vectors of modes i and j mean nothing one by one: closer than CLOSE |lambda|, or than both errors,
+   rad/s, together. */
 static PetscBool ModesAreClose(const ReducedModes *modes, PetscInt i, PetscInt j)
 {
   const PetscReal distance = cabs(modes->lambda[i] - modes->lambda[j]);
@@ -37,6 +40,7 @@ static PetscBool ModesAreClose(const ReducedModes *modes, PetscInt i, PetscInt j
   return distance <= CLOSE * cabs(modes->lambda[i]) + modes->error[i] + modes->error[j] ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* cluster[i] = first mode of that of mode i; membership is transitive. */
 static void FrameCluster(ModeFrame *f)
 {
   for (PetscInt i = 0; i < f->modes.n; i++) f->cluster[i] = i;
@@ -152,6 +156,9 @@ static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
   PetscFunctionReturn(0);
 }
 
+/* A copy of the modes with X, Y, W [n][N] in the standard form: W = B^T Y, and w_i^T x_j = 1 for i = j, else 0
+   within clusters by construction and between them by the eigenproblem. branch = -1. refine: planes are improved by
+   inverse iteration (onset/plane.c). */
 PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, PetscBool refine,
                                const ReducedModes *modes, ModeFrame **frame)
 {
@@ -211,6 +218,8 @@ PetscInt ModeFrameClusterSize(const ModeFrame *f, PetscInt i)
   return size;
 }
 
+/* sum [cluster] += sum over its modes j of (w^T x_j) (w_j^T x): the coefficient of (w, x) in itself by way of the
+   cluster. */
 void ModeFrameOverlap(const ModeFrame *f, const PetscComplex w[], const PetscComplex x[], PetscComplex sum[])
 {
   for (PetscInt j = 0; j < f->modes.n; j++)

@@ -22,11 +22,14 @@
 */
 #include "match.h"
 
-#define NARROW       1e-12 /* |d| relative to kappa^2 below which a coalescence is not distinguished from a crossing */
+#define NARROW 1e-12 /* |d| relative to kappa^2 below which a coalescence is not distinguished from a crossing */
+/* Equal steps at which the growth of a damped pair is looked at; it has no more than few extremes, and each look is
+   a quadratic equation. */
 #define GROWTH_STEPS 32
 #define MIXED        0.1 /* |t^2 c| over |delta / 2|^2 from which vectors of crossing modes mix */
 
-/* S_b of modes i, k [2 * 2], row by row */
+/* S_b of modes i, k [2 * 2], row by row: the inverse of the 2 x 2 part of G = Y^T B X times that of H = Y^T A X.
+   False where vectors of a are nearly dependent in B of b, det G < 1e-3 of its diagonal product. */
 static PetscBool PairMatrix(const PetscComplex H[], const PetscComplex G[], PetscInt n, PetscInt i, PetscInt k,
                             PetscComplex S[])
 {
@@ -41,7 +44,9 @@ static PetscBool PairMatrix(const PetscComplex H[], const PetscComplex G[], Pets
   return PETSC_TRUE;
 }
 
-/* Undamped: lowest point of d(t) when it is below -least */
+/* Lowest point of d(t) = (delta_a + t slope)^2 / 4 + t^2 c when it is below -least: d'(t) = 0 at t = -delta_a slope
+   / (slope^2 + 4 c). Without coupling of opposite sign (c >= 0) d is a sum of squares. At t = 1, the other end,
+   which is known to be stable, the middle is asked instead. */
 static PetscBool PredictUndamped(PetscReal delta_a, PetscReal delta_b, PetscReal coupling, PetscReal least,
                                  PetscReal *t)
 {
@@ -65,7 +70,7 @@ static PetscReal PairGrowth(const PetscComplex s[], const PetscComplex S[], Pets
   return creal((p + q) / 2) + PetscAbsReal(creal(root));
 }
 
-/* Damped: where the growth exceeds the limit most */
+/* Where the growth exceeds the limit most, first where the frequencies cross: there the coupling does most. */
 static PetscBool PredictDamped(const PetscComplex s[], const PetscComplex S[], PetscReal limit, PetscReal *t)
 {
   const PetscReal delta_a = cimag(s[0] - s[1]), delta_b = cimag(S[0] - S[3]);
@@ -82,7 +87,8 @@ static PetscBool PredictDamped(const PetscComplex s[], const PetscComplex S[], P
   return *t > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether modes whose frequencies cross at t veer instead: they mix there, and the gap is wider than the resolution */
+/* Whether modes whose frequencies cross at t veer instead: they mix there, |t^2 c| >= MIXED |delta / 2|^2, and the
+   gap 2 |sqrt(d)| is wider than the resolution, what is left of the step after all halvings. */
 static PetscBool PredictVeering(PetscComplex delta_a, PetscComplex delta_b, PetscComplex coupling, PetscBool damped,
                                 PetscReal resolution, PetscReal *t)
 {
@@ -123,7 +129,8 @@ static PetscBool ModesSwap(const IntervalStep *step, PetscInt i, PetscInt k)
   return cimag(p[i] - p[k]) * cimag(q[other[i]] - q[other[k]]) < 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Looks at modes i and k, S [2 * 2] */
+/* least, in the unit of d: rounding of kappa^2, or (2 L omega)^2, the discriminant at which the growth is the limit
+   L; limit, rad/s, is that of a damped pair, no less than its errors. */
 static PetscBool PredictPair(const IntervalStep *step, PetscInt i, PetscInt k, const PetscComplex S[], PetscReal *t)
 {
   const ModeFrame    *a = step->a, *b = step->b;
@@ -162,6 +169,8 @@ static PetscErrorCode PredictStep(const IntervalStep *step, PetscReal *t, PetscB
   PetscFunctionReturn(0);
 }
 
+/* From both ends: a pair may be predicted from one alone, as the model is only good to second order. t in [1e-3, 1
+   - 1e-3], so that each division makes both parts shorter. */
 PetscErrorCode IntervalPredict(const ModeFrame *a, const ModeFrame *b, const Match *match, PetscReal resolution,
                                PetscReal *t, PetscBool *found)
 {

@@ -24,7 +24,8 @@
 #define LEAST   0.1   /* score below which modes of an uncertain component are not matched */
 #define ROUNDED 1e-12 /* of an eigenvalue */
 
-/* strength[i, j] of all modes */
+/* strength [na][nb] of all modes, by clusters: |tr(P Q)| over the smaller number of modes; alike for all modes of a
+   cluster. na nb products of length N. */
 static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb;
@@ -45,7 +46,8 @@ static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match
   PetscFunctionReturn(0);
 }
 
-/* Whether the modes i of a and j of b belong together */
+/* Whether the modes i of a and j of b belong together: strength of at least SMALL, and BESIDE that of the best
+   competitor of either. */
 static PetscBool MatchConnects(const Match *match, PetscInt i, PetscInt j)
 {
   const PetscReal s    = match->strength[i * match->nb + j];
@@ -56,7 +58,8 @@ static PetscBool MatchConnects(const Match *match, PetscInt i, PetscInt j)
   return s >= SMALL && s >= BESIDE * best ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Components of the graph of connections, numbered from 0 */
+/* Connected components of the graph of clusters, numbered from 0: a label for each of na + nb modes, joined along
+   each connection; numbers in the order of first members. */
 static PetscErrorCode ComponentsFind(const ModeFrame *a, const ModeFrame *b, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb;
@@ -98,7 +101,8 @@ static PetscBool ModeHasLeft(const ModeFrame *a, PetscInt i, const ReducedWindow
   return inside <= cabs(lambda - a->modes.lambda[i]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Modes of a without partner in b: certain when they have left the window */
+/* Modes of a without partner in b: certain when they have left the window. Without a window, as between lines,
+   nothing is asked of them. */
 static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window,
                                   const PetscInt component[], const PetscInt partners[], PetscBool certain[])
 {
@@ -118,7 +122,8 @@ static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const 
   PetscFunctionReturn(0);
 }
 
-/* Judges each component */
+/* sum = strengths of the component, each cluster pair once: with nothing lost it is the number of pieces on the
+   side that has more. */
 static PetscErrorCode ComponentsJudge(const ModeFrame *a, const ModeFrame *b, const ReducedWindow *window, Match *match)
 {
   const PetscInt na = match->na, nb = match->nb, n = match->n_components;
@@ -210,7 +215,8 @@ static PetscBool MatchIsUnique(const Match *match, PetscInt i, PetscInt j)
   return match->strength[i * match->nb + j] >= match->least && n == 2 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The next pair to assign, the one of the largest score; false when there is none left */
+/* The next pair to assign, the one of the largest score, with PLACE more for keeping its place; false when there is
+   none left. Ties go to the lower indices, so that all ranks that hold the same numbers decide alike. */
 static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_j)
 {
   const Match *match = s->match;
@@ -229,6 +235,8 @@ static PetscBool BestPair(const Assignment *s, PetscInt *best_i, PetscInt *best_
   return best > PETSC_MIN_REAL ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* from [nb] = mode of a, or -1. order [na], rad/s: what places in a are counted by, NULL: omega. na nb comparisons
+   a pair, of small numbers. */
 PetscErrorCode MatchAssign(const ModeFrame *a, const ModeFrame *b, const PetscReal score[], const PetscReal order[],
                            Match *match)
 {

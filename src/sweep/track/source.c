@@ -15,6 +15,8 @@ static void SourceSetValue(ModeSource *source, PetscReal value)
   BranchLineSet(source->line, value, source->p);
 }
 
+/* Damped or not is asked at both ends and in the middle: a coefficient may vanish at an end, or at both. scale,
+   rad/s, is the upper end of the window, alike for all points, so that products of two points have one measure. */
 PetscErrorCode ModeSourceCreate(const Reduced *reduced, const BranchLine *line, ModeSource *source)
 {
   const PetscReal first = line->value[0], last = line->value[line->n - 1], high = line->window->high;
@@ -39,6 +41,8 @@ PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const Reduced
   PetscFunctionReturn(0);
 }
 
+/* All modes of the window at a value; errors only where they are wanted, as the estimate costs more than the
+   solution. */
 PetscErrorCode ModeSourceSolve(ModeSource *source, PetscReal value, ModeFrame **frame)
 {
   ReducedModes modes = {0};

@@ -22,7 +22,8 @@ static PetscReal ModesScale(const ReducedModes *a, const ReducedModes *b)
   return largest > 0 ? largest : 1;
 }
 
-/* The two points as frames, each in the pencil of its p, and what their modes have in common */
+/* The two points as frames, each in the pencil of its p, in one standard form, and what their modes have in common.
+   No refinement: planes of full solutions are as good as they are. */
 static PetscErrorCode PointsCompare(const Reduced *reduced, const PetscReal *const p[2],
                                     const BranchPoint *const point[2], const ReducedWindow *window, ModeFrame *frame[2],
                                     Match *match)
@@ -63,7 +64,7 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
   PetscFunctionReturn(0);
 }
 
-/* Events of the modes that are unstable on one side only */
+/* Events of the modes that are unstable on one side only; a mode of a that goes on unstable is told by goes_on. */
 static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Match *match, BranchEvents *events)
 {
   PetscBool *goes_on;
@@ -104,7 +105,8 @@ PetscErrorCode TrackJump(const Reduced *reduced, const PetscReal p[], const Bran
   PetscFunctionReturn(0);
 }
 
-/* g of onset.c at a point, of n modes that are a pair, or several, at the other one; m = their mean omega^2 */
+/* g of onset.c at a point, of n modes that are a pair, or several, at the other one, times n for a pair, which does
+   not move its zero; m = their mean omega^2, (rad/s)^2. L, rad/s, is the limit of growth. */
 static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member[], PetscReal *m)
 {
   const PetscComplex *lambda = f->modes.lambda;
@@ -119,8 +121,8 @@ static PetscReal StepValue(const ModeFrame *f, PetscInt n, const PetscInt member
   return n > 1 ? -creal(square) - n * 4 * L * L * (*m + L * L) : -*m - PetscSqr(f->limit.growth);
 }
 
-/* Where the event of mode i, unstable at u and not at s, lies: its zero of g, or half way where to [modes of u], the
-   modes of s, does not tell the ends (NULL: none) */
+/* Where the event of mode i, unstable at u and not at s, lies: the zero of g on the straight line, t = g_u / (g_u -
+   g_s) from u, or half way where to [modes of u], the modes of s, does not tell the ends (NULL: none). */
 static PetscErrorCode StepPlace(const ModeFrame *u, const ModeFrame *s, PetscInt i, const PetscInt to[],
                                 BranchEvent *event)
 {

@@ -11,7 +11,9 @@
 #include "change.h"
 #include "base/events.h"
 
-#define DEPTH  10
+/* Divisions of a step by halves: 2^-10, a thousandth of it, remains. */
+#define DEPTH 10
+/* Solutions between two points at most; a step that needs more goes through changes that a finer sweep should show. */
 #define BUDGET 200
 
 typedef struct {
@@ -39,7 +41,8 @@ static PetscErrorCode TrackerAdvance(Tracker *tracker, const ModeFrame *a, ModeF
   PetscFunctionReturn(0);
 }
 
-/* Whether to divide the step, and where */
+/* Whether to divide the step, and where. A certain match is assigned for trial first, as the prediction needs
+   partners. The resolution is the share of this step that DEPTH leaves. */
 static PetscErrorCode TrackerDivides(const ModeFrame *a, const ModeFrame *b, PetscInt depth, Match *match,
                                      PetscReal *value, PetscBool *divides)
 {
@@ -56,7 +59,8 @@ static PetscErrorCode TrackerDivides(const ModeFrame *a, const ModeFrame *b, Pet
   PetscFunctionReturn(0);
 }
 
-/* From a, whose branches are known, to b */
+/* From a, whose branches are known, to b: by recursion, left part first, since branches are handed on in order.
+   Depth and budget bound it. */
 static PetscErrorCode TrackerStep(Tracker *tracker, const ModeFrame *a, ModeFrame *b, PetscInt depth)
 {
   Match      match;

@@ -22,7 +22,8 @@ static PetscComplex BlockProduct(const Reduced *reduced, const PetscReal A[], co
   return sum;
 }
 
-/* The oscillating mode that shares most of the motion of mode i, or -1 */
+/* The oscillating mode that shares most of the motion of mode i, max(|x^T M z|, |x^H M z|) of vectors of unit
+   length in M, or -1: the transposed product tells a mirror image, the conjugated one the same turning. */
 static PetscInt FramePartner(const ModeFrame *f, PetscInt i)
 {
   const Reduced block   = {.n = f->pencil.n, .n_used = f->modes.size};
@@ -65,6 +66,8 @@ static void PairAddTerm(const ModeFrame *f, PetscInt t, PetscReal c, const Petsc
   MechanismAdd(pair, &forms);
 }
 
+/* slope = y^T Q'(lambda) x = 2 lambda y^T D x. Only terms that can feed a mode count: damping and what is not
+   symmetric. */
 Mechanism ModeFrameMechanism(const ModeFrame *f, PetscInt i)
 {
   const PetscInt at[2] = {i, FramePartner(f, i)};

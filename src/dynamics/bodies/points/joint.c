@@ -1,10 +1,12 @@
 /*
-   Bushings and points: forces B'(k q + c q') of the six motions q = B u (model.h) at all nodes of their sets, one sum
-   over ranks in each step.
+   Bushings and points: forces B'(k q + c q') of the six motions q = B u (model.h) at all nodes of their sets, one
+   sum over ranks in each step. q in m and rad, k in N/m and N m/rad, c in N s/m and N m s/rad, B without unit and
+   in 1/m.
 */
 #include "dynamics/bodies/bodiesimpl.h"
 
-/* The rows of one motion at all copies of the nodes, in the layout */
+/* The rows of one motion at all copies of the nodes, in the layout: B' times a unit force along motion j gives the
+   row of B, which ModelAddMeanForce() has only for the nodes it owns */
 static PetscErrorCode JointSetRow(Bodies b, const ModelMean *mean, int j, Vec nodal, BodyJoint *joint)
 {
   const PetscScalar *value;
@@ -82,6 +84,7 @@ PetscErrorCode JointsSetUpRows(Bodies b)
   PetscFunctionReturn(0);
 }
 
+/* q = B (scale x) of all joints over all ranks, each node counted by its owner; into joint_motion [n_joints][6] */
 PetscErrorCode JointsMotion(Bodies b, const PetscReal scale[], const PetscReal x[])
 {
   PetscReal  *q = b->joint_motion;

@@ -78,7 +78,8 @@ static PetscErrorCode PointCheckNodes(Bodies b, const BodyJoint *joint, const un
   PetscFunctionReturn(0);
 }
 
-/* S of all points with a mass, [n][n] with n = 6 n_heavy; row [layout n] is work: the row of each number in a point */
+/* S = B D^-1 B' of all points with a mass, 1/kg in its translations, [n][n] with n = 6 n_heavy; two points couple
+   where they have nodes in common. row [layout n] is work: the row of each number in a point. */
 static PetscErrorCode PointsGetCompliance(Bodies b, const PetscInt heavy[], PetscReal S[])
 {
   const PetscInt n = 6 * b->n_heavy;
@@ -164,6 +165,8 @@ PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt cont
   PetscFunctionReturn(0);
 }
 
+/* f becomes f - B'X B D^-1 f (N), X = W (I + S W)^-1: rigid points and ties first, whose nodes no such point has
+   (checked in BodiesSetPoints()) */
 PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
 {
   const PetscInt n = 6 * b->n_heavy;

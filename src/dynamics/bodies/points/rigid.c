@@ -13,7 +13,8 @@
 #include "base/algebra/vec3.h"
 #include "base/algebra/dense.h"
 
-/* Component i % 3 of node i / 3 for the six motions */
+/* Component i % 3 of node i / 3 for the six motions: e . (q_t + q_r x r) = e . q_t + q_r . (r x e), r (m) from the
+   point to the node */
 static void RigidRow(Bodies b, const BodyJoint *joint, PetscInt i, PetscReal row[6])
 {
   const PetscInt   v = joint->vertex[i / 3];

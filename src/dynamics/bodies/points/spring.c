@@ -17,7 +17,8 @@ static PetscErrorCode PointFind(Bodies b, PetscInt vertex, PetscInt of_vertex[],
   PetscFunctionReturn(0);
 }
 
-/* block += Q diag(value) Q' */
+/* block += Q diag(value) Q', N/m or N s/m; rows of Q are the basis of the node, so that it takes Cartesian
+   components to those of the layout */
 static void PointAddBlock(const PetscReal q[9], const PetscReal value[3], PetscReal block[9])
 {
   for (int i = 0; i < 3; i++)

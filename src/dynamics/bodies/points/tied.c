@@ -100,7 +100,8 @@ static PetscErrorCode TiedSetMasses(Bodies b, Tied *t)
   PetscFunctionReturn(0);
 }
 
-/* The factors of T'D T */
+/* The factors of T'D T (kg), on every rank: a tie has the nodes of a surface, few beside the bodies. T has full
+   column rank, so that T'D T is positive definite. */
 static PetscErrorCode TiedFactor(Bodies b, Tied *t)
 {
   Mat DT, A;
@@ -217,7 +218,7 @@ static PetscErrorCode TiedPut(Bodies b, const Tied *t, PetscReal x[])
   PetscFunctionReturn(0);
 }
 
-/* Forces f become D T (T'D T)^-1 T'f; motions x become T (T'D T)^-1 T'D x */
+/* Forces f become D T (T'D T)^-1 T'f; motions x become T (T'D T)^-1 T'D x. One sum over the ranks of 3 n numbers. */
 PetscErrorCode TiedApply(Bodies b, PetscBool forces, PetscReal x[])
 {
   const Tied *t = &b->tied;

@@ -31,9 +31,10 @@
 */
 #include "trial.h"
 
-#define FOLLOW_AT  1e-6  /* relative distance of the unstable mode from what it was in the sweep */
-#define JUMP_WIDTH 1e-12 /* relative width of a bracket that has shrunk to a place */
-#define JUMP_TIMES 100   /* g at both its ends, over the error of g */
+#define FOLLOW_AT 1e-6 /* relative distance of the unstable mode from what it was in the sweep */
+/* Relative width of a bracket that has shrunk to a place: some thousand units of rounding of the value. */
+#define JUMP_WIDTH 1e-12
+#define JUMP_TIMES 100 /* g at both its ends, over the error of g */
 
 typedef struct {
   ModeSource source;
@@ -88,7 +89,8 @@ static PetscErrorCode OnsetFollowPair(Onset *onset, PetscReal value, const Trial
   PetscFunctionReturn(0);
 }
 
-/* The trial at a value, by the nearer end of the bracket */
+/* The trial at a value, by the nearer end of the bracket: the mode followed, else the plane followed, else all
+   modes solved for, from cheap to certain. */
 static PetscErrorCode OnsetTry(Onset *onset, PetscReal value, Trial *trial, PetscBool *found)
 {
   const PetscReal to_0      = PetscAbsReal(value - onset->end[0].frame->value);
@@ -158,7 +160,8 @@ static PetscErrorCode OnsetShrink(Onset *onset, Trial *trial)
   PetscFunctionReturn(0);
 }
 
-/* The size of what g is a difference of */
+/* The size of what g is a difference of, in the unit of g: |lambda| for a growth, kappa^2 for a discriminant, kappa
+   for a divergence (change = |g| / |lambda| there). */
 static PetscReal OnsetUnit(const Onset *onset, const BranchEvent *event)
 {
   const PetscReal size = PetscMax(cabs(event->lambda), event->omega);
@@ -166,7 +169,10 @@ static PetscReal OnsetUnit(const Onset *onset, const BranchEvent *event)
   return onset->kind == ONSET_GROWTH ? size : onset->kind == ONSET_PAIR ? PetscSqr(size * size) : size * onset->change;
 }
 
-/* Brent's method for the zero of g between the ends, until g is rounding */
+/* Brent's method for the zero of g between the ends, until g is rounding, eps unit, or the bracket is 2 eps wide.
+   Names as in Brent: b the best value, a the one before, c the other side of the zero, d the step, e the one
+   before. u / v is the step of the secant, or of inverse quadratic interpolation where a, b, c differ. 100 steps
+   are more than bisection needs to reach rounding. */
 static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool *found)
 {
   PetscReal a = onset->end[0].frame->value, b = onset->end[1].frame->value, c = a, d = b - a, e = d;
@@ -209,7 +215,8 @@ static PetscErrorCode OnsetIterate(Onset *onset, PetscReal *critical, PetscBool 
   PetscFunctionReturn(0);
 }
 
-/* |g'| at the trial, from a difference towards the farther end of [lower, upper] */
+/* |g'| at the trial, in the unit of g over that of the parameter, from a difference of 1e-3 of the step towards its
+   farther end: short beside what g bends on, long beside its rounding. 0 where the mode is lost there. */
 static PetscErrorCode OnsetSlope(Onset *onset, const Trial *trial, const BranchEvent *event, PetscReal *slope)
 {
   const PetscReal p = trial->frame->value, up = event->upper - p, down = p - event->lower;
@@ -255,7 +262,8 @@ static PetscBool OnsetJumps(const Onset *onset, PetscReal delta)
            : PETSC_FALSE;
 }
 
-/* Frequency, error and modes at the critical value */
+/* Frequency, error and modes at the critical value, where errors are estimated once. omega^2 = m + L^2 of a pair at
+   its limit. Without a slope the error is the width of the step. */
 static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes *modes)
 {
   const PetscReal width = event->upper - event->lower;
@@ -289,7 +297,8 @@ static PetscErrorCode OnsetFinish(Onset *onset, BranchEvent *event, ReducedModes
   PetscFunctionReturn(0);
 }
 
-/* The unstable and the stable end; an end on which the other sign is due to rounding is the critical value */
+/* The unstable and the stable end; an end on which the other sign is due to rounding, 1e-6 of the other, is the
+   critical value itself. */
 static PetscErrorCode OnsetBracket(Onset *onset, const BranchEvent *event, PetscReal *critical, PetscBool *found)
 {
   const PetscBool unstable_above =

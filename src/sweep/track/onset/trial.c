@@ -4,7 +4,9 @@
 #include "trial.h"
 #include <petscblaslapack.h>
 
-#define FOLLOW_SAME 0.3 /* distance from one of the product of two modes that certainly are the same */
+/* Distance from one of the product of two modes that certainly are the same: two modes share 1, so that no other
+   one has more than 0.3 with it. */
+#define FOLLOW_SAME 0.3
 
 PetscErrorCode TrialDestroy(Trial *trial)
 {
@@ -38,7 +40,9 @@ static PetscReal PlaneLimit(const ModesLimit *limit, PetscReal m)
   return PetscMax(PetscSqr(limit->growth), square < 0.5 ? square * PetscMax(m, 0) / (1 - 2 * square) : PETSC_INFINITY);
 }
 
-/* g and m of the plane of the trial's members: growth L is e^2 = -d = 4 L^2 (m + L^2) */
+/* g and m of the plane of the trial's members, S = (Y' M X)^-1 Y' K X [k][k]: m = tr S / k, (rad/s)^2, d = tr (S -
+   m I)^2 / k, (rad/s)^4, without eigenvalues of S, which would be of the root of rounding at lock-in. Growth L is
+   e^2 = -d = 4 L^2 (m + L^2). */
 static PetscErrorCode PlaneDiscriminant(Trial *trial)
 {
   const ModeFrame *f = trial->frame;
