@@ -28,7 +28,8 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
   PetscFunctionReturn(0);
 }
 
-/* Friction and speed of a contact */
+/* Friction and speed of a contact. Coefficients may be 0, speeds that slopes are measured by not (open); a slope
+   has any sign. */
 static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
 {
   const ReducedParameter speed = {
@@ -110,6 +111,8 @@ PetscErrorCode ReducedParameterFind(Operators operators, const PetscReal p[], co
   PetscFunctionReturn(0);
 }
 
+/* value must be above `least`, or equal to it where that is not open; what the bodies allow is the operators' to
+   say. */
 PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], const ReducedParameter *p,
                                      PetscReal value)
 {
@@ -127,6 +130,9 @@ PetscErrorCode ReducedParameterCheck(Operators operators, const char option[], c
   PetscFunctionReturn(0);
 }
 
+/* Models are moved in place, in the unit of the parameter: a load by its factor value / p->value, since ports of
+   loads are those of the scene's force; a speed by the same ratio for every pair, as pairs of one contact may have
+   speeds of their own. */
 void ReducedParameterMove(const ReducedParameter *p, PetscReal value, const ReducedMoved *moved)
 {
   const ReducedModel *model = moved->model;
@@ -140,6 +146,9 @@ void ReducedParameterMove(const ReducedParameter *p, PetscReal value, const Redu
   }
 }
 
+/* By what a cut-off rises with the parameter, so that as many modes stay below it: frequencies go as the root of a
+   stiffness, or of 1 / mass (unit "kg..."); what damps or gyrates leaves it. Never below 1, so that no mode is
+   lost. */
 PetscErrorCode ReducedParameterGetRise(const ReducedParameter *p, PetscReal value, PetscReal *rise)
 {
   PetscBool damps, weighs;

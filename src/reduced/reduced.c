@@ -96,6 +96,8 @@ PetscErrorCode ReducedGetInterface(ReducedRun r, PetscInt pair, PetscInt *interf
   PetscFunctionReturn(0);
 }
 
+/* The order matters: the cut-off, which may be raised, before histories and start; the factors of the residual are
+   freed where no field asks for a lift to the mesh. */
 static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
 {
   PetscBool fields;
@@ -127,7 +129,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
   PetscFunctionReturn(0);
 }
 
-/* One step and its account */
+/* One step and its account. Each rank takes the whole step with the same numbers; nothing is sent. */
 static PetscErrorCode ReducedAdvance(ReducedRun r)
 {
   ReducedDrive drive;
@@ -164,7 +166,7 @@ static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
   PetscFunctionReturn(0);
 }
 
-/* Steps until the end; rows on the way */
+/* Steps until the end, less 1e-9 of a step for sums of dt; rows on the way, among them the first and the last. */
 static PetscErrorCode ReducedMarch(ReducedRun r, PetscBool *stop)
 {
   const PetscReal end = r->run.end - 1e-9 * r->dt;

@@ -1,7 +1,7 @@
 /*
-   Modes of the separate bodies, K x = omega^2 M x below the cut-off: the pencil of the operators with every pair open
-   and without damping, solved and proven complete by modes/. What it leaves out, damping, is projected exactly: C =
-   Phi'C Phi.
+   Modes of the separate bodies, K phi = omega^2 M phi below the cut-off, Phi' M Phi = I (phi in 1/sqrt(kg)): the
+   pencil of the operators with every pair open and without damping, solved and proven complete by modes/. What it
+   leaves out, damping, is projected exactly: C = Phi' C Phi, 1/s.
 
    Of bodies that a parameter has changed a little those modes are taken, as many, that resemble the ones of another
    reduction.
@@ -9,10 +9,12 @@
 #include "reduced/reducedimpl.h"
 #include "solver/block/orthonormal.h"
 
-#define ORTHONORMAL  1e-7 /* largest |Phi'M Phi - I| */
-#define CUTOFF_NOISE 10   /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
+/* Largest entry of |Phi' M Phi - I|: energies are sums of squares of coordinates, and are wrong by as much. */
+#define ORTHONORMAL  1e-7
+#define CUTOFF_NOISE 10 /* roundings of the largest K_ii / M_ii that the square of the cut-off exceeds */
 
-/* Raises the error for a cut-off whose square is rounding of the largest K_ii / M_ii */
+/* Raises the error for a cut-off f whose (2 pi f)^2 is rounding: eigenvalues of K, M are right to some eps max K_ii
+   / M_ii, (rad/s)^2. */
 static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pencil)
 {
   const PetscScalar *k, *m;
@@ -41,7 +43,8 @@ static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pen
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a cut-off without modes below it */
+/* Raises the error for a cut-off without modes below it, or with all of them: counted by inertia before anything is
+   solved. The end may move by 1e-4, off an eigenvalue. */
 static PetscErrorCode ReducedCountModes(ReducedRun r, const PencilMatrices *pencil)
 {
   PetscReal   omega = 2 * PETSC_PI * r->cutoff;
@@ -99,7 +102,8 @@ static PetscErrorCode ColumnsKeep(PetscInt m, const PetscInt chosen[], Mat *A)
   PetscFunctionReturn(0);
 }
 
-/* Keeps of all modes those that hold most of the modes of `like`: the largest rows of Phi'M Phi_like */
+/* Keeps of all modes the m that hold most of the modes of `like`: share_i = sum_j (Phi'M Phi_like)_ij^2, negative
+   for the ascending sort. Frequencies stay in ascending order, rigid modes in front. */
 static PetscErrorCode ReducedKeepAlike(ReducedRun r)
 {
   const PetscInt n = r->model.m, m = r->like->model.m;
@@ -129,7 +133,7 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Vectors, of all unknowns, and frequencies from the solver of the modes */
+/* omega2 of a rigid mode is 0 exactly, whatever rounding its eigenvalue has. */
 static PetscErrorCode ReducedTakeModes(ReducedRun r)
 {
   const Mode *mode;
@@ -173,7 +177,7 @@ static PetscErrorCode ReducedCheckModes(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Phi'C Phi */
+/* Phi'C Phi, 1/s, symmetric to the last bit: sums over ranks are not, and steps take C as symmetric. */
 static PetscErrorCode ReducedSetDamping(ReducedRun r)
 {
   const PetscInt m = r->model.m;

@@ -5,7 +5,9 @@
 */
 #include "reduced/reducedimpl.h"
 
-/* Rows -n, -t, -b times (u_m - u_s) of the local pairs */
+/* G [3 pairs of this rank][unknowns], rows -n, -t, -b times (u_m - u_s): +1 at the slave, so that a force lambda at
+   a port acts on the slave along the direction; V of the pairs is G'. Pairs are numbered over the ranks in order,
+   from `begin` on here. */
 static PetscErrorCode PortsCreatePairs(ReducedRun r)
 {
   const ContactPair *pair;
@@ -29,7 +31,8 @@ static PetscErrorCode PortsCreatePairs(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* The force 1 on the unknown of node `vertex` (-1 on ranks that do not name it), direction d, as column k */
+/* The force `value` on the unknown of node `vertex` (-1 on ranks that do not name it), direction d, added to column
+   k by the rank that owns it. Held directions have no unknown, and no force. Collective. */
 static PetscErrorCode PortSetUnit(ReducedRun r, PetscInt vertex, int d, PetscReal value, PetscInt k, Mat columns)
 {
   const Mesh *mesh;
@@ -63,7 +66,7 @@ static PetscErrorCode PortSetNodal(ReducedRun r, Vec nodal, PetscInt k, Mat colu
   PetscFunctionReturn(0);
 }
 
-/* Loads, then the weight where there is gravity */
+/* Loads, then the weight where there is gravity; N for the factor 1. */
 static PetscErrorCode PortsSetLoads(ReducedRun r)
 {
   const ModelScene *scene;
@@ -110,7 +113,7 @@ static PetscErrorCode PortsSetProbes(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Phi'J of each impulse */
+/* Phi'J of each impulse, m sqrt(kg)/s: what the rates of the coordinates jump by; and when each is due, s. */
 static PetscErrorCode PortsSetHits(ReducedRun r)
 {
   PetscInt n_own;

@@ -4,7 +4,7 @@
 #include "reduced/reducedimpl.h"
 #include <petscblaslapack.h>
 
-/* Y = op(A) X */
+/* Y = op(A) X, [columns][rows] without gaps. BLAS with an inner size of 0 would leave Y as it was. */
 static void Multiply(const DenseBlock *A, PetscBool transposed, const DenseBlock *X, PetscReal Y[])
 {
   const PetscBLASInt rows = (PetscBLASInt)(transposed ? A->columns : A->rows), columns = (PetscBLASInt)X->columns;
@@ -27,6 +27,8 @@ void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal 
   Multiply(A, PETSC_TRUE, X, Y);
 }
 
+/* H [b][a] = X'Y of blocks of unknowns, alike on all ranks up to the order of the sum; one reduction of a b
+   numbers. */
 PetscErrorCode ReducedGram(Mat X, Mat Y, PetscReal H[])
 {
   const PetscScalar *x, *y;

@@ -74,7 +74,8 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
   PetscFunctionReturn(0);
 }
 
-/* The bodies below a cut-off with parameters p, in the modes that resemble those of `like`, or in all */
+/* The bodies below a cut-off with parameters p, in the modes that resemble those of `like`, or in all. The rooms
+   are borrowed from r; factors of the residual are freed, since nothing is lifted to the mesh from there. */
 static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
                                          ReducedRun *other)
 {

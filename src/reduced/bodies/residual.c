@@ -1,18 +1,23 @@
 /*
-   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V. The right-hand sides lose the
-   modes before the solution and the solutions after it, so that neither the shift nor the modes that are nearly free
-   show by rounding. s = -(cut-off / 1e4)^2: of what lies above the cut-off it changes 1e-8 at most. Where displacements
-   follow others, u = Z q, Z (Z'(K - s M) Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is
-   of all unknowns.
+   What the modes leave out: R = (1 - Phi Phi'M) (K - s M)^-1 (1 - M Phi Phi'), W = V'R V, m/N; s in (rad/s)^2. The
+   right-hand sides lose the modes before the solution and the solutions after it, so that neither the shift nor the
+   modes that are nearly free show by rounding. s = -(2 pi cut-off / 1e4)^2: of what lies above the cut-off it
+   changes 1e-8 at most, and free bodies are regular. Where displacements follow others, u = Z q, Z (Z'(K - s M)
+   Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
+
+   With X = R V of the pairs also Cm = Phi'D X, Cx = X'D X and Mx = X'M X of the damping D and the mass M; X'D X =
+   V'R D X costs a second solution per column but no room for all of X.
 */
 #include "reduced/reducedimpl.h"
 #include "base/process/memory.h"
 #include "solver/block/orthonormal.h"
 
-#define RESIDUAL_BLOCK 64  /* right-hand sides at once */
+/* Right-hand sides at once: the factors are read once for all of them. */
+#define RESIDUAL_BLOCK 64
 #define RESIDUAL_SHIFT 1e4 /* cut-off over the root of -s */
 
-/* X -= A (B'X), A and B [unknowns][m] */
+/* X -= A (B'X), A and B [unknowns][m]: with A = Phi, B = M Phi it takes the modes out of displacements, the other
+   way round out of forces. */
 static PetscErrorCode ComplementOf(Mat A, Mat B, Mat X)
 {
   const PetscScalar *a;
@@ -74,8 +79,8 @@ static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat 
   PetscFunctionReturn(0);
 }
 
-/* Columns first .. of A [N] from X: V'X, rows of pairs of this rank; of the others, where N has them, the sum over
-   all */
+/* Columns first .. of A [N] from X: V'X. Rows of pairs are those of this rank, zero elsewhere, and are summed over
+   the ranks; those of the others, where N has them, are sums already. */
 static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt N, PetscReal A[])
 {
   const PetscInt     n_others = N - 3 * r->model.n_pairs;
@@ -121,7 +126,7 @@ static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumn
   PetscFunctionReturn(0);
 }
 
-/* Symmetric to the last bit */
+/* Symmetric to the last bit, the mean of both: the contact laws and energies take W as symmetric. */
 static void ResidualSymmetrise(PetscInt N, PetscReal A[])
 {
   for (PetscInt j = 0; j < N; j++)
@@ -178,6 +183,8 @@ static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
   PetscFunctionReturn(0);
 }
 
+/* Blocks end at the last port of a pair, since only those of pairs have Cm, Cx, Mx. W is whole on every rank; 2
+   solutions per damped pair port, 3 with Mx. */
 PetscErrorCode ReducedSetResidual(ReducedRun r)
 {
   const PetscInt  N = r->model.n_ports, n_pairs = 3 * r->model.n_pairs;

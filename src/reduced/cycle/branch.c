@@ -6,13 +6,16 @@
 */
 #include "cycleimpl.h"
 
-#define BRANCH_STEP     0.1 /* the first */
-#define BRANCH_LONGEST  0.25
-#define BRANCH_SHRINKS  0.7 /* times the rms over that of the vibration, at most: it is not passed by zero */
+#define BRANCH_STEP 0.1 /* the first */
+/* Of the vibration's rms: longer steps may land on another branch. */
+#define BRANCH_LONGEST 0.25
+#define BRANCH_SHRINKS 0.7 /* times the rms over that of the vibration, at most: it is not passed by zero */
+/* Halved ten times from the first: shorter ones would come no further. */
 #define BRANCH_SHORTEST 1e-4
 #define BRANCH_EASY     3 /* steps of Newton's method after which the next step is longer */
 #define BRANCH_MAX_IT   8
-#define BRANCH_VANISHED 0.05 /* rms of the force over that of the vibration */
+/* Rms of the force over that of the vibration, below which the branch has come to an onset. */
+#define BRANCH_VANISHED 0.05
 #define BRANCH_UPRIGHT                                                                                                 \
   1e-5 /* slope over the span below which a branch has no fold: linear vibrations of any amplitude at an onset */
 #define BRANCH_BEYOND 0.01 /* of the span, and twice that of an end: how far a step may go beyond it */
@@ -26,7 +29,8 @@ typedef struct {
   const char       *end;
 } BranchWay;
 
-/* A step that goes beyond the range by a little at most, where there are no models */
+/* A step that goes beyond the range by a little at most, where there are no models: dp = t_p ds, t_p the slope of
+   the tangent. */
 static PetscReal BranchLimit(const LimitCycle c, const BranchWay *w)
 {
   const PetscReal slope = w->here.tangent.value, end = c->range[slope > 0];
@@ -62,7 +66,8 @@ static const char *BranchNoWay(ShootingDirection direction)
   return direction == SHOOTING_SPLITS ? "the branch splits, and has no direction" : NULL;
 }
 
-/* Direction at the next place, and the fold where the parameter has turned back, if there is a row left for it */
+/* Direction at the next place, by the one before so that it does not turn back; and the fold where the parameter
+   has turned back, dp/ds of both signs, unless both are nearly 0. */
 static PetscErrorCode BranchTurn(LimitCycle c, PetscReal step, BranchWay *w)
 {
   ShootingTangent *t = &w->next.tangent;

@@ -80,7 +80,8 @@ static PetscErrorCode CycleFindParameter(LimitCycle c)
   PetscFunctionReturn(0);
 }
 
-/* The parameter in the flow, and models over it where it is one of the bodies */
+/* least: the parameter may not reach what its law forbids, and the differences of the shooting stay above it.
+   Models over a parameter of the bodies are made here; all others are moved in place. */
 PetscErrorCode CycleSetParameter(LimitCycle c)
 {
   PetscFunctionBeginUser;
@@ -99,6 +100,8 @@ PetscErrorCode CycleSetParameter(LimitCycle c)
   PetscFunctionReturn(0);
 }
 
+/* The number N of steps in a period is odd: what alternates from step to step with mean forces on a massless
+   compliance cannot then close in a period. */
 PetscErrorCode CycleSetShooting(LimitCycle c, PetscReal period)
 {
   PetscFunctionBeginUser;
@@ -110,7 +113,7 @@ PetscErrorCode CycleSetShooting(LimitCycle c, PetscReal period)
   PetscFunctionReturn(0);
 }
 
-/* A place in front of the cycles that are there, or behind them */
+/* A place in front of the cycles that are there, or behind them, so that the table has the order of the branch. */
 static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
 {
   const PetscInt n = c->n_points++;
@@ -196,7 +199,7 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
   PetscFunctionReturn(0);
 }
 
-/* The branch from the onset of a mode on */
+/* c->rms is that of amplitude 1, by which steps and the end of the branch are measured. */
 static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
 {
   ShootingTangent growing;

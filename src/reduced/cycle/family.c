@@ -21,10 +21,14 @@
 #include "cycleimpl.h"
 #include <petsctime.h>
 
+/* Chebyshev points cos(pi k / (n - 1)): those of n are among those of 2 n - 1. */
 #define FAMILY_FEWEST 5
-#define FAMILY_MOST   17
-#define FAMILY_RTOL   1e-6
-#define FAMILY_ALIKE  1e-2  /* least over largest singular value of Phi_k'M_k Phi, squared */
+/* Of points, each a whole reduction; a range that needs more is refused. */
+#define FAMILY_MOST 17
+#define FAMILY_RTOL 1e-6
+/* Least over largest singular value of Phi_k'M_k Phi, squared: below it some combination of the modes has less than
+   a tenth of its length in the other set. */
+#define FAMILY_ALIKE  1e-2
 #define FAMILY_RIGID  1e-13 /* of the largest: squares of frequencies that are rounding of 0 */
 #define FAMILY_BEYOND 1.1   /* |t| to which is extrapolated */
 
@@ -41,6 +45,7 @@ static void FamilyListSizes(const ReducedModel *model, PetscInt size[FAMILY_N_PA
   size[FAMILY_CX] = model->Cx ? n * n : 0;
 }
 
+/* t of p; a value at or below 0 of a logarithmic range is far outside. */
 static PetscReal FamilyCoordinate(const CycleFamily *f, PetscReal p)
 {
   const PetscReal a = f->logarithmic ? PetscLogReal(f->range[0]) : f->range[0];
@@ -64,7 +69,7 @@ static PetscReal FamilyValue(const CycleFamily *f, PetscReal t)
   return f->logarithmic ? a * PetscPowReal(b / a, part) : a + part * (b - a);
 }
 
-/* S = V diag(1 / sqrt(w)) V' */
+/* S = V diag(1 / sqrt(w)) V', [m][m] by columns: with A'A = V diag(w) V' the polar factor is A S. */
 static void FamilyInvertRoot(PetscInt m, const PetscReal V[], const PetscReal w[], PetscReal S[])
 {
   for (PetscInt j = 0; j < m; j++)
@@ -74,7 +79,7 @@ static void FamilyInvertRoot(PetscInt m, const PetscReal V[], const PetscReal w[
     }
 }
 
-/* T [m][m] of the bodies `at` the value that they have */
+/* T [m][m] = A (A'A)^-1/2, A = Phi_k'M_k Phi, the orthogonal factor of the bodies `at` the value that they have. */
 static PetscErrorCode FamilyAlign(CycleFamily *f, ReducedRun at, PetscReal value, PetscReal T[])
 {
   const PetscInt m = f->scene->model.m;
@@ -157,7 +162,8 @@ static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[
   PetscFunctionReturn(0);
 }
 
-/* Weight of point k in the j-th coefficient of the Chebyshev series through n points */
+/* Weight of point k in the j-th coefficient of the Chebyshev series through n points (discrete cosine transform of
+   type I, ends halved). */
 static PetscReal FamilyCosine(PetscInt n, PetscInt j, PetscInt k)
 {
   const PetscReal ends = (k == 0 || k == n - 1 ? 0.5 : 1) * (j == 0 || j == n - 1 ? 0.5 : 1);
@@ -264,7 +270,8 @@ PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *param
   PetscFunctionReturn(0);
 }
 
-/* Barycentric weights of the points at t, their sum 1 */
+/* Barycentric weights of the points at t, their sum 1: (-1)^k / (t - t_k), halved at the ends (J.-P. Berrut, L. N.
+   Trefethen, SIAM Review 46, 2004, 501); at a point itself that point alone. */
 static void FamilyWeigh(PetscInt n, PetscReal t, PetscReal weight[])
 {
   PetscReal sum = 0;
@@ -292,6 +299,8 @@ static void FamilyCombine(const CycleFamily *f, const PetscReal weight[], int pa
   }
 }
 
+/* The model at a value in its own modes again: K = Q Omega^2 Q', all else turned by Q. Signs and order of Q are
+   arbitrary, so that a state goes from one value to another by way of the scene's coordinates (CycleFamilyTurn()). */
 PetscErrorCode CycleFamilySet(CycleFamily *f, PetscReal value)
 {
   ReducedModel  *model = &f->model;

@@ -1,12 +1,14 @@
 /*
-   The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda, q),
-   and its derivative M, the product of those of the steps (step/tangent.c). A step whose contact laws have no solution
-   ends the period: Phi is then infinite, which no cycle comes from: INFINITY, not the large number PETSC_INFINITY, two
-   of which have no difference.
+   The flow of the reduced model through a period: N steps of length T / N from the state x = (eta, rate, lambda,
+   q), in m sqrt(kg), m sqrt(kg)/s, N and N, 2 m + 3 n_pairs (+ 3 n_pairs with damping) numbers, and its derivative
+   M, the product of those of the steps (step/tangent.c). With a family eta and rate of x are those of the scene's
+   modes. A step whose contact laws have no solution ends the period: Phi is then infinite, which no cycle comes
+   from: INFINITY, not the large number PETSC_INFINITY, two of which have no difference.
 */
 #include "cycleimpl.h"
 
-/* Loads and sliding from the time of the run on; raises the error where they go on to change */
+/* Loads and sliding from the time of the run on; raises the error where they go on to change: the flow must be
+   autonomous. share = way of the run in a step over speed times dt, so that the way follows the speed and the step. */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
 {
   const PetscReal   now = r->state.time;
@@ -71,7 +73,8 @@ PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The state that x stands for; y follows from it */
+/* The state that x stands for; y = P eta + W q + W loads follows from it, and last = p: x has all that a step knows
+   of the past. */
 static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
 {
   const ReducedModel *model = f->model;
@@ -119,7 +122,7 @@ PetscErrorCode CycleFlowSetValue(CycleFlow *f, PetscReal value)
   PetscFunctionReturn(0);
 }
 
-/* Stepper for the period and the parameter */
+/* Stepper for the period and the parameter; it is made again only where the step, T / N, or the bodies change. */
 static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal value, PetscBool tangent)
 {
   const PetscReal dt = period / (PetscReal)f->n_steps;
@@ -180,6 +183,8 @@ static PetscErrorCode FlowTurn(CycleFlow *f, PetscBool to_scene, PetscReal M[])
   PetscFunctionReturn(0);
 }
 
+/* Errors of the contact laws and of the factors are caught here, since Newton's method may try states that have no
+   solution; others are raised. */
 PetscErrorCode CycleFlowRun(void *ctx, const PetscReal x[], PetscReal period, PetscReal value, PetscReal y[],
                             PetscReal M[])
 {

@@ -5,11 +5,14 @@
 */
 #include "cycleimpl.h"
 
-#define GUESS_STEPS   3000 /* of the window */
-#define GUESS_BEGIN   6    /* steps in a period, at least */
-#define GUESS_NEAR    0.12 /* distances below it, and below GUESS_TIMES the nearest, are returns */
-#define GUESS_TIMES   2
-#define GUESS_AWAY    1.0   /* the motion must have been away so far before it returns */
+/* Of the window: 3000 states of 2 m numbers are kept. */
+#define GUESS_STEPS 3000
+#define GUESS_BEGIN 6 /* steps in a period, at least */
+/* Distances below it, and below GUESS_TIMES the nearest, are returns; a motion with noise comes no nearer. */
+#define GUESS_NEAR  0.12
+#define GUESS_TIMES 2
+/* The motion must have been away so far before it returns: 1 is its rms. */
+#define GUESS_AWAY    1.0
 #define GUESS_NONE    0.5   /* no return */
 #define GUESS_RIGID   1e-12 /* of the largest: squares of frequencies, and of gaps that a motion changes */
 #define GUESS_AT_REST 1e-7  /* rms of the force over its mean */
@@ -74,7 +77,8 @@ static PetscErrorCode WindowMeasure(GuessWindow *w)
   PetscFunctionReturn(0);
 }
 
-/* Distance of the first state from the way between k and k + 1, over the size of the motion, and where on that way */
+/* Distance of the first state from the way between k and k + 1, over the size of the motion, and where on that way,
+   0 to 1: the point of the straight line nearest to it. Steps need not meet the first state. */
 static PetscReal GuessDistance(const GuessWindow *w, PetscInt k, PetscReal *part)
 {
   const PetscInt   m = w->m;
@@ -92,7 +96,8 @@ static PetscReal GuessDistance(const GuessWindow *w, PetscInt k, PetscReal *part
   return PetscSqrtReal(0.5 * sum);
 }
 
-/* The first return, in steps; nearest = the least distance of all */
+/* The first return, in steps; nearest = the least distance of all. Of neighbouring steps that are near, the nearest
+   counts. */
 static PetscReal WindowReturn(const GuessWindow *w, PetscReal *nearest)
 {
   PetscReal part, away = 0, best = PETSC_MAX_REAL, found = 0;
@@ -120,8 +125,8 @@ static PetscReal WindowReturn(const GuessWindow *w, PetscReal *nearest)
   return found;
 }
 
-/* Free directions: rigid motions of the bodies that change no gap, nothing but slip being felt of them; unit length in
-   S x */
+/* Free directions: rigid motions of the bodies that change no gap, nothing but slip being felt of them; unit length
+   in S x. They are the null space of the sum over the pairs of P_n P_n' on the rigid modes. */
 static PetscErrorCode GuessSetFree(LimitCycle c)
 {
   const ReducedModel *model = &c->reduced->model;

@@ -58,7 +58,8 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
   PetscFunctionReturn(0);
 }
 
-/* x of the cycles below as it is near here: eta, rate, forces */
+/* x of the cycles below as it is near here: T eta, T rate, forces and q unchanged. x below and X above differ in
+   their number of modes only. */
 static void HigherTake(CycleHigher h, const PetscReal x[], PetscReal X[])
 {
   const PetscInt   m = h->m, M = h->bodies->model.m;
@@ -68,6 +69,8 @@ static void HigherTake(CycleHigher h, const PetscReal x[], PetscReal X[])
   for (PetscInt i = 2 * m; i < h->below->n; i++) X[2 * M + i - 2 * m] = x[i];
 }
 
+/* As many steps, so that the difference is that of the modes alone. A fold is looked for again along the same
+   direction, and its shift in the parameter is part of its error. */
 PetscErrorCode CycleHigherLook(CycleHigher h, const ShootingCycle *at, const ShootingTangent *along, CyclePoint *point)
 {
   LimitCycle     c    = h->cycle;

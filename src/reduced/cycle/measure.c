@@ -1,7 +1,8 @@
 /* A cycle in numbers, from a period that the flow integrates once more: its normal force, and what probes do */
 #include "cycleimpl.h"
 
-/* The largest of n values, `stride` apart, of a period: sign f - sign mean, by the parabola through three steps */
+/* The largest of n values, `stride` apart, of a period: sign (f - mean), by the parabola through three steps, whose
+   top lies (after - before)^2 / (-8 bend) above the middle one. */
 static PetscReal PeriodLargest(PetscInt n, PetscInt stride, const PetscReal f[], PetscReal sign, PetscReal mean)
 {
   PetscReal largest = 0;
@@ -39,8 +40,8 @@ static void PeriodMeasure(const CycleFlow *f, PetscReal period, CycleMeasure *m)
   }
 }
 
-/* Adds the rate of the residual to the velocities, and takes a drift along a free direction out of the displacements u,
-   at the port whose values begin there */
+/* Adds the rate of the residual to the velocities, a central difference over the period, and takes a drift along a
+   free direction (mean velocity times time) out of the displacements u, at the port whose values begin there. */
 static void PortComplete(const CycleFlow *f, PetscReal u[])
 {
   const PetscInt n = f->n_steps, stride = 3 * f->n_looked;

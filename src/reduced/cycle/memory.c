@@ -11,6 +11,7 @@ static double FamilyMegabytes(const CycleFamily *f)
   return mb;
 }
 
+/* Every rank has all models: sums are of the ranks on one machine, and the worst machine counts. Collective. */
 PetscErrorCode CycleFamilyCheckMemory(const CycleFamily *f, PetscInt most)
 {
   const MPI_Comm comm = f->scene->comm;

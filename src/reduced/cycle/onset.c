@@ -15,7 +15,8 @@
 */
 #include "cycleimpl.h"
 
-#define ONSET_LOOKS 33    /* values over the range */
+/* Values over the range: an unstable interval narrower than a 32nd of it may be missed. */
+#define ONSET_LOOKS 33
 #define ONSET_RTOL  1e-12 /* of the range */
 
 /* The sliding state at a value, and its fastest mode */
@@ -56,8 +57,8 @@ static PetscErrorCode OnsetGrowth(LimitCycle c, PetscReal value, OnsetLook *look
   PetscFunctionReturn(0);
 }
 
-/* Two values next to that of the scene between which growth changes its sign; how many of those that are looked at have
-   a sliding state; the least and largest growth of modes that oscillate there */
+/* Two values next to that of the scene between which growth (1/s) changes its sign; a value without a sliding
+   state, NaN, begins anew. */
 static PetscErrorCode HopfBracket(LimitCycle c, OnsetLook *look, PetscReal at[2], PetscReal growth[2],
                                   PetscInt *n_found, PetscReal span[2])
 {
@@ -104,7 +105,8 @@ static PetscErrorCode HopfGrowth(LimitCycle c, PetscReal value, OnsetLook *look,
   PetscFunctionReturn(0);
 }
 
-/* The onset by bisection, which jumps of the closed pairs do not disturb */
+/* The onset by bisection, which jumps of the closed pairs do not disturb: 35 halvings to 1e-12 of the range.
+   c->onset = value, growth there (1/s), frequency (Hz). */
 static PetscErrorCode HopfFind(LimitCycle c, OnsetLook *look)
 {
   PetscReal at[2], growth[2], span[2];
@@ -166,8 +168,10 @@ static void OnsetSizes(const ReducedModel *model, const OnsetLook *look, PetscRe
   for (int i = 0; i < 3; i++) size[i] = scale * PetscSqrtReal(0.5 * square[i]);
 }
 
-/* Cosine and sine of the phase at which the normal forces p of the mode are largest: the half of the argument of sum
-   p^2 conjugate */
+/* Cosine and sine of the phase phi at which the normal forces p of the mode are largest: sum Re(p e^(i phi))^2 =
+   sum |p|^2 / 2 + Re(e^(2 i phi) sum p^2) / 2 is, at 2 phi = -arg sum p^2. The sign is that of the largest force;
+   weights rise from 1 to 2 along the pairs, so that of equal forces of opposite sign (a symmetric body) rounding
+   does not choose. */
 static void OnsetPhase(const OnsetLook *look, PetscInt n_pairs, PetscReal turn[2])
 {
   PetscReal square[2] = {0, 0}, largest = 0, phase, sign = 1;
@@ -243,6 +247,8 @@ static PetscErrorCode OnsetAdvance(LimitCycle c, PetscReal length, const Shootin
   PetscFunctionReturn(0);
 }
 
+/* Sizes, lengths and the tangent `growing` are those of the mode scaled to amplitude 1; growing has unit length in
+   S x, and neither period nor parameter has a part in it. */
 PetscErrorCode CycleBegin(LimitCycle c, ShootingCycle *at, ShootingTangent *growing)
 {
   const ReducedModel *model = c->flow.model;

@@ -43,7 +43,7 @@ static PetscErrorCode CycleAddSpread(LimitCycle c, const ShootingCycle *other, C
   PetscFunctionReturn(0);
 }
 
-/* The cycle `at`, begun `share` of a step later */
+/* The cycle `at`, begun `share` of a step later: one step of that length from its start. */
 static PetscErrorCode CycleShift(LimitCycle c, PetscReal share, const ShootingCycle *at, ShootingCycle *shifted)
 {
   const PetscInt steps = c->flow.n_steps;
@@ -87,6 +87,8 @@ static PetscErrorCode CycleSpread(LimitCycle c, const ShootingCycle *at, const S
   PetscFunctionReturn(0);
 }
 
+/* 2 N + 1 steps, odd as N is. value_error adds up what the steps, their place and the cut-off each make of a fold's
+   parameter. */
 PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along, CyclePoint *point)
 {
   const PetscInt n = c->flow.n, steps = c->flow.n_steps;

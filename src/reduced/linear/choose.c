@@ -5,9 +5,12 @@
 */
 #include "reduced/reducedimpl.h"
 
-#define CUTOFF      20e3 /* Hz, where nothing says which band is of interest */
-#define CUTOFF_BAND 4    /* times the upper end of -modes_band */
-#define RAISE       1.5  /* of the cut-off at once */
+#define CUTOFF 20e3 /* Hz, where nothing says which band is of interest */
+/* Times the upper end of -modes_band: what the cut-off leaves out is a static compliance, exact to (f / f_cut)^2 =
+   1/16 of itself. */
+#define CUTOFF_BAND 4
+#define RAISE       1.5 /* of the cut-off at once */
+/* 1.5^4 = 5 times the first cut-off at most. */
 #define MOST_RAISES 4
 #define SHORTER     0.9 /* of the largest step that would do */
 
@@ -27,6 +30,7 @@ PetscErrorCode ReducedChooseCutoff(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* -ts_dt, or dt where that leaves it open; refused beyond one period of the cut-off. */
 PetscErrorCode ReducedSetStep(ReducedRun r, PetscReal dt)
 {
   PetscFunctionBeginUser;
@@ -79,6 +83,9 @@ static PetscErrorCode ChooseWarn(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* Each raise reduces the bodies again; the mesh is solved once. The step's error goes with dt^2, hence dt sqrt(half
+   / miss), and a tenth less for what is of higher order. Eigenvalues are the same on all ranks, and so are the
+   decisions. */
 PetscErrorCode ReducedChoose(ReducedRun r)
 {
   const PetscReal half = 0.5 * r->growth_rtol;

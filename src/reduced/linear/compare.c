@@ -6,7 +6,8 @@
 #include "reduced/reducedimpl.h"
 #include "base/gather.h"
 
-#define GROWTH_LEAST 1e-4 /* of the angular frequency: smaller growth is not resolved any better */
+/* Of the angular frequency: growth, 1/s, below it is not resolved any better, and its error is relative to that. */
+#define GROWTH_LEAST 1e-4
 
 /* Why the mesh has no modes to compare with, or NULL */
 static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
@@ -45,7 +46,7 @@ static PetscErrorCode CompareTakeClosed(ReducedRun r, const SlidingState *state)
   PetscFunctionReturn(0);
 }
 
-/* The nearest of n eigenvalues to that of the mesh */
+/* The nearest of n eigenvalues to that of the mesh, in rad/s; of a pair of conjugates the one with omega >= 0. */
 static void CompareMatch(PetscInt n, const PetscReal sigma[], const PetscReal omega[], const PetscReal mesh[2],
                          PetscReal found[2])
 {
@@ -113,6 +114,8 @@ static void CompareJudge(ReducedRun r)
   }
 }
 
+/* Steps are compared with the reduced model, not with the mesh: miss_model and miss_steps are two parts of the
+   error, and add. */
 PetscErrorCode ReducedCompare(ReducedRun r)
 {
   const PetscInt n = 2 * r->model.m;

@@ -30,8 +30,8 @@ static int InertiaFaster(const void *a, const void *b)
   return (most < other) - (most > other);
 }
 
-/* All modes below the cut-off that grow without that inertia, or with it, fastest first; z [2][2][2 m] growth and
-   frequency, without and with */
+/* off = |growth with - growth without| over the larger of both, at least INERTIA_LEAST omega. Rigid zeros, which
+   rounding moves by its root, are left out. */
 static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
 {
   const PetscInt n = 2 * r->model.m;
@@ -69,6 +69,8 @@ static PetscBool InertiaSlides(ReducedRun r)
   return r->model.n_pairs > 0 && r->model.Mx ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* About the reduced model's own sliding state at the end of the run, with all ramps done; *off = the largest error,
+   0 where steady sliding is not what the scene is about. */
 PetscErrorCode ReducedWeighGrowth(ReducedRun r, PetscReal *off)
 {
   const PetscInt n = r->model.n_pairs, N = 2 * r->model.m;

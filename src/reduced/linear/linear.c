@@ -27,6 +27,8 @@ typedef struct {
   PetscReal          *S, *T; /* [m][n] */
 } ClosedPairs;
 
+/* A = N W E [n][n] of the closed pairs, A_ij = W_(n i, n j) - mu_j W_(n i, t j), m/N, and its LU factors; mu of
+   steady sliding. */
 static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool closed[], ClosedPairs *c)
 {
   const PetscInt N = model->n_ports;
@@ -61,6 +63,7 @@ static PetscErrorCode ClosedDestroy(ClosedPairs *c)
   PetscFunctionReturn(0);
 }
 
+/* S [m][n] = (N W E)^-1 N P, N / (m sqrt(kg)): the normal forces, -S eta, that keep the gaps. */
 static PetscErrorCode ClosedSolveStiffness(ClosedPairs *c)
 {
   const PetscInt m = c->model->m, n = c->n;
@@ -115,7 +118,8 @@ static PetscErrorCode ClosedSolveDamping(ClosedPairs *c)
   PetscFunctionReturn(0);
 }
 
-/* K and C over the mass 1 + P'E (N W E)^-1 N Mx E S */
+/* K and C over the mass 1 + P'E (N W E)^-1 N Mx E S; ClosedSolveForm() from Y = 0 gives -(N W E)^-1 N Mx E S, hence
+   the sign. */
 static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscReal K[], PetscReal C[])
 {
   const PetscInt m = c->model->m;
@@ -135,7 +139,8 @@ static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscReal K[], PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Eigenvalues of the first-order system of K and C, and vectors [2 m][2 m] in LAPACK's real storage, or NULL */
+/* Eigenvalues s = sigma + i omega (rad/s) of s^2 + C s + K by the first-order system A = [0 1; -K -C], and vectors
+   [2 m][2 m] in LAPACK's real storage (of a pair of conjugates the real part, then the imaginary one), or NULL. */
 static PetscErrorCode QuadraticEigen(PetscInt m, PetscReal *const system[2], PetscReal sigma[], PetscReal omega[],
                                      PetscReal vectors[])
 {
@@ -185,7 +190,8 @@ static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d
   PetscFunctionReturn(0);
 }
 
-/* What friction damps: mu lambda_n / v along b, mu' lambda_n along t */
+/* What friction damps, N s/m: mu lambda_n / v along b, since the friction force turns with the direction of slip,
+   and mu' lambda_n along t; mu' < 0 feeds. */
 static PetscErrorCode ClosedAddFriction(ClosedPairs *c, const PetscReal lambda_n[], PetscReal C[])
 {
   const ReducedModel *model = c->model;
@@ -293,6 +299,8 @@ static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedStat
   }
 }
 
+/* The mode with omega > 0 of largest growth; eigenvalue (-inf, 0) where none oscillates. mode[0] + i mode[1] is its
+   vector. */
 PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding, PetscReal eigenvalue[2],
                                   ReducedState mode[2])
 {

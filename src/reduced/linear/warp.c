@@ -13,7 +13,9 @@
 
 #define WARP_LEAST 1e-6 /* of cos x, which vanishes at a mode of two steps a period */
 
-/* The factors of coordinate k: 1 / root of its mass, and 1 / cos x */
+/* The factors of coordinate k: root = |tan x| / x, 1 / root of its mass (x / tan x)^2, and damper = 1 / |cos x|. At
+   x = pi / 2, two steps a period, the mass vanishes; WARP_LEAST keeps the numbers finite. ReducedSetStep() admits x
+   up to pi. */
 static void WarpFactors(const ReducedModel *model, PetscReal dt, PetscInt k, PetscReal *root, PetscReal *damper)
 {
   const PetscReal x = 0.5 * dt * PetscSqrtReal(model->omega2[k]);
@@ -41,6 +43,7 @@ static void WarpModel(PetscReal dt, const ReducedModel *model, ReducedModel *war
   }
 }
 
+/* s = (2 / dt) artanh(z dt / 2) of each eigenvalue z. */
 PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
                                      const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[])
 {

@@ -9,7 +9,9 @@
 #include "reduced/reducedimpl.h"
 
 #define EQUILIBRIUM_MAX_IT 100
-#define EQUILIBRIUM_HOLD   1e-12 /* of the highest omega^2, on modes that are rigid */
+/* Of the highest omega^2, on modes that are rigid: a body that nothing holds along some direction would make the
+   system singular. */
+#define EQUILIBRIUM_HOLD 1e-12
 
 /* Unknowns: coordinates, then normal forces of the closed pairs */
 typedef struct {
@@ -20,6 +22,8 @@ typedef struct {
   PetscBLASInt       *pivot;
 } SlidingSystem;
 
+/* [Omega^2, -P'E; N P, N W E] (eta, lambda_n) = (P_l' f, -g0 - N W_l f), [m + n][m + n] by columns; unsymmetric by
+   mu. */
 static void SlidingSystemFill(SlidingSystem *s)
 {
   const ReducedModel *model = s->model;
@@ -83,6 +87,8 @@ static void SlidingSystemChoose(SlidingSystem *s, ReducedState *state, PetscBool
   }
 }
 
+/* From all pairs closed, by sets: pairs in tension open, open ones that penetrate close, until none changes. Not
+   found: no pair is left, the system is singular, or sets repeat (EQUILIBRIUM_MAX_IT), as they may with large mu. */
 PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loads[], ReducedState *state,
                                   PetscBool *found)
 {

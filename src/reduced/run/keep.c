@@ -91,6 +91,8 @@ static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal st
   item[KEPT_HISTORY]       = (JournalItem){"history", 0, NULL};
 }
 
+/* Collective. The model is the same on all ranks, the modes are each rank's rows. Laws and history keep memories of
+   their own, as lists of reals. */
 PetscErrorCode ReducedKeep(ReducedRun r)
 {
   ReducedScalars scalars = {(PetscReal)r->step, r->dt, r->state.time, r->n_its, r->kkt, r->ledger};
@@ -133,6 +135,8 @@ static PetscErrorCode ReducedCheckScalars(ReducedRun r, const ReducedScalars *s)
   PetscFunctionReturn(0);
 }
 
+/* The run was set up before, so that all items have the sizes that they were written with; MPhi follows from Phi.
+   Faults of any rank are raised on all. */
 PetscErrorCode ReducedGoOn(ReducedRun r)
 {
   ReducedScalars scalars;

@@ -37,7 +37,9 @@ static PetscReal LookSize(const ReducedRun r, PetscInt port)
   return size;
 }
 
-/* One pair: what its friction did and what the law asks for, J */
+/* One pair: what its friction did and what the law asks for, J. sum[0] += the difference beyond twice the rounding
+   of the slip, sum[1] += mu lambda_n times the slip, or the motion of the pair where that is larger, beside which
+   it counts. */
 static void LookAdd(const ReducedRun r, PetscInt i, const PetscReal after[], PetscReal sum[3])
 {
   const FrictionLaw   law    = FrictionAt(&r->run.interfaces[r->pair[i].interface].friction, r->pair[i].speed);

@@ -23,8 +23,8 @@ static PetscErrorCode ReducedFindSize(ReducedRun r, PetscReal *size)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a pair that no force can open: both bodies are held along its normal, and its row of G is
-   zero */
+/* Raises the error for a pair that no force can open: both bodies are held along its normal, and its row of G, of
+   unit length at a free node, is zero. */
 static PetscErrorCode ReducedCheckHeld(ReducedRun r)
 {
   PetscInt                row, held = r->model.n_pairs;
@@ -82,7 +82,8 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* State of pair i from those at t_{n+1} and the slip of the step */
+/* State of pair i from those at t_{n+1} and the slip of the step. Forces of the model act on the slave, friction of
+   a ContactState on the master: hence the sign of lambda_t. */
 static void PairSetState(ReducedRun r, PetscInt i)
 {
   const PetscReal *p = &r->state.p[3 * i];
@@ -124,7 +125,7 @@ static void SumsTake(ReducedRun r, PetscInt k, ContactSums *sums)
   sums->residual = PetscMax(sums->residual, r->report.residual);
 }
 
-/* Residuals of the laws at t_{n+1}; the worst of the run is kept */
+/* Residuals of the laws at t_{n+1}; the worst of the run is kept. On each rank alone, since all have all pairs. */
 static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
 {
   const PetscInt n            = r->model.n_pairs;

@@ -10,7 +10,9 @@
 #include "reduced/reducedimpl.h"
 #include "base/events.h"
 
-/* What acts on the residual, q and the loads, and after a step the rate of that */
+/* What acts on the residual, q and the loads, and after a step the rate of that, N/s, by the backward difference of
+   second order from this mean rate and the one before; p_rate [2 n_ports] = rate at t_n, mean rate of the last
+   step. */
 void ReducedSetShown(ReducedRun r, PetscBool start)
 {
   const PetscInt N = r->model.n_ports, n = 3 * r->model.n_pairs;
@@ -25,7 +27,7 @@ void ReducedSetShown(ReducedRun r, PetscBool start)
   }
 }
 
-/* Accelerations eta'' */
+/* eta'' = P'p - Omega^2 eta - C eta', m sqrt(kg)/s^2, without Cm q', the damping of the residual. */
 static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
   const ReducedModel *model = &r->model;
@@ -98,7 +100,8 @@ static PetscErrorCode RecordLift(void *ctx, PetscReal u[], PetscReal v[])
   PetscFunctionReturn(0);
 }
 
-/* The ledger at t_n; rank 0 has all of it */
+/* The ledger at t_n; rank 0 has all of it, since every rank holds the same numbers and LedgerClose() sums over the
+   ranks. */
 static PetscErrorCode RecordBalance(ReducedRun r, PetscBool first)
 {
   LedgerPart *part = &r->ledger.part;

@@ -39,7 +39,8 @@ static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
   PetscFunctionReturn(0);
 }
 
-/* coordinates += Phi'M x of all unknowns; square = |Phi'M x|^2, what the modes hold of x'M x, or NULL */
+/* coordinates += Phi'M x of all unknowns; square = |Phi'M x|^2, what the modes hold of x'M x, or NULL. One
+   reduction, of m numbers. */
 static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[], PetscReal *square)
 {
   const PetscScalar *value;
@@ -126,7 +127,8 @@ static PetscErrorCode StartVelocities(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Forces and displacements of the sliding state */
+/* Forces and displacements of the sliding state; signs as in PairSetState(). Of u only what the modes hold is
+   taken: the rest is W times the forces, by itself. */
 static PetscErrorCode StartSliding(ReducedRun r)
 {
   const ContactState *local;

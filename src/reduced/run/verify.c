@@ -7,7 +7,9 @@
 */
 #include "reduced/reducedimpl.h"
 
-#define PIECES       8    /* of the last half of the time */
+/* Of the last half of the time: few, since each must be longer than what the motion remembers; eight still tell a
+   standard error to a quarter. */
+#define PIECES       8
 #define VERIFY_MOST  0.1  /* of the rms, and of the time: what a run may be off by, beyond twice the standard errors */
 #define VERIFY_SMALL 1e-3 /* of the largest force: a vibration whose rms nobody asks for */
 
@@ -56,7 +58,8 @@ static void ForceMeasure(PetscInt n, const PetscReal force[], PetscReal *rms, Pe
   *rms = PetscSqrtReal(*rms);
 }
 
-/* Standard errors of both over the n forces, were their pieces independent */
+/* Standard errors of both over the n forces, were their pieces independent: sqrt(sum (value_i - mean)^2 / (k (k -
+   1))), k = PIECES. */
 static void ForceScatter(PetscInt n, const PetscReal force[], PetscReal *rms, PetscReal *open)
 {
   const PetscInt length = n / PIECES;

@@ -20,7 +20,8 @@ void ReducedSetLoads(ReducedRun r, PetscReal t, PetscReal factor[])
     factor[i] = i < n && !r->run.from_static ? ExternalGetLoadFactor(r->run.external, i, t) : 1;
 }
 
-/* Sum of the shares of Phi'J; hit is false where there is none */
+/* Sum of the shares of Phi'J, m sqrt(kg)/s; hit is false where there is none. Shares of the two times around T add
+   up to 1. */
 static PetscErrorCode DriveKick(ReducedRun r, PetscBool *hit)
 {
   const PetscInt m = r->model.m;

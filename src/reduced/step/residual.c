@@ -45,7 +45,8 @@ static PetscErrorCode StepperCountDirections(const ReducedModel *model, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The ports on which q is sought */
+/* The ports on which q is sought, as many as the rank of W by pivoting on its diagonal. Fewer than the directions
+   in which pairs give way at all: refused. */
 static PetscErrorCode StepperChoosePorts(ReducedStepper s)
 {
   const PetscInt n = 3 * s->model->n_pairs, N = s->model->n_ports;
@@ -70,7 +71,8 @@ static PetscErrorCode StepperChoosePorts(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* The other ports behind the chosen ones, and their columns of W as sums of those of the chosen */
+/* The other ports behind the chosen ones, and their columns of W as sums of those of the chosen, combined = W_cc^-1
+   W_co [n - rank][rank]. */
 static PetscErrorCode StepperCombine(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
@@ -98,6 +100,7 @@ static PetscErrorCode StepperCombine(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* q of the other ports := lambda, what that changes taken over by the chosen ones: W q stays the same. */
 void ReducedStepperSettle(ReducedStepper s, const PetscReal lambda[])
 {
   const PetscInt rank = s->rank;

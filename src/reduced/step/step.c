@@ -24,7 +24,8 @@ PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta
   return y;
 }
 
-/* Impulses act at the beginning; the work that they do, J */
+/* Impulses act at the beginning: rate += Phi'J; the work that they do, J, is J times the mean of the velocities
+   before and after. x = (eta, rate) of the beginning. */
 static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const ReducedState *state)
 {
   const PetscInt m    = s->model->m;
@@ -53,6 +54,8 @@ static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[],
   return sum;
 }
 
+/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, J: the blocks of W of pairs, of others,
+   and, once, between both. */
 void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
 {
   const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;
@@ -68,7 +71,7 @@ void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *
     for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
 }
 
-/* next = E z + F g with g = P mean */
+/* next = E z + F g with g = P' mean, the forces on the modes (m sqrt(kg)/s^2), constant in the step. */
 static void StepperRespond(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
@@ -127,7 +130,8 @@ static inline PetscBool Carries(const PetscReal l[3])
   return l[0] != 0 || l[1] != 0 || l[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* y += A lambda of the pairs that carry, A [3 n_pairs][rows] */
+/* y += A lambda of the pairs that carry, A [3 n_pairs][rows]: runs of them at once, since most pairs of a rattling
+   contact are open and have no forces. */
 static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[], const PetscReal lambda[],
                                PetscReal y[])
 {
@@ -175,7 +179,8 @@ void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal n
   ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, q, y);
 }
 
-/* Free displacements P eta + W q + W loads, and what slip counts from */
+/* Free displacements P eta + W q + W loads of the pairs at t_{n+1} without lambda_{n+1}, m, gaps g0 included along
+   n; and what slip counts from: y_n less the prescribed sliding. */
 static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
@@ -191,7 +196,8 @@ static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const Re
   }
 }
 
-/* Forces and statuses of the pairs at t_{n+1} */
+/* Forces and statuses of the pairs at t_{n+1}, with the guess in state->p. Raised on each rank alone: all have the
+   same numbers. */
 static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, ReducedReport *report)
 {
   const PetscInt       n = s->model->n_pairs;
@@ -271,7 +277,8 @@ static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
   return work;
 }
 
-/* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual */
+/* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual, 2 d eta .
+   Cm dq / dt + dq'Cx dq / dt. */
 static PetscReal StepperDamping(ReducedStepper s)
 {
   const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
@@ -299,6 +306,8 @@ static void StepperGuess(PetscInt n, PetscInt n_ports, ReducedState *state)
   }
 }
 
+/* The laws see a linear map dy = compliance dlambda; all else of the step is linear and known. So the step has no
+   iteration but that of the laws, and its cost is that of products with E, F, P and W. */
 PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedState *state, ReducedReport *report)
 {
   const ReducedModel *model = s->model;

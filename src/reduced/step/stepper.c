@@ -16,7 +16,7 @@
 #include <slepcfn.h>
 #include <petscblaslapack.h>
 
-/* X := exp(X), [n][n] */
+/* X := exp(X), [n][n], by SLEPc's FNEXP (scaling and squaring of a Pade approximation; SLEPc manual page FNEXP). */
 static PetscErrorCode ExponentialOf(PetscInt n, PetscScalar X[])
 {
   FN           fn;
@@ -75,7 +75,8 @@ static PetscErrorCode StepperSetResponse(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* Halvings k of the step after which no column of dt B [n][n] exceeds 1 */
+/* Halvings k of the step after which no column of dt B [n][n] exceeds 1 in its sum: exp(-h B') is then at most e in
+   size. */
 static int StepperCountHalvings(PetscInt n, const PetscReal B[])
 {
   PetscReal largest = 0;
@@ -115,6 +116,8 @@ static PetscErrorCode StepperSetShortDamping(ReducedStepper s, PetscReal h, cons
   PetscFunctionReturn(0);
 }
 
+/* Q [3 m][3 m], made when works are asked for the first time; the exponential of twice the size costs eight times
+   that of E and F. */
 PetscErrorCode ReducedStepperSetDamping(ReducedStepper s)
 {
   const PetscInt m = s->model->m, n = 3 * m;
@@ -172,8 +175,9 @@ static PetscErrorCode StepperSetForces(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* dy / dlambda of the pairs: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2. G and R hold F P
-   / 2 and H D / 2 */
+/* dy / dlambda of the pairs, m/N: with D = W - Cm' F P' / dt, (P'F P + D'H D) / 2; undamped W + P'F P / 2. G and R
+   hold F P / 2 and H D / 2. The mean with its transpose, symmetric to the last bit, as the solver of the laws asks
+   for. */
 static PetscErrorCode StepperSetCompliance(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
@@ -234,6 +238,8 @@ static PetscErrorCode StepperSetLaws(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* w, rad/s: the highest frequency, or 1 / dt where that is more: rates over w are of the size of coordinates. Some
+   (3 m)^3 and n^3 operations, once for all steps of one length. */
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper)
 {
   const PetscInt m = model->m, n = 3 * model->n_pairs;

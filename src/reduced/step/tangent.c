@@ -40,7 +40,8 @@ static void TangentRespond(ReducedTangent t, const ReducedState *state, PetscRea
   }
 }
 
-/* Column j of A and D: the unit vector of x, without forces at t_{n+1} */
+/* Column j of A and D: the unit vector of x, without forces at t_{n+1}. Undamped lambda_n is q as well. What slip
+   counts from, P eta + W q, is taken off D along t and b. */
 static void TangentSetPast(ReducedTangent t, PetscInt j, ReducedState *state)
 {
   const ReducedModel *model = t->stepper->model;
@@ -98,6 +99,7 @@ PetscErrorCode ReducedTangentCreate(ReducedStepper stepper, ReducedTangent *tang
   PetscFunctionReturn(0);
 }
 
+/* X [columns][n] := dX_{n+1}, at most n columns; to be called after each step, while the laws hold its factors. */
 PetscErrorCode ReducedTangentApply(ReducedTangent t, PetscInt columns, PetscReal X[])
 {
   const PetscReal    one = 1;
