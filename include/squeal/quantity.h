@@ -61,7 +61,7 @@ typedef enum {
   QUANTITY_REALS,  /* PetscReal [n], all of them */
   QUANTITY_LIST,   /* PetscReal [n], one at least and n at most */
   QUANTITY_INTS,   /* PetscInt [n], likewise; all of them where there is no .count */
-  QUANTITY_MANY,   /* PetscReal *, which the owner frees, of one to .most */
+  QUANTITY_MANY,   /* PetscReal *, which the owner frees, of one to .room */
   QUANTITY_BOOL,   /* PetscBool */
   QUANTITY_WORD,   /* one of .words, as int: an enumeration or PetscBool */
   QUANTITY_TEXT,   /* char [n] */
@@ -85,11 +85,13 @@ typedef struct {
   size_t             given;       /* offset of a PetscBool: whether it is given; 0 for none */
   size_t             count;       /* offset of a PetscInt: how many values are given; of a list */
   const char *const *words;       /* of QUANTITY_WORD, NULL at the end */
+  PetscInt           room;        /* most values of QUANTITY_MANY */
   PetscReal          least, most; /* of a number; most 0 where there is no upper limit */
   PetscBool          bounded;     /* least and most are limits */
   PetscBool          open;        /* the limits themselves are refused */
   const char        *why;         /* of the limits, or what is to be given, for messages; or NULL */
-  PetscBool          required;    /* an error where it is not given; of a name, else with .given */
+  PetscBool          required;    /* help says so; an error where it is not given, as far as its owner keeps that:
+                                     a name, a word that begins as none, .given */
   unsigned           in;          /* RunBits, one of which a run that reads it does; 0: those of its table */
   const char        *unread;      /* why other runs do not read it, e.g. ", where nothing moves"; or NULL */
   PetscBool          always;      /* each scene says it: others refuse it only beside a file that does, too */

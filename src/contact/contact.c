@@ -69,7 +69,6 @@ PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
 static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
   PetscFunctionBeginUser;
-  PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
   PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
              "-%s_kn%s %.6g must be given and positive (N/m%s), or choose -%s_law constraint", c->name,
              c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);

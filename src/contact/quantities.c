@@ -68,8 +68,8 @@ static const char *ContactIdleSpeed(const void *contact, const QuantityRun *run)
 }
 
 static const Quantity interface[] = {
-  {"-surfaces", "slave,master: named surfaces (required)", NULL, QUANTITY_NAMES, SURFACES(ContactInterface),
-   .why = "slave,master"},
+  {"-surfaces", "slave,master: named surfaces", NULL, QUANTITY_NAMES, SURFACES(ContactInterface),
+   .required = PETSC_TRUE, .why = "slave,master"},
   {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws,
    .idle = ContactIdleLaw},
   {"-kn_per_area", "instead: normal stiffness per area of the slave, N/m^3 (penalty)", NULL, QUANTITY_REAL,
@@ -97,8 +97,8 @@ static const Quantity interface[] = {
   {"-centre", "a point of its axis", "m", QUANTITY_REALS, INTERFACE(centre), .idle = ContactIdleCentre},
 };
 static const Quantity tie[] = {
-  {"-surfaces", "slave,master: a set whose nodes follow, and a surface (required)", NULL, QUANTITY_NAMES,
-   SURFACES(ContactTie), .required = PETSC_TRUE, .why = "two names, slave,master"},
+  {"-surfaces", "slave,master: a set whose nodes follow, and a surface", NULL, QUANTITY_NAMES, SURFACES(ContactTie),
+   .required = PETSC_TRUE, .why = "two names, slave,master"},
   {"-distance", "largest distance of a node of the slave from its foot; default 5 % of the facet's size", "m",
    QUANTITY_REAL, TIE(distance), QUANTITY_POSITIVE, .given = offsetof(ContactTie, has_distance)},
   {"-far", "nodes farther off are an error, or stay free", NULL, QUANTITY_WORD, TIE(free), .words = fars},

@@ -56,7 +56,7 @@ static const Quantity rows[] = {
   {"-dynamics_filters", "folder of a run of modes with -modes_filters: their amplitudes in amplitudes.csv", NULL,
    QUANTITY_PATH, DYNAMICS_AT(filters_dir), .path = "folder"},
   {"-dynamics_filters_modes", "their numbers in modes.csv, 0 for all unstable ones", NULL, QUANTITY_INTS,
-   DYNAMICS_AT(asked), .count = offsetof(struct _p_Dynamics, n_asked), .idle = DynamicsIdleFilters},
+   DYNAMICS_AT(asked), .count = offsetof(struct _p_Dynamics, n_asked), .text = "0", .idle = DynamicsIdleFilters},
   {"-dynamics_coriolis", "Coriolis forces in parts that turn", NULL, QUANTITY_BOOL, DYNAMICS_AT(coriolis)},
   {"-dynamics_centrifugal", "centrifugal forces in parts that turn", NULL, QUANTITY_BOOL, DYNAMICS_AT(centrifugal)},
   {"-contact_view_kkt", "print the residuals of the contact laws at the end", NULL, QUANTITY_BOOL,

@@ -7,7 +7,7 @@
   .in = RUN_MOVES, .unread = ", where nothing moves and nothing is damped" /* inertia but for weight, and damping */
 #define WEIGHS   .in = RUN_MOVES | RUN_WEIGHT, .unread = " without -model_gravity"
 #define RECORDED RUN_TRANSIENT | RUN_CYCLE | RUN_FRF
-#define SET      "named surface, curve, point or volume of the mesh (required)"
+#define SET      "named surface, curve, point or volume of the mesh"
 
 #define PART(member)     QUANTITY_AT(Part, member)
 #define SUPPORT(member)  QUANTITY_AT(Support, member)
@@ -81,12 +81,12 @@ const QuantityTable model_quantities = TABLE("Model", model, .in = 0);
    -help */
 static const Quantity part[] = {
   {"-volume", "volume of the mesh that it is; default the part's own name", NULL, QUANTITY_NAME, PART(volume)},
-  {"-young", "Young's modulus (required); E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST,
-   PART(asked.young), .count = offsetof(Part, asked.n_young), .text = ""},
+  {"-young", "Young's modulus; E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST, PART(asked.young),
+   .count = offsetof(Part, asked.n_young), .required = PETSC_TRUE},
   {"-poisson", "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", NULL, QUANTITY_LIST, PART(asked.poisson),
    .count = offsetof(Part, asked.n_poisson), .text = "0.3"},
   {"-shear", "shear modulus of two or three -young: G_pz or G_12,G_13,G_23", "Pa", QUANTITY_LIST, PART(asked.shear),
-   .count = offsetof(Part, asked.n_shear), .text = ""},
+   .count = offsetof(Part, asked.n_shear)},
   {"-axis_1", "direction 1 of the material, x,y,z", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_1]),
    .given = offsetof(Part, asked.given[AXIS_1])},
   {"-axis_2", "direction 2, made orthogonal to 1", NULL, QUANTITY_REALS, PART(asked.axis[AXIS_2]),
@@ -97,7 +97,7 @@ static const Quantity part[] = {
    PART(asked.axis[AXIS_CYLINDER]), .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
   {"-cylinder_centre", "a point of that axis", "m", QUANTITY_REALS, PART(asked.axis[AXIS_CENTRE]),
    .given = offsetof(Part, asked.given[AXIS_CENTRE])},
-  {"-density", "density (required)", "kg/m^3", QUANTITY_REAL, PART(density), WEIGHS, .always = PETSC_TRUE},
+  {"-density", "density", "kg/m^3", QUANTITY_REAL, PART(density), WEIGHS, .always = PETSC_TRUE, .required = PETSC_TRUE},
   {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE, MOVING},
   {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE, MOVING},
   {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss),
@@ -150,8 +150,7 @@ static const Quantity dashpot[] = {
   }
 
 static const Quantity joint[] = {
-  {"-a", "named set of one side (required)", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE,
-   .why = SET_WANTED},
+  {"-a", "named set of one side", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-b", "named set of the other side; default the ground", NULL, QUANTITY_NAME, JOINT(set[1])},
   HOLDERS,
 };
@@ -165,7 +164,7 @@ static const Quantity point[] = {
    .count = offsetof(Joint, n_inertia), MOVING},
 };
 static const Quantity load[] = {
-  {"-set", SET " unless on a point", NULL, QUANTITY_NAME, LOAD(set)},
+  {"-set", SET ", unless it acts on a point", NULL, QUANTITY_NAME, LOAD(set)},
   {"-point", "instead of a set: one of the -points", NULL, QUANTITY_NAME, LOAD(on)},
   {"-moment", "on a point: moment about x,y,z", "N m", QUANTITY_REALS, LOAD(moment),
    .given = offsetof(Load, has_moment)},
@@ -180,13 +179,13 @@ static const Quantity motion[] = {
    MOTION(word), .given = offsetof(PrescribedMotion, has_word)},
 };
 static const Quantity probe[] = {
-  {"-at", "place x,y,z, m: the nearest node (required)", NULL, QUANTITY_REALS, PROBE(at),
-   .given = offsetof(Probe, has_at), .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
+  {"-at", "place x,y,z; the nearest node is taken", "m", QUANTITY_REALS, PROBE(at), .given = offsetof(Probe, has_at),
+   .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
   {"-part", "part that has the node; default any", NULL, QUANTITY_NAME, PROBE(part)},
 };
 static const Quantity circle[] = {
-  {"-radius", "radius (required)", "m", QUANTITY_REAL, CIRCLE(radius)},
-  {"-count", "nodes at equal angles (required)", NULL, QUANTITY_INT, CIRCLE(n)},
+  {"-radius", "radius", "m", QUANTITY_REAL, CIRCLE(radius), .required = PETSC_TRUE},
+  {"-count", "nodes at equal angles", NULL, QUANTITY_INT, CIRCLE(n), .required = PETSC_TRUE},
   {"-part", "body that has them", NULL, QUANTITY_NAME, CIRCLE(part), .text = "disc"},
   {"-face", "side of the body, across which they move: x+, x-, y+, y-, z+ or z-", NULL, QUANTITY_TEXT, CIRCLE(face),
    .text = "z+"},

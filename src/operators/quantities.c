@@ -46,7 +46,7 @@ static const Quantity loaded[] = {
    .path = "file"},                                                                                                    \
   {                                                                                                                    \
     "-operators_dense_" letter, "small dense matrix of the " meaning ", rows one after another", NULL, QUANTITY_MANY,  \
-      OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .most = OPERATORS_MAX_DENSE      \
+      OPERATORS_OPTION(dense[i]), .count = offsetof(struct _p_Operators, n_dense[i]), .room = OPERATORS_MAX_DENSE      \
   }
 
 static const Quantity matrices[] = {
@@ -65,8 +65,9 @@ static const char *const symmetries[] = {
 static const Quantity term[] = {
   {"-file", "PETSc binary file of the matrix", NULL, QUANTITY_PATH, TERM(file), .path = "file"},
   {"-dense", "or all entries of a small matrix, rows one after another", NULL, QUANTITY_MANY, TERM(dense),
-   .count = offsetof(MatrixTerm, n_dense), .most = OPERATORS_MAX_DENSE},
-  {"-kind", "what it is part of (required)", NULL, QUANTITY_WORD, TERM(kind), .initial = 3, .words = kinds},
+   .count = offsetof(MatrixTerm, n_dense), .room = OPERATORS_MAX_DENSE},
+  {"-kind", "what it is part of", NULL, QUANTITY_WORD, TERM(kind), .initial = 3, .words = kinds, .required = PETSC_TRUE,
+   .why = "stiffness, damping or mass"},
   {"-symmetry", "what it must be, else the run stops", NULL, QUANTITY_WORD, TERM(symmetry), .words = symmetries},
   {"-scale", "a number that it is multiplied with", NULL, QUANTITY_REAL, TERM(scale), .initial = 1},
   {"-parameter", "numbers that it is proportional to, options of their own, e.g. speed", NULL, QUANTITY_TEXT,

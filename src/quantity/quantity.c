@@ -1,5 +1,6 @@
 /* Rows of options: checked and summed; row.c reads them, visit.c refuses them */
 #include "row.h"
+#include "base/options/help.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,10 +35,18 @@ static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
   return row->most != 0 && (x > row->most || (row->open && x == row->most)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Where the numbers of a row lie */
+static const void *QuantityValues(const Quantity *row, const void *owner)
+{
+  const char *const at = (const char *)owner + row->at;
+
+  return row->kind == QUANTITY_MANY ? *(const void *const *)(const void *)at : at;
+}
+
 /* All numbers of a row, whose option is named in full */
 static PetscErrorCode QuantityCheck(MPI_Comm comm, const char option[], const Quantity *row, const void *owner)
 {
-  const void     *value   = (const char *)owner + row->at;
+  const void     *value   = QuantityValues(row, owner);
   const PetscBool integer = row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
   PetscInt        n       = (PetscInt)(row->size / (integer ? sizeof(PetscInt) : sizeof(PetscReal)));
   char            limits[QUANTITY_HELP];
@@ -60,8 +69,14 @@ static PetscBool QuantityIsGiven(const Quantity *row, const void *owner)
 {
   char *const *name = (char *const *)(const void *)((const char *)owner + row->at);
 
+  PetscInt n = 0;
+
   if (row->kind == QUANTITY_NAME) return **name ? PETSC_TRUE : PETSC_FALSE;
-  if (row->kind == QUANTITY_NAMES) return *name ? PETSC_TRUE : PETSC_FALSE;
+  if (row->kind == QUANTITY_NAMES && !row->count) return *name ? PETSC_TRUE : PETSC_FALSE;
+  if (row->kind == QUANTITY_WORD) {
+    while (row->words[n]) n++;
+    return *(const int *)(const void *)name < n ? PETSC_TRUE : PETSC_FALSE;
+  }
   return row->given ? *(const PetscBool *)((const char *)owner + row->given) : PETSC_TRUE;
 }
 
@@ -69,11 +84,14 @@ static PetscBool QuantityIsGiven(const Quantity *row, const void *owner)
 static PetscErrorCode QuantityJudge(MPI_Comm comm, const char name[], const Quantity *row, const void *owner)
 {
   const PetscBool given = QuantityIsGiven(row, owner);
+  HelpKind        help; /* asked for, it takes any scene */
   char            option[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
+  PetscCall(HelpIsAsked(&help));
   PetscCall(QuantityGetOption(name, row, sizeof(option), option));
-  PetscCheck(!row->required || given, comm, PETSC_ERR_USER_INPUT, "%s must be given: %s", option, row->why);
+  PetscCheck(!row->required || given || help != HELP_NONE, comm, PETSC_ERR_USER_INPUT, "%s must be given: %s", option,
+             row->why);
   if (given) PetscCall(QuantityCheck(comm, option, row, owner));
   PetscFunctionReturn(0);
 }
@@ -161,12 +179,24 @@ PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *o
   PetscFunctionReturn(0);
 }
 
+/* Names, how many there may be */
+static PetscErrorCode NamesAddChecksum(const Quantity *row, const void *value, PetscInt count, Checksum c)
+{
+  char *const *const names = row->count ? *(char *const *const *)value : value;
+  const PetscInt     n     = row->count ? count : (PetscInt)(row->size / sizeof(char *));
+
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddInts(c, 1, &n));
+  for (PetscInt i = 0; i < n; i++) PetscCall(ChecksumAddString(c, names[i] ? names[i] : ""));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *owner, Checksum c)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < table->n; i++) {
     const Quantity *row   = &table->row[i];
-    const void     *value = (const char *)owner + row->at;
+    const void     *value = QuantityValues(row, owner);
     const PetscInt  count = row->count ? *(const PetscInt *)((const char *)owner + row->count) : 1;
 
     if (!row->restart) continue;
@@ -174,10 +204,12 @@ PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *own
       PetscCall(ChecksumAddInts(c, (PetscInt)(row->size / sizeof(PetscInt)), value));
     else if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS)
       PetscCall(ChecksumAddInts(c, count, value));
-    else if (row->kind == QUANTITY_LIST)
+    else if (row->kind == QUANTITY_LIST || row->kind == QUANTITY_MANY)
       PetscCall(ChecksumAddReals(c, count, value));
     else if (row->kind == QUANTITY_REAL || row->kind == QUANTITY_REALS)
       PetscCall(ChecksumAddReals(c, (PetscInt)(row->size / sizeof(PetscReal)), value));
+    else if (row->kind == QUANTITY_NAME || row->kind == QUANTITY_NAMES)
+      PetscCall(NamesAddChecksum(row, value, count, c));
     else if (row->kind == QUANTITY_TEXT || row->kind == QUANTITY_PATH)
       PetscCall(ChecksumAddString(c, value));
     else {

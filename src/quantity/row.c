@@ -82,16 +82,16 @@ static PetscErrorCode QuantityReadNames(OptionsItems PetscOptionsObject, const Q
 
 /* As many values as are given, in an array of its own */
 static PetscErrorCode QuantityReadMany(OptionsItems PetscOptionsObject, const Quantity *row, const char help[],
-                                       PetscReal **values, PetscInt *n)
+                                       PetscReal **values, PetscInt *n, PetscBool *given)
 {
   PetscReal *all;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1((size_t)row->most, &all));
-  PetscCall(
-    OptionsGetSome(PetscOptionsObject, row->name, help, "0", &(OptionsRoom){(PetscInt)row->most, all, NULL}, n));
+  PetscCall(PetscMalloc1((size_t)row->room, &all));
+  PetscCall(OptionsGetSome(PetscOptionsObject, row->name, help, "", &(OptionsRoom){row->room, all, NULL}, n));
   if (*n) PetscCall(PetscMalloc1(*n, values));
   PetscCall(PetscArraycpy(*values, all, *n));
+  *given = *n ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
@@ -107,7 +107,7 @@ static PetscErrorCode QuantityReadList(OptionsItems PetscOptionsObject, const Qu
 
   PetscFunctionBeginUser;
   PetscCall(
-    OptionsGetSome(PetscOptionsObject, row->name, help, row->text ? row->text : "0",
+    OptionsGetSome(PetscOptionsObject, row->name, help, row->text ? row->text : "",
                    &(OptionsRoom){(PetscInt)(row->size / size), integers ? NULL : value, integers ? value : NULL}, &n));
   *given = n ? PETSC_TRUE : PETSC_FALSE;
   if (*given) *(PetscInt *)((char *)owner + row->count) = n;
@@ -142,10 +142,8 @@ static PetscErrorCode HelpWithUnit(const Quantity *row, size_t size, char help[]
 
   PetscFunctionBeginUser;
   if (first < length && first > 0 && row->help[first - 1] == ' ') first--;
-  if (row->unit)
-    PetscCall(PetscSNPrintf(help, size, "%.*s, %s%s", (int)first, row->help, row->unit, row->help + first));
-  else
-    PetscCall(PetscStrncpy(help, row->help, size));
+  PetscCall(PetscSNPrintf(help, size, "%.*s%s%s%s%s", (int)first, row->help, row->unit ? ", " : "",
+                          row->unit ? row->unit : "", row->required ? " (required)" : "", row->help + first));
   PetscFunctionReturn(0);
 }
 
@@ -159,6 +157,7 @@ PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t 
 PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner)
 {
   void     *value = QuantityValue(row, owner);
+  PetscInt *n     = row->count ? (PetscInt *)((char *)owner + row->count) : NULL;
   PetscBool given = PETSC_FALSE;
   char      help[QUANTITY_HELP];
 
@@ -177,14 +176,14 @@ PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[]
     PetscCall(QuantityReadText(PetscOptionsObject, header, row, help, value, &given));
     break;
   case QUANTITY_NAMES:
-    if (row->count)
-      PetscCall(
-        OptionsGetWords(PetscOptionsObject->comm, row->name, help, (PetscInt *)((char *)owner + row->count), value));
+    if (n)
+      PetscCall(OptionsGetWords(PetscOptionsObject->comm, row->name, help, n, value));
     else
       PetscCall(QuantityReadNames(PetscOptionsObject, row, help, value, &given));
+    if (n && *n) given = PETSC_TRUE;
     break;
   case QUANTITY_MANY:
-    PetscCall(QuantityReadMany(PetscOptionsObject, row, help, value, (PetscInt *)((char *)owner + row->count)));
+    PetscCall(QuantityReadMany(PetscOptionsObject, row, help, value, n, &given));
     break;
   case QUANTITY_NAME:
     PetscCall(QuantityReadName(PetscOptionsObject, header, row, help, value, &given));

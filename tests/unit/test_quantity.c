@@ -11,10 +11,15 @@ enum { FAST, SLOW };
 
 typedef struct {
   PetscInt  count, mode[4], n_modes, n_shares;
-  PetscReal speed, box[3], share[2], edge[2];
+  PetscReal speed, box[3], share[2], edge[2], bounds[2];
   PetscBool loud, has_box, has_count;
   int       way;
   char      name[16], title[8], file[PETSC_MAX_PATH_LEN];
+  char     *part, *side[2], **parts;
+  PetscInt  n_parts, n_entries;
+  PetscReal *entries;
+  PetscBool has_entries;
+  int       kind;
 } Owner;
 
 static const char *Idle(const void *owner, const QuantityRun *run)
@@ -41,7 +46,16 @@ static const Quantity    rows[]  = {
    .restart = PETSC_TRUE},
   {"-edges", "frequencies", "Hz", QUANTITY_REALS, ROW(edge), QUANTITY_WITHIN(0, 1e30)},
   {"-title", "a word", NULL, QUANTITY_TEXT, ROW(title), .text = "disc"},
+  {"-part", "one name", NULL, QUANTITY_NAME, ROW(part), .restart = PETSC_TRUE},
+  {"-sides", "two names", NULL, QUANTITY_NAMES, ROW(side), .restart = PETSC_TRUE, .why = "slave,master"},
+  {"-parts", "names", NULL, QUANTITY_NAMES, ROW(parts), .count = offsetof(Owner, n_parts), .restart = PETSC_TRUE},
+  {"-entries", "numbers", "N", QUANTITY_MANY, ROW(entries), .count = offsetof(Owner, n_entries), .room = 5, .restart = PETSC_TRUE,
+   .given = offsetof(Owner, has_entries), QUANTITY_WITHIN(-9, 9)},
+  {"-bounds", "two numbers", "m", QUANTITY_REALS, ROW(bounds), .text = "0.5,-2e3"},
 };
+static const Quantity kind[] = {
+  {"-kind", "what it is", NULL, QUANTITY_WORD, ROW(kind), .initial = 2, .words = words, .required = PETSC_TRUE, .why = "fast or slow"}};
+static const QuantityTable wanted = {"Test", "test.h", 1, kind, .in = 0};
 static const QuantityTable table = {"Test", "test.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
 
 static PetscErrorCode Read(const char options[], Owner *owner)
@@ -55,6 +69,17 @@ static PetscErrorCode Read(const char options[], Owner *owner)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Free(Owner *owner)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < owner->n_parts; i++) PetscCall(PetscFree(owner->parts[i]));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(owner->side[i]));
+  PetscCall(PetscFree(owner->parts));
+  PetscCall(PetscFree(owner->part));
+  PetscCall(PetscFree(owner->entries));
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: a default is lost, a kind is read into another place or as another type, or what is given is not said */
 static PetscErrorCode TestRead(int *failed)
 {
@@ -64,7 +89,13 @@ static PetscErrorCode TestRead(int *failed)
   PetscCall(Read("", &o));
   *failed += CheckTrue("defaults", o.count == 3 && o.speed == 0.5 && o.loud && o.way == FAST && !o.name[0], o.speed);
   *failed += CheckTrue("default of a text, empty lists", !strcmp(o.title, "disc") && !o.n_modes && !o.n_shares, o.n_modes);
-  *failed += CheckTrue("nothing is given", !o.has_count && !o.has_box, 0);
+  *failed += CheckTrue("nothing is given", !o.has_count && !o.has_box && !o.has_entries, 0);
+  *failed += CheckTrue("defaults of a list", o.bounds[0] == 0.5 && o.bounds[1] == -2e3, o.bounds[1]);
+  PetscCall(Free(&o));
+  PetscCall(Read("-part disc -sides a,b -parts x,y,z -entries 1,2,-3", &o));
+  *failed += CheckTrue("names", !strcmp(o.part, "disc") && !strcmp(o.side[1], "b") && o.n_parts == 3 && !strcmp(o.parts[2], "z"), 0);
+  *failed += CheckTrue("many", o.n_entries == 3 && o.entries[2] == -3 && o.has_entries, o.n_entries);
+  PetscCall(Free(&o));
   PetscCall(Read("-count 2 -speed 0.25 -box 1,2,-3 -loud 0 -way slow -name pad -file /dev/null", &o));
   *failed += CheckTrue("integer and word", o.count == 2 && o.way == SLOW, o.count);
   *failed += CheckTrue("numbers", o.speed == 0.25 && o.box[0] == 1 && o.box[1] == 2 && o.box[2] == -3, o.box[2]);
@@ -99,6 +130,8 @@ static PetscErrorCode TestLimits(int *failed)
     {"-shares 1,101", "-shares 101 must lie between 0 and 100 (%)"},
     {"-modes 1,-2", "-modes -2 must not be negative"},
     {"-edges 1,-2", "-edges -2 must not be negative (Hz)"},
+    {"-entries 1,10", "-entries 10 must lie between -9 and 9 (N)"},
+    {"-entries 1,2,3,4,5,6", "-entries has more than 5 values"},
     {"-edges 1,2e30", "-edges 2e+30 must lie between 0 and 1e+30 (Hz)"},
   };
   Owner o;
@@ -112,6 +145,11 @@ static PetscErrorCode TestLimits(int *failed)
     PetscCall(PetscPopErrorHandler());
     *failed += CheckTrue(bad[i][1], code == PETSC_ERR_USER_INPUT && !strcmp(last, bad[i][1]), code);
   }
+  PetscCall(PetscPushErrorHandler(Keep, NULL));
+  PetscCall(QuantitiesInit(&wanted, &o));
+  *failed += CheckTrue("a word that is required", QuantitiesRead(PETSC_COMM_WORLD, &wanted, &o) == PETSC_ERR_USER_INPUT &&
+                       !strcmp(last, "-kind must be given: fast or slow"), 0);
+  PetscCall(PetscPopErrorHandler());
   PetscCall(Read("-count 2 -speed 0.999", &o));
   *failed += CheckTrue("values at and inside the limits", o.count == 2 && o.speed == 0.999, o.speed);
   PetscFunctionReturn(0);
@@ -165,13 +203,15 @@ static PetscErrorCode Sum(const char options[], uint64_t *sum)
   PetscCall(ChecksumGetParts(c, &n, &part));
   *sum = part[0].sum;
   PetscCall(ChecksumDestroy(&c));
+  PetscCall(Free(&o));
   PetscFunctionReturn(0);
 }
 
 /* Breaks when: a row that decides a restart is left out of the sum, or one that does not is in it */
 static PetscErrorCode TestChecksum(int *failed)
 {
-  static const char *const decides[] = {"-count 4", "-speed 0.6", "-box 0,0,1", "-way slow", "-name pad", "-modes 0", "-shares 0"};
+  static const char *const decides[] = {"-count 4", "-speed 0.6", "-box 0,0,1", "-way slow", "-name pad", "-modes 0", "-shares 0",
+                                        "-part disc", "-sides a,b", "-parts x", "-parts x,y", "-entries 1"};
   static const char *const free[]    = {"-loud 0", "-file /dev/null", "-count 3"};
   uint64_t                 none, other;
 

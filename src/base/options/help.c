@@ -126,13 +126,15 @@ static void CutPoint(char text[])
 static void ParseValues(const char *begin, const char *end, HelpOption *option)
 {
   const char *middle = strstr(begin, " : ");
+  PetscBool   two; /* a default, which may be empty */
 
   if (!strncmp(begin, "now ", 4)) begin += 4;
   if (!middle || middle > end) middle = end;
+  two = middle < end ? PETSC_TRUE : PETSC_FALSE;
   Cut(begin, strncmp(begin, "string1", 7) ? middle : begin, option->value, sizeof(option->value));
   if (middle < end) middle += 3;
   if (!strncmp(middle, "formerly ", 9)) middle += 9;
-  if (middle < end)
+  if (two)
     Cut(middle, end, option->initial, sizeof(option->initial));
   else
     memcpy(option->initial, option->value, sizeof(option->initial));

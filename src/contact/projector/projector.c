@@ -45,7 +45,6 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscBool same;
 
   PetscFunctionBeginUser;
-  PetscCheck(c->slave && c->master, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces must be given: slave,master", c->name);
   PetscCall(PetscStrcmp(c->slave, c->master, &same));
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);

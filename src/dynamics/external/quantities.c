@@ -4,10 +4,10 @@
 #define IMPULSE(member) QUANTITY_AT(Impulse, member)
 
 static const Quantity impulse[] = {
-  {"-at", "place x,y,z whose nearest node is hit, m (required)", NULL, QUANTITY_REALS, IMPULSE(at),
-   .given = offsetof(Impulse, has_at), .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
+  {"-at", "place x,y,z; the nearest node is hit", "m", QUANTITY_REALS, IMPULSE(at), .given = offsetof(Impulse, has_at),
+   .required = PETSC_TRUE, .why = "the place x,y,z (m)"},
   {"-part", "body of the node; any without it", NULL, QUANTITY_NAME, IMPULSE(part)},
-  {"-impulse", "momentum in x,y,z (required); zeros for none", "N s", QUANTITY_REALS, IMPULSE(impulse),
+  {"-impulse", "momentum in x,y,z; zeros for none", "N s", QUANTITY_REALS, IMPULSE(impulse),
    .given = offsetof(Impulse, has_impulse), .required = PETSC_TRUE, .why = "three values (N s), zeros for none"},
   {"-time", "when", "s", QUANTITY_REAL, IMPULSE(time), QUANTITY_NOT_NEGATIVE},
 };

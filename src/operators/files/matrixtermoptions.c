@@ -57,8 +57,6 @@ static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
              "-terms names %s, but -%s_file (or -%s_dense) is missing", term->name, term->name, term->name);
   PetscCheck(!term->file[0] || !term->n_dense, comm, PETSC_ERR_USER_INPUT, "-%s_file and -%s_dense exclude each other",
              term->name, term->name);
-  PetscCheck((int)term->kind < 3, comm, PETSC_ERR_USER_INPUT, "-%s_kind is missing: give stiffness, damping or mass",
-             term->name);
   PetscCheck(term->scale != 0 && PetscAbsReal(term->scale) <= MATRIX_LARGEST, comm, PETSC_ERR_USER_INPUT,
              "-%s_scale %.6g must not be zero, and of at most 1e60", term->name, (double)term->scale);
   PetscFunctionReturn(0);
