@@ -134,7 +134,7 @@ static PetscErrorCode PepReadOptions(MPI_Comm comm)
 }
 
 /* Of a linear solver with the types that it has by default. Where MUMPS factorises, it reads its own options as it
-   does: hence a matrix of one unknown */
+   does: hence a matrix of one unknown, on the first rank. */
 static PetscErrorCode KspReadOptions(MPI_Comm comm, const char prefix[], KSPType ksp_type, PCType pc_type)
 {
   PetscMPIInt rank;
@@ -178,6 +178,8 @@ static PetscErrorCode PrefixIsLeft(size_t n_prefixes, const char *const prefix[]
   PetscFunctionReturn(0);
 }
 
+/* PetscOptionsHasName() knows whole names alone: all options are walked through, without regard to case, as PETSc
+   compares them. */
 PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given)
 {
   char       *all, *text, name[256];
@@ -196,6 +198,8 @@ PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given)
   PetscFunctionReturn(0);
 }
 
+/* Names that would change which modes are found are refused first; what is left must be known to a solver that is
+   made here and destroyed again, or -options_left names it. */
 PetscErrorCode SolverReadEigenOptions(MPI_Comm comm)
 {
   static const char        other[]  = "not offered, other modes would be found; choose them by -modes_band or "
@@ -235,6 +239,8 @@ PetscErrorCode SolverReadFactorOptions(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
+/* Of the names that nobody has read so far, those that an iterative solver would read: they are good options in the
+   wrong place, and refused as such. */
 PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm)
 {
   static const char why[] =

@@ -9,9 +9,11 @@
 #include "solver/factor/shiftinvert.h"
 
 #define BLOCK_MUMPS 32 /* columns that MUMPS takes at once by itself, ICNTL(27) */
-#define BLOCK_WIDE  64 /* of 48 columns each takes a fifth less time so */
+/* Columns at once: 48 of them take a fifth less time so than in two passes by 32. */
+#define BLOCK_WIDE 64
 
-/* Whether columns lie apart on any rank: SLEPc rounds the leading dimension up, which some local rows need not */
+/* Whether columns lie apart on any rank: SLEPc rounds the leading dimension up, which some local rows need not. All
+   ranks must take the same way, as what follows is collective. */
 static PetscErrorCode BlockIsApart(Mat A, PetscBool *apart)
 {
   PetscInt n_local, lda;
@@ -91,7 +93,8 @@ static PetscErrorCode BlockIsMumps(Mat F, PetscBool *is_mumps)
   PetscFunctionReturn(0);
 }
 
-/* Has MUMPS take more columns at once than its own 32, where there are more and nobody says how many */
+/* Has MUMPS take more columns at once than its own 32 (ICNTL(27) of the MUMPS Users' guide), where there are more
+   and nobody says how many. */
 static PetscErrorCode BlockWiden(Mat F, Mat B)
 {
   PetscInt    n;
@@ -189,7 +192,8 @@ PetscErrorCode ShiftInvertApplyRows(void *ctx, Mat rows, Mat X)
   PetscFunctionReturn(0);
 }
 
-/* B = X, or for factors of MUMPS, which copy the right-hand side into the solution first, a matrix on the array of X */
+/* B = X, or for factors of MUMPS, which copy the right-hand side into the solution first, a matrix on the array of
+   X: no second block then. Others read B while they write X. */
 static PetscErrorCode BlockRightSide(Mat F, Mat X, Mat *B)
 {
   PetscInt     n_local, n_rows, n;
@@ -223,6 +227,8 @@ PetscErrorCode ShiftInvertApplyFactors(void *ctx, Mat X)
   PetscFunctionReturn(0);
 }
 
+/* With an update all columns are of one side: n_right of them right ones, or none where transposed. The sums of the
+   check are taken of B before X is written, which may be the same array. */
 PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed, Mat B, Mat X)
 {
   PetscInt n, n_right;
@@ -246,6 +252,7 @@ PetscErrorCode ShiftInvertApplyBlock(const ShiftInvert *si, PetscBool transposed
   PetscFunctionReturn(0);
 }
 
+/* X = Z (Z'A Z)^-1 Z'B, A being the matrix of the followed unknowns already. */
 PetscErrorCode ShiftInvertApplyThrough(const ShiftInvert *si, Mat Z, Mat B, Mat X)
 {
   Mat from, to, full;

@@ -13,9 +13,13 @@
 #define LOOK_RARELY 0.25 /* of the columns so far: longest way to the next look */
 /* of the others at a restart: on the default brake with 112 columns 0.5, 0.7, 0.8 take 400, 384, 376 solves */
 #define RESTART_KEEP 0.8
-#define REACH_TRUST  100 /* an eigenvalue is off by less than so many times its residual */
+/* An eigenvalue is off by less than so many times its residual: of a normal operator by once, of others by the
+   condition of the eigenvalue. */
+#define REACH_TRUST 100
 
-/* Sorted Schur form of the projected problem, the first `locked` columns of which are there already */
+/* Sorted Schur form T = Q' G Q of the projected problem, the first `locked` columns of which are there already.
+   Rank 0's G is that of all ranks, and of a symmetric problem the symmetric part: Ritz values decide what is
+   collective, and must be alike to the last bit. */
 static PetscErrorCode BlockKrylovProject(EPS eps, PetscInt locked)
 {
   EPS_BlockKrylov  *ctx = eps->data;
@@ -79,7 +83,9 @@ static PetscErrorCode BlockKrylovIsBeyond(EPS eps, PetscInt k, PetscBool *beyond
   PetscFunctionReturn(0);
 }
 
-/* Counts the eigenvalues that have converged, in order, and finds the worst of those that are wanted */
+/* Counts the eigenvalues that have converged, in order, and finds the worst of those that are wanted: converged
+   stops at the first that has not, though later ones have, so that none is left out. A conjugate pair is one step
+   of the loop. */
 static PetscErrorCode BlockKrylovConverge(EPS eps)
 {
   EPS_BlockKrylov *ctx = eps->data;
@@ -107,7 +113,8 @@ static PetscErrorCode BlockKrylovConverge(EPS eps)
   PetscFunctionReturn(0);
 }
 
-/* Keeps the k converged Schur vectors and most of the others, not half a complex pair */
+/* Keeps the k converged Schur vectors and most of the others, not half a complex pair: keep at most what leaves
+   room for the last block. Without a last block (p = 0) the space is invariant and goes on with random directions. */
 static PetscErrorCode BlockKrylovRestart(EPS eps, PetscInt locked, PetscInt k)
 {
   BlockSpace *s    = &((EPS_BlockKrylov *)eps->data)->space;
@@ -147,7 +154,9 @@ static PetscBool BlockKrylovIsFull(const BlockSpace *s)
   return !s->p || s->m + s->p > s->ncv ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Where the next look is taken; the last ones saw `before` and ctx->worst */
+/* Where the next look is taken: residuals fall by the factor before / worst over the n - seen columns since the
+   last one, rate = its logarithm per column. worst is in units of the tolerance, so that log(worst) / rate columns
+   are left; LOOK_EARLY of them are waited for, since the rate grows. */
 static void BlockKrylovPlan(EPS_BlockKrylov *ctx, PetscReal before)
 {
   const PetscInt  n    = ctx->space.applied;
@@ -159,7 +168,8 @@ static void BlockKrylovPlan(EPS_BlockKrylov *ctx, PetscReal before)
   ctx->look = n + PetscMax(1, (PetscInt)wait);
 }
 
-/* Asks the test of convergence, and restarts a full space */
+/* The iteration ends by the test of SLEPc, by the reach, or where nothing is left; only a full space counts as an
+   iteration. */
 static PetscErrorCode BlockKrylovLook(EPS eps)
 {
   EPS_BlockKrylov *ctx    = eps->data;

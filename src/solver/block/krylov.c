@@ -41,6 +41,8 @@ static PetscErrorCode BlockKrylovSizes(EPS eps)
   PetscFunctionReturn(0);
 }
 
+/* What the type does not offer is refused here rather than ignored. Orthogonality is the decomposition's own work
+   (orthogonalise.c): the basis gets no inner product of SLEPc's. */
 static PetscErrorCode EPSSetUp_BlockKrylov(EPS eps)
 {
   EPS_BlockKrylov *ctx = eps->data;
@@ -63,7 +65,8 @@ static PetscErrorCode EPSSetUp_BlockKrylov(EPS eps)
   PetscFunctionReturn(0);
 }
 
-/* Order of the eigenvalues of the operator by that of those which they stand for */
+/* Order of the eigenvalues theta of the operator by that of those which they stand for, kappa = target + 1 / theta
+   (SlepcMap_ST). */
 static PetscErrorCode EPSSetUpSort_BlockKrylov(EPS eps)
 {
   const PetscBool target = eps->which == EPS_TARGET_MAGNITUDE ? PETSC_TRUE : PETSC_FALSE;
@@ -209,7 +212,7 @@ PetscErrorCode BlockKrylovReached(EPS eps, PetscBool *reached)
   PetscFunctionReturn(0);
 }
 
-/* Column j of V as a vector, which keeps V */
+/* Column j of V as a vector on the memory of V, which it keeps alive by a reference. */
 static PetscErrorCode ColumnTake(BV V, PetscInt j, Vec *x)
 {
   const MPI_Comm comm = PetscObjectComm((PetscObject)V);
@@ -257,6 +260,8 @@ static PetscErrorCode EigenvectorCopy(EPS eps, PetscInt i, Vec *xr, Vec *xi)
   PetscFunctionReturn(0);
 }
 
+/* SLEPc stores the vector of a conjugate pair as two columns, real and imaginary part; the second of the pair has
+   the same with the other sign, and gets a copy. */
 PetscErrorCode BlockKrylovTakeVector(EPS eps, PetscInt i, PetscBool copy, Vec *xr, Vec *xi)
 {
   const PetscInt   column = eps->perm[i];
@@ -291,6 +296,8 @@ static PetscErrorCode BlockKrylovInverts(EPS eps, PetscBool *inverts)
   PetscFunctionReturn(0);
 }
 
+/* Both must be generalised problems by shift-and-invert: then both blocks are right-hand sides of one matrix and
+   its transpose. */
 PetscErrorCode BlockKrylovSetOther(EPS right, EPS left, BlockKrylovSolve solve, void *solve_ctx, PetscBool *paired)
 {
   PetscBool other;

@@ -1,4 +1,4 @@
-/* Private to modes/: an eigensolver of SLEPc's that applies its operator to blocks of vectors */
+/* Private to solver/ and modes/: an eigensolver of SLEPc's that applies its operator to blocks of vectors */
 #pragma once
 
 #include <slepceps.h>

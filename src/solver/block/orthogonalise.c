@@ -22,9 +22,11 @@
 #include "orthonormal.h"
 #include "panel.h"
 
-#define ROUNDING 1e-14 /* what a pass does not resolve beside what there is */
-#define PASSES   8     /* each makes a condition up to 1e7 times better; two are usual */
-#define SUMS     10    /* roundings of an entry of G */
+/* What a pass does not resolve beside what there is, in squares: of lengths 1e-7, hence the condition that a pass
+   removes. */
+#define ROUNDING 1e-14
+#define PASSES   8  /* each makes a condition up to 1e7 times better; two are usual */
+#define SUMS     10 /* roundings of an entry of G */
 
 /* One pass over a block of m columns, which were `columns` at the beginning */
 typedef struct {
@@ -58,7 +60,7 @@ static PetscErrorCode PanelRestore(BV V, Mat *A, Panel *panel)
   PetscFunctionReturn(0);
 }
 
-/* Sums C and T of all ranks, in one message */
+/* Sums C and T of all ranks, in one message of m (n + m) numbers: they lie one behind the other. */
 static PetscErrorCode PassSum(BV W, PetscInt n, BlockPass *pass)
 {
   PetscFunctionBeginUser;
@@ -128,8 +130,9 @@ static PetscErrorCode PassProject(PetscInt n, const PetscReal gram[], BlockPass 
   PetscFunctionReturn(0);
 }
 
-/* S and S^-1 G S^-1 of G = W' M W - C'' C', which takes the place of W' M W in T; lost = the largest part of a square
-   by which it shrinks to that of S */
+/* S and S^-1 G S^-1 of G = W' M W - C'' C', which takes the place of W' M W in T; lost = the largest part of a
+   square by which it shrinks to that of S. The difference loses digits where the block lies in V nearly: the size
+   is kept above rounding, and the next pass finds what is left. */
 static void PassReduce(PetscInt n, PetscBool first, const PetscScalar products[], BlockPass *pass, PetscReal *lost)
 {
   const PetscInt           m     = pass->m;
@@ -156,7 +159,9 @@ static void PassReduce(PetscInt n, PetscBool first, const PetscScalar products[]
   }
 }
 
-/* U and D of G, which is left in T, and S */
+/* U and D of G, which is left in T, and S; D is kept above ROUNDING of its largest, so that D^-1/2 is finite. All
+   ranks have the decomposition of the first (GramEigen()). With SUMS eps lost / D_min the block is as near to
+   orthonormal as `loose` asks for, and no further pass is made. */
 static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, const BlockFactors *factors, BlockPass *pass)
 {
   const PetscInt m = pass->m;
@@ -176,7 +181,8 @@ static PetscErrorCode PassDecompose(MPI_Comm comm, PetscInt n, const BlockFactor
   PetscFunctionReturn(0);
 }
 
-/* C and R after the pass; T from U, D and S */
+/* C := C + C' R, R := T^-1 R in the columns of H [.][ld], C in rows 0 .. n - 1 and R behind them, so that V C + W R
+   stays the block as it came; T from U, D and S for the block itself. */
 static void PassAccumulate(PetscInt n, BlockPass *pass, BlockFactors *factors)
 {
   const PetscInt           m = pass->m, ld = factors->ld;
@@ -265,7 +271,8 @@ static PetscErrorCode PassDrop(PetscInt n, PetscInt i, BV W, BlockFactors *facto
   PetscFunctionReturn(0);
 }
 
-/* Leaves out directions that are rounding, and the smallest where there are more than there may be */
+/* Leaves out directions that are rounding, rows of R below drop times the longest column of the block, and the
+   smallest where there are more than there may be. */
 static PetscErrorCode PassTrim(PetscInt n, BV W, BlockFactors *factors, BlockPass *pass)
 {
   PetscFunctionBeginUser;
@@ -343,6 +350,7 @@ static PetscErrorCode PassRun(BV V, PetscInt n, Mat M, BV W, BlockFactors *facto
   PetscFunctionReturn(0);
 }
 
+/* H begins as [0; I]: W = V 0 + W I. Directions may come out in another order than the columns. */
 PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors)
 {
   BlockPass pass = {.norm = -1, .clean = PETSC_FALSE};

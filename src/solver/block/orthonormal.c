@@ -9,8 +9,10 @@
 #include "orthonormal.h"
 #include "base/algebra/dense.h"
 
-#define REORTHOGONALISE   1e-9  /* a direction smaller than this beside its block is rounding */
-#define COMPRESS_ROUNDING 1e-13 /* the same of squares */
+/* A direction smaller than this beside its block is rounding: the Gram matrix has it squared, 1e-18, below eps. */
+#define REORTHOGONALISE 1e-9
+/* Squares of singular values below this part of the largest are rounding of the Gram matrix. */
+#define COMPRESS_ROUNDING 1e-13
 
 PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
 {
@@ -44,6 +46,8 @@ static PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
   PetscFunctionReturn(0);
 }
 
+/* G = U diag(w) U', w ascending, U in place of G. Bases of equal eigenvalues are arbitrary and differ by rounding:
+   those of the first rank are that of all. */
 PetscErrorCode GramEigen(MPI_Comm comm, PetscInt size, PetscScalar G[], PetscReal w[])
 {
   PetscFunctionBeginUser;
@@ -80,6 +84,8 @@ static PetscErrorCode BlockScale(Mat M, PetscReal drop, BV W)
   PetscFunctionReturn(0);
 }
 
+/* Twice: rounding of the first projection, eps |W|, grows with the scaling of a short direction; the second takes
+   it out. All directions have length one by then: one that falls below 0.1 was rounding. */
 PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscReal drop, BV W)
 {
   PetscInt m;
@@ -102,6 +108,8 @@ PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
+/* Principal components of B with each column in units of its tolerance: B diag(1 / tolerance) = U sigma V', of
+   which B becomes the columns of U with sigma > 1, ascending, orthonormal; sigma [kept]. */
 PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[])
 {
   PetscInt     m, kept = 0;
@@ -146,6 +154,7 @@ PetscErrorCode BlockCopy(Mat H, PetscBool transposed, PetscInt n, PetscReal A[])
   PetscFunctionReturn(0);
 }
 
+/* A [n][n] for A [first][first], its entries in the corner; the others are not set. */
 PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A)
 {
   PetscReal *old = *A;

@@ -6,10 +6,12 @@
 #include "base/algebra/versions.h"
 #include "panel.h"
 
-#define PANEL_ROWS  256 /* of a slice, a multiple of PANEL_STEP */
-#define PANEL_STEP  8   /* rows at a time */
-#define PANEL_FOUR  4   /* columns of a block at a time */
-#define PANEL_AHEAD 6   /* columns */
+/* Rows of a slice, a multiple of PANEL_STEP: 256 of 100 columns are 200 kB, within a second cache. */
+#define PANEL_ROWS 256
+#define PANEL_STEP 8 /* rows at a time */
+#define PANEL_FOUR 4 /* columns of a block at a time */
+/* Columns whose rows are asked for from memory before their turn. */
+#define PANEL_AHEAD 6
 
 typedef PetscScalar PanelLanes __attribute__((vector_size(32), aligned(8), may_alias));
 
@@ -65,7 +67,8 @@ INTO_VERSIONS void SliceSubtract(const Slice *s, const PetscScalar c[], PetscSca
   }
 }
 
-/* product[4][n] += V' w for four columns w, PANEL_ROWS apart */
+/* product[4][n] += V' w for four columns w, PANEL_ROWS apart. Two columns of V at a time: eight sums in registers,
+   each number read for four products. Sums of four lanes are added at the end, in a fixed order. */
 INTO_VERSIONS void SliceProduct(const Slice *s, const PetscScalar w[], PetscScalar product[])
 {
   const PetscInt rows = s->rows, n = s->n;
@@ -143,7 +146,8 @@ static PetscErrorCode PanelWorkDestroy(PanelWork *work)
   PetscFunctionReturn(0);
 }
 
-/* The slice from row `first` on, of PANEL_ROWS or the last ones, and how many of its rows are real */
+/* The slice from row `first` on, of PANEL_ROWS or the last ones, and how many of its rows are real. The last rows,
+   fewer than PANEL_STEP, are copied and filled up with zeros, which add nothing. */
 static PetscInt PanelCut(const Panel *V, PetscInt first, PanelWork *work, Slice *s)
 {
   const PetscInt left = PetscMin(PANEL_ROWS, V->rows - first);
@@ -213,6 +217,8 @@ static void PanelMeasure(const Slice *slice, const PetscScalar w[], PanelWork *w
   SliceProductAll(&block, work->fours, w, work->gram);
 }
 
+/* W := (W - V C) T, and where product is wanted V' W and W' W of the new W, by one walk through V: the slice that
+   was subtracted from is still in the cache. */
 PetscErrorCode PanelUpdate(const Panel *V, const PetscScalar C[], const PetscScalar T[], Panel *W,
                            PetscScalar product[], PetscScalar gram[])
 {

@@ -53,7 +53,8 @@ typedef struct {
   PetscBool alike;
 } RowGroup;
 
-/* Products of a group with `strip` of `width` columns side by side: products [group.n][width] */
+/* Products of a group with `strip` of `width` columns side by side: products [group.n][width]. All sums of a group,
+   3 rows x 2 x 8 numbers, stay in registers. */
 INTO_VERSIONS void StripTimes(const Rows *rows, RowGroup group, PetscInt width, PetscInt strip,
                               const PetscScalar packed[], PetscScalar products[])
 {
@@ -100,7 +101,8 @@ INTO_VERSIONS PetscBool RowsMatch(const Rows *rows, PetscInt i, PetscBool *alike
   return PETSC_TRUE;
 }
 
-/* Rows first, first + 1, ... to last - 1 or a few more, how many of them: products [][width] */
+/* Rows first, first + 1, ... to last - 1 or a few more, how many of them: products [][width]. The three calls are
+   alike but for constants, which the compiler makes three loops of. */
 INTO_VERSIONS PetscInt RowsSome(const Rows *rows, PetscInt first, PetscInt last, PetscInt width,
                                 const PetscScalar packed[], PetscScalar products[])
 {
@@ -178,7 +180,7 @@ static PetscErrorCode ApplyRows(Mat A, PetscInt first, PetscInt m, PetscInt widt
   PetscFunctionReturn(0);
 }
 
-/* On one rank */
+/* On one rank: columns are packed once for all n matrices. */
 static PetscErrorCode ApplySequential(PetscInt n, const Mat A[], Mat X, const Mat Y[])
 {
   PetscInt           n_rows, n_columns, ldx;
@@ -227,6 +229,7 @@ PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X)
   PetscFunctionReturn(0);
 }
 
+/* Y[i] = A[i] X. On several ranks by MatMatMult(), which brings the rows of X that others own. */
 PetscErrorCode BlockMultiplyEach(PetscInt n, const Mat A[], Mat X, const Mat Y[])
 {
   PetscBool sequential = PETSC_TRUE, dense;

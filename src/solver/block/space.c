@@ -53,8 +53,9 @@ static PetscErrorCode SpaceAppend(BlockSpace *s, PetscInt n, PetscReal drop, Pet
   PetscFunctionReturn(0);
 }
 
-/* Random directions in the range of Op, of those that V has not, up to n of them: what Op makes of a random block that
-   is orthogonal to V, so that what V has does not hide them */
+/* Random directions in the range of Op, of those that V has not, up to n of them: what Op makes of a random block
+   that is orthogonal to V, so that what V has does not hide them. Of a generalised problem with a singular M only
+   directions in that range belong to finite eigenvalues. */
 static PetscErrorCode SpaceAppendRandom(BlockSpace *s, PetscInt n, PetscInt *rank)
 {
   const PetscInt first = s->m + s->p;
@@ -91,7 +92,8 @@ PetscErrorCode BlockSpaceStart(BlockSpace *s)
   PetscFunctionReturn(0);
 }
 
-/* Takes in W, which is Op times the last block */
+/* Takes in W, which is Op times the last block: its coordinates are the next p columns of G, and what is new in it
+   the next block. m grows by p. */
 static PetscErrorCode SpaceTake(BlockSpace *s)
 {
   const PetscInt n = s->m + s->p, ld = s->ncv + s->block;
@@ -194,7 +196,8 @@ PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKr
   PetscFunctionReturn(0);
 }
 
-/* G := [T; B Q] of k columns, the converged without B */
+/* G := [T; B Q] of k columns, [k + p][k], the converged without B, whose residual is below the tolerance: that is
+   what locking leaves out of the decomposition. */
 static PetscErrorCode SpaceProject(BlockSpace *s, PetscInt converged, PetscInt k, Mat Q, Mat T)
 {
   const PetscInt     ld = s->ncv + s->block;

@@ -15,6 +15,8 @@
 
 #define TRIAL_TRUST 1e-8 /* largest difference; another column or another matrix leaves more than 1e-5 */
 
+/* trial = w, A' w and A w, with what the update adds; the entries of w lie in [-1/2, 1/2]. MatMultTranspose() is
+   saved where A is symmetric. */
 PetscErrorCode ShiftInvertMakeTrial(ShiftInvert *si)
 {
   Mat A;
@@ -67,6 +69,7 @@ static PetscErrorCode TrialColumns(Vec v, PetscInt first, PetscInt last, Mat X, 
   PetscFunctionReturn(0);
 }
 
+/* Two dot products a column, one reduction of 2 n numbers for the block. */
 PetscErrorCode TrialSums(const ShiftInvert *si, PetscBool solution, PetscInt n_right, Mat X, PetscScalar sums[][2])
 {
   PetscInt n;

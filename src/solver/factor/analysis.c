@@ -10,7 +10,8 @@
 #include "ordering.h"
 #include <math.h>
 
-#define RETURN_FROM 500 /* MB of factors, from which freed memory is given back before they are made */
+/* MB of factors, from which freed memory is given back before they are made: below it costs more than it gains. */
+#define RETURN_FROM 500
 
 #define SHOW_AGAIN 1.1 /* estimates that exceed those shown before by less are not shown */
 
@@ -52,7 +53,8 @@ static PetscErrorCode AnalysisRun(PC pc, Mat A, PetscBool symmetric)
   PetscFunctionReturn(0);
 }
 
-/* MUMPS' estimates, the same on all ranks */
+/* MUMPS' estimates, the same on all ranks: those of the machine that lacks most, by MPI_MAXLOC over the ranks.
+   INFOG(3) below zero counts millions of entries. */
 static PetscErrorCode AnalysisEstimate(MPI_Comm comm, Mat F, FactorCost *cost)
 {
   PetscInt    entries, low_rank, on_disk, core, disk;

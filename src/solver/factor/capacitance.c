@@ -1,12 +1,16 @@
 /*
-   C = I + R A^-1 L' of an update (lowrank.h) from entries of A^-1 at the unknowns of the pairs alone, where the vectors
-   A^-1 R' are not kept: a third to a fifth of the time of the solves that make these.
+   C = I + R A^-1 L' [p][p] of an update (lowrank.h) from entries of A^-1 at the unknowns of the pairs alone,
+
+      C_ji = (i = j) + sum_kl R_jk (A^-1)_lk L_il,   k of the unknowns of R, l of those of L, A symmetric,
+
+   where the vectors A^-1 R' are not kept: a third to a fifth of the time of the solves that make these.
 */
 #include "lowrank.h"
 #include "base/gather.h"
 
-#define CAPACITANCE_ROOM 4000000 /* entries of A^-1 that are asked for at once */
-#define CAPACITANCE_MOST 4       /* unknowns of R for each pair; above it solves are as cheap */
+/* Entries of A^-1 that are asked for at once: 32 MB on the first rank. */
+#define CAPACITANCE_ROOM 4000000
+#define CAPACITANCE_MOST 4 /* unknowns of R for each pair; above it solves are as cheap */
 
 /* An entry of L or R */
 typedef struct {
@@ -77,7 +81,8 @@ static void PairsTimes(const PairEntries *L, PetscInt p, PetscInt m, const Petsc
   }
 }
 
-/* Adds to C what the unknowns first .. first + m - 1 of R contribute */
+/* Adds to C what the unknowns first .. first + m - 1 of R contribute, on rank 0, which has the entries; C is sent
+   to all at the end. */
 static PetscErrorCode CapacitanceAdd(LowRank *u, const PairEntries *L, const PairEntries *R, PetscInt first, PetscInt m)
 {
   const PetscInt p = u->p;

@@ -17,6 +17,8 @@ static Mat ShiftInvertStiffness(const ShiftInvert *si, const PencilMatrices *pen
   return si->even && !pencil->symmetric ? pencil->K_even : pencil->K;
 }
 
+/* Whether the same matrices, with the pattern that they had, are factored again: PETSc counts changes of a pattern
+   (MatGetNonzeroState()). */
 PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const PencilMatrices *pencil, PetscBool *keeps)
 {
   const Mat        now[3] = {ShiftInvertStiffness(si, pencil), pencil->C, pencil->M};
@@ -115,7 +117,9 @@ static PetscErrorCode ShiftInvertRemember(const PencilMatrices *pencil, ShiftInv
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a failed factorisation; a singular matrix sets *singular instead */
+/* Raises the error for a failed factorisation; a singular matrix sets *singular instead. INFOG(1) by the MUMPS
+   Users' guide: -8, -9, -14, -15, -17, -20 workspace or buffers, -5, -7, -13, -19 memory, -6, -10 singular in
+   structure or numbers; INFOG(28) null pivots. */
 static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *singular)
 {
   PCFailedReason reason;
@@ -154,7 +158,8 @@ static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *
   PetscFunctionReturn(0);
 }
 
-/* Solver with MUMPS as default */
+/* Solver with MUMPS as default: ICNTL(14) extra workspace in percent, ICNTL(13) = 1 no ScaLAPACK at the root,
+   ICNTL(24) = 1 null pivots found. */
 static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
 {
   PC  pc;
@@ -259,6 +264,8 @@ static PetscErrorCode ShiftInvertWantsSpace(ShiftInvert *si, PC pc, PetscBool *w
   PetscFunctionReturn(0);
 }
 
+/* Tries again with more workspace where MUMPS asks for it; it ends, since FactorWantsSpace() gives at most
+   WORKSPACE_MOST. si->factored tells whether there are factors then. */
 PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular)
 {
   PetscBool again = PETSC_TRUE;

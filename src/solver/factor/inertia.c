@@ -13,7 +13,7 @@
 #define MASSLESS_AWAY 1e-3 /* relative move of a shift far below zero on which there is an eigenvalue */
 #define MOVES         4    /* of a shift */
 
-/* Negative and null pivots of K - kappa M */
+/* Negative and null pivots of K - kappa M, kappa in (rad/s)^2; factors that are those of this shift already serve. */
 static PetscErrorCode CountPivots(const PencilMatrices *pencil, PetscReal kappa, ShiftInvert *si, PetscInt *n_negative,
                                   PetscInt *n_null)
 {
@@ -33,6 +33,7 @@ static PetscErrorCode CountPivots(const PencilMatrices *pencil, PetscReal kappa,
   PetscFunctionReturn(0);
 }
 
+/* Moves grow, 0, 1, 2, 3 times `away` one after the other: a null pivot may be one of several eigenvalues near it. */
 PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal away, ShiftInvert *si, PetscReal *omega,
                                      PetscInt *n)
 {
@@ -49,6 +50,7 @@ PetscErrorCode ShiftInvertCountBelow(const PencilMatrices *pencil, PetscReal awa
   PetscFunctionReturn(0);
 }
 
+/* A row of M whose entries are all zero; singularity that hides in full rows is what pencil->singular knows of. */
 PetscErrorCode MassIsSingular(const PencilMatrices *pencil, PetscBool *singular)
 {
   PetscReal least;

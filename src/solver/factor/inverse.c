@@ -35,7 +35,8 @@ static PetscErrorCode InversePattern(MPI_Comm comm, PetscInt n, const InverseBlo
   PetscFunctionReturn(0);
 }
 
-/* MUMPS fills the values of T; what it is told for that is as before afterwards */
+/* MUMPS fills the values of T; what it is told for that, ICNTL(20), (21), (27) and (30), is as before afterwards,
+   since later solves read it. */
 static PetscErrorCode InverseFill(Mat F, Mat T)
 {
   static const PetscInt told[] = {20, 21, 27, 30};
@@ -52,6 +53,7 @@ static PetscErrorCode InverseFill(Mat F, Mat T)
   PetscFunctionReturn(0);
 }
 
+/* Whether entries can be had: MUMPS alone gives them, and not of block low-rank factors, ICNTL(35). */
 PetscErrorCode ShiftInvertGivesInverse(KSP ksp, PetscBool *gives)
 {
   PetscInt low_rank;

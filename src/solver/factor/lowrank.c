@@ -15,7 +15,9 @@
 #define LOWRANK_BLOCK 32 /* right-hand sides at once, at most and at least */
 #define LOWRANK_ROWS  64 /* the same of sparse ones, of which MUMPS alone has copies: a seventh less time than by 32 */
 #define LOWRANK_FEW   8
-#define LOWRANK_ROOM  5000000 /* their entries: MUMPS and PETSc hold eight copies of a block while it is solved */
+/* Entries of the right-hand sides that are solved at once, 40 MB: MUMPS and PETSc hold eight copies of a block
+   meanwhile. */
+#define LOWRANK_ROOM 5000000
 
 /* Dense matrix of m columns with as many local rows as A has local columns (or rows) */
 static PetscErrorCode DenseLike(Mat A, PetscBool rows, PetscInt m, Mat *D)
@@ -29,7 +31,7 @@ static PetscErrorCode DenseLike(Mat A, PetscBool rows, PetscInt m, Mat *D)
   PetscFunctionReturn(0);
 }
 
-/* All rows of a distributed p x m matrix D on every rank: c[m][p] */
+/* All rows of a distributed p x m matrix D on every rank: c[m][p], by a sum of parts that are zero elsewhere. */
 static PetscErrorCode PairsGather(Mat D, PetscInt p, PetscInt m, PetscScalar c[])
 {
   const PetscScalar *d;
@@ -110,7 +112,7 @@ static PetscErrorCode PairsSpread(Mat S, PetscReal scale, PetscInt p, PetscInt m
   PetscFunctionReturn(0);
 }
 
-/* c[m][p] = Y' B, or with c given B -= Y c: products of the local rows */
+/* c[m][p] = Y' B, or with c given B -= Y c: products of the local rows, by the walk of panel.c, which reads Y once. */
 static PetscErrorCode StoredProduct(const LowRank *u, PetscBool subtract, PetscInt m, Mat B, PetscScalar c[])
 {
   PetscInt n_local, stride_b, stride_y;
@@ -204,6 +206,8 @@ static PetscErrorCode LowRankSolveAll(LowRank *u, PetscInt n)
   PetscFunctionReturn(0);
 }
 
+/* C by entries of the inverse where the vectors are not kept, else by p solves. *singular where A + L' R is: its
+   determinant is that of A times that of C. */
 PetscErrorCode LowRankSetUp(Mat L, Mat R, PetscBool store, LowRank *u, PetscBool *singular)
 {
   PetscInt  n;
@@ -294,6 +298,8 @@ static PetscErrorCode ApplyTwice(const LowRank *u, const Side *right, const Side
   PetscFunctionReturn(0);
 }
 
+/* The first n_right columns are solved with A + L' R, the others with its transpose; one solve with the factors of
+   A for all with Y, two without. */
 PetscErrorCode LowRankApply(const LowRank *u, PetscInt n_right, Mat X)
 {
   PetscInt     m;

@@ -1,6 +1,7 @@
 /*
-   Solutions with a mass matrix, of a face or of bodies. By its diagonal it is as well conditioned as that of one
-   element, whatever the mesh.
+   Solutions M x = b with a mass matrix, of a face or of bodies, by conjugate gradients with its diagonal: by that
+   it is as well conditioned as that of one element, whatever the mesh (A. J. Wathen, IMA J. Numer. Anal. 7, 1987).
+   The tolerance is of |b|.
 */
 #include "masssolve.h"
 #include <petscksp.h>

@@ -48,7 +48,8 @@ static idx_t GroupRows(PetscInt n_rows, const PetscInt ia[], const PetscInt ja[]
   return n;
 }
 
-/* Counts (edges NULL) or stores the ends of all arcs of A and of A' between different groups, each at end[node] */
+/* Counts (edges NULL) or stores the ends of all arcs of A and of A' between different groups, each at end[node].
+   Neighbouring columns of one group are one arc; what still stands twice goes by GraphUnique(). */
 static void VisitArcs(PetscInt n_rows, const PetscInt ia[], const PetscInt ja[], const idx_t group[], idx_t end[],
                       idx_t edges[])
 {
@@ -68,7 +69,7 @@ static void VisitArcs(PetscInt n_rows, const PetscInt ia[], const PetscInt ja[],
   }
 }
 
-/* Removes repeated neighbours; seen[n] is work */
+/* Removes repeated neighbours, in place; seen[n] is work: seen[w] = the last node that w was met at. */
 static void GraphUnique(UnknownGraph *graph, idx_t seen[])
 {
   idx_t kept = 0, first = 0;

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal c, s;
 } Shifted;
 
+/* y = A x + c (left' (right x) + s M x), or transposed, where left and right exchange. */
 static PetscErrorCode ShiftedApply(Mat B, PetscBool transposed, Vec x, Vec y)
 {
   Shifted *shifted;
@@ -111,6 +112,7 @@ static PetscErrorCode ReleasePencil(const PencilMatrices *pencil, Mat half, Shif
   PetscFunctionReturn(0);
 }
 
+/* KSPSetReusePreconditioner() keeps PETSc from factoring the shell that takes the place of the matrix. */
 PetscErrorCode ShiftInvertRelease(const PencilMatrices *pencil, ShiftInvert *si)
 {
   PetscBool safe, is_half;

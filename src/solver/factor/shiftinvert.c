@@ -31,8 +31,9 @@ PetscErrorCode ShiftInvertRegular(MPI_Comm comm, PetscBool regular, PetscReal sh
   PetscFunctionReturn(0);
 }
 
-/* Whether the pairs are so stiff beside the bodies that an update would lose digits: it gets the gap of a pair as the
-   difference of two displacements, and its force as k_n times that */
+/* Whether the pairs are so stiff beside the bodies that an update would lose digits: it gets the gap of a pair as
+   the difference of two displacements, and its force as k_n times that. |left| |right| / p is about the mean k_n mu
+   of a pair, N/m; exp(mean log |K_ii|) the geometric mean of the bodies, in which few stiff unknowns do not count. */
 static PetscErrorCode UpdateIsStiff(const PencilMatrices *pencil, PetscBool *stiff)
 {
   PetscReal   left, right;
@@ -55,7 +56,7 @@ static PetscErrorCode UpdateIsStiff(const PencilMatrices *pencil, PetscBool *sti
   PetscFunctionReturn(0);
 }
 
-/* Whether the vectors of an update, one a pair, fit beside the factors */
+/* Whether the vectors of an update, one a pair, n p numbers, fit beside the factors, in MB of 8e-6 a number. */
 static PetscErrorCode UpdateFits(const PencilMatrices *pencil, const ShiftInvert *si, double n, double p,
                                  PetscBool *fits)
 {
@@ -88,8 +89,9 @@ static const char *UpdateIsWorse(const FactorCost *cost, double p, PetscBool fit
   return 4 * cost->entries * p * rate > UPDATE_SLOW * cost->flops ? "an update for friction would take longer" : NULL;
 }
 
-/* Whether friction is to be put on factors of the symmetric part by an update (lowrank.h), and whether its vectors, one
-   a pair, are kept */
+/* Whether friction is to be put on factors of the symmetric part by an update (lowrank.h), and whether its vectors,
+   one a pair, are kept. The symbolic analysis is run for it, whose estimates are alike on all ranks, and so is the
+   choice. */
 static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *store)
 {
   PetscInt  n, p;
@@ -157,6 +159,8 @@ static PetscErrorCode ShiftInvertTry(const PencilMatrices *pencil, PetscBool sta
   PetscFunctionReturn(0);
 }
 
+/* A singular matrix moves the shift by 1e-4, then 2e-4 and 3e-4 of itself; factors that stand are used for the
+   first try alone. Raises the error where no shift is regular. */
 PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si)
 {
   PetscBool      singular = PETSC_TRUE, store, stands;

@@ -1,4 +1,8 @@
-/* Folds of a branch (shooting.h): where its parameter turns back */
+/*
+   Folds of a branch (shooting.h): where its parameter p turns back, the zero of the slope v(s) = dp/ds along the
+   branch, s the distance from `start` along its tangent. Regula falsi with the change of the end that stays
+   (Illinois: M. Dowell, P. Jarratt, BIT 11, 1971, 168), since each value of v costs a cycle.
+*/
 #include "shooting.h"
 
 #define FOLD_MAX_IT 12

@@ -2,8 +2,10 @@
 #include "shooting.h"
 #include "base/algebra/dense.h"
 
-#define SHOOTING_FALL     0.9 /* of the residual that a shortened step must reach */
-#define SHOOTING_LOST     3.0 /* residual beyond which no cycle is near */
+/* Of the residual that a shortened step must reach; the shortest is taken whatever it reaches. */
+#define SHOOTING_FALL 0.9
+/* Residual, in sizes of the vibration, beyond which no cycle is near. */
+#define SHOOTING_LOST     3.0
 #define SHOOTING_SHORTEST (1. / 8)
 #define SHOOTING_CLOSE    1e-7 /* of the period: cycles before and after, between which hardly any status changes */
 
@@ -61,7 +63,8 @@ static PetscReal ShootingMiss(const Shooting *s, const PetscReal x[], const Pets
   return PetscIsInfOrNanReal(sum) ? PETSC_MAX_REAL : PetscSqrtReal(sum);
 }
 
-/* Central difference of the flow in the period or the parameter */
+/* Central difference of the flow in the period or the parameter, of which one step is 0; at the least value of the
+   parameter it is one-sided, over the way that there is. */
 static PetscErrorCode ShotDifference(ShootingWork *w, const ShootingCycle *c, PetscReal dT, PetscReal dp, PetscReal d[])
 {
   const Shooting *s = w->s;
@@ -90,7 +93,8 @@ static PetscErrorCode ShotDifferentiate(ShootingWork *w, const ShootingCycle *c,
   PetscFunctionReturn(0);
 }
 
-/* The matrix of Newton's equations: n + 2 rows; where nothing is asked of T or p, its row says that it stays */
+/* Newton's matrix of shooting.h [N][N], N = n + 2 + n_free, by columns: n rows of the flow, the phase, the plane,
+   the free directions; where nothing is asked of T or p, its row says that it stays. */
 static PetscErrorCode ShotFactor(ShootingWork *w, const ShootingCycle *cycle, PetscBool *singular)
 {
   const Shooting        *s = w->s;
@@ -128,7 +132,8 @@ static PetscErrorCode ShotFlow(ShootingWork *w, ShootingCycle *c)
   PetscFunctionReturn(0);
 }
 
-/* Newton's step; along the branch its plane is met from the first one on, since the guess lies in it */
+/* Newton's step, halved until the residual falls; along the branch its plane is met from the first one on, since
+   the guess lies in it. The period never falls below half of itself. c->its stays where there is no step. */
 static PetscErrorCode ShotStep(ShootingWork *w, ShootingCycle *c)
 {
   const PetscInt  n = w->s->n;
@@ -202,6 +207,8 @@ static PetscBool TangentIsNone(const Shooting *s, const ShootingTangent *t)
   return PETSC_TRUE;
 }
 
+/* Direction of the branch: Newton's matrix t = e of the last row, scaled to length one; its sign is that of the
+   tangent before, on whose side the last row keeps it. */
 PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
                                   ShootingDirection *direction)
 {
@@ -232,6 +239,8 @@ PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle,
   PetscFunctionReturn(0);
 }
 
+/* A predicted place, step along the tangent, and Newton's method in the plane normal to it. Where that fails the
+   cycle is as it was before. */
 PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const ShootingTangent *tangent, ShootingCycle *cycle)
 {
   const PetscInt      n      = s->n;
@@ -285,6 +294,7 @@ static PetscErrorCode ShotCheckDerivative(ShootingWork *w, const ShootingCycle *
   PetscFunctionReturn(0);
 }
 
+/* x' and T' of shooting.h from Newton's matrix with the right-hand side c . f in the row of the phase. */
 PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase)
 {
   const PetscInt n = s->n, N = n + 2 + s->n_free;

@@ -6,7 +6,8 @@
 #define SHOOTING_FAR  0.5 /* from 1: no steps of a cycle move the multiplier of the phase so far */
 #define SHOOTING_MUCH 0.5 /* of the largest part of the motion: parts beside which that one is not told */
 
-#define SHOOTING_ALTERNATES 1e-9 /* from -1 */
+/* From -1: rounding of an eigenvalue that is -1 exactly. */
+#define SHOOTING_ALTERNATES 1e-9
 
 /* Eigenvalues and vectors of M, in LAPACK's real storage */
 typedef struct {
@@ -89,6 +90,8 @@ static void StabilityDrop(const Shooting *s, Multipliers *m)
     if (hypot(m->re[i] + 1, m->im[i]) < SHOOTING_ALTERNATES) m->re[i] = m->im[i] = 0;
 }
 
+/* worst = the largest modulus of all multipliers where it is open which one is that of the phase, else of the
+   others, as `largest` is. */
 PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle, ShootingStability *stability)
 {
   const PetscInt n     = s->n;
