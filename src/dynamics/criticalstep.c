@@ -93,6 +93,8 @@ static PetscErrorCode StepPencilRayleigh(StepPencil *p, Vec x, PetscReal *k, Pet
   PetscFunctionReturn(0);
 }
 
+/* The operator is a shell in the unknowns of the operators, without a matrix: the kernels multiply. EPS_HEP lets
+   SLEPc use Lanczos; the small problems are alike on all ranks (SolverSynchronize()). */
 static PetscErrorCode StepPencilCreateSolver(StepPencil *p, Mat *A, EPS *eps)
 {
   const Dynamics d = p->dynamics;
@@ -186,6 +188,8 @@ static PetscErrorCode CriticalElementStep(Dynamics d, CriticalStep *critical)
   PetscFunctionReturn(0);
 }
 
+/* Collective. Each product with K and C costs as much as a step. Masses are the lumped ones of the bodies alone
+   (bodies/points/mass.c). */
 PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
 {
   StepPencil pencil;

@@ -31,6 +31,7 @@ PetscErrorCode DynamicsSetModel(Dynamics d, Model model, Contact contact)
   PetscFunctionReturn(0);
 }
 
+/* Pairs of the operators are needed where a static state or modal filters are; steps find their own contacts. */
 PetscErrorCode DynamicsNeedsPairs(Dynamics d, PetscBool *needs)
 {
   PetscFunctionBeginUser;
@@ -72,7 +73,8 @@ static PetscErrorCode DynamicsSetUpSurface(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* State vectors and the integrator's masses */
+/* u and v [layout n], with copies of shared nodes on each rank; ku = K u, N, is a sum over the steps and never
+   formed anew. */
 static PetscErrorCode DynamicsCreateState(Dynamics d)
 {
   const PetscInt n = d->layout->n;
@@ -136,6 +138,9 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+/* The order matters: the bodies before all that stands in their layout, supports and motions (minv = 0) before the
+   critical step, the step before the history, which fits its intervals to it, and a restart before the times are
+   checked. */
 static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
 {
   PetscReal end, dt;
@@ -209,6 +214,7 @@ static PetscErrorCode DynamicsComplainStopped(Dynamics d)
           d->checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
 }
 
+/* The row of the last time needs forces there, which no step computes any more (TSCentralEvaluate()). */
 PetscErrorCode DynamicsSolve(Dynamics d, Results results)
 {
   PetscLogDouble begin, end;

@@ -86,6 +86,8 @@ static void SurfaceGet(const DynamicsSurface *s, const Layout *l, PetscInt n, co
   for (PetscInt i = 0; i < n; i++) LayoutGet(l, s->vertex[active[i]], x, &cartesian[3 * active[i]]);
 }
 
+/* f_n of all but the contact; v is v_{n-1/2}, which prescribed velocities change. Velocities before that are kept
+   at the active nodes (surface.before), with which the works of the contact forces of the step before end. */
 PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
 {
   const Dynamics  d = ctx;
@@ -202,6 +204,7 @@ static PetscErrorCode DynamicsBalance(Dynamics d, const CentralStep *step, Petsc
   PetscFunctionReturn(0);
 }
 
+/* .b = 0 in a row without a step before it, where v is v_0 itself and no part of the kick is to be added. */
 static PetscErrorCode DynamicsRecord(Dynamics d, const ForceArrays *a, PetscInt n)
 {
   const CentralStep *step  = a->step;
@@ -226,6 +229,8 @@ static PetscErrorCode DynamicsRecord(Dynamics d, const ForceArrays *a, PetscInt 
   PetscFunctionReturn(0);
 }
 
+/* The contact of the step, and what is looked at with f_n complete. Whether the ledger is closed, a reduction,
+   depends on numbers that all ranks share. */
 PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx)
 {
   const Dynamics d = ctx;

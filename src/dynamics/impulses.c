@@ -26,6 +26,7 @@ static ImpulseEffect ImpulseMeasure(PetscInt n_interfaces, const ContactSums sum
   return effect;
 }
 
+/* From the first impulse on numbers of open and sticking pairs are compared with those before it. */
 PetscErrorCode DynamicsMarkImpulse(Dynamics d)
 {
   PetscFunctionBeginUser;
@@ -65,6 +66,7 @@ PetscErrorCode DynamicsWriteImpulses(Dynamics d, const ContactSums sums[], const
   PetscFunctionReturn(0);
 }
 
+/* An impulse that has acted has its time; 0 stands for none, as no impulse acts at t = 0 (external/impulse.c). */
 PetscErrorCode DynamicsReportImpulses(Dynamics d)
 {
   PetscReal *time;

@@ -12,6 +12,8 @@ static PetscReal ModeDistance(const Mode *mode, PetscReal omega)
   return hypot(mode->sigma, mode->omega - omega);
 }
 
+/* Raises an error for a frequency on an undamped mode: nearer to lambda, rad/s, than its error, or than rounding of
+   omega. */
 PetscErrorCode FrfCheckPoles(Frf frf)
 {
   const Mode *mode;
@@ -32,6 +34,7 @@ PetscErrorCode FrfCheckPoles(Frf frf)
   PetscFunctionReturn(0);
 }
 
+/* v^T (xr + i xi), without conjugation; xi NULL for a real vector. */
 PetscErrorCode FrfDot(Vec v, Vec xr, Vec xi, PetscComplex *dot)
 {
   PetscReal re, im = 0;
@@ -43,6 +46,8 @@ PetscErrorCode FrfDot(Vec v, Vec xr, Vec xi, PetscComplex *dot)
   PetscFunctionReturn(0);
 }
 
+/* residue [modes] = sqrt(sum_p |l_p^T x|^2) |y^T f| condition / (2 |lambda|), m/(N s), with vectors of unit length
+   in M; 1/kg of a rigid mode. Moduli of all outputs together, as a peak is one of their root of the sum of squares. */
 PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *r)
 {
   const Mode *mode;

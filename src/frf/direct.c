@@ -9,7 +9,8 @@
 */
 #include "frfimpl.h"
 
-#define DIRECT_POLE 1e-3 /* relative error from which on a frequency is a pole */
+/* Relative error from which on a frequency is a pole: fewer than three digits are left. */
+#define DIRECT_POLE 1e-3
 
 /* The system of one frequency: A of `parts` blocks of the pencil's unknowns */
 typedef struct {
@@ -38,7 +39,9 @@ static PetscErrorCode DirectInsert(Vec from, Vec to)
   PetscFunctionReturn(0);
 }
 
-/* A at omega */
+/* A at omega, rad/s: [A0, -omega C; -omega C, -A0], A0 = K - omega^2 M, or A0 alone. Both off-diagonal blocks are
+   one matrix. MatConvert() interleaves the rows of both blocks by rank, as DirectInsert() has the vectors: each
+   rank's v, then its w. */
 static PetscErrorCode DirectMatrix(const PencilMatrices *pencil, PetscReal omega, Mat *A)
 {
   Mat block[4];
@@ -85,7 +88,8 @@ static PetscErrorCode DirectCreate(Frf frf, const PencilMatrices *pencil, Direct
   PetscFunctionReturn(0);
 }
 
-/* Exchanges the blocks of u, (v, w) -> (w, v), so that l^T of it is the imaginary part */
+/* Exchanges the blocks of u, (v, w) -> (w, v), so that l^T of it is the imaginary part, l being zero in the second
+   block. */
 static PetscErrorCode DirectExchange(Vec u)
 {
   PetscScalar *a;
@@ -104,7 +108,7 @@ static PetscErrorCode DirectExchange(Vec u)
   PetscFunctionReturn(0);
 }
 
-/* What residual and rounding make of an output, m/N */
+/* What residual r = b - A u and rounding make of an output, m/N: |z^T r| + eps sum_i |z_i A_ii u_i|. */
 static PetscErrorCode DirectError(Direct *d, Vec z, PetscReal *error)
 {
   PetscReal residual, noise;
@@ -121,7 +125,8 @@ static PetscErrorCode DirectError(Direct *d, Vec z, PetscReal *error)
   PetscFunctionReturn(0);
 }
 
-/* Solves for the force and for every output, and measures the error */
+/* Solves for the force and for every output, and measures the error: the root of the sum of squares over the
+   outputs. One factorisation, 1 + n_outputs solves. */
 static PetscErrorCode DirectRespond(Frf frf, Direct *d, PetscInt i)
 {
   const PetscInt n = frf->n_outputs;

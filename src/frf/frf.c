@@ -5,7 +5,9 @@
 #include <squeal/options.h>
 #include <string.h>
 
-#define BEYOND_HIGHEST 1.5 /* end of the band of modes where none is asked for, beside the highest frequency */
+/* End of the band of modes where none is asked for, beside the highest frequency: what lies above changes little
+   over the frequencies, and is the residual term's. */
+#define BEYOND_HIGHEST 1.5
 
 PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf)
 {

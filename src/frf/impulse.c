@@ -1,20 +1,23 @@
 /*
-   What an impulse of 1 N s at rest does, by the modes of the window:
+   What an impulse of 1 N s at rest does, h(t) in m/(N s), by the modes of the window:
 
-      h(t) = sum_k w Re(r_k e^{lambda_k t}),   r_k = (l^T x_k) (y_k^T f) / (2 lambda_k p_k),
+      h(t) = sum_k w Re(r_k e^(lambda_k t)),   r_k = (l^T x_k) (y_k^T f) / (2 lambda_k p_k),
       p_k  = y_k^T (M + C / (2 lambda_k)) x_k,
 
    w = 2 where omega > 0, for the conjugate, else 1. A mode with omega = 0 of a system without damping stands for
-   -lambda as well: r (e^{lambda t} - e^{-lambda t}). The rigid modes X, Y, whose left vectors need not match the right
-   ones one by one, move on together, X (Y^T M X)^-1 Y^T f t; where dampers to the ground hold them they come to rest at
-   X (Y^T C X)^-1 Y^T f, and the eigenvalues that bring them there are modes of their own.
+   -lambda as well: r (e^(lambda t) - e^(-lambda t)). The rigid modes X, Y, whose left vectors need not match the
+   right ones one by one, move on together, X (Y^T M X)^-1 Y^T f t; where dampers to the ground hold them they come
+   to rest at X (Y^T C X)^-1 Y^T f, and the eigenvalues that bring them there are modes of their own.
 */
 #include "frfimpl.h"
 #include "base/algebra/dense.h"
 
 #define MOST_PHASE 4e12 /* omega t, rad: rounding of omega turns a larger one by 1e-3 and more */
-#define DECAYED    -37  /* sigma t: what is left is below rounding */
-#define HELD       1e-8 /* of |C| / |M|: less damping of the rigid modes is what their vectors err by */
+/* sigma t: e^-37 is 1e-16, what is left is below rounding. */
+#define DECAYED -37
+/* Of |C| / |M|: less damping of the rigid modes is what their vectors err by. Also the least pivot by which all of
+   them are held. */
+#define HELD 1e-8
 
 /* One mode that is not rigid */
 typedef struct {
@@ -23,7 +26,8 @@ typedef struct {
   PetscBool    twofold;       /* -lambda belongs to it too */
 } ModeMotion;
 
-/* What the mode does at t in an output where its shape is x */
+/* What the mode does at t in an output where its shape is x, m/(N s). Twofold: Re(x input) sinh(lambda t) / lambda,
+   without the difference of nearly equal exponentials. */
 static PetscReal ModeMotionAt(const ModeMotion *m, PetscComplex x, PetscReal t)
 {
   if (m->twofold) return creal(x * m->input) * PetscSinhReal(creal(m->lambda) * t) / creal(m->lambda);
@@ -104,7 +108,8 @@ static PetscErrorCode RigidModesForm(const RigidModes *rigid, Mat A, PetscReal f
   PetscFunctionReturn(0);
 }
 
-/* Whether damping holds the rigid modes; form becomes Y^T C X if so, else Y^T M X */
+/* Whether damping holds the rigid modes: their largest y^T C x over that of M, beside |C| / |M| (Frobenius); form
+   becomes Y^T C X (kg/s) if so, else Y^T M X (kg), each times the scale of the vectors squared. */
 static PetscErrorCode RigidModesHeld(const RigidModes *rigid, const PencilParts *parts, PetscReal form[],
                                      PetscBool *held)
 {

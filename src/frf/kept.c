@@ -24,6 +24,8 @@ static PetscErrorCode FrfSumVector(Vec v, Checksum c)
   PetscFunctionReturn(0);
 }
 
+/* What the response depends on: scene, statics, parameters, frequencies, force and outputs, and the number of
+   ranks, on which the last digits do. */
 static PetscErrorCode FrfSumScene(Frf frf, Checksum c)
 {
   const OperatorsParameter *parameters;
@@ -86,6 +88,8 @@ PetscErrorCode FrfResume(Frf frf, PetscInt *n)
   PetscFunctionReturn(0);
 }
 
+/* The first n frequencies; written when it is due. A file that cannot be written ends the keeping, not the
+   response. */
 PetscErrorCode FrfKeep(Frf frf, PetscInt n)
 {
   JournalItem item[3];

@@ -1,12 +1,18 @@
 /*
-   Superposition of modes with the residual term: Galerkin's method on the span of the modes' vectors and of Krylov
-   vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is.
+   Superposition of modes with the residual term: Galerkin's method on V, the span of the modes' vectors and of
+   Krylov vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is,
+
+      H_p(omega) = l_p' V (V' Q(i omega) V)^-1 V' f,   m/N.
+
+   Left and right vectors are in one V, so that the moments of H at the shift that both chains match add up. The
+   error at a frequency is the difference from the answer with one step more.
 */
 #include "frf/space/krylov.h"
 #include "frf/space/schur.h"
 #include "solver/block/orthonormal.h"
 
-#define N_LOOKS 33 /* frequencies that are looked at while the space grows */
+/* Frequencies that are looked at while the space grows; all are looked at before it ends. */
+#define N_LOOKS 33
 
 typedef struct {
   FrfSpace  space;
@@ -33,7 +39,9 @@ static PetscErrorCode ModesCount(Frf frf, PetscInt *n_columns)
   PetscFunctionReturn(0);
 }
 
-/* Space and chains with the modes */
+/* Space and chains with the modes. With a symmetric pencil left vectors are right ones: one chain begins with the
+   force and the outputs. most = states of the modes, real and imaginary parts, and max_steps + 1 of each chain. The
+   factors are borrowed from the modes. */
 static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
 {
   PencilMatrices     pencil;
@@ -125,8 +133,8 @@ static PetscErrorCode RespondBatch(Frf frf, const FrfSchur *schur[2], PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* Response at every stride-th frequency, shared among ranks; the error is the difference of the two. used NULL: what is
-   there already is its response */
+/* Response at every stride-th frequency, shared among ranks in turn; the error is the difference of the two. used
+   NULL: what is there already is its response. Sums over ranks, as each has zeros where it did nothing. */
 static PetscErrorCode RespondAll(Frf frf, const FrfSchur *used, const FrfSchur *larger, PetscInt stride)
 {
   const PetscInt n = frf->n_outputs;
@@ -182,7 +190,8 @@ static PetscErrorCode SuperpositionReduce(Frf frf, const Superposition *s, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Steps until the answer is accurate but for rounding, of which the error that is told at the end has its part */
+/* Steps until the answer is accurate but for rounding, of which the error that is told at the end has its part: the
+   larger response is made once more with K rounded otherwise (space.c). */
 static PetscErrorCode SuperpositionGrow(Frf frf, Superposition *s)
 {
   const PetscInt stride = PetscMax(1, frf->n / N_LOOKS);

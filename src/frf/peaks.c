@@ -5,6 +5,7 @@
 
 #define PEAK_NEAR 0.03 /* of the frequency, within which a maximum is that of a mode */
 
+/* sqrt(sum_p |H_p|^2), m/N. */
 PetscReal FrfMagnitude(Frf frf, PetscInt i)
 {
   PetscReal sum = 0;
@@ -30,6 +31,8 @@ static PetscErrorCode PeakIsOf(Frf frf, PetscInt i, PetscInt mode, PetscBool *is
   PetscFunctionReturn(0);
 }
 
+/* Inner points of the table that exceed the one before and are no less than the one after, so that a plateau of two
+   is one peak; the ends are none. */
 PetscErrorCode FrfFindPeaks(Frf frf, const FrfResidues *residues)
 {
   PetscFunctionBeginUser;

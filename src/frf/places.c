@@ -1,6 +1,7 @@
 /*
-   Places: the force of 1 N and the displacements that are recorded, as vectors of all unknowns. A probe is the nearest
-   node of its part, in directions that neither a support nor a motion holds.
+   Places: the force of 1 N, f = sum_d e_d of the node's unknowns with |e| = 1, and the displacements that are
+   recorded, l_p^T u, as vectors of all unknowns. A probe is the nearest node of its part, in directions that
+   neither a support nor a motion holds.
 */
 #include "frfimpl.h"
 #include <squeal/options.h>
@@ -300,6 +301,8 @@ PetscErrorCode FrfFindOutputs(Frf frf)
   PetscFunctionReturn(0);
 }
 
+/* The force and the outputs in the unknowns of the pencil, fewer than all where constraints eliminate some: as
+   forces from the right and from the left. */
 PetscErrorCode FrfProject(Frf frf, Vec *right, Vec **left)
 {
   PencilMatrices m;

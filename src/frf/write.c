@@ -6,7 +6,7 @@
 
 #define COLUMN_ROOM 160 /* characters of a column's name and comma */
 
-/* Frequency (Hz), damping ratio and label of the mode of a peak; zeros and "" for none */
+/* Frequency (Hz), damping ratio -sigma / |lambda| and label of the mode of a peak; zeros and "" for none. */
 static PetscErrorCode PeakMode(Frf frf, const FrfPeak *peak, PetscReal *freq, PetscReal *ratio, const char **label)
 {
   const Mode *mode;

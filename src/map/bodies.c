@@ -4,8 +4,9 @@
 */
 #include "mapimpl.h"
 
-#define MAP_BATCH  8     /* times the lines that ranks need at once, of which bodies are reduced before any is run */
-#define MAP_MEMORY 2.5e8 /* bytes for their bodies on each rank */
+#define MAP_BATCH 8 /* times the lines that ranks need at once, of which bodies are reduced before any is run */
+/* Bytes for their bodies on each rank, 250 MB; the lines that ranks need at once are held whatever they take. */
+#define MAP_MEMORY 2.5e8
 
 /* What is kept of a reduced run */
 static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
@@ -50,6 +51,8 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodi
   PetscFunctionReturn(0);
 }
 
+/* From the values of the scene, which are kept beside the model: friction, loads (factors) and speeds (m/s) at a
+   place. A parameter of the bodies is in them already. */
 PetscErrorCode MapBodiesMove(Map map, const MapPoint *at, MapBodies *b, PetscReal speed[], PetscReal loads[])
 {
   const PetscInt     n = b->model.n_pairs, index[MAP_MAX_AXES] = {at->place, at->line};
@@ -74,6 +77,8 @@ PetscBool MapBodiesAreHit(const MapBodies *b, PetscReal t)
   return PETSC_TRUE;
 }
 
+/* Phi'J, m sqrt(kg)/s, of the impulses that act in the step from t, in shares as in reduced/step/drive.c; NULL for
+   none. */
 const PetscReal *MapBodiesKick(const MapBodies *b, PetscReal t, PetscReal dt, PetscReal kick[])
 {
   const PetscInt m   = b->model.m;
@@ -99,6 +104,8 @@ PetscErrorCode MapBodiesDestroy(MapBodies *b)
   PetscFunctionReturn(0);
 }
 
+/* How many lines are reduced before their chains are run: enough that no rank waits for bodies (n_jobs chains on
+   each), MAP_BATCH times that for the sharing to be even, as memory allows. */
 PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch)
 {
   const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1;

@@ -31,7 +31,8 @@ PetscErrorCode MapCheck(Map map)
   PetscFunctionReturn(0);
 }
 
-/* The first contact of which a pair does not slide, of all ranks; n for none */
+/* The first contact of which a pair does not slide, of all ranks; n for none. Also map->bytes, what the dense
+   matrices of a line's bodies take. */
 static PetscErrorCode CheckFindResting(Map map, Contact contact, PetscInt n, PetscInt *resting)
 {
   const ContactPair *pair;
@@ -67,6 +68,8 @@ PetscErrorCode MapCheckPrepared(Map map)
   PetscFunctionReturn(0);
 }
 
+/* Steps in a window, and windows in the time, of a step dt that may be a whole part of the map's: windows are as
+   long with both. */
 void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windows)
 {
   *n_steps   = (PetscInt)(map->window / map->dt + 0.5) * (PetscInt)(map->dt / dt + 0.5);

@@ -11,6 +11,8 @@
 #define N_DIMS    8
 #define N_NUMBERS 9
 
+/* The partition of the mesh is taken out of the checksum: a rank goes on with any chain, since the kept bodies are
+   whole. */
 PetscErrorCode MapJournalOpen(Map map, Results results)
 {
   Checksum c;
@@ -106,7 +108,7 @@ PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoin
 }
 
 /* Arrays of the bodies, allocated where they are read; dims: modes, pairs, loads, probes, ports, impulses, damped,
-   weighed */
+   weighed. The gaps are allocated with the friction, by one call, as ReducedModelDestroy() frees them. */
 static PetscErrorCode KeptBodiesMove(MapBodies *b, JournalPack *pack)
 {
   ReducedModel   *a                = &b->model;
@@ -137,6 +139,7 @@ static PetscErrorCode KeptBodiesMove(MapBodies *b, JournalPack *pack)
   PetscFunctionReturn(0);
 }
 
+/* Rank 0 alone writes: all have the same bodies. */
 PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *b)
 {
   JournalPack pack = {.write = PETSC_TRUE};

@@ -48,7 +48,8 @@ static PetscInt MapRowIndex(Map map, const MapPoint *row)
   return ((1 + both) * row->line + both * row->down) * map->axis[0].n + row->place;
 }
 
-/* Rows of the ranks, of chains ends[0] .. ends[1] - 1 */
+/* Rows of the ranks, of chains ends[0] .. ends[1] - 1, to their places in map->row on every rank, and to the tables
+   in the order of the chains, whichever rank ran them. Collective. */
 static PetscErrorCode MapTakeRows(Map map, PetscInt n, const MapPoint row[], const PetscInt ends[2],
                                   ResultsTable table[2])
 {
@@ -72,7 +73,7 @@ static PetscErrorCode MapTakeRows(Map map, PetscInt n, const MapPoint row[], con
 }
 
 /* Chains ends[0] .. ends[1] - 1 on these bodies [lines], or on one for all; row [their points], of which n are this
-   rank's */
+   rank's. The march, with its factors, is kept from chain to chain of one line. */
 static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt ends[2], PetscInt *n, MapPoint row[])
 {
   PetscInt k, line = -1;
@@ -142,7 +143,8 @@ static PetscErrorCode MapLines(Map map, ResultsTable table[2])
   PetscFunctionReturn(0);
 }
 
-/* Scene, axes, times, and how many chains there are */
+/* A chain has n_linked points: a line in one direction, or a single point where all stand apart; n_ways chains for
+   each line. */
 static PetscErrorCode MapSetUp(Map map, Results results)
 {
   PetscInt n_points;

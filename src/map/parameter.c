@@ -29,6 +29,8 @@ static PetscErrorCode MapAxisAdd(void *ctx, const char option[], const char name
   PetscFunctionReturn(0);
 }
 
+/* Values of the first axis ascend, as each point goes on from its neighbour; each is checked against what its
+   parameters may be. */
 static PetscErrorCode MapAxisValues(Map map, PetscInt k)
 {
   static const char *const options[] = {"-map_values", "-map_values_2"};

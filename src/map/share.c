@@ -33,6 +33,8 @@ PetscErrorCode MapShareBegin(MapShare *share, MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
+/* *k = the counter, which grows by one: each number goes to one rank. Numbers beyond the last chain tell a rank to
+   end. */
 PetscErrorCode MapShareNext(MapShare *share, PetscInt *k)
 {
   const int one  = 1;

@@ -100,7 +100,8 @@ static PetscErrorCode VerifyRunAll(Map map, const VerifyBatch *b, MapPoint row[]
   PetscFunctionReturn(0);
 }
 
-/* What a run differs by from that of the map */
+/* What a run differs by from that of the map: rms relative, frequency in Hz, growth in 1/s; NAN where a run does
+   not vibrate, or the check does not tell it. */
 static MapError VerifyCompare(const MapPoint *first, const MapPoint *other, MapCheckRun check)
 {
   const PetscBool loud  = first->regime != MAP_STABLE && other->regime != MAP_STABLE ? PETSC_TRUE : PETSC_FALSE;
@@ -150,6 +151,8 @@ static PetscErrorCode VerifyWrite(Map map, const VerifyBatch *b, const MapPoint 
   PetscFunctionReturn(0);
 }
 
+/* The inertia of what the cut-off leaves out is asked for here (ReducedWeigh()), and costs the map itself nothing.
+   Batches keep the memory of bodies within bounds. */
 PetscErrorCode MapVerify(Map map, Results results)
 {
   PetscInt     most;

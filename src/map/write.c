@@ -29,8 +29,8 @@ static PetscBool MapVibrates(const MapPoint *row)
   return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether a point vibrates one way and is stable the other; its row of the other way follows those of this one, or the
-   reverse */
+/* Whether a point vibrates one way and is stable the other; its row of the other way is n places behind that of
+   this one, or in front of it. */
 static PetscBool MapHangsOnWay(Map map, const MapPoint *row)
 {
   const MapPoint *other;

@@ -38,7 +38,8 @@ static PetscErrorCode BodiesSetMasses(Bodies b)
   PetscFunctionReturn(0);
 }
 
-/* Whether any rank has damping, and then room for its forces */
+/* Whether any rank has damping, and then room for its forces: all ranks need it alike, as sums at shared nodes hold
+   those of others. */
 static PetscErrorCode BodiesSetUpDamping(Bodies b)
 {
   const ModelScene *scene;
@@ -86,6 +87,8 @@ PetscErrorCode BodiesVisit(Bodies b, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
+/* Shared nodes are found first, as layout and ranges put them in front; points come after the layout in whose
+   places they stand; masses after all cells are known. */
 PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
 {
   PetscFunctionBeginUser;
@@ -115,6 +118,7 @@ PetscErrorCode BodiesGetLayout(Bodies b, const Layout **layout)
   PetscFunctionReturn(0);
 }
 
+/* Component j of a node is driven from outside: without inverse mass the integrator leaves its velocity alone. */
 PetscErrorCode BodiesHold(Bodies b, PetscInt vertex, PetscInt j)
 {
   PetscFunctionBeginUser;
@@ -193,6 +197,8 @@ PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], PetscReal k
   PetscFunctionReturn(0);
 }
 
+/* ku of given displacements by the elements, and damping forces of given velocities by the kernels, dt = 0: a state
+   from which steps go on. */
 PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[], PetscReal ku[])
 {
   BodiesWork w = {.dt = 0, .u = u, .v = (PetscReal *)v, .ku = b->work[0], .f = b->work[1], .d = b->layout.damping};

@@ -44,7 +44,8 @@ static void NeighboursTake(Bodies b, const GeneralCells *cells, PetscBool upper,
   }
 }
 
-/* Neighbours of all rows, once for each cell that they share: those of a row end before column[end[row]] */
+/* Neighbours of all rows, once for each cell that they share: those of a row end before column[end[row]]. Counted
+   first, then filled, the running ends being the places of the next entries. */
 static PetscErrorCode NeighboursCreate(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt **end,
                                        PetscInt **column)
 {
@@ -90,7 +91,8 @@ static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Adds scale times the stiffness of a cell */
+/* Adds scale times the stiffness of a cell, [3 n_nodes][3 n_nodes] by rows, N/m; columns are found by bisection.
+   value [9] of a block by rows. */
 static PetscErrorCode BlockRowsAdd(const GeneralCells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
 {
   const PetscInt n = cell->n_nodes;
@@ -187,6 +189,7 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
   PetscFunctionReturn(0);
 }
 
+/* product [n][4], g = K v of the step, is aligned for loads of four numbers; `room` is what is freed. */
 PetscErrorCode GeneralSetUp(Bodies b)
 {
   General     *g     = &b->general;

@@ -87,7 +87,8 @@ static PetscBool LinesNeedFrame(const ModelLines *lines)
   return lines && (lines->turned || lines->oblique) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Whether two frames are the same but for rounding; scale (m) */
+/* Whether two frames are the same but for rounding; scale (m): axes parallel within SAME_AXIS, and of turned ones
+   on one line. Directions across the axis may differ: those of the first frame are used. */
 static PetscBool BodiesFrameAgrees(const BodiesFrame *a, const ModelLines *lines, PetscReal scale)
 {
   const PetscReal *along = &lines->frame[3 * lines->axis];
@@ -112,7 +113,8 @@ static PetscErrorCode BodiesFindScale(Bodies b, PetscReal *scale)
   PetscFunctionReturn(0);
 }
 
-/* Frames that the lowest rank with lines that need one finds for each body */
+/* Frames that the lowest rank with lines that need one finds for each body, sent byte by byte: all ranks have the
+   same digits. A broadcast a body, few. */
 static PetscErrorCode BodiesProposeFrames(Bodies b, ModelLines *const lines[])
 {
   PetscMPIInt rank, size, *first;
@@ -180,7 +182,8 @@ static void FrameTurnedBasis(const BodiesFrame *frame, const PetscReal x[3], Pet
   }
 }
 
-/* Bases of the nodes: along the axis, radial, tangential; the rows of an oblique frame; or x, y, z */
+/* basis [n_vertices][3][3], rows of each node: along the axis, radial, tangential; the rows of an oblique frame; or
+   x, y, z. Orthonormal, so that f' = Q f and u' = Q u. */
 static PetscErrorCode LayoutFindBases(Bodies b)
 {
   PetscFunctionBeginUser;

@@ -81,6 +81,8 @@ PetscErrorCode SharedSetUp(Bodies b)
   PetscFunctionReturn(0);
 }
 
+/* Receives are started before the values are packed, so that no message waits for room. x [layout n] is read here
+   and written in SharedEnd() alone; in between other nodes may change. */
 PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal x[])
 {
   const PetscInt own = 3 * share->start[share->own], n_own = 3 * share->start[share->own + 1] - own;
@@ -99,6 +101,8 @@ PetscErrorCode SharedBegin(Shared *share, const Layout *layout, const PetscReal 
   PetscFunctionReturn(0);
 }
 
+/* Shared nodes begin at zero and take all parts, the own one in its turn: with the same parts in the same order all
+   copies are bitwise equal. */
 PetscErrorCode SharedEnd(Shared *share, const Layout *layout, PetscReal x[])
 {
   const int n = (int)share->n_ranks - 1;

@@ -34,7 +34,8 @@ STENCIL_INLINE void SweptStoreRow(int n, StencilVector y, PetscReal x[])
     *(StencilLanes *)x = y.a;
 }
 
-/* Row i of eight (or four) nodes, from `at` on */
+/* Row i of eight (or four) nodes, from `at` on: one load of u, v and ku (and d), one store of ku and f (and d).
+   Sums hold the products of the step before too: strain needs K u before this step, damping_old d of the last one. */
 STENCIL_INLINE void SweptAdvanceRow(int n, const BodiesWork *w, PetscInt at, const SweptBlock *block, int i,
                                     SweptSums *sums)
 {
@@ -147,6 +148,7 @@ static void SweptSetGhosts(const SweptBody *s, PetscBool zero, PetscReal v[])
   }
 }
 
+/* Ghosts of closed bodies are set before the first range and cleared after the last: others take padding for zeros. */
 PetscErrorCode SweptAdvance(const SweptBody *s, PetscBool early, BodiesWork *w)
 {
   PetscFunctionBeginUser;
@@ -179,6 +181,8 @@ static PetscBool SweptIsShared(const ModelLines *lines, PetscInt begin, PetscInt
   return PETSC_FALSE;
 }
 
+/* Ranges of blocks of STENCIL_WIDTH nodes, merged where alike: with shared nodes (early) or without, with the first
+   or last node of open lines. The last block may be half a width, so that its padding is no longer than needed. */
 PetscErrorCode SweptSetRanges(SweptBody *s, const PetscBool shared[])
 {
   const PetscInt  n = s->lines->n_nodes, n_blocks = (n + STENCIL_WIDTH - 1) / STENCIL_WIDTH;

@@ -58,7 +58,8 @@ static PetscBool ColumnBegins(PetscInt n_nodes, const PetscInt vertex[], const P
   return n_second == 4 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The columns; `complete` is whether they hold all local cells of the body */
+/* The columns; `complete` is whether they hold all local cells of the body: n_columns times the cells along a line.
+   One cell stands for its column, hence the material must not change along it either. */
 static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *section, PetscBool *complete)
 {
   const PetscInt n_along = s->lines->n_nodes - (s->lines->closed ? 0 : 1);
@@ -88,7 +89,8 @@ static PetscErrorCode ColumnsFind(Bodies b, const SweptBody *s, ColumnSection *s
   PetscFunctionReturn(0);
 }
 
-/* Pairs of lines that share a column, and room for their blocks */
+/* Pairs of lines that share a column, and room for their blocks: 64 pairs of nodes a cell, ascending without
+   repetition, so that neighbours of a line follow one another. */
 static PetscErrorCode SectionFindKeys(PetscInt n_lines, ColumnSection *section)
 {
   PetscFunctionBeginUser;
@@ -186,7 +188,8 @@ static void SweptSetCoefficients(const ColumnBlocks *blocks, double c[STENCIL_CO
   for (int i = 0; i < 9; i++) before[i] = blocks->before[3 * (i % 3) + i / 3];
 }
 
-/* The neighbours of the lines, in the order of the keys */
+/* The neighbours of the lines, in the order of the keys; coefficients [2 n]: those of the stiffness, then those of
+   the damping. */
 static PetscErrorCode SweptSetLines(SweptBody *s, const ColumnSection *section)
 {
   const PetscInt n_lines = s->lines->n_lines, n = section->n_keys;

@@ -115,6 +115,8 @@ static PetscErrorCode CentralMove(TS ts, const CentralStep *step)
   PetscFunctionReturn(0);
 }
 
+/* One step from t_n to t_{n+1}: forces at t_n, then velocities to t_{n+1/2}, then displacements. The adaptor of TS
+   never rejects a step; it is asked for what the end of the run makes of the next one. */
 static PetscErrorCode TSStep_Central(TS ts)
 {
   TS_Central *c    = (TS_Central *)ts->data;
@@ -136,6 +138,8 @@ static PetscErrorCode TSStep_Central(TS ts)
   PetscFunctionReturn(0);
 }
 
+/* f_old is there for b > 1/2 alone: a vector less to hold and to read otherwise. It begins at zero, with kick_old =
+   0 in the first step. */
 static PetscErrorCode TSSetUp_Central(TS ts)
 {
   TS_Central *c = (TS_Central *)ts->data;
@@ -244,6 +248,7 @@ PetscErrorCode TSCentralGetForces(TS ts, Vec *f, Vec *f_old)
   PetscFunctionReturn(0);
 }
 
+/* 0 before the first step. A restart sets it, since it tells a first step from others and is half of `mean`. */
 PetscErrorCode TSCentralGetLastStep(TS ts, PetscReal *dt_old)
 {
   PetscFunctionBegin;
@@ -258,6 +263,7 @@ PetscErrorCode TSCentralSetLastStep(TS ts, PetscReal dt_old)
   PetscFunctionReturn(0);
 }
 
+/* Forces at the present time without a step: for the row of the end of a run. */
 PetscErrorCode TSCentralEvaluate(TS ts)
 {
   CentralStep step;

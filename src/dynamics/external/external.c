@@ -56,6 +56,9 @@ PetscErrorCode ExternalSetUp(External external, Bodies bodies)
   PetscFunctionReturn(0);
 }
 
+/* power->old: of the forces of the step before with v = v_{n-1/2}, to complete its work; power->now: of the new
+   forces with the same v, whose other half comes with v_{n+1/2}. Drives act last, as they need no force but set
+   velocities. */
 PetscErrorCode ExternalAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   PetscFunctionBeginUser;

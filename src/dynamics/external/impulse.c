@@ -114,6 +114,8 @@ PetscErrorCode ImpulsesSetUp(External external)
   PetscFunctionReturn(0);
 }
 
+/* last[0] = 1 / dt while it acts, 1/s, last[1] = when it acted, s; both in the memory of a restart. It acts once:
+   in the step after which T < t_n + dt, not in the first one. */
 PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   const PetscReal end = step->time + step->dt;
@@ -160,6 +162,7 @@ PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit)
   PetscFunctionReturn(0);
 }
 
+/* The same for a reduced run, which has no layout: the node moves where it has an unknown in a direction of J. */
 PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, PetscInt *vertex)
 {
   Impulse    *from = &external->impulses[i];

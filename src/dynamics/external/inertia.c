@@ -42,6 +42,8 @@ static PetscErrorCode InertiaAddPoints(External external)
   PetscFunctionReturn(0);
 }
 
+/* weight [layout n] = m g at all copies of a node, with the whole mass; own_weight at owned nodes alone, for the
+   power. */
 PetscErrorCode InertiaSetUp(External external)
 {
   const Layout    *layout = external->layout;
@@ -91,6 +93,8 @@ static void InertiaFrameForce(const InertiaFrame *frame, PetscReal m, const Pets
     force[d] = -m * ((frame->coriolis ? 2 * coriolis[d] : 0) + (frame->centrifugal ? centrifugal[d] : 0));
 }
 
+/* last [n][3] = the forces of this step, N, kept to complete their power with the next velocity. LayoutGet() and
+   LayoutAdd() take care of the components. */
 static void InertiaFrameAdvance(External external, InertiaFrame *frame, const PetscReal X[], const ExternalStep *step,
                                 ExternalPower *power)
 {

@@ -12,6 +12,8 @@ typedef struct {
   PetscReal   time, last;
 } Late;
 
+/* An error for LATE_NEVER, or where the command line itself gives the time; a warning where a file does, unless
+   only the command line is judged (LATE_COMMAND). */
 static PetscErrorCode LateCheck(External external, LateJudge judge, const Late *late)
 {
   char why[200];

@@ -36,6 +36,7 @@ PetscErrorCode CirclesCreateHeader(History history, char **header)
   PetscFunctionReturn(0);
 }
 
+/* Each node is recorded by one rank, with zeros on others: their sum on rank 0, which alone writes. */
 PetscErrorCode HistoryWriteCircles(History history, const HistoryState *state)
 {
   const PetscInt n = CirclesCount(history);

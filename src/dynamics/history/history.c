@@ -151,6 +151,7 @@ static PetscErrorCode HistoryRecordPairs(History history, const HistoryState *st
   PetscFunctionReturn(0);
 }
 
+/* Collective. state->ledger is known on all ranks, growth on each alike. Snapshots are of the same time as the row. */
 PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 {
   PetscFunctionBeginUser;
@@ -167,6 +168,8 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
   PetscFunctionReturn(0);
 }
 
+/* Tables are flushed before their lengths are noted: a restart cuts them there, and checks what is before by its
+   sum. */
 PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 {
   ResultsMark      mark[N_TABLES] = {{0}};
@@ -196,6 +199,7 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
   PetscFunctionReturn(0);
 }
 
+/* The length of the growth window is that of this run, which may end later than the one before. */
 PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
 {
   HistoryKept kept;

@@ -15,6 +15,8 @@
 #define LEDGER_MADE 0.1  /* of the energy that others give: what contact may make of nothing within the steps */
 #define LAWS_MOST   1e-3 /* an error beyond is no rounding: the run ends */
 
+/* Kinetic and strain energy are states, J; damping takes dt (v'd)/2 with v of both ends of the step, half of it
+   with d of the step before. */
 void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old)
 {
   part->kinetic = sums->kinetic;
@@ -63,6 +65,8 @@ static void LedgerRaiseThroughput(Ledger *l)
     l->throughput = PetscMax(l->throughput, PetscAbsReal(term[i]));
 }
 
+/* One reduction of all parts of this rank; works of contact are sums over the ranks already. What the start holds
+   is the origin of all: work before the first half step is none. error = what no term explains. */
 PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, const ContactSums sums[], PetscBool first)
 {
   LedgerPart *part   = &account->part;
@@ -130,6 +134,8 @@ PetscBool LedgerContactFeeds(PetscReal contact, PetscReal others)
   return contact > LEDGER_MADE * others ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Normal contact keeps or takes energy; where it gives more than a tenth of all else the motion is made by the
+   steps. */
 PetscErrorCode LedgerJudgeContact(MPI_Comm comm, const Ledger *l, PetscInt step, PetscReal time)
 {
   const PetscReal others =

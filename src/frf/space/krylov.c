@@ -1,7 +1,8 @@
 /*
-   Krylov vectors at the shift (Z. Bai, Y. Su, SIAM J. Sci. Comput. 26, 2005: second-order Krylov spaces for the damped
-   pencil; C. Campos, J. E. Roman, SIAM J. Sci. Comput. 38, 2016: states as coordinates in one space). The modes' states
-   are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
+   Krylov vectors at the shift g (Z. Bai, Y. Su, SIAM J. Sci. Comput. 26, 2005: second-order Krylov spaces for the
+   damped pencil; C. Campos, J. E. Roman, SIAM J. Sci. Comput. 38, 2016: states as coordinates in one space): states
+   [p; q] with S [p; q] = [-Q0^-1 (g Q'(g) p + g^2 M q); p] (krylov.h), undamped p with S p = Q0^-1 M p. The modes'
+   states are in the chain from the beginning, so that steps do not fall back on the modes near the shift.
 */
 #include "krylov.h"
 #include "basis/residual.h"
@@ -36,7 +37,8 @@ static PetscReal StateScale(const FrfKrylov *chain, PetscReal a[])
   return length;
 }
 
-/* Takes in what a state (overwritten) holds beyond those of the chain */
+/* Takes in what a state (overwritten) holds beyond those of the chain, by Gram-Schmidt twice. Dependent states end
+   their branch of the chain. */
 static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
 {
   PetscReal length;
@@ -56,8 +58,8 @@ static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
   PetscFunctionReturn(0);
 }
 
-/* States of a mode, real and imaginary part: x, or with damping [t x; x], t = g / (lambda - shift). x[0], x[1] are
-   coordinates of the two parts, x[1] NULL for a real vector */
+/* States of a mode, real and imaginary part: x, or with damping [t x; x], t = g / (lambda - g), since S [t x; x] =
+   t [t x; x] where Q(lambda) x = 0. x[0], x[1] are coordinates of the two parts, x[1] NULL for a real vector. */
 static PetscErrorCode StateAddMode(FrfKrylov *chain, PetscComplex lambda, const PetscReal *x[2])
 {
   const PetscInt     size = chain->space->size, two = chain->length > size;
@@ -140,7 +142,8 @@ static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, int which, BV Y)
   PetscFunctionReturn(0);
 }
 
-/* The states [c; old] of n answers with coordinates c[n][size]; old is that of the states that they came from */
+/* The states [c; old] of n answers with coordinates c[n][size]; old is the first part of the states that they came
+   from, zero in the first step. */
 static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c[])
 {
   const PetscInt size = chain->space->size, from = chain->last;
@@ -204,6 +207,8 @@ static PetscErrorCode KrylovCreateSides(const FrfKrylov *chain, PetscInt n, BV *
   PetscFunctionReturn(0);
 }
 
+/* Both chains are solved for at once. Afterwards the new states of each are those from `last` on; dependent ones
+   are not among them. */
 PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
 {
   PetscInt   n[2];

@@ -11,7 +11,8 @@
 #include "schur.h"
 #include <slepcblaslapack.h>
 
-/* S into T, and [0; Q0^-1 b], the states being [q; p] there, into b */
+/* S into T, and [0; Q0^-1 b], the states being [q; p] there, into b: Q0 = K + g C + g^2 M damped, K - g M undamped
+   (g in rad/s or (rad/s)^2), with E added to K where it is to be rounded otherwise. */
 static PetscErrorCode SchurForm(const FrfSpace *space, PetscBool rounded, const PetscReal b[], FrfSchur *s)
 {
   const PetscReal square = s->damped ? s->shift * s->shift : -s->shift, *E = space->space.term[FRF_E].small;
@@ -82,7 +83,8 @@ PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Solves T X - X B = X for the m columns of X */
+/* Solves T X - X B = R, X in place of R, for the m columns of X: n^2 operations each. info > 0, or a scale of zero,
+   means that T and B share an eigenvalue: a pole. */
 static PetscErrorCode SchurSolve(const FrfSchur *s, PetscInt m, PetscBool *singular)
 {
   const PetscBLASInt minus = -1;
@@ -137,6 +139,7 @@ static void SchurOutputs(const FrfSchur *s, PetscInt n, PetscReal re[], PetscRea
     }
 }
 
+/* A batch in which one frequency is singular is solved again one by one, to tell which. */
 PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscInt n, const PetscReal omega[], PetscReal re[], PetscReal im[],
                                PetscInt *pole)
 {

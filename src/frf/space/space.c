@@ -1,6 +1,7 @@
 /*
    The space of Galerkin's method: vectors of length one, whatever they are, count alike, so that it is orthonormal
-   without M.
+   without M, V'V = I. K, C, M and E = diag(e_i K_ii) are known on it, |e_i| <= 3 eps: K + E is what K could be as
+   well.
 */
 #include "space.h"
 #include "solver/block/orthonormal.h"
@@ -8,7 +9,8 @@
 #define ROUNDINGS_OF_K 3    /* times machine epsilon */
 #define DEPENDENT      1e-9 /* a vector of length one that is nearer than this to the space belongs to it */
 
-/* E, a change of the diagonal of K by rounding */
+/* E, a change of the diagonal of K by rounding; the numbers of PETSc's generator are the same in every run on as
+   many ranks. */
 static PetscErrorCode NoiseCreate(Mat K, Mat *E)
 {
   PetscInt    m, n;
@@ -66,6 +68,8 @@ static PetscErrorCode BlockNormalise(BV block)
   PetscFunctionReturn(0);
 }
 
+/* Columns are scaled first: Krylov vectors and modes differ in length by many powers of ten, and DEPENDENT is a
+   length. */
 PetscErrorCode FrfSpaceAdd(FrfSpace *space, BV block)
 {
   PetscInt n;

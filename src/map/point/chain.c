@@ -5,6 +5,8 @@
 */
 #include "map/mapimpl.h"
 
+/* Work for one step length on one line's bodies: statuses, windows and samples of the whole time. Works of the step
+   are not asked for, a tenth of its time; those of contact are. */
 PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march)
 {
   const ReducedModel *model = &bodies->model;
@@ -60,7 +62,8 @@ static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
-/* The sliding state of a point, its eigenvalues, and where the point begins: there, or where the one before ended */
+/* The sliding state of a point, its eigenvalues, and where the point begins: there, or where the one before ended.
+   sliding [pairs] = speed dt, m. Without a sliding state a point can only go on from another. */
 static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, PetscBool *begun)
 {
   const ReducedModel *model   = &w->bodies->model;
@@ -112,6 +115,8 @@ void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
   *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down};
 }
 
+/* Rows are kept after each point, with the state at its end; rows that an earlier run kept are not run again. A
+   failed point breaks the chain: the next one begins at its own sliding state. */
 PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
 {
   Map       map   = w->map;

@@ -9,6 +9,7 @@
 */
 #include "map/mapimpl.h"
 
+/* In a record: below, Hann's window and the mean run into the line. */
 #define LEAST_PERIODS  4
 #define STEADY_WINDOWS 8 /* at least */
 
@@ -27,6 +28,7 @@ void MapForceMeasure(PetscInt n, const PetscReal f[], MapSample *s)
   s->rms = PetscSqrtReal(square);
 }
 
+/* sqrt(mean rms^2) over windows, N; *error = its relative standard error, half that of the mean square. */
 PetscReal MapForceLevel(PetscInt n, const MapSample s[], PetscReal *error)
 {
   PetscReal square = 0, spread = 0;
@@ -37,7 +39,8 @@ PetscReal MapForceLevel(PetscInt n, const MapSample s[], PetscReal *error)
   return PetscSqrtReal(square);
 }
 
-/* Magnitude of bin k under Hann's window */
+/* |sum_l w_l (f_l - mean) exp(2 pi i k l / n)|, i the imaginary unit, w Hann's window. Cosines go on by rotation,
+   so that their rounding grows with n. */
 static PetscReal ForceBin(PetscInt n, const PetscReal f[], PetscReal mean, PetscInt k)
 {
   const PetscReal step = 2 * PETSC_PI * (PetscReal)k / (PetscReal)n, hann = 2 * PETSC_PI / (PetscReal)n;
@@ -66,6 +69,8 @@ static PetscReal ForceBins(PetscInt n_records, PetscInt n, const PetscReal f[], 
   return PetscSqrtReal(square);
 }
 
+/* Frequency, Hz, of the main line of n_records records of n values dt apart; NAN where the largest bin is rounding.
+   n^2 / 2 products a record: windows are short. */
 PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], PetscReal dt)
 {
   PetscReal largest = 0, side[2], a;

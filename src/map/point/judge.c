@@ -8,6 +8,8 @@
 #define MARCH_SMALL 0.01 /* of the mean force: a vibration that is small */
 #define MARCH_TREND 1.5  /* of the rms, from a quarter of the windows to the next: growth */
 
+/* About the sliding state with the pairs of `status` closed, and its normal forces; w->growth and w->known tell of
+   which pairs the eigenvalues are. */
 PetscErrorCode MapMarchLinearise(MapMarch w, const ContactStatus status[], MapFastest *fastest)
 {
   const ReducedModel *model = &w->bodies->model;
@@ -71,7 +73,7 @@ static MapRegime MarchTrend(const MapMarch w)
   return MAP_CYCLE;
 }
 
-/* Means over windows first .. */
+/* Means over windows first .., the largest value of all. */
 static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
 {
   const PetscReal n = (PetscReal)(w->n_windows - first);
@@ -86,6 +88,8 @@ static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
   }
 }
 
+/* Numbers over the last window where it decays, the windows that agree where it settled, else the last half.
+   freq_error is the difference of the lines of two halves of these. */
 void MapMarchJudge(MapMarch w, MapPoint *row)
 {
   const PetscInt  n = w->n, last = w->n_windows;

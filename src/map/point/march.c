@@ -25,7 +25,9 @@ static PetscBool MarchIsMade(const MapMarch w)
   return ReducedContactFeeds(w->contact, PetscAbsReal(w->friction) + w->given);
 }
 
-/* The steps of the next window, and what its forces are like */
+/* The steps of the next window, and what its forces are like: force = total normal force, N, slip = mean slip speed
+   along t, m/s. A window with an impulse counts as one in which statuses change. PETSC_ERR_FP where contact makes
+   the motion, which MapMarchTry() takes as an outcome. */
 static PetscErrorCode MarchWindow(MapMarch w, MapPoint *row)
 {
   const PetscInt n_pairs = w->bodies->model.n_pairs;
@@ -77,6 +79,8 @@ static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
   PetscFunctionReturn(0);
 }
 
+/* given = energy at the start, and work of impulses, J, beside which works of contact and friction are judged. Only
+   errors of the laws and of numbers are outcomes; others are raised. */
 PetscErrorCode MapMarchTry(MapMarch w, MapPoint *row)
 {
   PetscErrorCode error;

@@ -54,7 +54,8 @@ PetscErrorCode MapTwinsBegin(MapMarch w)
   PetscFunctionReturn(0);
 }
 
-/* 1 and a rounding, or 1 less it; `bits` change with each, alike in every run (linear congruence) */
+/* 1 and a rounding, or 1 less it; `bits` change with each, alike in every run (linear congruence modulo 2^32,
+   factors of W. H. Press et al., Numerical Recipes, section 7.1), of which the highest bit, the best one, is taken. */
 static PetscReal TwinFactor(uint32_t *bits)
 {
   *bits = 1664525 * *bits + 1013904223;
@@ -74,7 +75,8 @@ static PetscErrorCode TwinBranch(MapMarch w, const ReducedState *from, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* Twin k > 0 is c times as far from the point as its first twin was: -1, 2, -2, 3, ... */
+/* Twin k > 0 is c times as far from the point as its first twin was: c = -1, 2, -2, 3, ... The statuses are those
+   of the first twin; steps find their own. */
 static PetscErrorCode TwinFollow(MapMarch w, PetscInt k)
 {
   const ReducedModel *model = &w->bodies->model;
@@ -278,7 +280,8 @@ static PetscErrorCode TwinsJudge(MapMarch w, PetscBool differ, MapPoint *row)
 }
 
 /* Twins of a point that has not failed, the first one and, where it differs or they are under way, all; whether one
-   differs */
+   differs. n_alive twins have states of their own from the point before; after it all have where one differed, else
+   the first alone, or none where it would tell nothing. */
 static PetscErrorCode TwinsMarch(MapMarch w, const MapPoint *begin, MapPoint *row, PetscBool *differ)
 {
   const PetscBool needless = TwinIsNeedless(w);

@@ -14,7 +14,7 @@ typedef struct {
   const Shooting        *s;
   PetscReal             *x0, *y, *trial; /* guess, Phi, x of a shortened step */
   PetscReal             *c, *f, *g;      /* phase, dPhi/dT, dPhi/dp */
-  PetscReal             *A, *rhs;        /* [n + 2][n + 2], [n + 2] */
+  PetscReal             *A, *rhs;        /* [N][N], [N], N = n + 2 + n_free */
   PetscBLASInt          *pivot;
   const ShootingTangent *tangent; /* NULL: the parameter is fixed */
   PetscReal              scale;   /* of the period */

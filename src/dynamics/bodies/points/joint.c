@@ -107,6 +107,8 @@ PetscErrorCode JointsMotion(Bodies b, const PetscReal scale[], const PetscReal x
   PetscFunctionReturn(0);
 }
 
+/* ku += dt B'k B v, d += B'c B v, f -= both, at nodes that this rank owns, N; others get them by the sum at shared
+   nodes. All of early and late nodes from one sum of motions. */
 PetscErrorCode JointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
 {
   PetscMPIInt rank;
@@ -153,6 +155,8 @@ PetscErrorCode JointsAddForces(Bodies b, const PetscReal u[], PetscReal ku[])
   PetscFunctionReturn(0);
 }
 
+/* bound += trace(D^-1 B'(k + s c) B), (rad/s)^2: at least the largest eigenvalue of all joints together, and
+   simple. */
 PetscErrorCode JointsAddBound(Bodies b, PetscReal s, PetscReal *bound)
 {
   PetscReal sum = 0;

@@ -66,6 +66,8 @@ static PetscErrorCode RigidInvert(PetscReal A[36], PetscReal inverse[36])
   PetscFunctionReturn(0);
 }
 
+/* nearest = (R'D R)^-1 for states, mobility = (R'D R + W)^-1 for forces, [6][6]: kg, kg m and kg m^2 inverted.
+   Summed over owned nodes, alike on all ranks. */
 PetscErrorCode RigidPointSetUp(Bodies b, BodyJoint *joint)
 {
   PetscReal A[36] = {0}, W[36];

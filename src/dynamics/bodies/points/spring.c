@@ -76,6 +76,7 @@ static void PointApply(const PetscReal a[9], const PetscReal x[], PetscInt at, P
   for (int i = 0; i < 3; i++) y[i] = a[3 * i] * x[at] + a[3 * i + 1] * x[at + step] + a[3 * i + 2] * x[at + 2 * step];
 }
 
+/* As JointsAdvance(), with 3 x 3 blocks of single nodes. */
 void PointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
 {
   for (PetscInt i = 0; i < b->n_points; i++) {
