@@ -72,6 +72,7 @@ PetscErrorCode FrfResiduesCreate(Frf frf, FrfResidues *r)
   PetscFunctionReturn(0);
 }
 
+/* The mode of the largest |r| / |i omega - lambda|, or -1 without modes; rigid ones by r / omega^2. */
 PetscErrorCode FrfResiduesLargest(Frf frf, const FrfResidues *r, PetscReal omega, PetscInt *largest)
 {
   const Mode *mode;

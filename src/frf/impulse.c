@@ -168,6 +168,8 @@ static PetscErrorCode RigidModesAdd(Frf frf, const PencilParts *parts)
   PetscFunctionReturn(0);
 }
 
+/* impulse [n_times][n_outputs], m/(N s). p = y^T D x of the solver for each mode, with the lengths that its vectors
+   have. */
 PetscErrorCode FrfSolveImpulse(Frf frf)
 {
   PencilParts parts;

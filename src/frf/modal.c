@@ -236,6 +236,8 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionReturn(0);
 }
 
+/* Collective. The factors of the modes are kept for the Krylov vectors: no further factorisation. Residues name the
+   modes of peaks; they are not summed. */
 PetscErrorCode FrfSolveModal(Frf frf)
 {
   FrfResidues   residues;

@@ -28,6 +28,8 @@ static PetscErrorCode MapBodiesTake(ReducedRun run, MapBodies *b)
   PetscFunctionReturn(0);
 }
 
+/* Collective. cutoff 0: that of the map. Parameters of the bodies are on the second axis alone (MapAxes()), hence
+   one reduction a line. */
 PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodies *b)
 {
   const OperatorsParameter *list;

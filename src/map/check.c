@@ -76,6 +76,7 @@ void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, PetscInt *n_windo
   *n_windows = (PetscInt)(map->end / ((PetscReal)*n_steps * dt) + 1e-9);
 }
 
+/* A window holds 32 steps at least, of which its spectrum is made, and a run eight windows, as `steady` asks for. */
 PetscErrorCode MapCheckTimes(Map map)
 {
   PetscInt n_steps, n_windows;

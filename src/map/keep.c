@@ -86,6 +86,8 @@ PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint r
   PetscFunctionReturn(0);
 }
 
+/* Not collective: a chain is one rank's. Rows that were kept are in row[0 ..], and the state is that at the end of
+   the last of them. */
 PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept)
 {
   JournalItem item = {"chain", -1, NULL};

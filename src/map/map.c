@@ -168,6 +168,8 @@ static PetscErrorCode MapSetUp(Map map, Results results)
   PetscFunctionReturn(0);
 }
 
+/* Collective. Bodies are reduced by all ranks together, chains run by one each; rows are gathered after each batch,
+   so that a table grows as the map does. */
 PetscErrorCode MapSolve(Map map, Results results)
 {
   PetscInt     n_rows;
@@ -193,6 +195,7 @@ PetscErrorCode MapSolve(Map map, Results results)
   PetscFunctionReturn(0);
 }
 
+/* A point that failed is an answer of the map; none that succeeded is an error. */
 PetscErrorCode MapJudge(Map map)
 {
   static const char *const why[MAP_N_FAULTS] = {[MAP_NO_STATE]  = "no sliding state balances the loads",

@@ -57,6 +57,8 @@ static PetscErrorCode StateCreateOpen(Contact contact, SlidingState *state)
   PetscFunctionReturn(0);
 }
 
+/* p NULL: the point of the scene. Damping and spin are set to 0 in a copy of p, not taken out of the terms, so that
+   the pencil has the parameters of all others. */
 PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[], PetscBool apart, Pencil *bodies)
 {
   const OperatorsParameter *parameter;

@@ -36,8 +36,8 @@ static PetscErrorCode CauseFind(Pencil pencil, const char kind[], const char nam
   PetscFunctionReturn(0);
 }
 
-/* Keeps a term, with the coefficient at the present point and its cause */
-/* the term's coefficient is folded into scale here, since shares are asked for after the point may have moved on */
+/* Keeps a term and its cause; the coefficient at the present point is folded into scale here, since shares are asked
+   for after the point may have moved on */
 static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
 {
   Terms                  *causing = &pencil->causing;
@@ -109,7 +109,8 @@ static PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
   PetscFunctionReturn(0);
 }
 
-/* The vector in the unknowns of the pencil; u itself where nothing is projected */
+/* The vector in the unknowns of the pencil, u = Zr q; NULL where nothing is projected, and the terms of all
+   unknowns do. */
 static PetscErrorCode VectorRestrict(Pencil pencil, const CauseVector *u, CauseVector *q)
 {
   PetscFunctionBeginUser;
@@ -148,6 +149,8 @@ static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal
   return omega * re;
 }
 
+/* growth [causes], 1/s; their sum is sigma but for the residual of the eigenpair, over |D|. ui NULL for a real
+   vector. */
 PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[])
 {
   CauseVector u = {{ur, ui}, NULL}, q;
@@ -208,7 +211,9 @@ static PetscErrorCode VectorProduct(const CauseVector *y, Mat A, PetscBool turne
   PetscFunctionReturn(0);
 }
 
-/* x[n], y[n] in the unknowns of the term */
+/* Forms and products of a term times its coefficient: form = x_0^H A x_0, product[a][b] = y_a' A x_b, turned[a][b]
+   = y_a' A' x_b, which is not computed where A is symmetric, being equal, and of an exact contact, where product
+   stands for it. */
 static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscInt n, const CauseVector x[],
                                        const CauseVector y[], PencilForms *forms)
 {

@@ -91,6 +91,8 @@ PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
   PetscFunctionReturn(0);
 }
 
+/* The order of parameters is made here, once; `body` marks those that exist without contact. Units are those of the
+   model from here on. */
 PetscErrorCode OperatorsSetUp(Operators operators)
 {
   PetscFunctionBeginUser;

@@ -9,6 +9,8 @@
 */
 #include "pencilimpl.h"
 
+/* state NULL: all pairs closed, with the forces of the options. Terms of bodies and spin first, those of the
+   contact behind, which group them by closed_g; null spaces last, as they need all pairs. */
 PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state, Pencil *pencil)
 {
   Pencil s;
@@ -88,7 +90,8 @@ PetscErrorCode PencilGetTerms(Pencil pencil, PetscInt *n, const OperatorsTerm **
   PetscFunctionReturn(0);
 }
 
-/* What the pencil will be asked for is formed before the terms go */
+/* Memory: a term of stiffness is as large as K. What stays is the sums at the present point, to which the pencil is
+   bound then (PencilCheckTerms()). */
 PetscErrorCode PencilReleaseTerms(Pencil pencil)
 {
   Operators      o = pencil->operators;

@@ -185,6 +185,7 @@ static PetscErrorCode ReducedMarch(ReducedRun r, PetscBool *stop)
   PetscFunctionReturn(0);
 }
 
+/* Tables stay open for a run that goes on from a checkpoint, and are closed where none can. */
 PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
 {
   PetscLogDouble begin, ready, end;

@@ -105,6 +105,7 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, Pe
   PetscFunctionReturn(0);
 }
 
+/* Vectors into the space first, then states of their coordinates, which are exact in it but for rounding. */
 PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
 {
   const PetscInt size = chain->space->size;

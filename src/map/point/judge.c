@@ -34,6 +34,8 @@ static PetscBool MarchIsKnown(const MapMarch w)
   return PETSC_TRUE;
 }
 
+/* n windows in turn in which the rms falls, in a linear or small motion about pairs whose eigenvalues all decay; a
+   vibration that is rounding need not fall. */
 PetscErrorCode MapMarchDiesOut(MapMarch w, PetscBool *dies)
 {
   const MapSample *s    = &w->sample[w->n_windows - 1];

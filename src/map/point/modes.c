@@ -36,6 +36,7 @@ void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[],
   }
 }
 
+/* The growing modes by insertion, fastest first, as many as a row has room for; n_growing counts all. */
 void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row)
 {
   const PetscReal highest = LambdaHighest(n, sigma, omega);

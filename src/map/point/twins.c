@@ -306,6 +306,7 @@ static PetscErrorCode TwinsMarch(MapMarch w, const MapPoint *begin, MapPoint *ro
   PetscFunctionReturn(0);
 }
 
+/* The point's own transient is run 0; a failed one has no twins. Afterwards row has what all say together. */
 PetscErrorCode MapTwinsRun(MapMarch w, const MapPoint *begin, MapPoint *row)
 {
   const MapPoint own    = *row;

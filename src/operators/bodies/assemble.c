@@ -42,7 +42,8 @@ static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
   PetscFunctionReturn(0);
 }
 
-/* K_p and M_p of one part */
+/* K_p, m, and M_p, m^3, of one part, in the unknowns of all: rows of other parts are empty. The cells of each rank
+   alone; both assemblies are begun before either is waited for. */
 static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Mat *M)
 {
   const Mesh *mesh;
@@ -90,7 +91,8 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
   PetscFunctionReturn(0);
 }
 
-/* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask */
+/* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask. Nodes of two sets are in two
+   terms. */
 static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const PetscBool mask[3], Mat *D)
 {
   const Grounded    *g = of;
@@ -129,6 +131,7 @@ static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, 
   PetscFunctionReturn(0);
 }
 
+/* Parameters in the order that operators.c promises: parts, springs, dashpots, bushings and points. */
 PetscErrorCode OperatorsAssemble(Operators o)
 {
   const ModelScene *scene;

@@ -34,6 +34,7 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
   PetscFunctionReturn(0);
 }
 
+/* Borrowed until the next call with another p, or OperatorsReleaseBodies(). *C is NULL without damping at p. */
 PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat *K, Mat *M, Mat *C)
 {
   static const TermsSumKind kinds[N_BODIES_SUMS] = {

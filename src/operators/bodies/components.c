@@ -25,6 +25,7 @@ static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const 
   PetscFunctionReturn(0);
 }
 
+/* index [3]: the parameter of each direction, -1 of one that is not given. A value of 0 counts as not given. */
 PetscErrorCode OperatorsAddComponents(Operators o, const Components *c, PetscInt index[3])
 {
   PetscBool mask[3], uniform = PETSC_TRUE, any = PETSC_FALSE;

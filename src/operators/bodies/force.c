@@ -73,6 +73,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscFunctionReturn(0);
 }
 
+/* K times the displacements that supports prescribe, N: what they add to the right-hand side with the other sign. */
 PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local)
 {
   const Mesh *mesh;
@@ -140,6 +141,8 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
   PetscFunctionReturn(0);
 }
 
+/* Nodal values, complete at every node, into the rows of this rank; held directions have none, and their values are
+   left behind. */
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
 {
   const PetscScalar *force;

@@ -1,5 +1,6 @@
 /*
-   Geometric stiffness of the bodies, of the stress of static displacements (kernels/element/geometric.h).
+   Geometric stiffness of the bodies, K_sigma = sum over cells of int (grad N_a . sigma grad N_b) I dV, N/m, of the
+   stress sigma of static displacements u, sigma = D B u_e, linear in u (kernels/element/geometric.h).
 */
 #include "operators/operatorsimpl.h"
 
@@ -45,6 +46,7 @@ static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[]
   PetscFunctionReturn(0);
 }
 
+/* In the pattern of K of the bodies; u [nodes][3], m, of all local nodes. The caller destroys it. */
 PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K)
 {
   Mat bodies;

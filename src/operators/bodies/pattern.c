@@ -14,6 +14,7 @@ typedef struct {
   PetscInt *first, *cell;
 } PatternStar;
 
+/* first [nodes + 2], cell [nodes of all cells]: counting sort by node, of the cells of one part. */
 static PetscErrorCode PatternCreateStar(const Mesh *mesh, PetscInt part, PatternStar *s)
 {
   const PetscInt n = mesh->cell_first[mesh->n_cells];
@@ -48,7 +49,8 @@ static PetscErrorCode PatternFindOwners(MPI_Comm comm, const Mesh *mesh, PetscMP
   PetscFunctionReturn(0);
 }
 
-/* Adds to count[v][0] the neighbours of v with the same owner, to count[v][1] the others */
+/* seen[w] = v marks that w was counted for v: no list to sort, one pass over the star. Nodes without unknowns count
+   for nothing. */
 static PetscErrorCode PatternCountNeighbours(const Mesh *mesh, const PatternStar *s, const PetscMPIInt owner[],
                                              PetscScalar count[])
 {
@@ -128,6 +130,8 @@ static PetscErrorCode PatternAllocate(Model model, const PetscInt inside[], cons
   PetscFunctionReturn(0);
 }
 
+/* M NULL: not wanted. MAT_IGNORE_ZERO_ENTRIES keeps the zeros of a mass between different directions out of its
+   pattern. */
 PetscErrorCode PatternCreate(Model model, PetscInt part, PetscBool lumped, Mat *K, Mat *M)
 {
   const Mesh *mesh;

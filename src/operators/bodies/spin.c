@@ -27,6 +27,8 @@
 #define UNROUND  1e-2 /* of f, which may be rigid */
 #define SHARE    1e-4 /* of f, which a stiffness may carry without being counted */
 
+/* fastest = sqrt(E / rho) / radius, rad/s: a rim as fast as the waves in it, beyond which the linear theory says
+   nothing. lower: either sense. */
 PetscErrorCode OperatorsAddSpinParameters(Operators o)
 {
   const ModelScene *scene;
@@ -82,7 +84,8 @@ static PetscErrorCode SpinAddCell(Operators o, PetscInt c, const SpinFrame *fram
   PetscFunctionReturn(0);
 }
 
-/* G, Q and the load f of one part, per unit density and spin */
+/* G (m^3, skew), Q (m^3) and the load f (m^4) of one part, per unit density and spin: times rho Omega, rho Omega^2,
+   rho Omega^2 they are N s/m, N/m and N. */
 static PetscErrorCode SpinAssemble(Operators o, PetscInt part, Mat *G, Mat *Q, Vec f)
 {
   const ModelScene *scene;
@@ -113,7 +116,7 @@ static PetscErrorCode SpinAssemble(Operators o, PetscInt part, Mat *G, Mat *Q, V
   PetscFunctionReturn(0);
 }
 
-/* Factors of K + s M */
+/* Factors of K + s M, s = SHIFT max K_ii / M_ii, shared by all parts: the matrix is that of all bodies. */
 static PetscErrorCode SpinCreateSolver(Operators o, Mat K, Mat M, KSP *ksp)
 {
   PetscReal largest;
@@ -143,7 +146,8 @@ static PetscErrorCode SpinCreateSolver(Operators o, Mat K, Mat M, KSP *ksp)
   PetscFunctionReturn(0);
 }
 
-/* u = K^-1 f of a part */
+/* u = K^-1 f of a part by the iteration of the header; it ends at RESIDUAL |f|, or where a step takes off less than
+   a percent: what is left then is the rigid part of f, refused above UNROUND. */
 static PetscErrorCode SpinSolve(Operators o, const char name[], Mat K, KSP ksp, Vec f, Vec u)
 {
   PetscReal size, left, before = PETSC_INFINITY;
@@ -236,6 +240,7 @@ static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[],
   PetscFunctionReturn(0);
 }
 
+/* Made when the first pencil asks for it, since a solution with all bodies is behind it. Collective. */
 PetscErrorCode OperatorsNeedSpin(Operators o)
 {
   const ModelScene *scene;
@@ -278,6 +283,7 @@ static PetscErrorCode SpinCheckTogether(Operators o, const char option[], PetscI
   PetscFunctionReturn(0);
 }
 
+/* parameter NULL: all parameters, as sensitivities move them; then parts need not move together. */
 PetscErrorCode OperatorsCheckMoved(Operators o, const char option[], PetscInt n, const PetscInt parameter[])
 {
   const ModelScene *scene;

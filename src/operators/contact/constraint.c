@@ -38,7 +38,8 @@ static PetscErrorCode ConstraintCheckFollowers(Pencil pencil, PetscInt n, const 
   PetscFunctionReturn(0);
 }
 
-/* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible */
+/* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible. The list is
+   the caller's to free, its pairs the contact's. Faults of any rank are raised on all. */
 static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const ContactPair ***list,
                                        const ContactInterface **interfaces)
 {
@@ -260,6 +261,8 @@ static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair
   PetscFunctionReturn(0);
 }
 
+/* Zr NULL where no rank has a constrained pair: nothing is projected. All left null spaces are of the size of Zr,
+   with few rows that are not empty. */
 PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
 {
   const ContactPair     **list;

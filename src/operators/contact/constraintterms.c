@@ -30,7 +30,8 @@ static PetscErrorCode TermProject(Pencil pencil, Mat A, Mat image[])
   PetscFunctionReturn(0);
 }
 
-/* Adds the terms of the pencil that a base term with these images makes */
+/* Adds the terms of the pencil that a base term with these images makes: image 0 has its coefficient, image i that
+   times mu_i as one more factor. Friction makes a term unsymmetric. */
 static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const Mat image[])
 {
   const PetscInt n = base->n;
@@ -56,6 +57,7 @@ static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const 
   PetscFunctionReturn(0);
 }
 
+/* Once for all points: coefficients are not projected. Costs n_terms (1 + n_left) triple products. */
 PetscErrorCode PencilProjectTerms(Pencil pencil)
 {
   PetscInt n_images;

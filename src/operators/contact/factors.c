@@ -87,7 +87,8 @@ static PetscErrorCode RightCreate(const Terms *terms, const PetscReal p[], Petsc
   PetscFunctionReturn(0);
 }
 
-/* All left factors times their coefficients, or all right factors, below one another */
+/* All left factors times their coefficients, or all right factors, below one another: [pairs of this
+   rank][unknowns]. Coefficients stand in L alone; rows keep the order of the terms in both. */
 static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], PetscBool right, Mat *S)
 {
   PetscInt n_rows = 0, n, n_columns = 0, longest = 0, first;
@@ -123,6 +124,7 @@ static PetscErrorCode FactorsStack(const Terms *terms, const PetscReal p[], Pets
   PetscFunctionReturn(0);
 }
 
+/* NULL, NULL where there is no unsymmetric stiffness, or some of it has no factors: then K is factored as it is. */
 PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *left, Mat *right)
 {
   PetscInt n = 0;
@@ -142,6 +144,8 @@ PetscErrorCode TermsFormFactors(const Terms *terms, const PetscReal p[], Mat *le
   PetscFunctionReturn(0);
 }
 
+/* Takes away what can be made again from what stays: K_even from K by subtraction of friction, or both from the
+   half that is factored and the mass. */
 PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift)
 {
   TermsSum *const even = &pencil->sum[PencilEven(pencil)], *const whole = &pencil->sum[PENCIL_K];
@@ -171,9 +175,8 @@ static PetscErrorCode AddFriction(Pencil pencil, PetscReal c, Mat A, TermsSum *s
   PetscFunctionReturn(0);
 }
 
-/* sum = half + shift M */
-/* half holds K_even - shift M (upper half) as it was factored, so that half + shift M is K_even but for rounding of
-   |shift| M */
+/* sum = half + shift M; half holds K_even - shift M (upper half) as it was factored, so that it is K_even but for
+   rounding of |shift| M. */
 static PetscErrorCode AddMass(Pencil pencil, TermsSum *sum)
 {
   const Mat M = pencil->sum[pencil->Zr ? PROJECTED_M : SUM_M].A;

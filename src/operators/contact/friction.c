@@ -15,7 +15,8 @@
 #include "base/algebra/vec3.h"
 #include <math.h>
 
-/* R is copied where it is weighted: T is also the left factor of other terms */
+/* A = scale L' diag(weights) R, weights NULL for ones. R is copied where it is weighted: T is also the left factor
+   of other terms. */
 PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
 {
   Mat WR = R;
@@ -43,6 +44,8 @@ typedef struct {
   Mat                     N, T, B;
 } FrictionGroup;
 
+/* Closed pairs of this rank in one group, maybe none, with their rows N, T, B [pairs][unknowns]. Group 0 is closed
+   always, and has no factor closed_g. */
 static PetscErrorCode FrictionGroupCreate(Pencil pencil, PetscInt interface, PetscInt group, FrictionGroup *g)
 {
   const ContactPair *pairs;
@@ -215,7 +218,7 @@ static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
   PetscFunctionReturn(0);
 }
 
-/* 1 or the area of each pair that sticks, 0 of one that slips */
+/* 1 or the area (m^2) of each pair that sticks, 0 of one that slips: sticking is known of a sliding state alone. */
 static PetscErrorCode HoldCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
 {
   const ContactPair *pairs;

@@ -42,6 +42,8 @@ PetscReal FrictionFactorValue(const OperatorsFriction *f, PetscBool slope, const
   return slope ? FrictionSteadySlope(&law) : FrictionSteady(&law);
 }
 
+/* By one of the parameters of the law, or by the speed of the interface, d / dV = ratio d / dv; of mu, or with
+   slope of mu', s/m. */
 PetscReal FrictionFactorDerivative(const OperatorsFriction *f, PetscBool slope, const PetscReal p[], PetscInt parameter)
 {
   const FrictionLaw  law = FactorLaw(f, p);
@@ -126,6 +128,7 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
   PetscFunctionReturn(0);
 }
 
+/* mu of a pair at p: its speed goes with that of the interface, v = V v_0 / V_0. */
 PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu)
 {
   const PetscReal stated = operators->interface[pair->interface].stated;
@@ -159,7 +162,8 @@ static PetscErrorCode LawAddParameters(Operators o, const ContactInterface *c, P
   PetscFunctionReturn(0);
 }
 
-/* Parameters of one interface */
+/* Parameters of one interface, in a fixed order: the law's steady ones, kn, kt, those of its slope, force, speed.
+   Other files find them by their indices, sweeps by their names. */
 static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
 {
   const PetscReal turning = Vec3Length(c->rotation); /* rad/s */
@@ -251,6 +255,7 @@ static PetscErrorCode NodesChoose(Operators o, const ContactInterface *c, const 
   PetscFunctionReturn(0);
 }
 
+/* At other values the same nodes may serve worse: more than FRICTION_MISS is refused, where the values are set. */
 PetscErrorCode OperatorsCheckFriction(Operators o, const PetscReal p[])
 {
   const ContactInterface *c;

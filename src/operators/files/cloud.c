@@ -18,7 +18,8 @@ static PetscErrorCode CloudCount(const NodeTable *table, PetscInt *n_nodes, Pets
   PetscFunctionReturn(0);
 }
 
-/* Arrays of n local nodes, of which number `begin` is the first */
+/* Nodes begin .. begin + n - 1 of the table as a mesh: x (m), unknowns by direction, -1 where a node has none along
+   it; each is a cell of its own. */
 static PetscErrorCode CloudTabulate(struct _p_Cloud *c, const NodeTable *table, PetscInt begin, PetscInt n,
                                     const PetscInt first[])
 {
@@ -68,6 +69,8 @@ static PetscErrorCode CloudConnect(Operators o, struct _p_Cloud *c, PetscInt n)
   PetscFunctionReturn(0);
 }
 
+/* Collective. Nodes are split evenly over the ranks, in the order of the table, which need not be that of the
+   unknowns. */
 PetscErrorCode CloudCreate(Operators o)
 {
   NodeTable        table;

@@ -122,6 +122,7 @@ static PetscErrorCode OperatorsReadMatrix(Operators o, int i, Mat *A)
   PetscFunctionReturn(0);
 }
 
+/* Symmetry is looked at where all three of K, M and C are there; one that is not makes all terms unsymmetric. */
 PetscErrorCode OperatorsLoad(Operators o)
 {
   Mat A[N_OPERATORS] = {NULL};
@@ -205,6 +206,8 @@ static PetscErrorCode PencilSaveBegin(Operators o)
   PetscFunctionReturn(0);
 }
 
+/* Without constraints K, M, C and H as they are told apart; with them the matrices of the pencil, in q. Files of an
+   earlier run that this one has not are removed, so that the folder is one system. */
 PetscErrorCode PencilSave(Pencil pencil)
 {
   Operators      o = pencil->operators;

@@ -36,7 +36,8 @@ static PetscBool MatrixFileInts(MatrixFile *f, size_t n, PetscInt value[])
   return PETSC_TRUE;
 }
 
-/* The head, and the size of the file that follows from it */
+/* The head, and the size of the file that follows from it: 16 bytes, 4 for each row and column number, 8 for each
+   entry. Complex entries are told by 8 bytes more of each. */
 static PetscErrorCode MatrixFileHead(MatrixFile *f)
 {
   const size_t size = sizeof(f->fault);
@@ -67,7 +68,8 @@ static PetscErrorCode MatrixFileHead(MatrixFile *f)
   PetscFunctionReturn(0);
 }
 
-/* Columns of the entries: within the matrix, ascending in each row */
+/* Columns of the entries: within the matrix, ascending in each row. Read in pieces, so that the memory is that of
+   the row counts. */
 static PetscErrorCode MatrixFileColumns(MatrixFile *f)
 {
   const size_t size = sizeof(f->fault);
@@ -192,7 +194,8 @@ static PetscErrorCode MassCountPivots(Mat S, Vec diagonal, PetscReal shift, Pets
   PetscFunctionReturn(0);
 }
 
-/* Unknowns of owned rows without any mass; an error for one with mass that is not positive on the diagonal */
+/* Unknowns of all ranks without any mass; an error for one with mass that is not positive on the diagonal: e_i' M
+   e_i > 0 is necessary for definiteness, and cheap. S is twice the symmetric part, hence the half in the message. */
 static PetscErrorCode MassCountEmpty(Mat S, PetscInt *empty)
 {
   const PetscScalar *value;

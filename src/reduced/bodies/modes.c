@@ -197,6 +197,8 @@ static PetscErrorCode ReducedSetDamping(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* Collective. The solver of the modes is kept with its vectors; of its band 0 to the cut-off all modes are known to
+   be found, by count. */
 PetscErrorCode ReducedFindModes(ReducedRun r)
 {
   const PetscReal band[2] = {0, r->cutoff};

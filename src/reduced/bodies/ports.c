@@ -161,6 +161,8 @@ static PetscErrorCode PortsSetShapes(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* n_ports = 3 pairs + loads + 3 probes, nodes of circles counted as probes. Pairs are rows of the sparse G, all
+   others columns of the dense `others` [unknowns][loads + 3 probes]. */
 PetscErrorCode ReducedSetPorts(ReducedRun r)
 {
   const ModelScene *scene;

@@ -4,6 +4,7 @@
 */
 #include "reduced/reducedimpl.h"
 
+/* Collective. Modes first, as ports are looked at by them (P = V'Phi); the residual last, from both. */
 PetscErrorCode ReducedReduce(ReducedRun r)
 {
   PetscInt n_own;

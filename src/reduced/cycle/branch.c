@@ -172,6 +172,9 @@ static PetscErrorCode BranchBegin(LimitCycle c, const ShootingCycle *start, cons
   PetscFunctionReturn(0);
 }
 
+/* One way first, into rows in front of the start, then the other, so that the table is in the order of the branch;
+   the first may take half of the points. Newton's method gets fewer steps than at the start: a shorter step along
+   the branch costs less. */
 PetscErrorCode CycleFollow(LimitCycle c, const ShootingCycle *start, const ShootingTangent *growing)
 {
   const PetscInt n = c->flow.n, max_it = c->shooting.max_it;

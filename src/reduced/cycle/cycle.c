@@ -228,6 +228,7 @@ static PetscErrorCode CycleReduce(LimitCycle c, Results results)
   PetscFunctionReturn(0);
 }
 
+/* Collective; the cycles themselves are found on every rank alike, without messages, from the same dense matrices. */
 PetscErrorCode CycleSolve(LimitCycle c, Results results)
 {
   PetscInt      n;

@@ -236,6 +236,8 @@ static PetscErrorCode FamilyRefine(CycleFamily *f)
   PetscFunctionReturn(0);
 }
 
+/* Collective. The reductions are the cost: 5, 9 or 17 of them. The model that is handed out is overwritten by each
+   CycleFamilySet(). */
 PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *parameter, const PetscReal range[2],
                                  PetscReal p[], const CycleFamily *beside, CycleFamily **family)
 {

@@ -56,6 +56,8 @@ PetscErrorCode CycleFlowCreate(ReducedRun r, CycleFlow *f)
   PetscFunctionReturn(0);
 }
 
+/* x of a state, eta and rate in the coordinates of the scene's modes where a family has others; y and last are not
+   in x. */
 PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscReal x[])
 {
   const PetscInt m = f->model->m, n = 3 * f->model->n_pairs;

@@ -163,6 +163,8 @@ PetscErrorCode CycleSetSizes(LimitCycle c, const PetscReal size[3])
   PetscFunctionReturn(0);
 }
 
+/* guess->x is the state at the end of the transient, guess->period the time of the first return, s. The state of
+   the run moves on by the window. */
 PetscErrorCode CycleGuess(LimitCycle c, ShootingCycle *guess)
 {
   const PetscInt m = c->reduced->model.m;

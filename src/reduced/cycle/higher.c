@@ -38,6 +38,8 @@ static PetscErrorCode HigherCopy(LimitCycle c, ReducedRun bodies, LimitCycle *co
   PetscFunctionReturn(0);
 }
 
+/* T [m][m_h] = Phi_h'M Phi by columns of the modes below; as the modes below the cut-off are among those of the
+   higher one, nearly a matrix of zeros and ones, up to signs. */
 PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
 {
   CycleHigher h;

@@ -66,6 +66,8 @@ static void PortMeasure(const CycleFlow *f, PetscReal u[], CycleProbe *probe)
   probe->velocity_peak     = PetscMax(PeriodLargest(n, stride, v, 1, mean), PeriodLargest(n, stride, v, -1, mean));
 }
 
+/* Displacements of probes are P eta + W q + W loads (m), velocities P rate, completed by PortComplete(); force
+   [steps] is kept for this one period. */
 PetscErrorCode CycleFlowMeasure(CycleFlow *f, const ShootingCycle *cycle, CycleMeasure *measure, CycleProbe probe[])
 {
   const size_t steps = (size_t)f->n_steps;

@@ -14,6 +14,7 @@
 #define MOST_RAISES 4
 #define SHORTER     0.9 /* of the largest step that would do */
 
+/* Hz. A cut-off that is chosen may be raised later; r->why is what the run says of it. */
 PetscErrorCode ReducedChooseCutoff(ReducedRun r)
 {
   PetscBool has_band;

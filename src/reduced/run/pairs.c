@@ -53,6 +53,8 @@ static PetscErrorCode ReducedCheckHeld(ReducedRun r)
           c->name, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2], c->slave, c->master);
 }
 
+/* A penetration that is rounding, SLACK of the largest coordinate, counts as a gap of 0; more is refused, since an
+   exact law would throw the bodies apart. */
 PetscErrorCode ReducedSetPairs(ReducedRun r)
 {
   const PetscInt     n = r->model.n_pairs;

@@ -204,6 +204,8 @@ static PetscErrorCode StartLaws(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* Velocities, then displacements, then the forces that obey the laws with both; last and q = p as if the state had
+   been there for long. */
 PetscErrorCode ReducedStart(ReducedRun r)
 {
   ReducedState *s = &r->state;

@@ -77,6 +77,8 @@ static void ForceScatter(PetscInt n, const PetscReal force[], PetscReal *rms, Pe
   *open = error[1];
 }
 
+/* Differences of the force at the same times: rms over that of the run, largest over the largest; and of level and
+   open time in the last half, with their standard errors, of both runs together. */
 static PetscErrorCode VerifyOne(ReducedRun r, PetscReal cutoff, PetscInt every, ReducedDifference *d)
 {
   const PetscInt n = r->n_force, half = n / 2;

@@ -155,6 +155,7 @@ static PetscErrorCode StepperFormResidual(ReducedStepper s, PetscReal A[])
   PetscFunctionReturn(0);
 }
 
+/* Undamped there is no H, and q = lambda. H W and H Cm' have zero rows at ports that are not chosen. */
 PetscErrorCode ReducedStepperSetResidual(ReducedStepper s)
 {
   const ReducedModel *model = s->model;

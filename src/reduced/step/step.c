@@ -161,6 +161,8 @@ static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscB
   if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
 }
 
+/* The linear part of a step alone, for its derivative: next = z(dt), q_{n+1} and the displacements y of the pairs,
+   of a state without loads, sliding or impulses, with state->p as lambda_{n+1}. */
 void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[], PetscReal y[])
 {
   const ReducedModel *model = s->model;

@@ -62,6 +62,7 @@ static void TangentSetPast(ReducedTangent t, PetscInt j, ReducedState *state)
   if (k >= 2) state->q[j - begin[k]] = 0;
 }
 
+/* n + 3 n_pairs steps' linear parts, each of some (2 m)^2 operations: once for a length of step. */
 static PetscErrorCode TangentFill(ReducedTangent t)
 {
   ReducedState state;

@@ -273,6 +273,7 @@ PetscErrorCode ShiftInvertApplyThrough(const ShiftInvert *si, Mat Z, Mat B, Mat 
   PetscFunctionReturn(0);
 }
 
+/* X in place. One block of right-hand sides for both problems: the factors are read once. */
 PetscErrorCode ShiftInvertApplyBoth(void *ctx, PetscInt n_right, Mat X)
 {
   const ShiftInvert *si = ctx;

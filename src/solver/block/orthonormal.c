@@ -14,6 +14,7 @@
 /* Squares of singular values below this part of the largest are rounding of the Gram matrix. */
 #define COMPRESS_ROUNDING 1e-13
 
+/* H = X' A Y, sequential on every rank, of the active columns from the first on; A NULL: X' Y. A Y is freed again. */
 PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
 {
   PetscInt nx, ny;

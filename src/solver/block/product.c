@@ -204,6 +204,8 @@ static PetscErrorCode ApplySequential(PetscInt n, const Mat A[], Mat X, const Ma
   PetscFunctionReturn(0);
 }
 
+/* Columns of a sparse A as a dense X, by walking through all rows of this rank: transposed storage would be needed
+   to find a column. */
 PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X)
 {
   PetscInt     begin, end, stride, n;
@@ -274,6 +276,8 @@ static PetscErrorCode ColumnsView(Mat Y, PetscScalar y[], PetscInt first, PetscI
   PetscFunctionReturn(0);
 }
 
+/* Y = [A_1 X, A_2 X, ...] in one block, whose columns are as many as n times those of X; views write into its
+   array. */
 PetscErrorCode BlockMultiplySideBySide(PetscInt n, const Mat A[], BV X, BV Y)
 {
   PetscInt     m;

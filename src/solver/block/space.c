@@ -176,6 +176,8 @@ static PetscErrorCode SpaceTakeColumns(BlockSpace *s, PetscInt first, Mat X)
   PetscFunctionReturn(0);
 }
 
+/* Op = (K - s M)^-1 M of the right space, (K - s M)^-T M' of the left one: one array of right_p + left_p columns,
+   multiplied, solved and taken in. */
 PetscErrorCode BlockSpaceExtendBoth(BlockSpace *right, BlockSpace *left, BlockKrylovSolve solve, void *ctx)
 {
   const PetscInt n_right = right->p, n = right->p + left->p;
@@ -249,6 +251,7 @@ PetscReal BlockSpaceResidual(const BlockSpace *s, const PetscScalar x[])
   return PetscSqrtReal(sum);
 }
 
+/* One application of Op takes a vector into its range, where a singular M has no null space; lengths are set anew. */
 PetscErrorCode BlockSpacePurify(ST st, BV V, Mat M, PetscInt n, PetscInt block)
 {
   BlockSpace s;

@@ -82,6 +82,7 @@ PetscErrorCode TrialSums(const ShiftInvert *si, PetscBool solution, PetscInt n_r
   PetscFunctionReturn(0);
 }
 
+/* Dot products are alike on all ranks: all raise the error, or none. NaN fails the comparison. */
 PetscErrorCode TrialCheck(const ShiftInvert *si, PetscInt n_right, PetscInt n, PetscScalar b[][2], PetscScalar x[][2])
 {
   PetscFunctionBeginUser;

@@ -140,6 +140,7 @@ PetscBool ShiftInvertShows(void)
   return shown < INFINITY ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Solvers other than MUMPS have no estimate: *cost stays zero, and nothing is checked. */
 PetscErrorCode ShiftInvertAnalyse(const ShiftInvert *si, Mat A, FactorCost *cost)
 {
   PC            pc;

@@ -103,6 +103,8 @@ static PetscErrorCode CapacitanceAdd(LowRank *u, const PairEntries *L, const Pai
   PetscFunctionReturn(0);
 }
 
+/* *made = PETSC_FALSE where entries cannot be had, or R has so many unknowns that solves are as cheap; C is then
+   not touched. */
 PetscErrorCode LowRankCapacitance(LowRank *u, PetscBool *made)
 {
   PairEntries L, R;

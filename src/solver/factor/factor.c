@@ -186,6 +186,8 @@ static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
   PetscFunctionReturn(0);
 }
 
+/* Whether factors serve again without any work: the same matrices with the same values (PetscObjectStateGet()
+   counts changes), the same shift bit by bit, LDL' with inertia. */
 PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                  PetscBool *stands)
 {
@@ -205,6 +207,8 @@ PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, 
   PetscFunctionReturn(0);
 }
 
+/* The matrix and its analysis. With the same pattern both stay and values alone are formed anew; else the old
+   factors go first, as two sets would not fit. */
 PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
 {
   PetscBool keeps;

@@ -67,6 +67,8 @@ PetscErrorCode ShiftInvertGivesInverse(KSP ksp, PetscBool *gives)
   PetscFunctionReturn(0);
 }
 
+/* Collective; a [n_columns][n_rows] on the first rank. Row j of T holds column j of the inverse, whose transpose
+   MatMumpsGetInverse() asks for. */
 PetscErrorCode ShiftInvertGetInverse(void *ctx, const InverseBlock *b)
 {
   const KSP          ksp  = ctx;

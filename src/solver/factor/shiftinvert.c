@@ -288,6 +288,8 @@ static PetscErrorCode ShiftInvertMatApplyTranspose(PC pc, Mat X, Mat Y)
   return ShiftInvertRunBlock(pc, PETSC_TRUE, X, Y);
 }
 
+/* SLEPc's spectral transformation gets a shell preconditioner, which solves with our factors: it forms no matrix of
+   its own (ST_MATMODE_SHELL) and reads no options but st_inner_. */
 PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
 {
   KSP ksp;

@@ -26,6 +26,9 @@ static PetscErrorCode FoldTry(const Shooting *s, PetscReal step, const ShootingC
   PetscFunctionReturn(0);
 }
 
+/* va and vb are slopes of opposite sign at distances a and b from start; the new place is where the line through
+   both is zero. *error, in the unit of the parameter, by a parabola of slope v there: |v| (b - a) / 2. -1 where a
+   cycle or a direction is lost. */
 PetscErrorCode ShootingFindFold(const Shooting *s, const ShootingPlace *start, PetscReal step, PetscReal beyond,
                                 ShootingPlace *fold, PetscReal *error)
 {
