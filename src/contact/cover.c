@@ -134,6 +134,7 @@ static PetscErrorCode FacesGive(Contact contact, Cover *k, Vec has, Vec sums)
   PetscFunctionReturn(0);
 }
 
+/* Collective. Pairs that keep no more than BARE of their area are taken out of the list. */
 PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
                                  ContactPair pair[], PetscReal *lost)
 {

@@ -174,6 +174,8 @@ static PetscErrorCode EquilibriumStep(Active *a)
   PetscFunctionReturn(0);
 }
 
+/* Loads and prescribed motions grow by equal parts; each step begins from the forces of the last. Only the whole
+   load is refined. */
 PetscErrorCode EquilibriumSolve(Statics s, Active *a)
 {
   PairRows *rows  = a->rows;

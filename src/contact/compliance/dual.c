@@ -49,6 +49,8 @@ static PetscErrorCode DualInvert(ContactCompliance c)
   PetscFunctionReturn(0);
 }
 
+/* Not where a friction coefficient falls with the slip speed, whose derivative these rows do not have, nor on the
+   way of path.c, where V is not the inverse. */
 PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool *serves)
 {
   PetscInt rows = 0, n_forces = 0;

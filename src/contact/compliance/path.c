@@ -213,6 +213,7 @@ static PetscErrorCode PathWalk(ContactCompliance c, CompliancePath *path, Compli
   PetscFunctionReturn(0);
 }
 
+/* Where no solution at t = 0 is reached, forces and miss are those from before. */
 PetscErrorCode ComplianceFollow(ContactCompliance c, ComplianceMiss *miss)
 {
   CompliancePath path, before;

@@ -181,6 +181,8 @@ static PetscBool PairNeedsSlip(ContactProjector p, const ProjectorPair *pair)
   return p->sliding[pair->interface].slides && (FrictionExists(law) || FrictionVaries(law)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* PETSC_FALSE: no facet in reach. A triangle gets its first node as a fourth one with weight 0, so that sums over
+   nodes need no branch. */
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
 {
   ProjectorPair         *pair    = &p->pair[k];

@@ -64,6 +64,7 @@ static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault *f
   PetscFunctionReturn(0);
 }
 
+/* Faults are those that the root found, sent to all: all ranks raise the same error. */
 static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault *fault)
 {
   const ContactInterface *c;

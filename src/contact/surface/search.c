@@ -172,6 +172,8 @@ static PetscReal BoxDistance(const ContactBox *box, const PetscReal x[3])
   return square;
 }
 
+/* Depth first, and the nearer child first, so that most boxes are refused by their distance. BoxDistance() is a
+   square, m^2. */
 void ContactFootNearest(const ContactSurface *s, const PetscReal x[3], ContactFoot *foot)
 {
   PetscInt stack[MAX_LEVELS], depth = 0;

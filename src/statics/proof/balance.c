@@ -148,6 +148,7 @@ static PetscErrorCode EdgeSetAdd(EdgeSet *e, const PetscReal edge[], const Petsc
   PetscFunctionReturn(0);
 }
 
+/* left [m]: what remains of push; where it is not 0 it is the motion of the proof (certificate.c). */
 PetscErrorCode BalanceLoads(const RigidPairs *k, PetscReal friction, PetscReal left[], PetscReal *worst)
 {
   const PetscInt m = k->m;

@@ -122,6 +122,8 @@ static PetscErrorCode CertificateBisect(const RigidPairs *k, PetscReal *friction
   PetscFunctionReturn(0);
 }
 
+/* friction: factor of all coefficients. A motion that proves it with friction but not without gives the largest
+   factor that is not proven against, by bisection between 0 and 1. */
 PetscErrorCode CertificateFind(const Active *a, PetscReal friction, Certificate *certificate)
 {
   Hold       free = {.n = 0};

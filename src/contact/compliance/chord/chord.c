@@ -160,6 +160,7 @@ static PetscErrorCode ChordKeep(ContactCompliance c, const ComplianceMiss *miss,
   PetscFunctionReturn(0);
 }
 
+/* Ends with the iterate of least miss, which need not be the last. */
 PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
 {
   PetscInt       slow = 0, renewals = 0;
