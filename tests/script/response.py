@@ -26,7 +26,7 @@ STEP, BLOW, MOMENTUM = 1.6e-5, 1.205e-3, -2e-6  # s, s, N s
 RADII, COUNT = {"rim": 0.12, "inner": 0.08}, 16
 ANGLES = 2 * math.pi * numpy.arange(COUNT) / COUNT
 TURNED = 0.7  # rad, angle of the contact
-BAND = "500:6000:551"
+BAND = "500:6000:276"
 
 
 class Mode(NamedTuple):
