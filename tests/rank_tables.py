@@ -7,18 +7,19 @@ SAME = 1e-9  # of the largest number of a column
 GROWN = 1e3  # times what the last digit of a density has changed on one rank up to a row
 ROWS = 3  # times as many as that has added or taken
 # Columns that share a unit, and so a scale, as parts of multipliers do; longer ones before their ends
-UNITS = "_percent", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s", "_m"
+UNITS = "_percent", "_w_m2", "_w", "_m_ns", "_m_n", "_m_s2", "_rad_s", "_j", "_n", "_pa", "_m_s", "_m"
 # In names of columns that tell what rounding leaves
 ESTIMATES = "error", "condition", "damping_ratio", "check", "residual", "period_slope", "worst_ratio", "sweeps", "pairs_changed", \
     "steps_changed", "onset_distance"
 # A column with the one that states its error
 VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv": ("growth_rad_s", "error_rad_s"),
-          "modes_effects.csv": ("growth_rad_s_per_unit", "error_rad_s_per_unit"),
+          "modes_effects.csv": ("growth_rad_s_per_unit", "error_rad_s_per_unit"), "modes_feed_in.csv": ("friction_w", "error_w"),
           "modes_sensitivities.csv": ("growth_rad_s_per_percent", "error_rad_s_per_percent"),
           "modes_components.csv": ("share_percent", "error_percent")}
 # Columns that have no error of their own: of nodes that are nearly as good another may be named
 FOLLOW = {"modes_effects.csv": {*(f"{axis}_m" for axis in "xyz"), *(f"direction_{axis}" for axis in "xyz"), "freq_hz_per_unit",
                                 "first_order_units_to_zero"}, "modes_components.csv": {"energy_percent"},
+          "modes_causes.csv": {"power_w"}, "modes_feed_in.csv": {"friction_damping_w", "falling_friction_w", "power_w_m2"},
           "modes_sensitivities.csv": {"freq_hz_per_unit", "growth_rad_s_per_unit", "freq_hz_per_percent"}}
 
 

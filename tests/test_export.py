@@ -172,7 +172,8 @@ def check_series(top):
         wanted = {pattern.fullmatch(key)[1]: array for key, array in arrays_of(theirs.GetPointData()).items() if pattern.fullmatch(key)}
         prefix = {"modes": "displacement_", "filters": "filter_"}.get(series, "")
         found = arrays_of(ours.GetPointData())
-        same = {prefix + key for key in wanted} == set(found) and all(np.array_equal(found[prefix + k], a) for k, a in wanted.items())
+        wanted = {key if key == "feed_in_w_m2" else prefix + key: array for key, array in wanted.items()}
+        same = set(wanted) == set(found) and all(np.array_equal(found[key], array) for key, array in wanted.items())
         check(same, f"series: {series} has {', '.join(sorted(found))}")
     row = modes_of(top / "m")[-1]
     last = arrays_of(grid_of(vtkXMLUnstructuredGridReader(), top / f"m/vtu/modes_{int(row['mode']):03d}.vtu").GetFieldData())
@@ -180,11 +181,14 @@ def check_series(top):
     times = [float(text) for text in re.findall(r'<Time Value="([^"]*)"', (top / "t/transient.xmf").read_text())]
     check([value for value, _ in listed] == times and times[-1] > 0, f"series: snapshots at {times} s")
     run(EXPORT, "unv", top / "m")
-    shapes = [read_55(lines) for number, lines in datasets(top / "m/fields.unv") if number == 55]
+    fields = [read_55(lines) for number, lines in datasets(top / "m/fields.unv") if number == 55]
+    shapes, powers = ([field for field in fields if field[0][2] == kind] for kind in (2, 1))
     grown = max(range(len(modes_of(top / "m"))), key=lambda k: float(modes_of(top / "m")[k]["growth_rad_s"]))
     head, whole, reals, values = shapes[grown]
     with h5py.File(top / "m/modes.h5") as file:
         shape = [file[f"VTKHDF/PointData/mode_{grown + 1:03d}_{part}"][:] for part in ("re", "im")]
+        power = file[f"VTKHDF/PointData/mode_{grown + 1:03d}_feed_in_w_m2"][:]
+    check(near(powers[grown][3], power.reshape(-1, 1)) and power.any(), "unv: the power that friction feeds a mode with")
     same = near(values[:, 0::2], shape[0]) and near(values[:, 1::2], shape[1]) and head[:5] == [1, 3, 2, 8, 5]
     check(same and abs(reals[0] / float(modes_of(top / "m")[grown]["growth_rad_s"]) - 1) < 1e-5 and whole[3] == grown + 1,
           f"unv: mode {grown + 1} is complex and grows by {reals[0]:g} 1/s")

@@ -133,7 +133,8 @@ PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
-/*@ ModesWantTerms - whether the options ask for what needs the terms of the pencil after the solution. Not collective. @*/
+/*@ ModesWantTerms - whether the options ask for what needs the terms of the pencil after the solution. Not
+    collective. @*/
 PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted);
 
 /*@ ModesWantComponents - whether the options ask for contributions of component modes. Not collective. @*/

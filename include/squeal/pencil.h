@@ -41,7 +41,8 @@ typedef struct {
   Mat               A;          /* in the unknowns of the pencil (borrowed); several terms may share one */
   PetscBool         frictional; /* vanishes without friction or spin; or an unsymmetric one of -terms */
   PetscBool         symmetric;  /* A is; never so for a frictional term */
-  Mat       left, right; /* A = left' right, a row for each pair (borrowed); NULL where A is not such a product */
+  Mat       left, right;      /* A = left' right, a row for each pair (borrowed); NULL where A is not such a product */
+  PetscInt  interface, group; /* these pairs: those of an interface in one group of the sliding state */
   PetscReal scale;
   PetscInt  n; /* factors */
   struct {
@@ -156,15 +157,37 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
 /*@
    PencilMeasureCauses - the shares of the causes in the growth of one eigenvalue, from the imaginary part of u^H
    (lambda^2 M + lambda C + K) u = 0. Their sum is sigma, but for what the residual of the eigenvector leaves.
-   Collective.
+   Collective. The mean energy E = omega D / 4, D = 2 omega u^H M u + Im u^H C u, is that of u = Re(u e^(i omega t)) at
+   constant amplitude, twice the kinetic one; a cause of growth s feeds it with the power 2 E s.
 
    Input Parameters:
 +  sigma, omega - the eigenvalue, 1/s and rad/s, omega > 0
 -  ur, ui       - its right vector, of all unknowns; ui NULL for a real one
    Output Parameter:
-.  growth       - [causes of PencilGetCauses(), called before] 1/s
++  growth       - [causes of PencilGetCauses(), called before] 1/s
+-  energy       - E, J, of displacements in m; NULL where it is not needed
 @*/
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[]);
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[],
+                                   PetscReal *energy);
+
+/* What friction does at a pair, with the kinds of PencilCause for names */
+typedef enum { PENCIL_FRICTION, PENCIL_FRICTION_DAMPING, PENCIL_FALLING_FRICTION, PENCIL_N_POWERS } PencilPower;
+
+extern const char *const PencilPowerNames[PENCIL_N_POWERS];
+
+/*@
+   PencilMeasurePairPowers - the mean power that friction gives to the vibration u = Re(u e^(i omega t)) at each local
+   pair, W: positive where it feeds the vibration. The sum over the pairs of a contact is 2 E times its share in the
+   growth, both of PencilMeasureCauses(). Collective; PencilGetCauses() was called before.
+
+   Input Parameters:
++  sigma, omega - the eigenvalue, 1/s and rad/s, omega > 0
+-  ur, ui       - its right vector, of all unknowns, m; ui NULL for a real one
+   Output Parameter:
+.  power        - [local pairs][PENCIL_N_POWERS] W
+@*/
+PetscErrorCode PencilMeasurePairPowers(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui,
+                                       PetscReal power[]);
 
 /* Products of one term that may have a share, its coefficient included, with the vectors of a mode and of a second one:
    y_a' A x_b and y_a' A' x_b, without conjugation */

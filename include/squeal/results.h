@@ -98,6 +98,13 @@ PetscErrorCode ResultsTableClose(ResultsTable *table);
 @*/
 PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *mesh, ResultsField *field);
 
+/* Values at the nodes: shape [local nodes][width], width 1 or 3 */
+typedef struct {
+  const char      *key; /* name of the array, with its unit: displacement_m */
+  PetscInt         width;
+  const PetscReal *values; /* [local nodes][width], in the unit of the name */
+} ResultsNodal;
+
 /*@
    ResultsFieldWriteMode - one complex shape: arrays `<key>_re` and `<key>_im` (m) at all nodes, zero where a support
    fixes them. Collective.
@@ -105,17 +112,11 @@ PetscErrorCode ResultsFieldOpen(Results results, const char name[], const Mesh *
    Input Parameters:
 +  key    - short unique name: mode_007 for the mode that modes.csv lists as 7
 .  title  - a line for people, e.g. "7: 3458.21 Hz, growth 298 1/s, (0,4+)"
--  re, im - shape [local nodes][3]
+.  re, im - shape [local nodes][3]
+-  more   - n further arrays of the mode, `<key>_<more key>`
 @*/
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
-                                     const PetscReal im[]);
-
-/* Values at the nodes: shape [local nodes][width], width 1 or 3 */
-typedef struct {
-  const char      *key; /* name of the array, with its unit: displacement_m */
-  PetscInt         width;
-  const PetscReal *values; /* [local nodes][width], in the unit of the name */
-} ResultsNodal;
+                                     const PetscReal im[], PetscInt n, const ResultsNodal more[]);
 
 /*@ ResultsFieldWriteNodal - one real state of the body: n arrays under one title, which ParaView shows as one grid.
     Collective. @*/

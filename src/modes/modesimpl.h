@@ -158,6 +158,14 @@ PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 /* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */
 PETSC_INTERN PetscReal ModeGap(const Modes modes, PetscInt i);
 
+/* Relative error of the vector of mode i, an estimate of first order, at most 1; nan without left vectors */
+PETSC_INTERN PetscReal ModeVectorError(const Modes modes, PetscInt i);
+
+/* growth/feedin.c - modes_feed_in.csv; the power per area, W/m^2, that friction gives to mode i, at the slave nodes of
+   the contacts, density [local nodes], NULL where friction has no share; the caller frees it. Collective */
+PETSC_INTERN PetscErrorCode ModesWriteFeedIn(Modes modes, Results results);
+PETSC_INTERN PetscErrorCode ModesCreateFeedIn(Modes modes, PetscInt i, const Mesh *mesh, PetscReal **density);
+
 /* components/table.c - modes_components.csv; the largest contributions of each unstable mode; nothing where none were
    found. Collective */
 PETSC_INTERN PetscErrorCode ComponentsWrite(Modes modes, Results results);

@@ -143,7 +143,7 @@ static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results res
 /* modes.h5 and modes.xmf */
 static PetscErrorCode ModesWriteShapes(Modes modes, Operators operators, const Mesh *mesh, Results results)
 {
-  PetscReal   *re, *im;
+  PetscReal   *re, *im, *density;
   ResultsField field;
 
   PetscFunctionBeginUser;
@@ -158,7 +158,10 @@ static PetscErrorCode ModesWriteShapes(Modes modes, Operators operators, const M
                             (double)ModeFrequency(m), (double)m->sigma, m->label));
     PetscCall(OperatorsGetNodal(operators, modes->right.xr[i], re));
     PetscCall(OperatorsGetNodal(operators, modes->right.xi[i], im));
-    PetscCall(ResultsFieldWriteMode(field, key, title, re, im));
+    PetscCall(ModesCreateFeedIn(modes, i, mesh, &density));
+    PetscCall(ResultsFieldWriteMode(field, key, title, re, im, density ? 1 : 0,
+                                    &(const ResultsNodal){"feed_in_w_m2", 1, density}));
+    PetscCall(PetscFree(density));
   }
   PetscCall(ResultsFieldClose(&field));
   PetscCall(PetscFree2(re, im));
@@ -178,6 +181,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(OperatorsGetMesh(operators, &mesh));
   PetscCall(ModesWriteTable(modes, mesh, results));
   PetscCall(ModesWriteCauses(modes, results));
+  PetscCall(ModesWriteFeedIn(modes, results));
   PetscCall(ModesWriteSensitivities(modes, results));
   PetscCall(ModesWriteEffects(modes, operators, mesh, results));
   PetscCall(ComponentsWrite(modes, results));

@@ -150,8 +150,9 @@ static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal
 }
 
 /* growth [causes], 1/s; their sum is sigma but for the residual of the eigenpair, over |D|. ui NULL for a real
-   vector. */
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[])
+   vector; energy may be NULL. */
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[],
+                                   PetscReal *energy)
 {
   CauseVector u = {{ur, ui}, NULL}, q;
   PetscReal   form[2], D;
@@ -173,6 +174,7 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal ome
     growth[term->cause_index] += TermShare(term, sigma, omega, form, &D);
   }
   for (PetscInt i = 0; i < pencil->n_causes; i++) growth[i] /= -D;
+  if (energy) *energy = omega * D / 4;
   PetscCall(VectorDestroy(&q));
   PetscCall(VecDestroy(&u.y));
   PetscFunctionReturn(0);

@@ -31,6 +31,7 @@ static const struct {
   {"verify.csv", NULL},
   {"sensitivities.csv", NULL},
   {"modes_causes.csv", NULL},
+  {"modes_feed_in.csv", NULL},
   {"modes_effects.csv", NULL},
   {"modes_effects.h5", NULL},
   {"modes_effects.xmf", NULL},

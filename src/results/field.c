@@ -5,6 +5,7 @@
          Points [nodes][3] m      Connectivity, the nodes of the cells   Offsets [cells + 1]   Types [cells]
          Mixed, for each cell the XDMF type and its nodes, in a mesh of several elements
          PointData/<key>_re, <key>_im [nodes][3] m, attribute title       a shape
+         PointData/<key>_<more> [nodes] or [nodes][3], attribute title    what goes with it, its unit in the name
          PointData/<key> [nodes] or [nodes][3], attribute title           an array of a state, its unit in the key
          CellData/part [cells], attribute names
 
@@ -221,14 +222,21 @@ static PetscErrorCode FieldWriteArray(ResultsField field, const char key[], cons
 }
 
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
-                                     const PetscReal im[])
+                                     const PetscReal im[], PetscInt n, const ResultsNodal more[])
 {
+  char suffix[64];
+
   PetscFunctionBeginUser;
   PetscCall(FieldWriteArray(field, key, "_re", title, 3, re));
   PetscCall(FieldWriteArray(field, key, "_im", title, 3, im));
   PetscCall(XdmfGridBegin(&field->xdmf, key, title, NULL));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_re", key, "_re", 3));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_im", key, "_im", 3));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscSNPrintf(suffix, sizeof(suffix), "_%s", more[i].key));
+    PetscCall(FieldWriteArray(field, key, suffix, title, more[i].width, more[i].values));
+    PetscCall(XdmfNodal(&field->xdmf, more[i].key, key, suffix, more[i].width));
+  }
   PetscCall(XdmfGridEnd(&field->xdmf));
   PetscCall(FieldCheck(field));
   PetscFunctionReturn(0);

@@ -88,8 +88,8 @@ static PetscErrorCode WriteShape(Results results, const ModelOnRanks *m)
   }
   PetscCall(PetscSNPrintf(title, sizeof(title), "2: %.6g Hz, growth 1 1/s, (0,2+)", 2 * FREQUENCY));
   PetscCall(ResultsFieldOpen(results, "modes", m->mesh, &field));
-  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, im));
-  PetscCall(ResultsFieldWriteMode(field, "mode_002", title, re, im));
+  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, im, 0, NULL));
+  PetscCall(ResultsFieldWriteMode(field, "mode_002", title, re, im, 0, NULL));
   PetscCall(ResultsFieldClose(&field));
   PetscCall(PetscFree2(re, im));
   PetscFunctionReturn(0);
@@ -283,8 +283,8 @@ static PetscErrorCode TestModes(Scratch *s, int *failed)
 
 int main(int argc, char **argv)
 {
-  const char *const written[] = {"modes.csv",         "modes.h5",         "modes.xmf",        "modes_causes.csv",
-                                 "modes_effects.csv", "modes_effects.h5", "modes_effects.xmf"};
+  const char *const written[] = {"modes.csv",         "modes.h5",         "modes.xmf",         "modes_causes.csv",
+                                 "modes_effects.csv", "modes_effects.h5", "modes_effects.xmf", "modes_feed_in.csv"};
   Scratch           scratch;
   ModelOnRanks      all, own;
   int               failed = 0;

@@ -130,7 +130,8 @@ def main():
     if not values or {int(row["mode"]) for row in rows} != set(values):
         sys.exit("the table must have the unstable modes")
     with h5py.File(args.results / "modes.h5") as file:
-        free = numpy.flatnonzero(sum(abs(shape[()]).reshape(-1) for shape in file["VTKHDF/PointData"].values()) > 0)
+        free = numpy.flatnonzero(sum(abs(shape[()]).reshape(-1) for name, shape in file["VTKHDF/PointData"].items()
+                                  if name[-3:] in ("_re", "_im")) > 0)
     number = numpy.full(3 * len(places), -1)
     number[free] = numpy.arange(len(free))
     for mode, value in values.items():

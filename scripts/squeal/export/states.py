@@ -86,7 +86,8 @@ def mode_states(path, series, wanted, facts):
         for key in file["VTKHDF/PointData"]:
             match = MODE.fullmatch(key)
             if match:
-                keys.setdefault(int(match[1]), []).append((key, NAMES.get(match[2], f"filter_{match[2]}")))
+                other = match[2] if series == "modes" else f"filter_{match[2]}"
+                keys.setdefault(int(match[1]), []).append((key, NAMES.get(match[2], other)))
         missing = [mode for mode in wanted if mode not in keys]
         if missing:
             raise BadInput(f"{path}: no shape of mode {missing[0]}; it has {len(keys)}, see modes.csv")

@@ -13,6 +13,7 @@
 typedef struct {
   PetscReal *growth;      /* [causes] 1/s */
   PetscReal  rest, error; /* of the growth, what they leave of it; of each share, 1/s */
+  PetscReal  energy;      /* of the vector, J (PencilMeasureCauses()) */
   PetscBool  known;       /* the mode has a frequency */
 } ModeShares;
 
@@ -31,28 +32,47 @@ PetscReal ModeGap(const Modes modes, PetscInt i)
   return gap;
 }
 
+PetscReal ModeVectorError(const Modes modes, PetscInt i)
+{
+  const PetscReal gap = ModeGap(modes, i), error = modes->mode[i].error;
+
+  return error >= gap ? 1 : error / gap;
+}
+
 static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, ModeShares *s)
 {
   const Mode *m       = &modes->mode[i];
-  PetscReal   largest = 0, gap;
+  PetscReal   largest = 0;
 
   PetscFunctionBeginUser;
   s->known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
   if (!s->known) PetscFunctionReturn(0);
-  PetscCall(PencilMeasureCauses(modes->pencil, m->sigma, m->omega, modes->right.xr[i], modes->right.xi[i], s->growth));
+  PetscCall(PencilMeasureCauses(modes->pencil, m->sigma, m->omega, modes->right.xr[i], modes->right.xi[i], s->growth,
+                                &s->energy));
   s->rest = m->sigma;
   for (PetscInt k = 0; k < n; k++) {
     s->rest -= s->growth[k];
     largest = PetscMax(largest, PetscAbsReal(s->growth[k]));
   }
-  gap      = ModeGap(modes, i);
-  s->error = m->error + 2 * largest * (m->error < gap ? m->error / gap : 1) + PetscAbsReal(s->rest);
+  s->error = m->error + 2 * largest * ModeVectorError(modes, i) + PetscAbsReal(s->rest);
+  PetscFunctionReturn(0);
+}
+
+/* A row of mode i: a share of its growth, and the mean power that it feeds the vibration with at the amplitude of
+   modes.h5, P = 2 E s */
+static PetscErrorCode ShareWrite(PetscInt i, const PencilCause *cause, PetscReal growth, const ModeShares *s,
+                                 ResultsTable table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.3g,%.15g,%.3g", (int)i + 1, cause->name, cause->kind,
+                            (double)growth, (double)s->error, (double)(2 * s->energy * growth),
+                            (double)(2 * s->energy * s->error)));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModesWriteCauses(Modes modes, Results results)
 {
-  const PencilCause *cause;
+  const PencilCause *cause, rest = {.kind = "rest"};
   PetscInt           n;
   ModeShares         s;
   ResultsTable       table;
@@ -61,13 +81,12 @@ PetscErrorCode ModesWriteCauses(Modes modes, Results results)
   PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
   if (!n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n, &s.growth));
-  PetscCall(ResultsTableOpen(results, "modes_causes", "mode,cause,kind,growth_rad_s,error_rad_s", &table));
+  PetscCall(ResultsTableOpen(results, "modes_causes", "mode,cause,kind,growth_rad_s,error_rad_s,power_w,power_error_w",
+                             &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     PetscCall(ModeMeasureShares(modes, i, n, &s));
-    for (PetscInt k = 0; k < n && s.known; k++)
-      PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.3g", (int)i + 1, cause[k].name, cause[k].kind,
-                                (double)(s.growth[k] + 0), (double)s.error));
-    if (s.known) PetscCall(ResultsTableRow(table, "%d,,rest,%.15g,%.3g", (int)i + 1, (double)s.rest, (double)s.error));
+    for (PetscInt k = 0; k < n && s.known; k++) PetscCall(ShareWrite(i, &cause[k], s.growth[k] + 0, &s, table));
+    if (s.known) PetscCall(ShareWrite(i, &rest, s.rest, &s, table));
   }
   PetscCall(ResultsTableClose(&table));
   PetscCall(PetscFree(s.growth));

@@ -37,6 +37,7 @@ PetscErrorCode TermsProduct(PetscReal scale, Mat L, Vec weights, Mat R, Mat *A)
 typedef struct {
   const ContactInterface *c;
   InterfaceParameters     q;
+  PetscInt                interface, group;
   PetscReal               total;    /* normal force of the interface, N */
   PetscInt                more;     /* 1 where the terms have the factor closed_g, else 0 */
   PetscInt                closed;   /* index of that parameter */
@@ -55,11 +56,13 @@ static PetscErrorCode FrictionGroupCreate(Pencil pencil, PetscInt interface, Pet
   PetscFunctionBeginUser;
   PetscCall(ContactGetInterfaces(contact, &n, &g->c));
   g->c += interface;
-  g->q      = pencil->operators->interface[interface];
-  g->total  = pencil->total[interface];
-  g->more   = group > 0 ? 1 : 0;
-  g->closed = pencil->n_scene + group - 1;
-  g->n      = 0;
+  g->interface = interface;
+  g->group     = group;
+  g->q         = pencil->operators->interface[interface];
+  g->total     = pencil->total[interface];
+  g->more      = group > 0 ? 1 : 0;
+  g->closed    = pencil->n_scene + group - 1;
+  g->n         = 0;
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pairs));
   PetscCall(PetscMalloc1(n, &g->pair));
   for (PetscInt p = 0; p < n; p++)
@@ -103,6 +106,23 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, P
   PetscFunctionReturn(0);
 }
 
+/* The term L' W L, W = diag(weights), of the damping, with n factors */
+static PetscErrorCode DampingAddProduct(Pencil pencil, const FrictionGroup *g, Mat L, Vec weights, PetscInt n,
+                                        const PetscInt factor[])
+{
+  Mat WL, A;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(L, MAT_COPY_VALUES, &WL));
+  PetscCall(MatDiagonalScale(WL, weights, NULL));
+  PetscCall(TermsProduct(1, L, NULL, WL, &A));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, A, PETSC_TRUE, n, factor));
+  PetscCall(TermsSetFactors(&pencil->base, L, WL, g->interface, g->group));
+  PetscCall(MatDestroy(&WL));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(0);
+}
+
 /* Terms of the friction damping at speed k: mu' N T'T_w and |mu| N / V B'B_w. The factor 0 of both is the law's, by
    TermsSetFriction(); -1 stands in its place until then. |mu|: damping across the slip dissipates whichever way
    friction acts. */
@@ -111,25 +131,20 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt
   const PetscInt slope[] = {-1, g->q.force, g->closed}, mu[] = {-1, g->q.force, g->q.speed, g->closed};
   OperatorsTerm *term;
   Vec            across, along;
-  Mat            BB, TT;
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateVecs(g->T, NULL, &across));
   PetscCall(VecDuplicate(across, &along));
   PetscCall(DampingSetWeights(pencil, g, k, across, along));
-  PetscCall(TermsProduct(1, g->B, across, g->B, &BB));
-  PetscCall(TermsProduct(1, g->T, along, g->T, &TT));
-  PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, TT, PETSC_TRUE, 2 + g->more, slope));
+  PetscCall(DampingAddProduct(pencil, g, g->T, along, 2 + g->more, slope));
   PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_TRUE));
   PetscCall(TermsSetCause(&pencil->base, "falling friction", NULL, g->c->name));
-  PetscCall(TermsAdd(&pencil->base, OPERATORS_DAMPING, BB, PETSC_TRUE, 3 + g->more, mu));
+  PetscCall(DampingAddProduct(pencil, g, g->B, across, 3 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_FALSE));
   PetscCall(TermsSetCause(&pencil->base, "friction damping", NULL, g->c->name));
   term                     = &pencil->base.term[pencil->base.n - 1];
   term->factor[0].absolute = PETSC_TRUE;
   term->factor[2].power    = -1;
-  PetscCall(MatDestroy(&BB));
-  PetscCall(MatDestroy(&TT));
   PetscCall(VecDestroy(&across));
   PetscCall(VecDestroy(&along));
   PetscFunctionReturn(0);
@@ -194,7 +209,7 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
   PetscCall(TermsSetCause(&pencil->base, "friction", NULL, g->c->name));
-  PetscCall(TermsSetFactors(&pencil->base, g->T, WN));
+  PetscCall(TermsSetFactors(&pencil->base, g->T, WN, g->interface, g->group));
   PetscCall(MatDestroy(&WN));
   PetscCall(MatDestroy(&TN));
   PetscCall(VecDestroy(&weights));

@@ -56,15 +56,17 @@ PetscErrorCode TermsSetCause(Terms *terms, const char kind[], const char owner[]
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right)
+PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right, PetscInt interface, PetscInt group)
 {
   OperatorsTerm *term = &terms->term[terms->n - 1];
 
   PetscFunctionBeginUser;
   PetscCall(PetscObjectReference((PetscObject)left));
   PetscCall(PetscObjectReference((PetscObject)right));
-  term->left  = left;
-  term->right = right;
+  term->left      = left;
+  term->right     = right;
+  term->interface = interface;
+  term->group     = group;
   PetscFunctionReturn(0);
 }
 

@@ -36,8 +36,8 @@ PETSC_INTERN PetscErrorCode TermsAdd(Terms *terms, OperatorsTermKind kind, Mat A
 PETSC_INTERN PetscErrorCode TermsSetCause(Terms *terms, const char kind[], const char owner[], const char what[]);
 /* Gives the factors of the last term powers that are not 1 */
 PETSC_INTERN PetscErrorCode TermsSetPowers(Terms *terms, const PetscInt power[]);
-/* Tells that the last term is left' right */
-PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right);
+/* Tells that the last term is left' right, a row for each pair of an interface in one group */
+PETSC_INTERN PetscErrorCode TermsSetFactors(Terms *terms, Mat left, Mat right, PetscInt interface, PetscInt group);
 /* Makes factor i of the last term the friction coefficient, or its slope */
 PETSC_INTERN PetscErrorCode TermsSetFriction(Terms *terms, PetscInt i, const OperatorsFriction *friction,
                                              PetscBool slope);
