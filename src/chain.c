@@ -3,6 +3,7 @@
 #include "base/algebra/vec3.h"
 #include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
+#include <string.h>
 
 static const Quantity rows[] = {
   {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = AnalysisNames},
@@ -179,12 +180,39 @@ PetscErrorCode ChainVisit(MPI_Comm comm, Chain *chain, const QuantityVisitor *vi
   PetscFunctionReturn(0);
 }
 
+/* Whether a sweep varies what makes damping. A component ends in _x, _y or _z: damper_viscosity_x */
+static PetscErrorCode ChainVariesDamping(MPI_Comm comm, Chain *chain, PetscBool *damps)
+{
+  const char *swept;
+  char      **name;
+  int         n;
+  PetscBool   real;
+
+  PetscFunctionBeginUser;
+  *damps = PETSC_FALSE;
+  PetscCall(SweepGetAsked(chain->sweep, &swept, &real));
+  PetscCall(PetscStrToArray(swept, ',', &n, &name));
+  for (int i = 0; i < n; i++) {
+    const size_t   length = strlen(name[i]);
+    QuantitySearch search = {.option = name[i] + strspn(name[i], " ")};
+
+    for (int pass = 0; pass < 2 && !search.found; pass++) {
+      if (pass && length > 2 && name[i][length - 2] == '_') name[i][length - 2] = '\0';
+      PetscCall(ChainVisit(comm, chain, &(QuantityVisitor){QuantitiesSearch, &search}));
+    }
+    if (search.found && search.row.varies & VARIES_DAMPING) *damps = PETSC_TRUE;
+  }
+  PetscCall(PetscStrToArrayDestroy(n, name));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
 {
-  const Scope scope = ChainGetScope(chain);
+  Scope       scope = ChainGetScope(chain);
   QuantityRun run;
 
   PetscFunctionBeginUser;
+  PetscCall(ChainVariesDamping(comm, chain, &scope.damps));
   if (chain->analysis == ANALYSIS_CHECK) PetscFunctionReturn(0); /* which reads what any analysis would */
   PetscCall(ScopeGetRun(comm, &scope, &run));
   PetscCall(ChainVisit(comm, chain, &(QuantityVisitor){QuantitiesRefuse, &run}));

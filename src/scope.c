@@ -58,7 +58,8 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
   const ModelScene       *scene;
   const ContactInterface *interfaces = NULL;
   PetscInt                n          = 0;
-  PetscBool               sure, varied, real;
+  const char             *swept;
+  PetscBool               sure, real;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsHaveDamping(s->operators, &sure));
@@ -73,9 +74,9 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
     for (int d = 0; d < 6; d++)
       if (joint->viscosity[d] > 0) sure = PETSC_TRUE;
   }
-  PetscCall(SweepGetDamping(s->varied, &varied, &real));
-  *undamped = !sure || (s->does & RUN_SWEEP && (varied || real)) ? PETSC_TRUE : PETSC_FALSE;
-  *damped   = sure || (s->does & RUN_SWEEP && varied) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(SweepGetAsked(s->varied, &swept, &real));
+  *undamped = !sure || (s->does & RUN_SWEEP && (s->damps || real)) ? PETSC_TRUE : PETSC_FALSE;
+  *damped   = sure || (s->does & RUN_SWEEP && s->damps) ? PETSC_TRUE : PETSC_FALSE;
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
     if (interfaces[i].damping) *damped = PETSC_TRUE;

@@ -16,6 +16,7 @@ typedef struct {
   Dynamics   dynamics;
   ReducedRun reduced;
   LimitCycle cycle;
+  PetscBool  damps; /* a sweep varies what makes damping */
 } Scope;
 
 /* All that the run does. Collective. */

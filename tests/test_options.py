@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """options/README.md has every option that the program tells by -help_json, with its default, unit, meaning and choices, as
 scripts/manual --reference writes them, and an example of its own for each. Breaks when an option or a default changes and the
-page does not. -help shows the same options with the same sentences.
+page does not. -help shows the same options with the same sentences. What rows say may vary is what sweeps and maps offer.
 
     test_options.py SQUEAL"""
 
@@ -17,6 +17,10 @@ sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.options import ask, options_of
 
 PAGE = SOURCE / "options/README.md"
+VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
+          "-rig_beam_elements", "3", "-contact_force", "10", "-contact_friction_damping"]
+# What could vary in that scene, were it given
+ABSENT = re.compile(r"_(spin|\w+_(total|per_area)|moment|pressure|kn|kt|rotation|mu_(static|kinetic|decay_speed|viscous|stribeck_speed))$")
 
 
 def faults_of(squeal, folder):
@@ -40,9 +44,23 @@ def faults_of(squeal, folder):
         yield f"{len(told)} options told, others shown"
 
 
+def varied_faults(squeal, folder):
+    """What rows say of parameters, beside what a sweep and a map offer."""
+    told = [option for option in options_of([squeal], *VARIED, folder=folder) if not ABSENT.search(option.name)]
+    for analysis in ("sweep", "map"):
+        given = VARIED if analysis == "sweep" else VARIED[:-3]
+        done = subprocess.run([squeal, *given, "-analysis", analysis, f"-{analysis}_parameter", "none", f"-{analysis}_values", "0,1"],
+                              capture_output=True, text=True, cwd=folder, check=False)
+        offered = set(done.stderr.rpartition("valid are ")[2].split(", ")) if "valid are" in done.stderr else set()
+        rows = {option.name for option in told if analysis in option.varies}
+        if {name.strip() for name in offered} != rows or len(rows) < 15:
+            yield f"{analysis}: rows say that {sorted(rows)} vary; {done.stderr}"
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        faults = list(faults_of(Path(sys.argv[1]).resolve(), folder))
+        squeal = Path(sys.argv[1]).resolve()
+        faults = [*faults_of(squeal, folder), *varied_faults(squeal, folder)]
     print("\n".join(faults) or "the page is that of the program")
     if faults:
         print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/README.md PROGRAM")

@@ -193,6 +193,9 @@ PetscErrorCode ContactSetUpTies(Contact contact);
     ContactSetUp() or ContactSetUpTies(). @*/
 PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms);
 
+/*@ ContactFindRow - the row of an option of interfaces, such as kn; NULL for none. Not collective. @*/
+const Quantity *ContactFindRow(const char name[]);
+
 /*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
 PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces);
 

@@ -343,6 +343,10 @@ PetscErrorCode ModelAddSetChecksum(Model model, const char set[], PetscBool is_s
 @*/
 PetscErrorCode ModelUnits(Model model, const char **units);
 
+/*@ ModelFindRow - the row of an option of the names of a list, such as young of -parts; NULL for none. Not
+   collective. @*/
+const Quantity *ModelFindRow(const char list[], const char name[]);
+
 /*@ ModelGetUnit - what the scene's set of units has for a unit of m, kg, s, N, Pa: mm for m and so on with mm, t, s, N,
     MPa, else the same. For m, m^2, m^3, m/s, s/m, kg, kg/m^3, Pa, m/N, N/m, N/m^3, N s/m, N s/m^3, N m, N m/rad, N m
     s/rad. Not collective; after ModelSetUp(). @*/

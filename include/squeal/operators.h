@@ -16,16 +16,17 @@ typedef struct _p_Operators *Operators;
 
 /* A number that matrices depend on, named like the option of the scene that sets it (pad_young, contact_mu) */
 typedef struct {
-  char        name[128];
-  const char *unit;
-  PetscReal   value;        /* of the scene; of an internal one 1 */
-  PetscReal   lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
-  PetscBool   closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
-  PetscBool   body;         /* of parts, springs or dashpots, not of a contact */
-  PetscBool   stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
-  PetscBool   state; /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
-  PetscReal   fastest;  /* of a spin: the largest size that it can have; 0: any */
-  PetscBool   internal; /* no option of the scene: how far a group of pairs is closed, see SlidingState */
+  char            name[128];
+  const Quantity *row; /* of its option, NULL for what has none; said by it: */
+  const char     *unit;
+  PetscReal       value;        /* of the scene; of an internal one 1 */
+  PetscReal       lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
+  PetscBool       closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
+  PetscBool       body;         /* of parts, springs or dashpots, not of a contact */
+  PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
+  PetscBool state;   /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
+  PetscReal fastest; /* of a spin: the largest size that it can have; 0: any */
+  PetscBool internal; /* no option of the scene: how far a group of pairs is closed, see SlidingState */
 } OperatorsParameter;
 
 /* Values of a part */

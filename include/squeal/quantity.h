@@ -72,6 +72,14 @@ typedef enum {
   QUANTITY_PREFIX, /* nothing: options of PETSc and SLEPc that begin so, which read themselves */
 } QuantityKind;
 
+/* Who may vary a row over its values, as bits; what it does then */
+typedef enum {
+  VARIES_LINEAR  = 1, /* sweeps and their links, sensitivities, samples */
+  VARIES_IN_TIME = 2, /* maps, branches of cycles */
+  VARIES_ALL     = VARIES_LINEAR | VARIES_IN_TIME,
+  VARIES_DAMPING = 4, /* with it the eigenproblem has damping, or gyroscopic terms */
+} QuantityVaries;
+
 typedef struct {
   const char        *name; /* with its dash, e.g. "-sweep_rtol" */
   const char        *help; /* one sentence, without the unit */
@@ -98,6 +106,7 @@ typedef struct {
   /* NULL where a run that does one of `in` reads it, else why not, the owner's name for @; NULL: always read */
   const char *(*idle)(const void *owner, const QuantityRun *run);
   PetscBool restart; /* another value is another run: a restart must not go on */
+  unsigned  varies;  /* QuantityVaries; 0: nobody */
 } Quantity;
 
 typedef struct {
@@ -120,6 +129,9 @@ typedef struct {
 
 /*@ QuantitiesInit - sets the defaults of all rows. Not collective. @*/
 PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner);
+
+/*@ QuantityFind - the row of a table whose option is -`name`; NULL for none. Not collective. @*/
+const Quantity *QuantityFind(const QuantityTable *table, const char name[]);
 
 /*@
    QuantitiesRead - reads the options of a table into their owner and checks them. Collective.
@@ -194,6 +206,17 @@ PetscErrorCode QuantitiesBeginJson(QuantityJson *json);
 PetscErrorCode QuantitiesWriteJson(const QuantityTable *table, const char name[], void *owner, const char why[],
                                    void *json);
 PetscErrorCode QuantitiesEndJson(QuantityJson *json);
+
+/* A row that is looked for by its option, named without the dash, and whether a table has it */
+typedef struct {
+  const char *option;
+  Quantity    row;
+  PetscBool   found;
+} QuantitySearch;
+
+/*@ QuantitiesSearch - a visitor with a QuantitySearch for its context: finds its row. Collective. @*/
+PetscErrorCode QuantitiesSearch(const QuantityTable *table, const char name[], void *owner, const char why[],
+                                void *search);
 
 /*@ SquealVisit - shows the rows of what concerns every room, which SquealSetFromOptions() reads. Collective. @*/
 PetscErrorCode SquealVisit(MPI_Comm comm, const QuantityVisitor *visitor);

@@ -80,10 +80,9 @@ PetscErrorCode SweepSetFromOptions(Sweep sweep);
 /*@ SweepVisit - shows the rows of its options. Collective. @*/
 PetscErrorCode SweepVisit(Sweep sweep, const QuantityVisitor *visitor);
 
-/*@ SweepGetDamping - whether it varies a parameter of damping, which may be 0 at some points, and whether it projects
-   on
-    real modes, which have none. Not collective. @*/
-PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real);
+/*@ SweepGetAsked - -sweep_parameter (borrowed), and whether it projects on real modes, which have no damping. Not
+   collective. @*/
+PetscErrorCode SweepGetAsked(Sweep sweep, const char **parameter, PetscBool *real);
 
 /*@ SweepSolve - all points, branches, onsets and what else was asked for. Collective. @*/
 PetscErrorCode SweepSolve(Sweep sweep, Results results);

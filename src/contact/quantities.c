@@ -72,28 +72,31 @@ static const Quantity interface[] = {
    .required = PETSC_TRUE, .why = "slave,master"},
   {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws,
    .idle = ContactIdleLaw},
-  {"-kn_per_area", "instead: normal stiffness per area of the slave, N/m^3 (penalty)", NULL, QUANTITY_REAL,
-   INTERFACE(kn), .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
-   .idle = ContactIdleArea},
-  {"-kn", "normal stiffness per pair, N/m (penalty), or: identify", NULL, QUANTITY_TEXT, INTERFACE(kn_text),
-   .text = "0", .given = offsetof(ContactInterface, has_kn), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
-   .idle = ContactIdleStiffness},
+  {"-kn_per_area", "instead: normal stiffness per area of the slave (penalty)", "N/m^3", QUANTITY_REAL, INTERFACE(kn),
+   .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
+   .idle = ContactIdleArea, .varies = VARIES_LINEAR},
+  {"-kn", "normal stiffness per pair (penalty), or: identify", "N/m", QUANTITY_TEXT, INTERFACE(kn_text), .text = "0",
+   .given = offsetof(ContactInterface, has_kn), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
+   .idle = ContactIdleStiffness, .varies = VARIES_LINEAR},
   {"-kt", "modes, holding by friction: stiffness along the surface of a pair that sticks", "N/m", QUANTITY_REAL,
-   INTERFACE(kt), QUANTITY_POSITIVE, .given = offsetof(ContactInterface, has_kt), .in = RUN_LINEAR},
+   INTERFACE(kt), QUANTITY_POSITIVE, .given = offsetof(ContactInterface, has_kt), .in = RUN_LINEAR,
+   .varies = VARIES_LINEAR},
   {"-kt_per_area", "instead: that per area of the slave", "N/m^3", QUANTITY_REAL, INTERFACE(kt), QUANTITY_POSITIVE,
-   .given = offsetof(ContactInterface, kt_per_area), .in = RUN_LINEAR},
+   .given = offsetof(ContactInterface, kt_per_area), .in = RUN_LINEAR, .varies = VARIES_LINEAR},
   {"-tolerance", "largest distance of a slave node from the master along the normal", "m", QUANTITY_REAL,
    INTERFACE(tolerance), .initial = 1e-5, QUANTITY_POSITIVE},
   {"-overhang", "slave nodes farther beyond the master's border have no pair; 0: 1 % of a facet", "m", QUANTITY_REAL,
    INTERFACE(overhang), QUANTITY_NOT_NEGATIVE},
   {"-force", "total normal force in the sliding state", "N", QUANTITY_REAL, INTERFACE(force), QUANTITY_NOT_NEGATIVE,
-   .in = RUN_LINEAR, .idle = ContactIdleForce},
-  {"-speed", "sliding speed", "m/s", QUANTITY_REAL, INTERFACE(speed), QUANTITY_NOT_NEGATIVE, .idle = ContactIdleSpeed},
+   .in = RUN_LINEAR, .idle = ContactIdleForce, .varies = VARIES_LINEAR},
+  {"-speed", "sliding speed", "m/s", QUANTITY_REAL, INTERFACE(speed), QUANTITY_NOT_NEGATIVE, .idle = ContactIdleSpeed,
+   .varies = VARIES_ALL},
   {"-friction_damping", "damping mu N/v across the slip, mu' N along it", NULL, QUANTITY_BOOL, INTERFACE(damping),
    .in = RUN_LINEAR},
   {"-slip", "direction of the slave's velocity relative to the master", NULL, QUANTITY_REALS, INTERFACE(slip),
    .idle = ContactIdleSlip},
-  {"-rotation", "or: angular velocity of the master", "rad/s", QUANTITY_REALS, INTERFACE(rotation)},
+  {"-rotation", "or: angular velocity of the master", "rad/s", QUANTITY_REALS, INTERFACE(rotation),
+   .varies = VARIES_LINEAR},
   {"-centre", "a point of its axis", "m", QUANTITY_REALS, INTERFACE(centre), .idle = ContactIdleCentre},
 };
 static const Quantity tie[] = {
@@ -116,3 +119,8 @@ const QuantityList         contacts_list = {"-contacts",
 const QuantityList         ties_list     = {
               "-ties", "surfaces glued to others, each the prefix of its -surfaces", sizeof(ContactTie), &ties, TieCheckNames,
               .in = 0};
+
+const Quantity *ContactFindRow(const char name[])
+{
+  return QuantityFind(&contacts, name);
+}

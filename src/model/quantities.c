@@ -1,5 +1,6 @@
 /* Options of the model, and of what a scene names: each name is the prefix of the rows of its list */
 #include "modelimpl.h"
+#include <string.h>
 
 /* Modes with all pairs closed need no equilibrium */
 #define LOADS .in = RUN_IN_TIME | RUN_EQUILIBRIUM, .unread = " with all pairs closed; give -modes_contact static"
@@ -82,7 +83,7 @@ const QuantityTable model_quantities = TABLE("Model", model, .in = 0);
 static const Quantity part[] = {
   {"-volume", "volume of the mesh that it is; default the part's own name", NULL, QUANTITY_NAME, PART(volume)},
   {"-young", "Young's modulus; E_p,E_z transversely isotropic; E_1,E_2,E_3", "Pa", QUANTITY_LIST, PART(asked.young),
-   .count = offsetof(Part, asked.n_young), .required = PETSC_TRUE},
+   .count = offsetof(Part, asked.n_young), .required = PETSC_TRUE, .varies = VARIES_ALL},
   {"-poisson", "Poisson's ratio, in (-1, 0.5); nu_p,nu_pz; nu_12,nu_13,nu_23", NULL, QUANTITY_LIST, PART(asked.poisson),
    .count = offsetof(Part, asked.n_poisson), .text = "0.3"},
   {"-shear", "shear modulus of two or three -young: G_pz or G_12,G_13,G_23", "Pa", QUANTITY_LIST, PART(asked.shear),
@@ -97,14 +98,18 @@ static const Quantity part[] = {
    PART(asked.axis[AXIS_CYLINDER]), .given = offsetof(Part, asked.given[AXIS_CYLINDER])},
   {"-cylinder_centre", "a point of that axis", "m", QUANTITY_REALS, PART(asked.axis[AXIS_CENTRE]),
    .given = offsetof(Part, asked.given[AXIS_CENTRE])},
-  {"-density", "density", "kg/m^3", QUANTITY_REAL, PART(density), WEIGHS, .always = PETSC_TRUE, .required = PETSC_TRUE},
-  {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE, MOVING},
-  {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE, MOVING},
+  {"-density", "density", "kg/m^3", QUANTITY_REAL, PART(density), WEIGHS, .always = PETSC_TRUE, .required = PETSC_TRUE,
+   .varies = VARIES_ALL},
+  {"-alpha", "Rayleigh factor of the mass", "1/s", QUANTITY_REAL, PART(alpha), QUANTITY_NOT_NEGATIVE, MOVING,
+   .varies = VARIES_ALL | VARIES_DAMPING},
+  {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE, MOVING,
+   .varies = VARIES_ALL | VARIES_DAMPING},
   {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss),
    QUANTITY_NOT_NEGATIVE, MOVING},
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
    PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,
-   .unread = "; it belongs to modes, sweep and frf; in time a contact's -..._kinematics turning turns its master"},
+   .unread = "; it belongs to modes, sweep and frf; in time a contact's -..._kinematics turning turns its master",
+   .varies = VARIES_LINEAR | VARIES_DAMPING},
   {"-spin_axis", "x,y,z, about which a positive spin is right-handed", NULL, QUANTITY_REALS, PART(spin.axis),
    .given = offsetof(Part, spin.has_axis)},
   {"-spin_centre", "a point of that axis", "m", QUANTITY_REALS, PART(spin.centre),
@@ -117,20 +122,24 @@ static const Quantity support[] = {
 static const Quantity spring[] = {
   {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-stiffness", "stiffness in x,y,z at every node", "N/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH])},
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH]), .varies = VARIES_ALL},
   {"-stiffness_total", "instead: stiffness in x,y,z of the whole set", "N/m", QUANTITY_REALS,
-   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL])},
+   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL]),
+   .varies = VARIES_ALL},
   {"-stiffness_per_area", "instead: stiffness in x,y,z per area", "N/m^3", QUANTITY_REALS, GROUNDED(asked[SPREAD_AREA]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA])},
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA]), .varies = VARIES_ALL},
 };
 static const Quantity dashpot[] = {
   {"-set", SET, NULL, QUANTITY_NAME, GROUNDED(set), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-viscosity", "viscosity in x,y,z at every node", "N s/m", QUANTITY_REALS, GROUNDED(asked[SPREAD_EACH]),
-   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH]), MOVING},
+   QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_EACH]), MOVING,
+   .varies = VARIES_ALL | VARIES_DAMPING},
   {"-viscosity_total", "instead: viscosity in x,y,z of the whole set", "N s/m", QUANTITY_REALS,
-   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL]), MOVING},
+   GROUNDED(asked[SPREAD_TOTAL]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_TOTAL]), MOVING,
+   .varies = VARIES_ALL | VARIES_DAMPING},
   {"-viscosity_per_area", "instead: viscosity in x,y,z per area", "N s/m^3", QUANTITY_REALS,
-   GROUNDED(asked[SPREAD_AREA]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA]), MOVING},
+   GROUNDED(asked[SPREAD_AREA]), QUANTITY_NOT_NEGATIVE, .given = offsetof(Grounded, given[SPREAD_AREA]), MOVING,
+   .varies = VARIES_ALL | VARIES_DAMPING},
 };
 
 /* What resists the motions of a bushing or a point, and where they are taken */
@@ -139,14 +148,21 @@ static const Quantity dashpot[] = {
     "-at",     "place of its motions; default the middle",                                                             \
     "m",       QUANTITY_REALS,                                                                                         \
     JOINT(at), .given = offsetof(Joint, has_at)},                                                                      \
-    {"-stiffness", "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0), QUANTITY_NOT_NEGATIVE},     \
-    {"-turn_stiffness", "stiffness about x,y,z",   "N m/rad",                                                          \
-     QUANTITY_REALS,    JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE},                                             \
-    {"-viscosity", "viscosity in x,y,z", "N s/m", QUANTITY_REALS, JOINT_THREE(viscosity, 0), QUANTITY_NOT_NEGATIVE,    \
-     MOVING},                                                                                                          \
+    {"-stiffness",          "stiffness in x,y,z", "N/m", QUANTITY_REALS, JOINT_THREE(stiffness, 0),                    \
+     QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},                                                                     \
+    {"-turn_stiffness",         "stiffness about x,y,z", "N m/rad",           QUANTITY_REALS,                          \
+     JOINT_THREE(stiffness, 3), QUANTITY_NOT_NEGATIVE,   .varies = VARIES_ALL},                                        \
+    {"-viscosity",                                                                                                     \
+     "viscosity in x,y,z",                                                                                             \
+     "N s/m",                                                                                                          \
+     QUANTITY_REALS,                                                                                                   \
+     JOINT_THREE(viscosity, 0),                                                                                        \
+     QUANTITY_NOT_NEGATIVE,                                                                                            \
+     MOVING,                                                                                                           \
+     .varies = VARIES_ALL | VARIES_DAMPING},                                                                           \
   {                                                                                                                    \
     "-turn_viscosity", "viscosity about x,y,z", "N m s/rad", QUANTITY_REALS, JOINT_THREE(viscosity, 3),                \
-      QUANTITY_NOT_NEGATIVE, MOVING                                                                                    \
+      QUANTITY_NOT_NEGATIVE, MOVING, .varies = VARIES_ALL | VARIES_DAMPING                                             \
   }
 
 static const Quantity joint[] = {
@@ -159,7 +175,7 @@ static const Quantity point[] = {
   {"-join", "the set moves freely, the point with it in the mean; or as one rigid body", NULL, QUANTITY_WORD,
    JOINT(rigid), .words = joins},
   HOLDERS,
-  {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE, WEIGHS},
+  {"-mass", "mass", "kg", QUANTITY_REAL, JOINT(mass), QUANTITY_NOT_NEGATIVE, WEIGHS, .varies = VARIES_ALL},
   {"-inertia", "inertia about its place: xx,yy,zz or xx,yy,zz,xy,xz,yz", "kg m^2", QUANTITY_LIST, JOINT(inertia),
    .count = offsetof(Joint, n_inertia), MOVING},
 };
@@ -167,10 +183,11 @@ static const Quantity load[] = {
   {"-set", SET ", unless it acts on a point", NULL, QUANTITY_NAME, LOAD(set)},
   {"-point", "instead of a set: one of the -points", NULL, QUANTITY_NAME, LOAD(on)},
   {"-moment", "on a point: moment about x,y,z", "N m", QUANTITY_REALS, LOAD(moment),
-   .given = offsetof(Load, has_moment)},
-  {"-force", "total force in x,y,z", "N", QUANTITY_REALS, LOAD(force), .given = offsetof(Load, has_force)},
+   .given = offsetof(Load, has_moment), .varies = VARIES_ALL},
+  {"-force", "total force in x,y,z", "N", QUANTITY_REALS, LOAD(force), .given = offsetof(Load, has_force),
+   .varies = VARIES_ALL},
   {"-pressure", "instead of a force: pressure on a surface, into the body", "Pa", QUANTITY_REAL, LOAD(pressure),
-   .given = offsetof(Load, is_pressure)},
+   .given = offsetof(Load, is_pressure), .varies = VARIES_ALL},
 };
 static const Quantity motion[] = {
   {"-set", SET, NULL, QUANTITY_NAME, MOTION(set), .required = PETSC_TRUE, .why = SET_WANTED},
@@ -234,3 +251,13 @@ const QuantityList circles_list = {
   &circles,
   CircleCheck,
   .in = 0};
+
+const Quantity *ModelFindRow(const char list[], const char name[])
+{
+  static const QuantityList *const lists[] = {&parts_list,  &springs_list, &dashpots_list,
+                                              &joints_list, &points_list,  &loads_list};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++)
+    if (!strcmp(lists[i]->option, list)) return QuantityFind(lists[i]->table, name);
+  return NULL;
+}

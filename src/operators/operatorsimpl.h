@@ -95,9 +95,10 @@ PETSC_INTERN PetscErrorCode OperatorsAssemble(Operators operators);
 /* Values along or about x, y, z of something that has a matrix for each choice of them */
 typedef struct {
   OperatorsTermKind kind;
-  const char       *cause;               /* kind of it, of PencilCause */
-  const char       *owner, *what, *unit; /* of the parameter */
-  const PetscReal  *value;               /* [3] */
+  const char       *cause;        /* kind of it, of PencilCause */
+  const char       *owner, *what; /* of the parameter */
+  const Quantity   *row;
+  const PetscReal  *value; /* [3] */
   PetscErrorCode (*create)(Operators operators, const void *of, const PetscBool mask[3], Mat *A);
   const void *of;
 } Components;

@@ -101,9 +101,9 @@ PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state)
     char number[16];
 
     PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, g));
-    PetscCall(ParametersAdd(
-      &pencil->parameters, "closed", number,
-      &(OperatorsParameter){.unit = "", .value = 1, .upper = 1, .closed = PETSC_TRUE, .internal = PETSC_TRUE}, &index));
+    PetscCall(ParametersAdd(&pencil->parameters, "closed", number,
+                            &(OperatorsParameter){.value = 1, .upper = 1, .closed = PETSC_TRUE, .internal = PETSC_TRUE},
+                            &index));
   }
   if (state && state->p) {
     PetscCheck(state->n_parameters == scene->n, pencil->comm, PETSC_ERR_ARG_SIZ, "state of other parameters");

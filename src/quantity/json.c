@@ -4,11 +4,11 @@
      {"program": "squeal", "version": "0.1.0", "options": [
      {"name": "sweep_rtol", "owner": null, "group": "Sweep", "room": "sweep", "help": "...", "unit": null, "type":
       "real", "path": null, "default": 1e-06, "required": false, "least": 0, "most": 1, "open": true, "choices": null, "analyses":
-      ["sweep"], "where": [], "conditional": true, "restart": false}, ...]}
+      ["sweep"], "where": [], "conditional": true, "restart": false, "varies": []}, ...]}
 
    one option a line.
    owner: the name in the scene that stands before the option. analyses, where: it is read by runs that are, or
-   do, one of them; conditional: and where other options want it.
+   do, one of them; conditional: and where other options want it. varies: analyses that may vary it.
 */
 #include "row.h"
 #include <string.h>
@@ -164,6 +164,9 @@ static PetscErrorCode JsonRow(QuantityJson *json, const QuantityTable *table, co
   PetscCall(JsonReaders(comm, row->in ? row->in : table->in));
   PetscCall(JsonLogical(comm, "conditional", row->idle ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(JsonLogical(comm, "restart", row->restart));
+  PetscCall(PetscPrintf(comm, ", \"varies\": [%s%s%s]", row->varies & VARIES_LINEAR ? "\"sweep\"" : "",
+                        (row->varies & VARIES_ALL) == VARIES_ALL ? ", " : "",
+                        row->varies & VARIES_IN_TIME ? "\"map\", \"cycle\"" : ""));
   PetscCall(PetscPrintf(comm, "}"));
   PetscFunctionReturn(0);
 }

@@ -138,6 +138,13 @@ PetscErrorCode QuantitiesInit(const QuantityTable *table, void *owner)
   PetscFunctionReturn(0);
 }
 
+const Quantity *QuantityFind(const QuantityTable *table, const char name[])
+{
+  for (PetscInt i = 0; i < table->n; i++)
+    if (!strcmp(table->row[i].name + 1, name)) return &table->row[i];
+  return NULL;
+}
+
 PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner)
 {
   char prefix[QUANTITY_HELP] = "", title[QUANTITY_HELP];

@@ -120,6 +120,22 @@ PetscErrorCode QuantitiesReadVisited(const QuantityTable *table, const char name
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode QuantitiesSearch(const QuantityTable *table, const char name[], void *owner, const char why[], void *ctx)
+{
+  QuantitySearch *search = ctx;
+  char            option[QUANTITY_HELP];
+
+  PetscFunctionBeginUser;
+  (void)owner;
+  (void)why;
+  for (PetscInt i = 0; i < table->n && !search->found; i++) {
+    PetscCall(QuantityGetOption(name, &table->row[i], sizeof(option), option));
+    PetscCall(PetscStrcasecmp(option + 1, search->option, &search->found));
+    if (search->found) search->row = table->row[i]; /* tables may live as long as their visit */
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuantitiesVisit(const QuantityVisitor *v, const QuantityTable *table, const char name[], void *owner,
                                const char why[])
 {

@@ -12,13 +12,15 @@ typedef struct {
 } ParameterSearch;
 
 /* Takes candidate <owner>_<what> where it is the name looked for, and adds it to the valid ones */
-static PetscErrorCode ParameterTry(const char owner[], const char what[], const ReducedParameter *candidate,
-                                   ParameterSearch *search)
+static PetscErrorCode ParameterTry(const char owner[], const char what[], const Quantity *row,
+                                   const ReducedParameter *candidate, ParameterSearch *search)
 {
   ReducedParameter p = *candidate;
   PetscBool        same;
 
   PetscFunctionBeginUser;
+  if (!(row->varies & VARIES_IN_TIME)) PetscFunctionReturn(0);
+  if (!p.unit) p.unit = row->unit ? row->unit : "-";
   PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
   PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
   PetscCall(PetscStrlcat(search->valid, p.name, sizeof(search->valid)));
@@ -32,25 +34,23 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
    has any sign. */
 static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
 {
-  const ReducedParameter speed = {
-    .unit = "m/s", .kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
+  const ReducedParameter   speed = {.kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
   const FrictionParameter *law;
   const PetscInt           n = FrictionGetParameters(&c->friction, &law);
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
     const PetscBool        limited = law[j].coefficient || law[j].row.bounded ? PETSC_TRUE : PETSC_FALSE;
-    const ReducedParameter p       = {.unit  = law[j].row.unit ? law[j].row.unit : "-",
-                                      .kind  = REDUCED_FRICTION,
+    const ReducedParameter p       = {.kind  = REDUCED_FRICTION,
                                       .index = i,
                                       .value = c->friction.parameter[j],
                                       .law   = j,
                                       .least = limited ? 0 : PETSC_NINFINITY,
                                       .open  = law[j].coefficient ? PETSC_FALSE : limited};
 
-    PetscCall(ParameterTry(c->name, law[j].row.name + 1, &p, search));
+    PetscCall(ParameterTry(c->name, law[j].row.name + 1, &law[j].row, &p, search));
   }
-  if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", &speed, search));
+  if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", ContactFindRow("speed"), &speed, search));
   PetscFunctionReturn(0);
 }
 
@@ -59,15 +59,17 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
 {
   const PetscReal force = load->is_pressure ? 0 : Vec3Length(load->force), moment = Vec3Length(load->moment);
 
-  const ReducedParameter press = {
-    .unit = "Pa", .kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
-  const ReducedParameter push = {.unit = "N", .kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
-  const ReducedParameter turn = {.unit = "N m", .kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
+  const ReducedParameter press = {.kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
+  const ReducedParameter push  = {.kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
+  const ReducedParameter turn  = {.kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
 
   PetscFunctionBeginUser;
-  if (load->is_pressure) PetscCall(ParameterTry(load->name, "pressure", &press, search));
-  if (force > 0 && moment == 0) PetscCall(ParameterTry(load->name, "force", &push, search));
-  if (moment > 0 && force == 0) PetscCall(ParameterTry(load->name, "moment", &turn, search));
+  if (load->is_pressure)
+    PetscCall(ParameterTry(load->name, "pressure", ModelFindRow("-loads", "pressure"), &press, search));
+  if (force > 0 && moment == 0)
+    PetscCall(ParameterTry(load->name, "force", ModelFindRow("-loads", "force"), &push, search));
+  if (moment > 0 && force == 0)
+    PetscCall(ParameterTry(load->name, "moment", ModelFindRow("-loads", "moment"), &turn, search));
   PetscFunctionReturn(0);
 }
 
@@ -82,7 +84,7 @@ static PetscErrorCode ParameterOfBodies(Operators operators, const PetscReal val
   for (PetscInt i = 0; i < n; i++) {
     const ReducedParameter p = {.unit = list[i].unit, .kind = REDUCED_BODY, .index = i, .value = values[i]};
 
-    if (list[i].body) PetscCall(ParameterTry(list[i].name, "", &p, search));
+    if (list[i].body) PetscCall(ParameterTry(list[i].name, "", list[i].row, &p, search));
   }
   PetscFunctionReturn(0);
 }

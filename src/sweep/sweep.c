@@ -97,15 +97,11 @@ PetscErrorCode SweepVisit(Sweep sweep, const QuantityVisitor *visitor)
 
 /* Whether the sweep varies damping is read from the names of its parameters: those of the operators contain one of
    these. */
-PetscErrorCode SweepGetDamping(Sweep sweep, PetscBool *varied, PetscBool *real)
+PetscErrorCode SweepGetAsked(Sweep sweep, const char **parameter, PetscBool *real)
 {
-  static const char *const factors[] = {"_alpha", "_beta", "_viscosity", "_spin"};
-
   PetscFunctionBeginUser;
-  *real   = sweep->method == SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
-  *varied = PETSC_FALSE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(factors); i++)
-    if (strstr(sweep->parameter, factors[i])) *varied = PETSC_TRUE;
+  *real      = sweep->method == SWEEP_REAL ? PETSC_TRUE : PETSC_FALSE;
+  *parameter = sweep->parameter;
   PetscFunctionReturn(0);
 }
 

@@ -37,12 +37,12 @@ static PetscBool CoulombsVaries(const FrictionLaw *law)
 }
 
 static const FrictionParameter coulombs_rows[] = {
-  {{"-mu", "friction coefficient", NULL, QUANTITY_REAL, FRICTION_AT(0)},
+  {{"-mu", "friction coefficient", NULL, QUANTITY_REAL, FRICTION_AT(0), .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE,
    .rest        = PETSC_TRUE},
   {{"-mu_slope", "its slope with the slip speed about the stated one", "s/m", QUANTITY_REAL, FRICTION_AT(1),
-    .in = RUN_MOVES, .unread = ": the loads tell the forces, and nothing moves"},
+    .in = RUN_MOVES, .unread = ": the loads tell the forces, and nothing moves", .varies = VARIES_ALL},
    .coefficient = PETSC_FALSE},
 };
 

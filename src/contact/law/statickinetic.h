@@ -54,16 +54,17 @@ static const char *StaticKineticRemark(const FrictionLaw *law)
 }
 
 static const FrictionParameter static_kinetic_rows[] = {
-  {{"-mu_static", "friction coefficient at rest", NULL, QUANTITY_REAL, FRICTION_AT(0), QUANTITY_NOT_NEGATIVE},
+  {{"-mu_static", "friction coefficient at rest", NULL, QUANTITY_REAL, FRICTION_AT(0), QUANTITY_NOT_NEGATIVE,
+    .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE,
    .rest        = PETSC_TRUE},
   {{"-mu_kinetic", "friction coefficient far beyond the decay speed", NULL, QUANTITY_REAL, FRICTION_AT(1),
-    QUANTITY_NOT_NEGATIVE},
+    QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE},
   {{"-mu_decay_speed", "slip speed over which what static is above kinetic falls to 1/e", "m/s", QUANTITY_REAL,
-    FRICTION_AT(2), QUANTITY_NOT_NEGATIVE},
+    FRICTION_AT(2), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .steady = PETSC_TRUE},
 };
 

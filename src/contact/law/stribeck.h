@@ -69,20 +69,20 @@ static const char *StribeckRemark(const FrictionLaw *law)
 
 static const FrictionParameter stribeck_rows[] = {
   {{"-mu_static", "friction coefficient at rest", NULL, QUANTITY_REAL, FRICTION_AT(STRIBECK_STATIC),
-    QUANTITY_NOT_NEGATIVE},
+    QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE,
    .rest        = PETSC_TRUE},
   {{"-mu_kinetic", "friction coefficient far beyond the Stribeck speed, without its viscous part", NULL, QUANTITY_REAL,
-    FRICTION_AT(STRIBECK_KINETIC), QUANTITY_NOT_NEGATIVE},
+    FRICTION_AT(STRIBECK_KINETIC), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE},
   {{"-mu_viscous", "viscous part of the friction coefficient, which grows with the slip speed", "s/m", QUANTITY_REAL,
-    FRICTION_AT(STRIBECK_VISCOUS), QUANTITY_NOT_NEGATIVE},
+    FRICTION_AT(STRIBECK_VISCOUS), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE},
   {{"-mu_stribeck_speed", "slip speed at which what static is above kinetic has fallen to 1/e", "m/s", QUANTITY_REAL,
-    FRICTION_AT(STRIBECK_SPEED), QUANTITY_NOT_NEGATIVE},
+    FRICTION_AT(STRIBECK_SPEED), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
    .steady = PETSC_TRUE},
 };
 

@@ -65,16 +65,16 @@ static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Ma
 static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
 {
   const struct {
-    const char *name, *unit;
+    const char *name;
     PetscReal   value;
-  } what[N_PART_PARAMETERS] = {
-    {"young", "Pa", p->young}, {"density", "kg/m^3", p->density}, {"alpha", "1/s", p->alpha}, {"beta", "s", p->beta}};
+  } what[N_PART_PARAMETERS] = {{"young", p->young}, {"density", p->density}, {"alpha", p->alpha}, {"beta", p->beta}};
   PetscInt i[N_PART_PARAMETERS];
   Mat      K, M;
 
   PetscFunctionBeginUser;
   for (int k = 0; k < N_PART_PARAMETERS; k++) {
-    const OperatorsParameter q = {.unit = what[k].unit, .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
+    const OperatorsParameter q = {
+      .row = ModelFindRow("-parts", what[k].name), .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
 
     PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &i[k]));
   }
@@ -123,7 +123,8 @@ static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const Pet
 /* Parameters and terms of a list of springs or dashpots */
 static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, const Grounded *g)
 {
-  const Components c = {kind, "dashpot", g->name, g->quantity, g->unit, g->value, ShareDiagonalCreate, g};
+  const Quantity  *row = ModelFindRow(kind == OPERATORS_STIFFNESS ? "-springs" : "-dashpots", g->quantity);
+  const Components c   = {kind, "dashpot", g->name, g->quantity, row, g->value, ShareDiagonalCreate, g};
   PetscInt         index[3];
 
   PetscFunctionBeginUser;

@@ -13,7 +13,7 @@ static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const 
 
   PetscFunctionBeginUser;
   PetscCall(ParametersAdd(&o->parameters, c->owner, what,
-                          &(OperatorsParameter){.unit = c->unit, .value = value, .closed = PETSC_TRUE}, &parameter));
+                          &(OperatorsParameter){.row = c->row, .value = value, .closed = PETSC_TRUE}, &parameter));
   if (!o->omit) {
     PetscCall(c->create(o, c->of, mask, &A));
     PetscCall(TermsAdd(&o->terms, c->kind, A, PETSC_TRUE, 1, &parameter));

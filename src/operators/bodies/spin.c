@@ -39,7 +39,7 @@ PetscErrorCode OperatorsAddSpinParameters(Operators o)
   for (PetscInt part = 0; part < scene->n_parts; part++) {
     const Part              *p    = &scene->parts[part];
     const PetscReal          wave = PetscSqrtReal(p->young / p->density); /* m/s, along a rod */
-    const OperatorsParameter q    = {.unit    = "rad/s",
+    const OperatorsParameter q    = {.row     = ModelFindRow("-parts", "spin"),
                                      .value   = p->spin.rate,
                                      .lower   = -INFINITY,
                                      .fastest = p->spin.radius > 0 ? wave / p->spin.radius : 0};

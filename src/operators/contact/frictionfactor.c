@@ -150,7 +150,7 @@ static PetscErrorCode LawAddParameters(Operators o, const ContactInterface *c, P
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
-    const OperatorsParameter like = {.unit   = law[j].row.unit ? law[j].row.unit : "",
+    const OperatorsParameter like = {.row    = &law[j].row,
                                      .value  = c->friction.parameter[j],
                                      .lower  = law[j].row.bounded ? 0 : -INFINITY,
                                      .closed = law[j].coefficient,
@@ -168,23 +168,17 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
 {
   const PetscReal turning = Vec3Length(c->rotation); /* rad/s */
   const PetscBool moves   = c->damping || (c->slides && FrictionNeedsSpeed(&c->friction)) ? PETSC_TRUE : PETSC_FALSE;
-  const struct {
+  struct {
     PetscBool          there;
     const char        *name;
     OperatorsParameter like;
     PetscInt          *index;
   } what[] = {
-    {c->law == CONTACT_PENALTY,
-     c->per_area ? "kn_per_area" : "kn",
-     {.unit = c->per_area ? "N/m^3" : "N/m", .value = c->kn},
-     &q->kn},
-    {c->kt > 0,
-     c->kt_per_area ? "kt_per_area" : "kt",
-     {.unit = c->kt_per_area ? "N/m^3" : "N/m", .value = c->kt},
-     &q->kt},
-    {c->damping, "force", {.unit = "N", .value = c->force, .closed = PETSC_TRUE}, &q->force},
-    {moves && turning > 0, "rotation", {.unit = "rad/s", .value = turning}, &q->speed},
-    {moves && turning <= 0, "speed", {.unit = "m/s", .value = c->speed}, &q->speed},
+    {c->law == CONTACT_PENALTY, c->per_area ? "kn_per_area" : "kn", {.value = c->kn}, &q->kn},
+    {c->kt > 0, c->kt_per_area ? "kt_per_area" : "kt", {.value = c->kt}, &q->kt},
+    {c->damping, "force", {.value = c->force, .closed = PETSC_TRUE}, &q->force},
+    {moves && turning > 0, "rotation", {.value = turning}, &q->speed},
+    {moves && turning <= 0, "speed", {.value = c->speed}, &q->speed},
   };
 
   PetscFunctionBeginUser;
@@ -195,7 +189,9 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     if (i == 2 && !c->slides && c->kt > 0 && FrictionExists(&c->friction))
       PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));
     if (i == 2 && c->damping) PetscCall(LawAddParameters(o, c, PETSC_FALSE, q));
-    if (what[i].there) PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
+    if (!what[i].there) continue;
+    what[i].like.row = ContactFindRow(what[i].name);
+    PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
   }
   PetscFunctionReturn(0);
 }

@@ -81,8 +81,8 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
     PetscOptionsEnd();
     PetscCheck(set, o->comm, PETSC_ERR_USER_INPUT, "%s is missing: the value of the parameter of -%s_parameter", option,
                term->name);
-    PetscCall(ParametersAdd(&o->parameters, NULL, name,
-                            &(OperatorsParameter){.unit = "", .value = value, .lower = -INFINITY}, &index));
+    PetscCall(
+      ParametersAdd(&o->parameters, NULL, name, &(OperatorsParameter){.value = value, .lower = -INFINITY}, &index));
   }
   q = &o->parameters.list[index];
   if (term->power[i] < 0) q->lower = 0;

@@ -151,8 +151,10 @@ static PetscErrorCode PointAddMass(Operators o, const Joint *joint, PetscInt *in
 
   PetscFunctionBeginUser;
   if (joint->mass > 0) {
-    PetscCall(ParametersAdd(&o->parameters, joint->name, "mass",
-                            &(OperatorsParameter){.unit = "kg", .value = joint->mass, .closed = PETSC_TRUE}, index));
+    PetscCall(ParametersAdd(
+      &o->parameters, joint->name, "mass",
+      &(OperatorsParameter){.row = ModelFindRow("-points", "mass"), .value = joint->mass, .closed = PETSC_TRUE},
+      index));
   }
   if (o->omit) PetscFunctionReturn(0);
   if (joint->mass > 0) {
@@ -176,12 +178,17 @@ static PetscErrorCode OperatorsAddJoint(Operators o, const Joint *j, JointParame
 {
   const JointHalf   half[2]       = {{j, 0}, {j, 3}};
   const char *const cause         = j->is_point ? "point" : "bushing";
-  const Components  components[4] = {
-     {OPERATORS_STIFFNESS, cause, j->name, "stiffness", "N/m", &j->stiffness[0], JointHalfCreate, &half[0]},
-     {OPERATORS_STIFFNESS, cause, j->name, "turn_stiffness", "N m/rad", &j->stiffness[3], JointHalfCreate, &half[1]},
-     {OPERATORS_DAMPING, cause, j->name, "viscosity", "N s/m", &j->viscosity[0], JointHalfCreate, &half[0]},
-     {OPERATORS_DAMPING, cause, j->name, "turn_viscosity", "N m s/rad", &j->viscosity[3], JointHalfCreate, &half[1]}};
-  PetscInt *const to[4] = {&index->stiffness[0], &index->stiffness[3], &index->viscosity[0], &index->viscosity[3]};
+  const char *const list          = j->is_point ? "-points" : "-joints";
+  const Components  components[4] = {{OPERATORS_STIFFNESS, cause, j->name, "stiffness", ModelFindRow(list, "stiffness"),
+                                      &j->stiffness[0], JointHalfCreate, &half[0]},
+                                     {OPERATORS_STIFFNESS, cause, j->name, "turn_stiffness",
+                                      ModelFindRow(list, "turn_stiffness"), &j->stiffness[3], JointHalfCreate, &half[1]},
+                                     {OPERATORS_DAMPING, cause, j->name, "viscosity", ModelFindRow(list, "viscosity"),
+                                      &j->viscosity[0], JointHalfCreate, &half[0]},
+                                     {OPERATORS_DAMPING, cause, j->name, "turn_viscosity",
+                                      ModelFindRow(list, "turn_viscosity"), &j->viscosity[3], JointHalfCreate,
+                                      &half[1]}};
+  PetscInt *const   to[4] = {&index->stiffness[0], &index->stiffness[3], &index->viscosity[0], &index->viscosity[3]};
 
   PetscFunctionBeginUser;
   index->mass = -1;

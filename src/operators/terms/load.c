@@ -17,6 +17,7 @@ static PetscErrorCode SizeAdd(Operators o, const Load *load, const char what[], 
   PetscFunctionBeginUser;
   *index     = -1;
   like.state = PETSC_TRUE;
+  like.row   = ModelFindRow("-loads", what);
   if (like.value != 0) PetscCall(ParametersAdd(&o->parameters, load->name, what, &like, index));
   PetscFunctionReturn(0);
 }
@@ -30,9 +31,9 @@ PetscErrorCode OperatorsAddLoadParameters(Operators o)
   PetscCall(PetscMalloc1(scene->n_loads, &o->load_size));
   for (PetscInt i = 0; i < scene->n_loads; i++) {
     const Load              *load  = &scene->loads[i];
-    const OperatorsParameter force = {.unit = "N", .value = Vec3Length(load->force), .closed = PETSC_TRUE};
-    const OperatorsParameter press = {.unit = "Pa", .value = load->pressure, .lower = -INFINITY};
-    const OperatorsParameter turn  = {.unit = "N m", .value = Vec3Length(load->moment), .closed = PETSC_TRUE};
+    const OperatorsParameter force = {.value = Vec3Length(load->force), .closed = PETSC_TRUE};
+    const OperatorsParameter press = {.value = load->pressure, .lower = -INFINITY};
+    const OperatorsParameter turn  = {.value = Vec3Length(load->moment), .closed = PETSC_TRUE};
 
     if (load->is_pressure)
       PetscCall(SizeAdd(o, load, "pressure", press, &o->load_size[i].force));

@@ -14,11 +14,14 @@ PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const c
   OperatorsParameter *q;
 
   PetscFunctionBeginUser;
+  PetscCheck(!like->row || like->row->varies & VARIES_LINEAR, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "the row of %s says that nobody varies it", what);
   PetscCall(PetscRealloc(size * sizeof(*parameters->list), &parameters->list));
   PetscCall(PetscRealloc(size * sizeof(*parameters->p), &parameters->p));
   q  = &parameters->list[parameters->n];
   *q = *like;
   PetscCall(PetscSNPrintf(q->name, sizeof(q->name), "%s%s%s", owner ? owner : "", owner ? "_" : "", what));
+  q->unit = like->row && like->row->unit ? like->row->unit : "";
   if (q->upper == 0) q->upper = INFINITY;
   parameters->p[parameters->n] = q->value;
   *index                       = parameters->n++;
