@@ -4,6 +4,7 @@
     causes.py terms RESULTS N SPEED    the model of tests/affine.py: vectors of LAPACK's companion form, dense matrices
     causes.py uniform RESULTS A B      C = A M + B K: -A / 2 and -B |lambda|^2 / 2
     causes.py limit RESULTS OTHER TOL  an exact contact beside a stiff penalty: the same causes, TOL of the largest share
+    causes.py spin RESULTS MATRICES MU a part that spins, matrices of -operators_save, vectors of LAPACK: friction, damping, spin
     causes.py closes RESULTS           their sum alone: what the vector leaves is within the error of the eigenvalue
 """
 
@@ -16,8 +17,11 @@ from pathlib import Path
 import numpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 from affine import companion, model
+from squeal.mesh.petsc_matrix import read_matrix
 
+SPIN = 1e-7  # of the largest: the rounding of LAPACK goes with the largest eigenvalue
 SHARE = 1e-8  # of the largest share of a mode
 
 
@@ -75,6 +79,26 @@ def exact_terms(matrices, w, eigenvalue):
     return damping | {"kr": -form["KR"].imag / whole}
 
 
+def exact_spin(folder, mu, eigenvalues_found):
+    """Mode -> shares by LAPACK's vector of friction, of all damping, and of the spin, whose terms are skew or symmetric. The companion
+    form is of the time 1 / scale, for the rounding of LAPACK goes with its largest number."""
+    def matrix(name):
+        rows, columns, row, column, value = read_matrix(Path(folder) / f"{name}.bin")
+        dense = numpy.zeros((rows, columns))
+        numpy.add.at(dense, (row, column), value)
+        return dense
+
+    M, C, K, H = (matrix(name) for name in "MCKH")
+    n, scale = len(M), max(abs(value) for value in eigenvalues_found.values())
+    both = numpy.linalg.solve(M, numpy.hstack([(K + mu * H) / scale**2, C / scale]))
+    values, vectors = numpy.linalg.eig(numpy.block([[numpy.zeros((n, n)), numpy.eye(n)], [-both[:, :n], -both[:, n:]]]))
+    for mode, eigenvalue in eigenvalues_found.items():
+        at = numpy.argmin(abs(values * scale - eigenvalue))
+        x, omega = vectors[:n, at], values[at].imag * scale
+        whole = 2 * omega * (x.conj() @ M @ x).real + (x.conj() @ C @ x).imag
+        yield mode, {"friction": -mu * (x.conj() @ H @ x).imag / whole, "damping": -omega * (x.conj() @ C @ x).real / whole, "spin": 0}
+
+
 def main():
     what, folder, *rest = sys.argv[1:]
     found, stated, worst = shares(folder), errors(folder), 0
@@ -92,6 +116,14 @@ def main():
                 sums[name.rsplit("_", 1)[1]] += value
             exact = {"alpha": -alpha / 2, "beta": -beta * abs(values[mode]) ** 2 / 2}
             worst = max(worst, compare(mode, sums, exact, SHARE, stated[mode]))
+    elif what == "spin":
+        if not any(kind == "spin" for causes in found.values() for _, kind in causes):
+            sys.exit("no cause is a spin")
+        for mode, exact in exact_spin(rest[0], float(rest[1]), {mode: values[mode] for mode in found}):
+            sums = defaultdict(float)
+            for (_, kind), value in found[mode].items():
+                sums[kind if kind in exact else "damping"] += value
+            worst = max(worst, compare(mode, sums, exact, SPIN))
     elif what == "limit":
         other = shares(rest[0])
         if set(found) != set(other):
