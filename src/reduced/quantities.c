@@ -8,33 +8,34 @@ static const char *const models[] = {[PETSC_FALSE] = "full", [PETSC_TRUE] = "red
 static const char *ReducedIdle(const void *reduced, const QuantityRun *run)
 {
   (void)run;
-  return ((const struct _p_ReducedRun *)reduced)->asked ? NULL : "not used without -dynamics_model reduced";
+  return ((const struct _p_ReducedRun *)reduced)->request.asked ? NULL : "not used without -dynamics_model reduced";
 }
 
 static const char *ReducedIdleChosen(const void *reduced, const QuantityRun *run)
 {
   const struct _p_ReducedRun *r = reduced;
 
-  return r->cutoff > 0 ? "not used where -dynamics_cutoff says the cut-off" : ReducedIdle(r, run);
+  return r->request.cutoff > 0 ? "not used where -dynamics_cutoff says the cut-off" : ReducedIdle(r, run);
 }
 
 static const Quantity rows[] = {
   {"-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance", NULL, QUANTITY_WORD,
-   REDUCED_AT(asked), .words = models},
+   REDUCED_AT(request.asked), .words = models},
   {"-dynamics_cutoff", "of the modes of a reduced model; 0: 4 times the end of -modes_band, or 20 kHz", "Hz",
-   QUANTITY_REAL, REDUCED_AT(cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
+   QUANTITY_REAL, REDUCED_AT(request.cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
   {"-dynamics_growth_rtol",
    "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step are chosen", NULL,
-   QUANTITY_REAL, REDUCED_AT(growth_rtol), .initial = 5e-3, .given = offsetof(struct _p_ReducedRun, has_rtol),
-   QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE, .idle = ReducedIdleChosen, .in = RUN_TRANSIENT | RUN_CYCLE},
+   QUANTITY_REAL, REDUCED_AT(request.growth_rtol), .initial = 5e-3,
+   .given = offsetof(struct _p_ReducedRun, request.has_rtol), QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE,
+   .idle = ReducedIdleChosen, .in = RUN_TRANSIENT | RUN_CYCLE},
   {"-dynamics_compare", "eigenvalues of a reduced model beside those of the mesh in -modes_band", NULL, QUANTITY_BOOL,
-   REDUCED_AT(compare), .initial = PETSC_TRUE, .idle = ReducedIdle, .in = RUN_TRANSIENT | RUN_CYCLE},
+   REDUCED_AT(request.compare), .initial = PETSC_TRUE, .idle = ReducedIdle, .in = RUN_TRANSIENT | RUN_CYCLE},
   {"-dynamics_verify",
    "after a reduced run once more with half the step, and with 2.25 times the cut-off; an error where the rms of the "
    "normal force "
    "in the last half of the time, or the share of the time without contact, differs by more than 10 % beyond twice its "
    "standard error",
-   NULL, QUANTITY_BOOL, REDUCED_AT(verify), .idle = ReducedIdle, .in = RUN_HISTORY},
+   NULL, QUANTITY_BOOL, REDUCED_AT(request.verify), .idle = ReducedIdle, .in = RUN_HISTORY},
 };
 
 const QuantityTable reduced_quantities = {"Reduced model", "reduced.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,

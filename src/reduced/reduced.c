@@ -26,14 +26,14 @@ PetscErrorCode ReducedVisit(ReducedRun r, const QuantityVisitor *visitor)
 PetscErrorCode ReducedIsAsked(ReducedRun r, PetscBool *asked)
 {
   PetscFunctionBeginUser;
-  *asked = r->asked;
+  *asked = r->request.asked;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedIsCompared(ReducedRun r, PetscBool *compared)
 {
   PetscFunctionBeginUser;
-  *compared = r->asked && r->compare ? PETSC_TRUE : PETSC_FALSE;
+  *compared = r->request.asked && r->request.compare ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -50,9 +50,9 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
   PetscFunctionBeginUser;
   r->results = results;
   PetscCall(ReducedChooseCutoff(r));
-  PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->cutoff), &r->run));
+  PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->request.cutoff), &r->run));
   PetscCall(ReducedRefuse(r));
-  PetscCall(ExternalCountHits(r->run.external, &r->n_hits));
+  PetscCall(ExternalCountHits(r->run.external, &r->reduction.n_hits));
   PetscCall(ReducedSetStep(r, r->run.dt));
   PetscFunctionReturn(0);
 }
@@ -60,22 +60,22 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
 PetscErrorCode ReducedWeigh(ReducedRun r, PetscBool weighs)
 {
   PetscFunctionBeginUser;
-  r->weighs = weighs;
+  r->request.weighs = weighs;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedGetModel(ReducedRun r, ReducedModel **model)
 {
   PetscFunctionBeginUser;
-  *model = &r->model;
+  *model = &r->reduction.model;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedGetRun(ReducedRun r, PetscReal *cutoff, PetscReal *dt, PetscReal *end)
 {
   PetscFunctionBeginUser;
-  if (cutoff) *cutoff = r->cutoff;
-  if (dt) *dt = r->dt;
+  if (cutoff) *cutoff = r->request.cutoff;
+  if (dt) *dt = r->motion.dt;
   if (end) *end = r->run.end;
   PetscFunctionReturn(0);
 }
@@ -83,16 +83,16 @@ PetscErrorCode ReducedGetRun(ReducedRun r, PetscReal *cutoff, PetscReal *dt, Pet
 PetscErrorCode ReducedGetHits(ReducedRun r, PetscInt *n, const PetscReal **hits, const PetscReal **due)
 {
   PetscFunctionBeginUser;
-  *n = r->n_hits;
-  if (hits) *hits = r->hits;
-  if (due) *due = r->hit_due;
+  *n = r->reduction.n_hits;
+  if (hits) *hits = r->reduction.hits;
+  if (due) *due = r->reduction.hit_due;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedGetInterface(ReducedRun r, PetscInt pair, PetscInt *interface)
 {
   PetscFunctionBeginUser;
-  *interface = r->pair[pair].interface;
+  *interface = r->reduction.pair[pair].interface;
   PetscFunctionReturn(0);
 }
 
@@ -104,24 +104,24 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
 
   PetscFunctionBeginUser;
   PetscCall(ReducedPrepare(r, results));
-  if (!r->run.restart) PetscCall(ExternalCheckLate(r->run.external, r->run.end, r->dt, LATE_COMMAND));
-  PetscCheck(!r->verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
+  if (!r->run.restart) PetscCall(ExternalCheckLate(r->run.external, r->run.end, r->motion.dt, LATE_COMMAND));
+  PetscCheck(!r->request.verify || !r->run.restart, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_verify compares whole runs: leave it out of -dynamics_restart, or start anew");
-  PetscCall(ReducedWeigh(r, r->compare));
+  PetscCall(ReducedWeigh(r, r->request.compare));
   PetscCall(ReducedChoose(r));
   PetscCall(ReducedWarnGrowth(r));
   PetscCall(ReducedWeigh(r, PETSC_FALSE));
   PetscCall(HistorySetUp(
     r->run.history,
     &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,
-    r->dt));
+    r->motion.dt));
   PetscCall(HistoryHasFields(r->run.history, &fields));
-  if (!fields) PetscCall(ShiftInvertDestroy(&r->inverse));
+  if (!fields) PetscCall(ShiftInvertDestroy(&r->reduction.inverse));
   if (r->run.restart) PetscCall(ReducedGoOn(r));
-  PetscCall(DynamicsCheckTimes(r->dynamics, r->run.end, r->dt));
+  PetscCall(DynamicsCheckTimes(r->dynamics, r->run.end, r->motion.dt));
   if (!r->run.restart) {
     PetscCall(ReducedStart(r));
-    PetscCall(ReducedStepperCreate(&r->model, r->dt, REDUCED_RTOL, &r->stepper));
+    PetscCall(ReducedStepperCreate(&r->reduction.model, r->motion.dt, REDUCED_RTOL, &r->motion.stepper));
     PetscCall(DynamicsForget(r->dynamics));
   }
   ReducedSetShown(r, PETSC_TRUE);
@@ -137,17 +137,17 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ReducedLookBegin(r));
   PetscCall(ReducedDriveSet(r, &drive));
-  for (PetscInt i = 0; i < r->run.n_interfaces && drive.kick; i++) ContactSumsMark(&r->sums[i]);
-  PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
+  for (PetscInt i = 0; i < r->run.n_interfaces && drive.kick; i++) ContactSumsMark(&r->motion.sums[i]);
+  PetscCall(ReducedStep(r->motion.stepper, &drive, &r->motion.state, &r->motion.report));
   ReducedSetShown(r, PETSC_FALSE);
-  r->step++;
-  r->n_steps++;
-  r->n_its += (PetscReal)r->report.its;
-  r->ledger.part.external += r->report.external;
-  r->ledger.part.damping += r->report.damping;
+  r->motion.step++;
+  r->result.n_steps++;
+  r->result.n_its += (PetscReal)r->motion.report.its;
+  r->motion.ledger.part.external += r->motion.report.external;
+  r->motion.ledger.part.damping += r->motion.report.damping;
   PetscCall(ReducedTakePairs(r, PETSC_TRUE));
   PetscCall(ReducedLookEnd(r));
-  if (r->verify) PetscCall(ReducedKeepForce(r));
+  if (r->request.verify) PetscCall(ReducedKeepForce(r));
   PetscFunctionReturn(0);
 }
 
@@ -158,26 +158,26 @@ static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
 
   PetscFunctionBeginUser;
   *stop = PETSC_FALSE;
-  if (r->step % STOP_INTERVAL == 0) {
+  if (r->motion.step % STOP_INTERVAL == 0) {
     *stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, r->comm));
   }
-  if (*stop || (interval > 0 && r->step % interval == 0)) PetscCall(ReducedKeep(r));
+  if (*stop || (interval > 0 && r->motion.step % interval == 0)) PetscCall(ReducedKeep(r));
   PetscFunctionReturn(0);
 }
 
 /* Steps until the end, less 1e-9 of a step for sums of dt; rows on the way, among them the first and the last. */
 static PetscErrorCode ReducedMarch(ReducedRun r, PetscBool *stop)
 {
-  const PetscReal end = r->run.end - 1e-9 * r->dt;
+  const PetscReal end = r->run.end - 1e-9 * r->motion.dt;
 
   PetscFunctionBeginUser;
   *stop = PETSC_FALSE;
   for (PetscBool first = PETSC_TRUE; !*stop; first = PETSC_FALSE) {
-    const PetscBool done = r->state.time >= end || r->step >= r->run.n_steps ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool done = r->motion.state.time >= end || r->motion.step >= r->run.n_steps ? PETSC_TRUE : PETSC_FALSE;
 
-    if (done || HistoryIsDue(r->run.history, r->state.time, r->dt) || r->step == 0)
-      PetscCall(ReducedRecord(r, first && r->step == 0 ? PETSC_TRUE : PETSC_FALSE));
+    if (done || HistoryIsDue(r->run.history, r->motion.state.time, r->motion.dt) || r->motion.step == 0)
+      PetscCall(ReducedRecord(r, first && r->motion.step == 0 ? PETSC_TRUE : PETSC_FALSE));
     if (done) break;
     PetscCall(ReducedAdvance(r));
     PetscCall(ReducedAfterStep(r, stop));
@@ -199,14 +199,15 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   PetscCall(ReducedMarch(r, &stop));
   PetscCall(StopRemove());
   PetscCall(PetscTime(&end));
-  r->setup_seconds = ready - begin;
-  r->seconds       = end - ready;
+  r->result.setup_seconds = ready - begin;
+  r->result.seconds       = end - ready;
   if (!stop || r->run.checkpoint_interval == 0) {
     PetscCall(HistoryClose(r->run.history));
     PetscCall(ReducedReportHits(r));
   }
-  if (!stop && r->verify) PetscCall(ReducedVerify(r));
-  PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s", r->step,
-             (double)r->state.time, r->run.checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
+  if (!stop && r->request.verify) PetscCall(ReducedVerify(r));
+  PetscCheck(!stop, r->comm, PETSC_ERR_USER, "stopped by a signal after step %" PetscInt_FMT ", %.6g s; %s",
+             r->motion.step, (double)r->motion.state.time,
+             r->run.checkpoint_interval > 0 ? STOP_GOES_ON : STOP_ROWS STOP_GOES_ON);
   PetscFunctionReturn(0);
 }

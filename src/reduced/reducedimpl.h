@@ -61,9 +61,8 @@ typedef struct {
   PetscReal velocities, displacements, rates; /* of the parts; of -dynamics_shape */
 } ReducedShares;
 
-struct _p_ReducedRun {
-  MPI_Comm comm;
-  /* set by options */
+/* What is asked for: by options, and by who has the bodies reduced */
+typedef struct {
   PetscBool  asked, compare, verify;
   PetscReal  cutoff; /* Hz, 0: to be chosen */
   PetscReal  growth_rtol;
@@ -71,12 +70,10 @@ struct _p_ReducedRun {
   PetscBool  weighs;   /* Mx too */
   PetscReal *p;        /* parameters of the operators, NULL: those of the scene */
   ReducedRun like;     /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
-  /* rooms */
-  Dynamics    dynamics;
-  Modes       mesh_modes;
-  Results     results;
-  DynamicsRun run;
-  /* reduction */
+} ReducedRequest;
+
+/* Bodies on their modes, with what they are made of */
+typedef struct {
   const char   *why;     /* the cut-off is what it is */
   PetscBool     chooses; /* cut-off, and the step where -ts_dt leaves it open */
   Pencil        bodies;  /* every pair open, undamped */
@@ -93,16 +90,10 @@ struct _p_ReducedRun {
   ReducedShares held;           /* at the start */
   PetscInt      n_hits;
   PetscReal    *hits, *hit_due; /* [n_hits][m] Phi'J, m sqrt(kg)/s; [n_hits] s */
-  /* the mesh beside it */
-  const char     *not_compared; /* why; NULL where it is */
-  PetscInt        n_closed, n_compared;
-  ReducedPair    *compared;
-  PetscBool      *closed;   /* [n_pairs] in the sliding state */
-  PetscReal      *lambda_n; /* [n_pairs] of it, N */
-  PetscInt        n_growing;
-  ReducedGrowing *growing;                /* fastest first */
-  PetscReal       miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
-  /* state */
+} Reduction;
+
+/* State in time, and where its next step is worked out */
+typedef struct {
   PetscReal      dt;
   PetscInt       step;
   ReducedStepper stepper;
@@ -112,13 +103,24 @@ struct _p_ReducedRun {
   ContactSums   *sums;  /* [interfaces] */
   LedgerAccount  ledger;
   PetscReal     *place; /* [3 n_pairs] displacements of the pairs before a step that is looked at, m; NULL else */
-  /* work */
-  PetscReal *loads, *sliding, *kick; /* [n_loads], [n_pairs], [m] */
-  PetscReal *acceleration, *shown;   /* [m] eta'', [n_ports] q and loads */
-  PetscReal *p_rate;                 /* [2][n_ports] N/s of what is shown, at t_n, and its mean in the last step */
-  Mat        column;                 /* [unknowns][1] */
-  Checksum   scene;                  /* NULL until one is needed */
-  /* error */
+  PetscReal     *loads, *sliding, *kick; /* [n_loads], [n_pairs], [m] */
+  PetscReal     *acceleration, *shown;   /* [m] eta'', [n_ports] q and loads */
+  PetscReal     *p_rate;                 /* [2][n_ports] N/s of what is shown, at t_n, and its mean in the last step */
+  Mat            column;                 /* [unknowns][1] */
+} ReducedMotion;
+
+/* Errors of the reduction and of the steps, and what the laws of contact came to */
+typedef struct {
+  /* eigenvalues beside the mesh's */
+  const char     *not_compared; /* why; NULL where it is */
+  PetscInt        n_closed, n_compared;
+  ReducedPair    *compared;
+  PetscBool      *closed;   /* [n_pairs] in the sliding state */
+  PetscReal      *lambda_n; /* [n_pairs] of it, N */
+  PetscInt        n_growing;
+  ReducedGrowing *growing;                /* fastest first */
+  PetscReal       miss_model, miss_steps; /* largest error of growth of an unstable mode; what steps add, relative */
+  /* other runs beside this one */
   PetscInt          n_force;       /* steps of which the force is kept, for -dynamics_verify */
   PetscReal        *force;         /* [n_force] normal force at t_1, t_2, ..., N */
   ReducedDifference finer, higher; /* with half the step; with a higher cut-off */
@@ -127,6 +129,20 @@ struct _p_ReducedRun {
   ContactKKT     kkt;     /* the worst of all steps */
   PetscInt       n_steps; /* of this call */
   PetscLogDouble setup_seconds, seconds;
+} ReducedResult;
+
+struct _p_ReducedRun {
+  MPI_Comm       comm;
+  ReducedRequest request;
+  Reduction      reduction;
+  ReducedMotion  motion;
+  ReducedResult  result;
+  /* rooms */
+  Dynamics    dynamics;
+  Modes       mesh_modes;
+  Results     results;
+  DynamicsRun run;
+  Checksum    scene; /* NULL until one is needed */
 };
 
 /* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns; X'Y of dense matrices of all

@@ -30,6 +30,6 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
 PetscErrorCode ReducedRefuseLate(ReducedRun r, PetscReal end)
 {
   PetscFunctionBeginUser;
-  PetscCall(ExternalCheckLate(r->run.external, end, r->dt, LATE_NEVER));
+  PetscCall(ExternalCheckLate(r->run.external, end, r->motion.dt, LATE_NEVER));
   PetscFunctionReturn(0);
 }

@@ -36,10 +36,10 @@ static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pen
   PetscCall(VecDestroy(&M));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, r->comm));
   least = PetscSqrtReal(CUTOFF_NOISE * PETSC_MACHINE_EPSILON * largest) / (2 * PETSC_PI);
-  PetscCheck(r->cutoff >= least, r->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(r->request.cutoff >= least, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff %.6g Hz is too low: on this mesh frequencies below %.3g Hz are rounding; take one above "
              "the highest frequency of interest",
-             (double)r->cutoff, (double)least);
+             (double)r->request.cutoff, (double)least);
   PetscFunctionReturn(0);
 }
 
@@ -47,23 +47,23 @@ static PetscErrorCode ReducedCheckCutoff(ReducedRun r, const PencilMatrices *pen
    solved. The end may move by 1e-4, off an eigenvalue. */
 static PetscErrorCode ReducedCountModes(ReducedRun r, const PencilMatrices *pencil)
 {
-  PetscReal   omega = 2 * PETSC_PI * r->cutoff;
+  PetscReal   omega = 2 * PETSC_PI * r->request.cutoff;
   PetscInt    n, n_unknowns;
   ShiftInvert counter;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(pencil->K, &n_unknowns, NULL));
-  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, &r->progress, &counter));
+  PetscCall(ShiftInvertCreate(pencil, omega * omega, PETSC_TRUE, &r->reduction.progress, &counter));
   PetscCall(ShiftInvertCountBelow(pencil, 1e-4, &counter, &omega, &n));
   PetscCall(ShiftInvertDestroy(&counter));
   PetscCheck(n > 0, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff %.6g Hz: the unconnected bodies have no mode below it; take a higher one",
-             (double)r->cutoff);
+             (double)r->request.cutoff);
   PetscCheck(n < n_unknowns, r->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_cutoff %.6g Hz: all %" PetscInt_FMT
              " modes lie below it, and no compliance is left for the pairs; "
              "take a lower one",
-             (double)r->cutoff, n);
+             (double)r->request.cutoff, n);
   PetscFunctionReturn(0);
 }
 
@@ -72,8 +72,8 @@ PetscErrorCode ReducedWeighModes(ReducedRun r)
   Mat M;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetMass(r->bodies, &M));
-  PetscCall(BlockMultiply(M, r->Phi, r->MPhi));
+  PetscCall(PencilGetMass(r->reduction.bodies, &M));
+  PetscCall(BlockMultiply(M, r->reduction.Phi, r->reduction.MPhi));
   PetscFunctionReturn(0);
 }
 
@@ -106,7 +106,7 @@ static PetscErrorCode ColumnsKeep(PetscInt m, const PetscInt chosen[], Mat *A)
    for the ascending sort. Frequencies stay in ascending order, rigid modes in front. */
 static PetscErrorCode ReducedKeepAlike(ReducedRun r)
 {
-  const PetscInt n = r->model.m, m = r->like->model.m;
+  const PetscInt n = r->reduction.model.m, m = r->request.like->reduction.model.m;
   PetscInt      *order;
   PetscReal     *A, *share;
 
@@ -115,9 +115,9 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
              "-cycle_range: at one of its values the bodies have %" PetscInt_FMT
              " modes below %.6g Hz, fewer than the %" PetscInt_FMT
              " of the scene: take a range nearer to the value of the scene, which must not be 0",
-             n, (double)r->cutoff, m);
+             n, (double)r->request.cutoff, m);
   PetscCall(PetscMalloc3(n * m, &A, n, &share, n, &order));
-  PetscCall(ReducedGram(r->MPhi, r->like->Phi, A));
+  PetscCall(ReducedGram(r->reduction.MPhi, r->request.like->reduction.Phi, A));
   for (PetscInt i = 0; i < n; i++) {
     order[i] = i;
     share[i] = 0;
@@ -125,10 +125,10 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
   }
   PetscCall(PetscSortRealWithArrayInt(n, share, order));
   PetscCall(PetscSortInt(m, order)); /* frequencies ascend again */
-  for (PetscInt k = 0; k < m; k++) r->model.omega2[k] = r->model.omega2[order[k]];
-  PetscCall(ColumnsKeep(m, order, &r->Phi));
-  PetscCall(ColumnsKeep(m, order, &r->MPhi));
-  r->model.m = m;
+  for (PetscInt k = 0; k < m; k++) r->reduction.model.omega2[k] = r->reduction.model.omega2[order[k]];
+  PetscCall(ColumnsKeep(m, order, &r->reduction.Phi));
+  PetscCall(ColumnsKeep(m, order, &r->reduction.MPhi));
+  r->reduction.model.m = m;
   PetscCall(PetscFree3(A, share, order));
   PetscFunctionReturn(0);
 }
@@ -141,22 +141,22 @@ static PetscErrorCode ReducedTakeModes(ReducedRun r)
   Mat         M;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesGet(r->body_modes, &m, &mode));
-  PetscCall(PencilGetMass(r->bodies, &M));
+  PetscCall(ModesGet(r->reduction.body_modes, &m, &mode));
+  PetscCall(PencilGetMass(r->reduction.bodies, &M));
   PetscCall(MatGetLocalSize(M, &n_own, NULL));
-  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &r->Phi));
-  PetscCall(PetscCalloc1(m, &r->model.omega2));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, &r->reduction.Phi));
+  PetscCall(PetscCalloc1(m, &r->reduction.model.omega2));
   for (PetscInt k = 0; k < m; k++) {
     Vec x, column;
 
-    PetscCall(ModesGetVectors(r->body_modes, k, &x, NULL, NULL, NULL));
-    PetscCall(MatDenseGetColumnVecWrite(r->Phi, k, &column));
+    PetscCall(ModesGetVectors(r->reduction.body_modes, k, &x, NULL, NULL, NULL));
+    PetscCall(MatDenseGetColumnVecWrite(r->reduction.Phi, k, &column));
     PetscCall(VecCopy(x, column));
-    PetscCall(MatDenseRestoreColumnVecWrite(r->Phi, k, &column));
-    r->model.omega2[k] = mode[k].rigid ? 0 : PetscSqr(mode[k].omega);
+    PetscCall(MatDenseRestoreColumnVecWrite(r->reduction.Phi, k, &column));
+    r->reduction.model.omega2[k] = mode[k].rigid ? 0 : PetscSqr(mode[k].omega);
   }
-  r->model.m = m;
-  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &r->MPhi));
+  r->reduction.model.m = m;
+  PetscCall(MatDuplicate(r->reduction.Phi, MAT_DO_NOT_COPY_VALUES, &r->reduction.MPhi));
   PetscCall(ReducedWeighModes(r));
   PetscFunctionReturn(0);
 }
@@ -164,35 +164,37 @@ static PetscErrorCode ReducedTakeModes(ReducedRun r)
 /* Raises an error for vectors that are not orthonormal in M */
 static PetscErrorCode ReducedCheckModes(ReducedRun r)
 {
-  const PetscInt m = r->model.m;
+  const PetscInt m = r->reduction.model.m;
   PetscReal     *H;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m * m, &H));
-  PetscCall(ReducedGram(r->Phi, r->MPhi, H));
-  for (PetscInt i = 0; i < m * m; i++) r->orthonormal = PetscMax(r->orthonormal, PetscAbsReal(H[i] - (i % m == i / m)));
+  PetscCall(ReducedGram(r->reduction.Phi, r->reduction.MPhi, H));
+  for (PetscInt i = 0; i < m * m; i++)
+    r->reduction.orthonormal = PetscMax(r->reduction.orthonormal, PetscAbsReal(H[i] - (i % m == i / m)));
   PetscCall(PetscFree(H));
-  PetscCheck(r->orthonormal < ORTHONORMAL, r->comm, PETSC_ERR_PLIB, "modes of the bodies are orthonormal to %.2e only",
-             (double)r->orthonormal);
+  PetscCheck(r->reduction.orthonormal < ORTHONORMAL, r->comm, PETSC_ERR_PLIB,
+             "modes of the bodies are orthonormal to %.2e only", (double)r->reduction.orthonormal);
   PetscFunctionReturn(0);
 }
 
 /* Phi'C Phi, 1/s, symmetric to the last bit: sums over ranks are not, and steps take C as symmetric. */
 static PetscErrorCode ReducedSetDamping(ReducedRun r)
 {
-  const PetscInt m = r->model.m;
+  const PetscInt m = r->reduction.model.m;
   Mat            C, CPhi;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   if (!C) PetscFunctionReturn(0);
-  PetscCall(MatDuplicate(r->Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
-  PetscCall(BlockMultiply(C, r->Phi, CPhi));
-  PetscCall(PetscMalloc1(m * m, &r->model.C));
-  PetscCall(ReducedGram(r->Phi, CPhi, r->model.C));
+  PetscCall(MatDuplicate(r->reduction.Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
+  PetscCall(BlockMultiply(C, r->reduction.Phi, CPhi));
+  PetscCall(PetscMalloc1(m * m, &r->reduction.model.C));
+  PetscCall(ReducedGram(r->reduction.Phi, CPhi, r->reduction.model.C));
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < j; i++)
-      r->model.C[i + m * j] = r->model.C[j + m * i] = 0.5 * (r->model.C[i + m * j] + r->model.C[j + m * i]);
+      r->reduction.model.C[i + m * j] = r->reduction.model.C[j + m * i] =
+        0.5 * (r->reduction.model.C[i + m * j] + r->reduction.model.C[j + m * i]);
   PetscCall(MatDestroy(&CPhi));
   PetscFunctionReturn(0);
 }
@@ -201,21 +203,21 @@ static PetscErrorCode ReducedSetDamping(ReducedRun r)
    be found, by count. */
 PetscErrorCode ReducedFindModes(ReducedRun r)
 {
-  const PetscReal band[2] = {0, r->cutoff};
+  const PetscReal band[2] = {0, r->request.cutoff};
   PencilMatrices  pencil;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsLineariseBodies(r->run.operators, r->p, PETSC_FALSE, &r->bodies));
-  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(OperatorsLineariseBodies(r->run.operators, r->request.p, PETSC_FALSE, &r->reduction.bodies));
+  PetscCall(PencilGetMatrices(r->reduction.bodies, &pencil));
   PetscCheck(!pencil.C, r->comm, PETSC_ERR_PLIB, "modes of the bodies see damping");
   PetscCall(ReducedCheckCutoff(r, &pencil));
   PetscCall(ReducedCountModes(r, &pencil));
-  PetscCall(ModesCreate(r->comm, &r->body_modes));
-  PetscCall(ModesSetPencil(r->body_modes, r->bodies));
-  PetscCall(ModesSetBand(r->body_modes, band));
-  PetscCall(ModesSolve(r->body_modes));
+  PetscCall(ModesCreate(r->comm, &r->reduction.body_modes));
+  PetscCall(ModesSetPencil(r->reduction.body_modes, r->reduction.bodies));
+  PetscCall(ModesSetBand(r->reduction.body_modes, band));
+  PetscCall(ModesSolve(r->reduction.body_modes));
   PetscCall(ReducedTakeModes(r));
-  if (r->like) PetscCall(ReducedKeepAlike(r));
+  if (r->request.like) PetscCall(ReducedKeepAlike(r));
   PetscCall(ReducedCheckModes(r));
   PetscCall(ReducedSetDamping(r));
   PetscFunctionReturn(0);

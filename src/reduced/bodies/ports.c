@@ -23,11 +23,11 @@ static PetscErrorCode PortsCreatePairs(ReducedRun r)
     row[i] = i / 3;
     for (int d = 0; d < 3; d++) direction[i][d] = -e[d];
   }
-  PetscCall(ContactCreateRows(r->run.contact, 3 * n, row, (const PetscReal(*)[3])direction, &r->G));
+  PetscCall(ContactCreateRows(r->run.contact, 3 * n, row, (const PetscReal(*)[3])direction, &r->reduction.G));
   PetscCall(PetscFree2(row, direction));
-  r->n_local       = n;
-  r->model.n_pairs = n_all;
-  PetscCallMPI(MPI_Exscan(&n, &r->begin, 1, MPIU_INT, MPI_SUM, r->comm));
+  r->reduction.n_local       = n;
+  r->reduction.model.n_pairs = n_all;
+  PetscCallMPI(MPI_Exscan(&n, &r->reduction.begin, 1, MPIU_INT, MPI_SUM, r->comm));
   PetscFunctionReturn(0);
 }
 
@@ -75,13 +75,13 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
-  for (PetscInt i = 0; i < r->model.n_loads; i++) {
+  for (PetscInt i = 0; i < r->reduction.model.n_loads; i++) {
     PetscCall(ModelCreateNodal(r->run.model, &nodal));
     if (i < scene->n_loads)
       PetscCall(ModelAddLoad(r->run.model, i, NULL, nodal));
     else
-      PetscCall(OperatorsAddWeight(r->run.operators, r->p, nodal, total));
-    PetscCall(PortSetNodal(r, nodal, i, r->others));
+      PetscCall(OperatorsAddWeight(r->run.operators, r->request.p, nodal, total));
+    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));
     PetscCall(VecDestroy(&nodal));
   }
   PetscFunctionReturn(0);
@@ -91,8 +91,8 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
 static PetscErrorCode PortsAddProbe(ReducedRun r, const Probe *probe, PetscInt *next)
 {
   PetscFunctionBeginUser;
-  if (probe->vertex >= 0) r->vertex_port[probe->vertex] = 3 * r->model.n_pairs + *next;
-  for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, probe->vertex, d, 1, (*next)++, r->others));
+  if (probe->vertex >= 0) r->reduction.vertex_port[probe->vertex] = 3 * r->reduction.model.n_pairs + *next;
+  for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, probe->vertex, d, 1, (*next)++, r->reduction.others));
   PetscFunctionReturn(0);
 }
 
@@ -100,13 +100,13 @@ static PetscErrorCode PortsSetProbes(ReducedRun r)
 {
   const ModelScene *scene;
   const Mesh       *mesh;
-  PetscInt          next = r->model.n_loads;
+  PetscInt          next = r->reduction.model.n_loads;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   PetscCall(ModelGetMesh(r->run.model, &mesh));
-  PetscCall(PetscMalloc1(mesh->n_nodes, &r->vertex_port));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) r->vertex_port[i] = -1;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &r->reduction.vertex_port));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) r->reduction.vertex_port[i] = -1;
   for (PetscInt i = 0; i < scene->n_probes; i++) PetscCall(PortsAddProbe(r, &scene->probes[i], &next));
   for (PetscInt i = 0; i < scene->n_circles; i++)
     for (PetscInt k = 0; k < scene->circles[i].n; k++) PetscCall(PortsAddProbe(r, &scene->circles[i].probe[k], &next));
@@ -120,21 +120,22 @@ static PetscErrorCode PortsSetHits(ReducedRun r)
   Mat      J;
 
   PetscFunctionBeginUser;
-  PetscCall(ExternalCountHits(r->run.external, &r->n_hits));
-  if (!r->n_hits) PetscFunctionReturn(0);
-  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
-  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, r->n_hits, NULL, &J));
+  PetscCall(ExternalCountHits(r->run.external, &r->reduction.n_hits));
+  if (!r->reduction.n_hits) PetscFunctionReturn(0);
+  PetscCall(MatGetLocalSize(r->reduction.Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, r->reduction.n_hits, NULL, &J));
   PetscCall(MatZeroEntries(J));
-  PetscCall(PetscMalloc2(r->n_hits * r->model.m, &r->hits, r->n_hits, &r->hit_due));
-  for (PetscInt i = 0; i < r->n_hits; i++) {
+  PetscCall(PetscMalloc2(r->reduction.n_hits * r->reduction.model.m, &r->reduction.hits, r->reduction.n_hits,
+                         &r->reduction.hit_due));
+  for (PetscInt i = 0; i < r->reduction.n_hits; i++) {
     ExternalHit hit;
     PetscInt    vertex;
 
     PetscCall(ExternalFindHit(r->run.external, i, &hit, &vertex));
-    r->hit_due[i] = hit.time;
+    r->reduction.hit_due[i] = hit.time;
     for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, vertex, d, hit.impulse[d], i, J));
   }
-  PetscCall(ReducedGram(r->Phi, J, r->hits));
+  PetscCall(ReducedGram(r->reduction.Phi, J, r->reduction.hits));
   PetscCall(MatDestroy(&J));
   PetscFunctionReturn(0);
 }
@@ -142,22 +143,22 @@ static PetscErrorCode PortsSetHits(ReducedRun r)
 /* P of the pairs: row i of G Phi on the rank that has it */
 static PetscErrorCode PortsSetShapes(ReducedRun r)
 {
-  const PetscInt     m = r->model.m, n = 3 * r->model.n_pairs;
+  const PetscInt     m = r->reduction.model.m, n = 3 * r->reduction.model.n_pairs;
   const PetscScalar *value;
   PetscInt           stride;
   Mat                GPhi;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m * r->model.n_ports, &r->model.P));
-  PetscCall(MatMatMult(r->G, r->Phi, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GPhi));
+  PetscCall(PetscCalloc1(m * r->reduction.model.n_ports, &r->reduction.model.P));
+  PetscCall(MatMatMult(r->reduction.G, r->reduction.Phi, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GPhi));
   PetscCall(MatDenseGetLDA(GPhi, &stride));
   PetscCall(MatDenseGetArrayRead(GPhi, &value));
-  for (PetscInt i = 0; i < 3 * r->n_local; i++)
-    for (PetscInt k = 0; k < m; k++) r->model.P[m * (3 * r->begin + i) + k] = value[k * stride + i];
+  for (PetscInt i = 0; i < 3 * r->reduction.n_local; i++)
+    for (PetscInt k = 0; k < m; k++) r->reduction.model.P[m * (3 * r->reduction.begin + i) + k] = value[k * stride + i];
   PetscCall(MatDenseRestoreArrayRead(GPhi, &value));
   PetscCall(MatDestroy(&GPhi));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->model.P, (PetscMPIInt)(m * n), MPIU_REAL, MPI_SUM, r->comm));
-  PetscCall(ReducedGram(r->Phi, r->others, &r->model.P[m * n]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->reduction.model.P, (PetscMPIInt)(m * n), MPIU_REAL, MPI_SUM, r->comm));
+  PetscCall(ReducedGram(r->reduction.Phi, r->reduction.others, &r->reduction.model.P[m * n]));
   PetscFunctionReturn(0);
 }
 
@@ -171,14 +172,15 @@ PetscErrorCode ReducedSetPorts(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   PetscCall(PortsCreatePairs(r));
-  r->model.n_loads  = scene->n_loads + (ModelHasGravity(r->run.model) ? 1 : 0);
-  r->model.n_probes = scene->n_probes;
-  for (PetscInt i = 0; i < scene->n_circles; i++) r->model.n_probes += scene->circles[i].n;
-  r->model.n_ports = 3 * r->model.n_pairs + r->model.n_loads + 3 * r->model.n_probes;
-  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
-  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, r->model.n_loads + 3 * r->model.n_probes,
-                           NULL, &r->others));
-  PetscCall(MatZeroEntries(r->others));
+  r->reduction.model.n_loads  = scene->n_loads + (ModelHasGravity(r->run.model) ? 1 : 0);
+  r->reduction.model.n_probes = scene->n_probes;
+  for (PetscInt i = 0; i < scene->n_circles; i++) r->reduction.model.n_probes += scene->circles[i].n;
+  r->reduction.model.n_ports =
+    3 * r->reduction.model.n_pairs + r->reduction.model.n_loads + 3 * r->reduction.model.n_probes;
+  PetscCall(MatGetLocalSize(r->reduction.Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE,
+                           r->reduction.model.n_loads + 3 * r->reduction.model.n_probes, NULL, &r->reduction.others));
+  PetscCall(MatZeroEntries(r->reduction.others));
   PetscCall(PortsSetLoads(r));
   PetscCall(PortsSetProbes(r));
   PetscCall(PortsSetHits(r));

@@ -14,11 +14,12 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscCall(ReducedSetPorts(r));
   PetscCall(ReducedSetPairs(r));
   PetscCall(ReducedSetResidual(r));
-  PetscCall(ReducedStateCreate(&r->model, &r->state));
-  PetscCall(ReducedReportCreate(&r->model, &r->report));
-  PetscCall(PetscCalloc3(r->model.m, &r->acceleration, 2 * r->model.n_ports, &r->p_rate, r->model.n_ports, &r->shown));
-  PetscCall(MatGetLocalSize(r->Phi, &n_own, NULL));
-  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, 1, NULL, &r->column));
+  PetscCall(ReducedStateCreate(&r->reduction.model, &r->motion.state));
+  PetscCall(ReducedReportCreate(&r->reduction.model, &r->motion.report));
+  PetscCall(PetscCalloc3(r->reduction.model.m, &r->motion.acceleration, 2 * r->reduction.model.n_ports,
+                         &r->motion.p_rate, r->reduction.model.n_ports, &r->motion.shown));
+  PetscCall(MatGetLocalSize(r->reduction.Phi, &n_own, NULL));
+  PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE, 1, NULL, &r->motion.column));
   PetscCall(ReducedDriveCreate(r));
   PetscFunctionReturn(0);
 }
@@ -26,25 +27,25 @@ PetscErrorCode ReducedReduce(ReducedRun r)
 PetscErrorCode ReducedForget(ReducedRun r)
 {
   PetscFunctionBeginUser;
-  PetscCall(ReducedStateDestroy(&r->state));
-  PetscCall(ReducedReportDestroy(&r->report));
-  PetscCall(ReducedModelDestroy(&r->model));
-  PetscCall(PetscFree3(r->acceleration, r->p_rate, r->shown));
-  PetscCall(PetscFree3(r->loads, r->sliding, r->kick));
-  PetscCall(PetscFree2(r->pairs, r->sums));
-  PetscCall(PetscFree(r->pair));
-  PetscCall(PetscFree2(r->hits, r->hit_due));
-  PetscCall(PetscFree(r->vertex_port));
-  PetscCall(MatDestroy(&r->column));
-  PetscCall(MatDestroy(&r->Phi));
-  PetscCall(MatDestroy(&r->MPhi));
-  PetscCall(MatDestroy(&r->G));
-  PetscCall(MatDestroy(&r->others));
-  PetscCall(ShiftInvertDestroy(&r->inverse));
-  PetscCall(ModesDestroy(&r->body_modes));
-  PetscCall(PencilDestroy(&r->bodies));
+  PetscCall(ReducedStateDestroy(&r->motion.state));
+  PetscCall(ReducedReportDestroy(&r->motion.report));
+  PetscCall(ReducedModelDestroy(&r->reduction.model));
+  PetscCall(PetscFree3(r->motion.acceleration, r->motion.p_rate, r->motion.shown));
+  PetscCall(PetscFree3(r->motion.loads, r->motion.sliding, r->motion.kick));
+  PetscCall(PetscFree2(r->motion.pairs, r->motion.sums));
+  PetscCall(PetscFree(r->reduction.pair));
+  PetscCall(PetscFree2(r->reduction.hits, r->reduction.hit_due));
+  PetscCall(PetscFree(r->reduction.vertex_port));
+  PetscCall(MatDestroy(&r->motion.column));
+  PetscCall(MatDestroy(&r->reduction.Phi));
+  PetscCall(MatDestroy(&r->reduction.MPhi));
+  PetscCall(MatDestroy(&r->reduction.G));
+  PetscCall(MatDestroy(&r->reduction.others));
+  PetscCall(ShiftInvertDestroy(&r->reduction.inverse));
+  PetscCall(ModesDestroy(&r->reduction.body_modes));
+  PetscCall(PencilDestroy(&r->reduction.bodies));
   PetscCall(ChecksumDestroy(&r->scene));
-  r->begin = 0;
+  r->reduction.begin = 0;
   PetscFunctionReturn(0);
 }
 
@@ -54,14 +55,14 @@ PetscErrorCode ReducedDestroy(ReducedRun *reduced)
 
   PetscFunctionBeginUser;
   if (!r) PetscFunctionReturn(0);
-  PetscCall(ReducedStepperDestroy(&r->stepper));
+  PetscCall(ReducedStepperDestroy(&r->motion.stepper));
   PetscCall(ReducedForget(r));
-  PetscCall(PetscFree(r->p));
-  PetscCall(PetscFree(r->closed));
-  PetscCall(PetscFree(r->lambda_n));
-  PetscCall(PetscFree(r->compared));
-  PetscCall(PetscFree(r->growing));
-  PetscCall(PetscFree(r->force));
+  PetscCall(PetscFree(r->request.p));
+  PetscCall(PetscFree(r->result.closed));
+  PetscCall(PetscFree(r->result.lambda_n));
+  PetscCall(PetscFree(r->result.compared));
+  PetscCall(PetscFree(r->result.growing));
+  PetscCall(PetscFree(r->result.force));
   PetscCall(PetscFree(*reduced));
   PetscFunctionReturn(0);
 }
@@ -82,16 +83,16 @@ static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const P
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedCreate(r->comm, other));
-  (*other)->dynamics   = r->dynamics;
-  (*other)->mesh_modes = r->mesh_modes;
-  (*other)->run        = r->run;
-  (*other)->cutoff     = cutoff > 0 ? cutoff : r->cutoff;
-  (*other)->dt         = r->dt;
-  (*other)->like       = like;
-  (*other)->weighs     = r->weighs;
-  if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->p));
+  (*other)->dynamics       = r->dynamics;
+  (*other)->mesh_modes     = r->mesh_modes;
+  (*other)->run            = r->run;
+  (*other)->request.cutoff = cutoff > 0 ? cutoff : r->request.cutoff;
+  (*other)->motion.dt      = r->motion.dt;
+  (*other)->request.like   = like;
+  (*other)->request.weighs = r->request.weighs;
+  if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->request.p));
   PetscCall(ReducedReduce(*other));
-  PetscCall(ShiftInvertDestroy(&(*other)->inverse));
+  PetscCall(ShiftInvertDestroy(&(*other)->reduction.inverse));
   PetscFunctionReturn(0);
 }
 

@@ -50,16 +50,16 @@ PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
-  PetscCall(ComplementOf(r->MPhi, r->Phi, B));
-  PetscCall(ShiftInvertApplyThrough(&r->inverse, Z, B, X));
-  PetscCall(ComplementOf(r->Phi, r->MPhi, X));
+  PetscCall(ComplementOf(r->reduction.MPhi, r->reduction.Phi, B));
+  PetscCall(ShiftInvertApplyThrough(&r->reduction.inverse, Z, B, X));
+  PetscCall(ComplementOf(r->reduction.Phi, r->reduction.MPhi, X));
   PetscFunctionReturn(0);
 }
 
 /* Columns first .. of V as the dense B: of G' and of the others */
 static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat B)
 {
-  const PetscInt     n_pairs = 3 * r->model.n_pairs;
+  const PetscInt     n_pairs = 3 * r->reduction.model.n_pairs;
   PetscInt           n_own, n, stride, ldo;
   PetscScalar       *b;
   const PetscScalar *o;
@@ -69,12 +69,12 @@ static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat 
   PetscCall(MatGetLocalSize(B, &n_own, NULL));
   PetscCall(MatGetSize(B, NULL, &n));
   PetscCall(MatDenseGetLDA(B, &stride));
-  PetscCall(MatDenseGetLDA(r->others, &ldo));
+  PetscCall(MatDenseGetLDA(r->reduction.others, &ldo));
   PetscCall(MatDenseGetArray(B, &b));
-  PetscCall(MatDenseGetArrayRead(r->others, &o));
+  PetscCall(MatDenseGetArrayRead(r->reduction.others, &o));
   for (PetscInt k = PetscMax(first, n_pairs); k < first + n; k++)
     PetscCall(PetscArraycpy(&b[(k - first) * stride], &o[(k - n_pairs) * ldo], n_own));
-  PetscCall(MatDenseRestoreArrayRead(r->others, &o));
+  PetscCall(MatDenseRestoreArrayRead(r->reduction.others, &o));
   PetscCall(MatDenseRestoreArray(B, &b));
   PetscFunctionReturn(0);
 }
@@ -83,7 +83,7 @@ static PetscErrorCode PortsGetColumns(ReducedRun r, Mat Gt, PetscInt first, Mat 
    the ranks; those of the others, where N has them, are sums already. */
 static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt N, PetscReal A[])
 {
-  const PetscInt     n_others = N - 3 * r->model.n_pairs;
+  const PetscInt     n_others = N - 3 * r->reduction.model.n_pairs;
   const PetscScalar *value;
   PetscReal         *H;
   PetscInt           n, stride;
@@ -91,17 +91,18 @@ static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(X, NULL, &n));
-  PetscCall(MatMatMult(r->G, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GX));
+  PetscCall(MatMatMult(r->reduction.G, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &GX));
   PetscCall(MatDenseGetLDA(GX, &stride));
   PetscCall(MatDenseGetArrayRead(GX, &value));
   for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = 0; i < 3 * r->n_local; i++) A[(first + k) * N + 3 * r->begin + i] = value[k * stride + i];
+    for (PetscInt i = 0; i < 3 * r->reduction.n_local; i++)
+      A[(first + k) * N + 3 * r->reduction.begin + i] = value[k * stride + i];
   PetscCall(MatDenseRestoreArrayRead(GX, &value));
   PetscCall(MatDestroy(&GX));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &A[first * N], (PetscMPIInt)(n * N), MPIU_REAL, MPI_SUM, r->comm));
   if (!n_others) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n_others * n, &H));
-  PetscCall(ReducedGram(r->others, X, H));
+  PetscCall(ReducedGram(r->reduction.others, X, H));
   for (PetscInt k = 0; k < n; k++)
     PetscCall(PetscArraycpy(&A[(first + k) * N + N - n_others], &H[k * n_others], n_others));
   PetscCall(PetscFree(H));
@@ -120,9 +121,9 @@ static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumn
   PetscFunctionBeginUser;
   if (!A) PetscFunctionReturn(0);
   PetscCall(BlockMultiply(D, c->X, c->B));
-  if (mixed) PetscCall(ReducedGram(r->Phi, c->B, &mixed[c->first * r->model.m]));
+  if (mixed) PetscCall(ReducedGram(r->reduction.Phi, c->B, &mixed[c->first * r->reduction.model.m]));
   PetscCall(ReducedApplyResidual(r, c->B, c->Y));
-  PetscCall(ResidualTake(r, c->Y, c->first, 3 * r->model.n_pairs, A));
+  PetscCall(ResidualTake(r, c->Y, c->first, 3 * r->reduction.model.n_pairs, A));
   PetscFunctionReturn(0);
 }
 
@@ -136,7 +137,7 @@ static void ResidualSymmetrise(PetscInt N, PetscReal A[])
 /* Columns first .. first + n - 1 of all that is made of V */
 static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], PetscInt first, PetscInt n)
 {
-  const PetscInt  N = r->model.n_ports;
+  const PetscInt  N = r->reduction.model.n_ports;
   PetscInt        n_own;
   ResidualColumns c = {.first = first};
 
@@ -146,11 +147,11 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
   PetscCall(PortsGetColumns(r, Gt, first, c.B));
   PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.X));
   PetscCall(ReducedApplyResidual(r, c.B, c.X));
-  PetscCall(ResidualTake(r, c.X, first, N, r->model.W));
-  if (first < 3 * r->model.n_pairs) {
+  PetscCall(ResidualTake(r, c.X, first, N, r->reduction.model.W));
+  if (first < 3 * r->reduction.model.n_pairs) {
     PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.Y));
-    PetscCall(ResidualTakeForm(r, form[0], &c, r->model.Cx, r->model.Cm));
-    PetscCall(ResidualTakeForm(r, form[1], &c, r->model.Mx, NULL));
+    PetscCall(ResidualTakeForm(r, form[0], &c, r->reduction.model.Cx, r->reduction.model.Cm));
+    PetscCall(ResidualTakeForm(r, form[1], &c, r->reduction.model.Mx, NULL));
     PetscCall(MatDestroy(&c.Y));
   }
   PetscCall(MatDestroy(&c.B));
@@ -162,8 +163,8 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
    count */
 static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
 {
-  const double N = r->model.n_ports, n = 3 * (double)r->model.n_pairs,
-               copies = 2 + (damped ? 2 : 0) + (r->weighs ? 1 : 0);
+  const double N = r->reduction.model.n_ports, n = 3 * (double)r->reduction.model.n_pairs,
+               copies = 2 + (damped ? 2 : 0) + (r->request.weighs ? 1 : 0);
   const double gb =
     8e-9 * (N * N + copies * n * n) * MemoryRanks(); /* W; of the stepper W, the laws', HW, and Cx, Mx */
   PetscBool given;
@@ -178,7 +179,7 @@ static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
              "-dynamics_model reduced: the dense compliance of %" PetscInt_FMT
              " pairs takes %.3g GB on a machine, more than %s (%.3g GB)%s; take a coarser contact, or "
              "-dynamics_model full",
-             r->model.n_pairs, -fits[2], given ? "-squeal_memory" : "is free", fits[0],
+             r->reduction.model.n_pairs, -fits[2], given ? "-squeal_memory" : "is free", fits[0],
              fits[1] < 0 ? ", and has more entries than can be counted" : "");
   PetscFunctionReturn(0);
 }
@@ -187,34 +188,35 @@ static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
    solutions per damped pair port, 3 with Mx. */
 PetscErrorCode ReducedSetResidual(ReducedRun r)
 {
-  const PetscInt  N = r->model.n_ports, n_pairs = 3 * r->model.n_pairs;
-  const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->cutoff / RESIDUAL_SHIFT);
+  const PetscInt  N = r->reduction.model.n_ports, n_pairs = 3 * r->reduction.model.n_pairs;
+  const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->request.cutoff / RESIDUAL_SHIFT);
   PencilMatrices  pencil;
   PetscInt        n;
   Mat             Gt, C, form[2]; /* damping, mass */
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetBodies(r->run.operators, r->p, NULL, NULL, &C));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   form[0] = C;
   PetscCall(ResidualCheckMemory(r, C ? PETSC_TRUE : PETSC_FALSE));
-  PetscCall(PencilGetMatrices(r->bodies, &pencil));
-  PetscCall(PencilGetMass(r->bodies, &form[1]));
-  PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->progress, &r->inverse));
-  PetscCall(MatTranspose(r->G, MAT_INITIAL_MATRIX, &Gt));
-  PetscCall(PetscCalloc1(N * N, &r->model.W));
-  if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Cx));
-  if (C) PetscCall(PetscCalloc1(n_pairs * r->model.m, &r->model.Cm));
-  if (r->weighs) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->model.Mx));
-  PetscCall(ProgressBegin(&r->progress, "compliance of the ports, blocks", (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
+  PetscCall(PencilGetMatrices(r->reduction.bodies, &pencil));
+  PetscCall(PencilGetMass(r->reduction.bodies, &form[1]));
+  PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->reduction.progress, &r->reduction.inverse));
+  PetscCall(MatTranspose(r->reduction.G, MAT_INITIAL_MATRIX, &Gt));
+  PetscCall(PetscCalloc1(N * N, &r->reduction.model.W));
+  if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Cx));
+  if (C) PetscCall(PetscCalloc1(n_pairs * r->reduction.model.m, &r->reduction.model.Cm));
+  if (r->request.weighs) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Mx));
+  PetscCall(ProgressBegin(&r->reduction.progress, "compliance of the ports, blocks",
+                          (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
   for (PetscInt first = 0; first < N; first += n) {
     n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
     PetscCall(ResidualBlock(r, Gt, form, first, n));
-    PetscCall(ProgressStep(&r->progress));
+    PetscCall(ProgressStep(&r->reduction.progress));
   }
-  PetscCall(ProgressEnd(&r->progress));
+  PetscCall(ProgressEnd(&r->reduction.progress));
   PetscCall(MatDestroy(&Gt));
-  ResidualSymmetrise(N, r->model.W);
-  if (C) ResidualSymmetrise(n_pairs, r->model.Cx);
-  if (r->weighs) ResidualSymmetrise(n_pairs, r->model.Mx);
+  ResidualSymmetrise(N, r->reduction.model.W);
+  if (C) ResidualSymmetrise(n_pairs, r->reduction.model.Cx);
+  if (r->request.weighs) ResidualSymmetrise(n_pairs, r->reduction.model.Mx);
   PetscFunctionReturn(0);
 }

@@ -105,7 +105,7 @@ PetscErrorCode CycleSetParameter(LimitCycle c)
 PetscErrorCode CycleSetShooting(LimitCycle c, PetscReal period)
 {
   PetscFunctionBeginUser;
-  c->flow.n_steps    = c->steps ? c->steps : 2 * (PetscInt)PetscFloorReal(0.5 * period / c->reduced->dt) + 1;
+  c->flow.n_steps    = c->steps ? c->steps : 2 * (PetscInt)PetscFloorReal(0.5 * period / c->reduced->motion.dt) + 1;
   c->shooting.flow   = CycleFlowRun;
   c->shooting.ctx    = &c->flow;
   c->shooting.rtol   = c->rtol;
@@ -223,8 +223,8 @@ static PetscErrorCode CycleReduce(LimitCycle c, Results results)
   PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
   PetscCall(ReducedChoose(c->reduced));
-  PetscCall(ShiftInvertDestroy(&c->reduced->inverse));
-  c->reduced->state.time = CYCLE_FAR;
+  PetscCall(ShiftInvertDestroy(&c->reduced->reduction.inverse));
+  c->reduced->motion.state.time = CYCLE_FAR;
   PetscFunctionReturn(0);
 }
 

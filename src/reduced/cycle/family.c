@@ -82,12 +82,12 @@ static void FamilyInvertRoot(PetscInt m, const PetscReal V[], const PetscReal w[
 /* T [m][m] = A (A'A)^-1/2, A = Phi_k'M_k Phi, the orthogonal factor of the bodies `at` the value that they have. */
 static PetscErrorCode FamilyAlign(CycleFamily *f, ReducedRun at, PetscReal value, PetscReal T[])
 {
-  const PetscInt m = f->scene->model.m;
+  const PetscInt m = f->scene->reduction.model.m;
   PetscReal     *A, *V, *S, *w;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(m * m, &A, m * m, &V, m * m, &S, m, &w));
-  PetscCall(ReducedGram(at->MPhi, f->scene->Phi, A));
+  PetscCall(ReducedGram(at->reduction.MPhi, f->scene->reduction.Phi, A));
   ReducedTimesTransposed(&(DenseBlock){A, m, m, m}, &(DenseBlock){A, m, m, m}, V);
   PetscCall(DenseSymmetricEigen(m, V, NULL, w, NULL));
   PetscCheck(w[0] > FAMILY_ALIKE * w[m - 1], f->scene->comm, PETSC_ERR_USER_INPUT,
@@ -146,16 +146,16 @@ static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[
   PetscFunctionBeginUser;
   PetscCall(ReducedParameterGetRise(f->parameter, value, &rise));
   f->p[f->parameter->index] = value;
-  PetscCall(ReducedReduceLike(f->scene, rise * f->scene->cutoff, f->p, &at));
+  PetscCall(ReducedReduceLike(f->scene, rise * f->scene->request.cutoff, f->p, &at));
   f->p[f->parameter->index] = was;
-  same                      = !at->model.C == !f->scene->model.C ? PETSC_TRUE : PETSC_FALSE;
+  same                      = !at->reduction.model.C == !f->scene->reduction.model.C ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(same, f->scene->comm, PETSC_ERR_USER_INPUT,
              "-cycle_parameter %s: the bodies are damped at some of its values only; give the scene a damping that is "
              "there at all of them",
              f->parameter->name);
-  PetscCall(PetscMalloc1(PetscSqr(at->model.m), &T));
+  PetscCall(PetscMalloc1(PetscSqr(at->reduction.model.m), &T));
   PetscCall(FamilyAlign(f, at, value, T));
-  PetscCall(FamilyTakeModel(f, &at->model, T, part));
+  PetscCall(FamilyTakeModel(f, &at->reduction.model, T, part));
   PetscCall(PetscFree(T));
   PetscCall(ReducedDestroy(&at));
   f->n_reductions++;
@@ -191,7 +191,7 @@ static PetscReal FamilyLast(const CycleFamily *f, int part, PetscInt i, PetscRea
    that are rigid count as the lowest one that is not */
 static PetscReal FamilyStiffnessError(const CycleFamily *f)
 {
-  const ReducedModel *scene = &f->scene->model;
+  const ReducedModel *scene = &f->scene->reduction.model;
   const PetscInt      m     = scene->m;
   PetscReal           least = scene->omega2[m - 1], error = 0, unused = 0;
 
@@ -255,9 +255,9 @@ PetscErrorCode CycleFamilyCreate(ReducedRun scene, const ReducedParameter *param
   f->logarithmic = range[0] > 0 ? PETSC_TRUE : PETSC_FALSE;
   f->value       = parameter->value;
   PetscCall(PetscArraycpy(f->range, range, 2));
-  FamilyListSizes(&scene->model, f->size);
+  FamilyListSizes(&scene->reduction.model, f->size);
   PetscCall(CycleFamilyCheckMemory(f, FAMILY_MOST));
-  PetscCall(ReducedModelCopy(&scene->model, &f->model));
+  PetscCall(ReducedModelCopy(&scene->reduction.model, &f->model));
   PetscCall(PetscMalloc1(f->size[FAMILY_K], &f->Q));
   do {
     PetscCall(FamilyRefine(f));

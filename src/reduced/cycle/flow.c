@@ -11,7 +11,7 @@
    autonomous. share = way of the run in a step over speed times dt, so that the way follows the speed and the step. */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
 {
-  const PetscReal   now = r->state.time;
+  const PetscReal   now = r->motion.state.time;
   const ModelScene *scene;
   PetscReal        *later, way[2];
   const char *const when = now < CYCLE_FAR ? "when the transient ends at" : "after all ramps, at";
@@ -19,36 +19,37 @@ static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
-  PetscCall(PetscCalloc1(r->model.n_loads, &later));
+  PetscCall(PetscCalloc1(r->reduction.model.n_loads, &later));
   ReducedSetLoads(r, now, f->loads);
   ReducedSetLoads(r, now + CYCLE_FAR, later);
-  for (PetscInt i = 0; i < r->model.n_loads; i++)
+  for (PetscInt i = 0; i < r->reduction.model.n_loads; i++)
     PetscCheck(f->loads[i] == later[i], r->comm, PETSC_ERR_USER_INPUT, CYCLE_BY ": load %s still changes %s %.6g s: %s",
                scene->loads[i].name, when, (double)now, what);
   PetscCall(PetscFree(later));
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
     PetscCall(ReducedGetWay(r, i, &way[0]));
-    r->state.time = now + CYCLE_FAR;
+    r->motion.state.time = now + CYCLE_FAR;
     PetscCall(ReducedGetWay(r, i, &way[1]));
-    r->state.time = now;
+    r->motion.state.time = now;
     PetscCheck(PetscAbsReal(way[1] - way[0]) <= 1e-6 * PetscAbsReal(way[1]), r->comm, PETSC_ERR_USER_INPUT,
                CYCLE_BY ": the sliding still changes %s %.6g s: %s", when, (double)now, what);
-    f->share[i] = f->stated[i].speed != 0 ? way[0] / (f->stated[i].speed * r->dt) : 0;
+    f->share[i] = f->stated[i].speed != 0 ? way[0] / (f->stated[i].speed * r->motion.dt) : 0;
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CycleFlowCreate(ReducedRun r, CycleFlow *f)
 {
-  const PetscInt n = r->model.n_pairs;
+  const PetscInt n = r->reduction.model.n_pairs;
 
   PetscFunctionBeginUser;
-  *f          = (CycleFlow){.model = &r->model, .n = ReducedTangentSize(&r->model)};
-  f->first    = 3 * n + r->model.n_loads;
-  f->n_looked = r->model.n_ports - f->first;
-  PetscCall(PetscCalloc5(r->model.n_loads, &f->loads, n, &f->share, n, &f->way, n, &f->stated, n, &f->interface));
-  PetscCall(PetscArraycpy(f->stated, r->model.friction, n));
-  for (PetscInt i = 0; i < n; i++) f->interface[i] = r->pair[i].interface;
+  *f          = (CycleFlow){.model = &r->reduction.model, .n = ReducedTangentSize(&r->reduction.model)};
+  f->first    = 3 * n + r->reduction.model.n_loads;
+  f->n_looked = r->reduction.model.n_ports - f->first;
+  PetscCall(
+    PetscCalloc5(r->reduction.model.n_loads, &f->loads, n, &f->share, n, &f->way, n, &f->stated, n, &f->interface));
+  PetscCall(PetscArraycpy(f->stated, r->reduction.model.friction, n));
+  for (PetscInt i = 0; i < n; i++) f->interface[i] = r->reduction.pair[i].interface;
   PetscCall(ReducedStateCreate(f->model, &f->state));
   PetscCall(ReducedReportCreate(f->model, &f->report));
   f->report.works = PETSC_FALSE;

@@ -29,26 +29,26 @@ typedef struct {
 static PetscErrorCode WindowRun(LimitCycle c, PetscReal x[], GuessWindow *w)
 {
   ReducedRun     r = c->reduced;
-  const PetscInt m = r->model.m, n = 3 * r->model.n_pairs;
+  const PetscInt m = r->reduction.model.m, n = 3 * r->reduction.model.n_pairs;
   PetscReal     *sum, *square;
   ReducedDrive   drive;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(n, &sum, n, &square));
-  PetscCall(CycleFlowPack(&c->flow, &r->state, x));
+  PetscCall(CycleFlowPack(&c->flow, &r->motion.state, x));
   for (PetscInt k = 0; k < w->n; k++) {
     w->force[k] = 0;
     for (PetscInt i = 0; i < m; i++) {
-      w->z[2 * m * k + i]     = r->state.eta[i];
-      w->z[2 * m * k + m + i] = r->state.rate[i];
+      w->z[2 * m * k + i]     = r->motion.state.eta[i];
+      w->z[2 * m * k + m + i] = r->motion.state.rate[i];
     }
     for (PetscInt i = 0; i < n; i++) {
-      if (i % 3 == 0) w->force[k] += r->state.p[i];
-      sum[i] += r->state.p[i] / (PetscReal)w->n;
-      square[i] += PetscSqr(r->state.p[i]) / (PetscReal)w->n;
+      if (i % 3 == 0) w->force[k] += r->motion.state.p[i];
+      sum[i] += r->motion.state.p[i] / (PetscReal)w->n;
+      square[i] += PetscSqr(r->motion.state.p[i]) / (PetscReal)w->n;
     }
     PetscCall(ReducedDriveSet(r, &drive));
-    PetscCall(ReducedStep(r->stepper, &drive, &r->state, &r->report));
+    PetscCall(ReducedStep(r->motion.stepper, &drive, &r->motion.state, &r->motion.report));
   }
   for (PetscInt i = 0; i < n; i++) w->size[2] += PetscMax(0, square[i] - PetscSqr(sum[i]));
   w->size[2] = PetscSqrtReal(w->size[2]);
@@ -129,7 +129,7 @@ static PetscReal WindowReturn(const GuessWindow *w, PetscReal *nearest)
    in S x. They are the null space of the sum over the pairs of P_n P_n' on the rigid modes. */
 static PetscErrorCode GuessSetFree(LimitCycle c)
 {
-  const ReducedModel *model = &c->reduced->model;
+  const ReducedModel *model = &c->reduced->reduction.model;
   const PetscInt      m     = model->m;
   PetscInt            n     = 0;
   PetscReal          *A, *w;
@@ -150,7 +150,7 @@ static PetscErrorCode GuessSetFree(LimitCycle c)
 
 PetscErrorCode CycleSetSizes(LimitCycle c, const PetscReal size[3])
 {
-  const PetscInt m = c->reduced->model.m;
+  const PetscInt m = c->reduced->reduction.model.m;
 
   PetscFunctionBeginUser;
   c->shooting.n = c->flow.n;
@@ -167,7 +167,7 @@ PetscErrorCode CycleSetSizes(LimitCycle c, const PetscReal size[3])
    the run moves on by the window. */
 PetscErrorCode CycleGuess(LimitCycle c, ShootingCycle *guess)
 {
-  const PetscInt m = c->reduced->model.m;
+  const PetscInt m = c->reduced->reduction.model.m;
   GuessWindow    w = {.n = GUESS_STEPS, .m = m};
   PetscReal      steps;
 
@@ -185,7 +185,7 @@ PetscErrorCode CycleGuess(LimitCycle c, ShootingCycle *guess)
                       "the nearest within %" PetscInt_FMT " steps): it is no cycle, or has not settled: take a longer "
                       "-ts_max_time",
              (double)c->closure, w.n);
-  guess->period = steps * c->reduced->dt;
+  guess->period = steps * c->reduced->motion.dt;
   PetscCall(CycleSetSizes(c, w.size));
   PetscCall(PetscFree2(w.z, w.force));
   PetscFunctionReturn(0);

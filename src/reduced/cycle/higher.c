@@ -18,7 +18,7 @@ struct _p_CycleHigher {
 /* A cycle of which is asked what is asked of the one below */
 static PetscErrorCode HigherCopy(LimitCycle c, ReducedRun bodies, LimitCycle *copy)
 {
-  const PetscInt  m       = c->reduced->model.m;
+  const PetscInt  m       = c->reduced->reduction.model.m;
   const PetscReal size[3] = {c->shooting.size[0], c->shooting.size[m], c->shooting.size[2 * m]};
 
   PetscFunctionBeginUser;
@@ -48,12 +48,12 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(higher));
   h        = *higher;
-  h->m     = c->reduced->model.m;
+  h->m     = c->reduced->reduction.model.m;
   h->below = &c->flow;
-  PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->cutoff, c->p, &h->bodies));
-  h->bodies->state.time = c->reduced->state.time; /* loads and sliding are those of then */
-  PetscCall(PetscMalloc1(h->bodies->model.m * h->m, &h->T));
-  PetscCall(ReducedGram(h->bodies->MPhi, c->reduced->Phi, h->T));
+  PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->request.cutoff, c->p, &h->bodies));
+  h->bodies->motion.state.time = c->reduced->motion.state.time; /* loads and sliding are those of then */
+  PetscCall(PetscMalloc1(h->bodies->reduction.model.m * h->m, &h->T));
+  PetscCall(ReducedGram(h->bodies->reduction.MPhi, c->reduced->reduction.Phi, h->T));
   PetscCall(HigherCopy(c, h->bodies, &h->cycle));
   n = h->cycle->flow.n;
   PetscCall(PetscCalloc3(n, &h->at.x, n * n, &h->at.M, n, &h->along.x));
@@ -64,7 +64,7 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
    their number of modes only. */
 static void HigherTake(CycleHigher h, const PetscReal x[], PetscReal X[])
 {
-  const PetscInt   m = h->m, M = h->bodies->model.m;
+  const PetscInt   m = h->m, M = h->bodies->reduction.model.m;
   const DenseBlock T = {h->T, M, m, M}, modes = {x, m, 2, m};
 
   ReducedTimes(&T, &modes, X);

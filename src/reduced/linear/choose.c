@@ -14,20 +14,21 @@
 #define MOST_RAISES 4
 #define SHORTER     0.9 /* of the largest step that would do */
 
-/* Hz. A cut-off that is chosen may be raised later; r->why is what the run says of it. */
+/* Hz. A cut-off that is chosen may be raised later; r->reduction.why is what the run says of it. */
 PetscErrorCode ReducedChooseCutoff(ReducedRun r)
 {
   PetscBool has_band;
   PetscReal band[2], growth;
 
   PetscFunctionBeginUser;
-  r->chooses = r->cutoff > 0 ? PETSC_FALSE : PETSC_TRUE;
-  r->why     = "as -dynamics_cutoff says";
-  if (!r->chooses) PetscFunctionReturn(0);
+  r->reduction.chooses = r->request.cutoff > 0 ? PETSC_FALSE : PETSC_TRUE;
+  r->reduction.why     = "as -dynamics_cutoff says";
+  if (!r->reduction.chooses) PetscFunctionReturn(0);
   PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
   if (has_band) PetscCall(ModesGetBand(r->mesh_modes, band, &growth));
-  r->cutoff = has_band ? CUTOFF_BAND * band[1] : CUTOFF;
-  r->why    = has_band ? "4 times the end of -modes_band" : "no -modes_band says which frequencies are of interest";
+  r->request.cutoff = has_band ? CUTOFF_BAND * band[1] : CUTOFF;
+  r->reduction.why =
+    has_band ? "4 times the end of -modes_band" : "no -modes_band says which frequencies are of interest";
   PetscFunctionReturn(0);
 }
 
@@ -36,11 +37,11 @@ PetscErrorCode ReducedSetStep(ReducedRun r, PetscReal dt)
 {
   PetscFunctionBeginUser;
   PetscCall(DynamicsGetStep(r->dynamics, dt, &r->run));
-  r->dt = r->run.dt;
+  r->motion.dt = r->run.dt;
   PetscCheck(
-    r->dt * r->cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
+    r->motion.dt * r->request.cutoff <= 1 + 1e-9, r->comm, PETSC_ERR_USER_INPUT,
     "-ts_dt %.6g is longer than a period of -dynamics_cutoff %.6g Hz: contact cannot follow; take at most %.6g",
-    (double)r->dt, (double)r->cutoff, 1 / (double)r->cutoff);
+    (double)r->motion.dt, (double)r->request.cutoff, 1 / (double)r->request.cutoff);
   PetscFunctionReturn(0);
 }
 
@@ -48,11 +49,11 @@ PetscErrorCode ReducedSetStep(ReducedRun r, PetscReal dt)
 static PetscErrorCode ChooseCheck(ReducedRun r)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < r->n_compared; i++)
-    PetscCheck(!r->compared[i].unstable || r->compared[i].mesh[1] < 2 * PETSC_PI * r->cutoff, r->comm,
-               PETSC_ERR_USER_INPUT,
+  for (PetscInt i = 0; i < r->result.n_compared; i++)
+    PetscCheck(!r->result.compared[i].unstable || r->result.compared[i].mesh[1] < 2 * PETSC_PI * r->request.cutoff,
+               r->comm, PETSC_ERR_USER_INPUT,
                "-dynamics_cutoff %.6g Hz is below the unstable mode at %.6g Hz; take at least twice that",
-               (double)r->cutoff, (double)(r->compared[i].mesh[1] / (2 * PETSC_PI)));
+               (double)r->request.cutoff, (double)(r->result.compared[i].mesh[1] / (2 * PETSC_PI)));
   PetscFunctionReturn(0);
 }
 
@@ -65,22 +66,23 @@ static PetscErrorCode ChooseJudge(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ReducedCompare(r));
   PetscCall(ReducedWeighGrowth(r, &off));
-  if (r->not_compared && r->has_rtol) r->miss_model = off;
+  if (r->result.not_compared && r->request.has_rtol) r->result.miss_model = off;
   PetscFunctionReturn(0);
 }
 
 /* Says where what was asked for is not reached, by the cut-off or by the step */
 static PetscErrorCode ChooseWarn(ReducedRun r)
 {
-  const PetscReal off = r->miss_model + r->miss_steps;
+  const PetscReal off = r->result.miss_model + r->result.miss_steps;
 
   PetscFunctionBeginUser;
-  if (r->has_rtol && off > r->growth_rtol)
+  if (r->request.has_rtol && off > r->request.growth_rtol)
     PetscCall(PetscFPrintf(
       r->comm, stderr,
       "squeal: warning: -dynamics_growth_rtol %.3g is not reached: growth may be off by %.2g of itself with the "
       "cut-off %.6g Hz, and by %.2g with the step %.3g s; say a higher -dynamics_cutoff, a shorter -ts_dt\n",
-      (double)r->growth_rtol, (double)r->miss_model, (double)r->cutoff, (double)r->miss_steps, (double)r->dt));
+      (double)r->request.growth_rtol, (double)r->result.miss_model, (double)r->request.cutoff,
+      (double)r->result.miss_steps, (double)r->motion.dt));
   PetscFunctionReturn(0);
 }
 
@@ -89,28 +91,29 @@ static PetscErrorCode ChooseWarn(ReducedRun r)
    decisions. */
 PetscErrorCode ReducedChoose(ReducedRun r)
 {
-  const PetscReal half = 0.5 * r->growth_rtol;
+  const PetscReal half = 0.5 * r->request.growth_rtol;
 
   PetscFunctionBeginUser;
   PetscCall(ReducedReduce(r));
   PetscCall(ReducedCompareMesh(r));
   PetscCall(ChooseCheck(r));
   PetscCall(ChooseJudge(r));
-  if (!r->chooses) PetscFunctionReturn(0);
-  for (int i = 0; i < MOST_RAISES && r->miss_model > half; i++) {
-    r->cutoff *= RAISE;
-    r->why = r->not_compared ? "by the growth of unstable modes beside that with the inertia of what is above"
-                             : "by the growth of unstable modes beside that of the mesh";
+  if (!r->reduction.chooses) PetscFunctionReturn(0);
+  for (int i = 0; i < MOST_RAISES && r->result.miss_model > half; i++) {
+    r->request.cutoff *= RAISE;
+    r->reduction.why = r->result.not_compared
+                         ? "by the growth of unstable modes beside that with the inertia of what is above"
+                         : "by the growth of unstable modes beside that of the mesh";
     PetscCall(ReducedForget(r));
-    PetscCall(ReducedSetStep(r, 1 / (2 * PETSC_PI * r->cutoff)));
+    PetscCall(ReducedSetStep(r, 1 / (2 * PETSC_PI * r->request.cutoff)));
     PetscCall(ReducedReduce(r));
     PetscCall(ChooseJudge(r));
   }
-  for (int i = 0; i < MOST_RAISES && r->miss_steps > half; i++) {
-    const PetscReal dt = r->dt;
+  for (int i = 0; i < MOST_RAISES && r->result.miss_steps > half; i++) {
+    const PetscReal dt = r->motion.dt;
 
-    PetscCall(ReducedSetStep(r, SHORTER * dt * PetscSqrtReal(half / r->miss_steps)));
-    if (r->dt == dt) break; /* -ts_dt */
+    PetscCall(ReducedSetStep(r, SHORTER * dt * PetscSqrtReal(half / r->result.miss_steps)));
+    if (r->motion.dt == dt) break; /* -ts_dt */
     PetscCall(ReducedCompare(r));
   }
   PetscCall(ChooseWarn(r));

@@ -15,7 +15,7 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
   PetscBool has_band;
 
   PetscFunctionBeginUser;
-  *why = r->compare ? NULL : "-dynamics_compare false";
+  *why = r->request.compare ? NULL : "-dynamics_compare false";
   PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
   if (!has_band && !*why) *why = "no -modes_band";
   for (PetscInt i = 0; i < r->run.n_interfaces && !*why; i++) {
@@ -35,12 +35,13 @@ static PetscErrorCode CompareTakeClosed(ReducedRun r, const SlidingState *state)
 
   PetscFunctionBeginUser;
   PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*group), state->group, NULL, &group));
-  PetscCall(GatherRecords(r->comm, state->n_pairs, sizeof(*r->lambda_n), state->lambda_n, NULL, &r->lambda_n));
-  PetscCall(PetscMalloc1(r->model.n_pairs, &r->closed));
-  r->n_closed = 0;
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
-    r->closed[i] = group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
-    r->n_closed += r->closed[i];
+  PetscCall(
+    GatherRecords(r->comm, state->n_pairs, sizeof(*r->result.lambda_n), state->lambda_n, NULL, &r->result.lambda_n));
+  PetscCall(PetscMalloc1(r->reduction.model.n_pairs, &r->result.closed));
+  r->result.n_closed = 0;
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
+    r->result.closed[i] = group[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    r->result.n_closed += r->result.closed[i];
   }
   PetscCall(PetscFree(group));
   PetscFunctionReturn(0);
@@ -72,13 +73,13 @@ static PetscErrorCode CompareSolveMesh(ReducedRun r, const SlidingState *state)
   PetscCall(OperatorsLinearise(r->run.operators, state, &pencil));
   PetscCall(ModesSetPencil(r->mesh_modes, pencil));
   PetscCall(ModesSolve(r->mesh_modes));
-  PetscCall(ModesGet(r->mesh_modes, &r->n_compared, &mode));
-  PetscCall(PetscCalloc1(r->n_compared, &r->compared));
-  for (PetscInt i = 0; i < r->n_compared; i++) {
-    r->compared[i].mesh[0]  = mode[i].sigma;
-    r->compared[i].mesh[1]  = mode[i].omega;
-    r->compared[i].unstable = mode[i].unstable;
-    PetscCall(PetscStrncpy(r->compared[i].label, mode[i].label, sizeof(r->compared[i].label)));
+  PetscCall(ModesGet(r->mesh_modes, &r->result.n_compared, &mode));
+  PetscCall(PetscCalloc1(r->result.n_compared, &r->result.compared));
+  for (PetscInt i = 0; i < r->result.n_compared; i++) {
+    r->result.compared[i].mesh[0]  = mode[i].sigma;
+    r->result.compared[i].mesh[1]  = mode[i].omega;
+    r->result.compared[i].unstable = mode[i].unstable;
+    PetscCall(PetscStrncpy(r->result.compared[i].label, mode[i].label, sizeof(r->result.compared[i].label)));
   }
   PetscCall(PencilDestroy(&pencil));
   PetscFunctionReturn(0);
@@ -89,8 +90,8 @@ PetscErrorCode ReducedCompareMesh(ReducedRun r)
   SlidingState state;
 
   PetscFunctionBeginUser;
-  PetscCall(CompareFindObstacle(r, &r->not_compared));
-  if (r->not_compared) PetscFunctionReturn(0);
+  PetscCall(CompareFindObstacle(r, &r->result.not_compared));
+  if (r->result.not_compared) PetscFunctionReturn(0);
   PetscCall(StaticsSolveSliding(r->run.statics, NULL, &state));
   PetscCall(StaticsRelease(r->run.statics));
   PetscCall(CompareTakeClosed(r, &state));
@@ -102,15 +103,15 @@ PetscErrorCode ReducedCompareMesh(ReducedRun r)
 /* The largest errors of growth over the unstable modes, relative to it or to a small part of the frequency */
 static void CompareJudge(ReducedRun r)
 {
-  r->miss_model = r->miss_steps = 0;
-  for (PetscInt i = 0; i < r->n_compared; i++) {
-    const ReducedPair *c = &r->compared[i];
+  r->result.miss_model = r->result.miss_steps = 0;
+  for (PetscInt i = 0; i < r->result.n_compared; i++) {
+    const ReducedPair *c = &r->result.compared[i];
 
     const PetscReal scale = PetscMax(c->mesh[0], GROWTH_LEAST * c->mesh[1]);
 
     if (!c->unstable) continue;
-    r->miss_model = PetscMax(r->miss_model, PetscAbsReal(c->reduced[0] - c->mesh[0]) / scale);
-    r->miss_steps = PetscMax(r->miss_steps, PetscAbsReal(c->steps[0] - c->reduced[0]) / scale);
+    r->result.miss_model = PetscMax(r->result.miss_model, PetscAbsReal(c->reduced[0] - c->mesh[0]) / scale);
+    r->result.miss_steps = PetscMax(r->result.miss_steps, PetscAbsReal(c->steps[0] - c->reduced[0]) / scale);
   }
 }
 
@@ -118,18 +119,19 @@ static void CompareJudge(ReducedRun r)
    error, and add. */
 PetscErrorCode ReducedCompare(ReducedRun r)
 {
-  const PetscInt n = 2 * r->model.m;
+  const PetscInt n = 2 * r->reduction.model.m;
   PetscReal     *sigma, *omega;
 
   PetscFunctionBeginUser;
-  if (r->not_compared) PetscFunctionReturn(0);
+  if (r->result.not_compared) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(n, &sigma, n, &omega));
-  PetscCall(ReducedLineariseSliding(&r->model, r->closed, r->lambda_n, sigma, omega));
-  for (PetscInt i = 0; i < r->n_compared; i++)
-    CompareMatch(n, sigma, omega, r->compared[i].mesh, r->compared[i].reduced);
-  PetscCall(ReducedLineariseSteps(&r->model, r->dt, r->closed, r->lambda_n, sigma, omega));
-  for (PetscInt i = 0; i < r->n_compared; i++)
-    CompareMatch(n, sigma, omega, r->compared[i].reduced, r->compared[i].steps);
+  PetscCall(ReducedLineariseSliding(&r->reduction.model, r->result.closed, r->result.lambda_n, sigma, omega));
+  for (PetscInt i = 0; i < r->result.n_compared; i++)
+    CompareMatch(n, sigma, omega, r->result.compared[i].mesh, r->result.compared[i].reduced);
+  PetscCall(
+    ReducedLineariseSteps(&r->reduction.model, r->motion.dt, r->result.closed, r->result.lambda_n, sigma, omega));
+  for (PetscInt i = 0; i < r->result.n_compared; i++)
+    CompareMatch(n, sigma, omega, r->result.compared[i].reduced, r->result.compared[i].steps);
   PetscCall(PetscFree2(sigma, omega));
   CompareJudge(r);
   PetscFunctionReturn(0);
@@ -138,16 +140,16 @@ PetscErrorCode ReducedCompare(ReducedRun r)
 PetscErrorCode ReducedCompareView(ReducedRun r, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  if (r->not_compared) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "eigenvalues of the mesh not compared: %s\n", r->not_compared));
+  if (r->result.not_compared) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "eigenvalues of the mesh not compared: %s\n", r->result.not_compared));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "eigenvalues about the sliding state, %" PetscInt_FMT " of %" PetscInt_FMT
                                    " pairs closed: mesh, reduced, reduced in steps of %.6g s\n",
-                                   r->n_closed, r->model.n_pairs, (double)r->dt));
-  for (PetscInt i = 0; i < r->n_compared; i++) {
-    const ReducedPair *c = &r->compared[i];
+                                   r->result.n_closed, r->reduction.model.n_pairs, (double)r->motion.dt));
+  for (PetscInt i = 0; i < r->result.n_compared; i++) {
+    const ReducedPair *c = &r->result.compared[i];
 
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "  %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s   %10.4f Hz %+10.4f 1/s  %s\n",
@@ -156,6 +158,6 @@ PetscErrorCode ReducedCompareView(ReducedRun r, PetscViewer viewer)
   }
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "growth of unstable modes: reduced off by %.2g %% at most, steps by %.2g %% more\n",
-                                   (double)(100 * r->miss_model), (double)(100 * r->miss_steps)));
+                                   (double)(100 * r->result.miss_model), (double)(100 * r->result.miss_steps)));
   PetscFunctionReturn(0);
 }

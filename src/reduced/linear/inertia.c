@@ -34,20 +34,23 @@ static int InertiaFaster(const void *a, const void *b)
    rounding moves by its root, are left out. */
 static PetscErrorCode InertiaTake(ReducedRun r, PetscReal *z[2][2])
 {
-  const PetscInt n = 2 * r->model.m;
+  const PetscInt n = 2 * r->reduction.model.m;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscRealloc((size_t)r->model.m * sizeof(*r->growing), &r->growing)); /* one of a pair of conjugates */
+  PetscCall(PetscRealloc((size_t)r->reduction.model.m * sizeof(*r->result.growing),
+                         &r->result.growing)); /* one of a pair of conjugates */
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal sigma = z[0][0][i], omega = z[0][1][i];
     const PetscInt  k    = InertiaMatch(n, z[1][0], z[1][1], sigma, omega);
     const PetscReal most = PetscMax(sigma, z[1][0][k]), scale = PetscMax(most, INERTIA_LEAST * omega);
 
-    if (omega <= 0 || omega > 2 * PETSC_PI * r->cutoff || most <= 0) continue;
-    if (hypot(omega, most) < INERTIA_ZERO * 2 * PETSC_PI * r->cutoff) continue;
-    r->growing[r->n_growing++] = (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
+    if (omega <= 0 || omega > 2 * PETSC_PI * r->request.cutoff || most <= 0) continue;
+    if (hypot(omega, most) < INERTIA_ZERO * 2 * PETSC_PI * r->request.cutoff) continue;
+    r->result.growing[r->result.n_growing++] =
+      (ReducedGrowing){sigma, z[1][0][k], omega, PetscAbsReal(z[1][0][k] - sigma) / scale};
   }
-  if (r->n_growing) qsort(r->growing, (size_t)r->n_growing, sizeof(*r->growing), InertiaFaster);
+  if (r->result.n_growing)
+    qsort(r->result.growing, (size_t)r->result.n_growing, sizeof(*r->result.growing), InertiaFaster);
   PetscFunctionReturn(0);
 }
 
@@ -56,8 +59,8 @@ static const ReducedGrowing *InertiaWorst(ReducedRun r)
 {
   const ReducedGrowing *worst = NULL;
 
-  for (PetscInt i = 0; i < r->n_growing; i++)
-    if (!worst || r->growing[i].off > worst->off) worst = &r->growing[i];
+  for (PetscInt i = 0; i < r->result.n_growing; i++)
+    if (!worst || r->result.growing[i].off > worst->off) worst = &r->result.growing[i];
   return worst;
 }
 
@@ -66,35 +69,35 @@ static PetscBool InertiaSlides(ReducedRun r)
 {
   for (PetscInt i = 0; i < r->run.n_interfaces; i++)
     if (!r->run.interfaces[i].slides && FrictionExists(&r->run.interfaces[i].friction)) return PETSC_FALSE;
-  return r->model.n_pairs > 0 && r->model.Mx ? PETSC_TRUE : PETSC_FALSE;
+  return r->reduction.model.n_pairs > 0 && r->reduction.model.Mx ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* About the reduced model's own sliding state at the end of the run, with all ramps done; *off = the largest error,
    0 where steady sliding is not what the scene is about. */
 PetscErrorCode ReducedWeighGrowth(ReducedRun r, PetscReal *off)
 {
-  const PetscInt n = r->model.n_pairs, N = 2 * r->model.m;
+  const PetscInt n = r->reduction.model.n_pairs, N = 2 * r->reduction.model.m;
   PetscBool      found;
   PetscBool     *closed;
   PetscReal     *loads, *lambda_n, *z[2][2];
   ReducedState   rest;
 
   PetscFunctionBeginUser;
-  *off         = 0;
-  r->n_growing = 0;
+  *off                = 0;
+  r->result.n_growing = 0;
   if (!InertiaSlides(r)) PetscFunctionReturn(0);
-  PetscCall(ReducedStateCreate(&r->model, &rest));
-  PetscCall(PetscMalloc7(r->model.n_loads, &loads, n, &closed, n, &lambda_n, N, &z[0][0], N, &z[0][1], N, &z[1][0], N,
-                         &z[1][1]));
+  PetscCall(ReducedStateCreate(&r->reduction.model, &rest));
+  PetscCall(PetscMalloc7(r->reduction.model.n_loads, &loads, n, &closed, n, &lambda_n, N, &z[0][0], N, &z[0][1], N,
+                         &z[1][0], N, &z[1][1]));
   ReducedSetLoads(r, r->run.end, loads);
-  PetscCall(ReducedEquilibrium(&r->model, loads, &rest, &found));
+  PetscCall(ReducedEquilibrium(&r->reduction.model, loads, &rest, &found));
   for (PetscInt i = 0; i < n; i++) {
     closed[i]   = rest.status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
     lambda_n[i] = rest.p[3 * i];
   }
   if (found) {
-    PetscCall(ReducedLineariseSliding(&r->model, closed, lambda_n, z[0][0], z[0][1]));
-    PetscCall(ReducedLineariseInertia(&r->model, closed, lambda_n, z[1][0], z[1][1]));
+    PetscCall(ReducedLineariseSliding(&r->reduction.model, closed, lambda_n, z[0][0], z[0][1]));
+    PetscCall(ReducedLineariseInertia(&r->reduction.model, closed, lambda_n, z[1][0], z[1][1]));
     PetscCall(InertiaTake(r, z));
   }
   if (InertiaWorst(r)) *off = InertiaWorst(r)->off;
@@ -114,19 +117,19 @@ PetscErrorCode ReducedWarnGrowth(ReducedRun r)
     "squeal: warning: the mode at %.6g Hz grows by %.4g 1/s below -dynamics_cutoff %.6g Hz, and by %.4g with "
     "the inertia of what that leaves out: the vibration may be off by as much; raise the cut-off, or leave it "
     "out and say -dynamics_growth_rtol\n",
-    (double)(w->omega / (2 * PETSC_PI)), (double)w->growth, (double)r->cutoff, (double)w->whole));
+    (double)(w->omega / (2 * PETSC_PI)), (double)w->growth, (double)r->request.cutoff, (double)w->whole));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedGrowthView(ReducedRun r, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  if (!r->n_growing) PetscFunctionReturn(0);
+  if (!r->result.n_growing) PetscFunctionReturn(0);
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "modes below the cut-off that grow about the sliding state: reduced, and with the "
                                    "inertia of what the cut-off leaves out\n"));
-  for (PetscInt i = 0; i < r->n_growing; i++) {
-    const ReducedGrowing *g = &r->growing[i];
+  for (PetscInt i = 0; i < r->result.n_growing; i++) {
+    const ReducedGrowing *g = &r->result.growing[i];
 
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %10.4f Hz %+10.4f 1/s   %+10.4f 1/s: off by %.2g %%\n",
                                      (double)(g->omega / (2 * PETSC_PI)), (double)g->growth, (double)g->whole,

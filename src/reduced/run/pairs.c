@@ -27,25 +27,25 @@ static PetscErrorCode ReducedFindSize(ReducedRun r, PetscReal *size)
    unit length at a free node, is zero. */
 static PetscErrorCode ReducedCheckHeld(ReducedRun r)
 {
-  PetscInt                row, held = r->model.n_pairs;
+  PetscInt                row, held = r->reduction.model.n_pairs;
   const ContactPair      *pair;
   const ContactInterface *c;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(r->G, &row, NULL));
-  for (PetscInt i = 0; i < r->n_local; i++) {
+  PetscCall(MatGetOwnershipRange(r->reduction.G, &row, NULL));
+  for (PetscInt i = 0; i < r->reduction.n_local; i++) {
     const PetscScalar *value;
     PetscInt           n;
     PetscReal          square = 0;
 
-    PetscCall(MatGetRow(r->G, row + 3 * i, &n, NULL, &value));
+    PetscCall(MatGetRow(r->reduction.G, row + 3 * i, &n, NULL, &value));
     for (PetscInt k = 0; k < n; k++) square += PetscSqr(value[k]);
-    PetscCall(MatRestoreRow(r->G, row + 3 * i, &n, NULL, &value));
-    if (square < PetscSqr(PAIR_HELD)) held = PetscMin(held, r->begin + i);
+    PetscCall(MatRestoreRow(r->reduction.G, row + 3 * i, &n, NULL, &value));
+    if (square < PetscSqr(PAIR_HELD)) held = PetscMin(held, r->reduction.begin + i);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MIN, r->comm));
-  if (held == r->model.n_pairs) PetscFunctionReturn(0);
-  pair = &r->pair[held];
+  if (held == r->reduction.model.n_pairs) PetscFunctionReturn(0);
+  pair = &r->reduction.pair[held];
   c    = &r->run.interfaces[pair->interface];
   SETERRQ(r->comm, PETSC_ERR_USER_INPUT,
           "contact %s: at %.6g, %.6g, %.6g m both %s and %s are held along the normal, so that no force can keep them "
@@ -57,29 +57,29 @@ static PetscErrorCode ReducedCheckHeld(ReducedRun r)
    exact law would throw the bodies apart. */
 PetscErrorCode ReducedSetPairs(ReducedRun r)
 {
-  const PetscInt     n = r->model.n_pairs;
+  const PetscInt     n = r->reduction.model.n_pairs;
   const ContactPair *local;
   PetscInt           n_local, n_all;
   PetscReal          size;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n_all, &local));
-  PetscCall(GatherRecords(r->comm, n_local, sizeof(*local), local, NULL, &r->pair));
+  PetscCall(GatherRecords(r->comm, n_local, sizeof(*local), local, NULL, &r->reduction.pair));
   PetscCall(ReducedCheckHeld(r));
-  PetscCall(PetscCalloc2(n, &r->model.gap, n, &r->model.friction));
-  PetscCall(PetscCalloc2(n, &r->pairs, r->run.n_interfaces, &r->sums));
+  PetscCall(PetscCalloc2(n, &r->reduction.model.gap, n, &r->reduction.model.friction));
+  PetscCall(PetscCalloc2(n, &r->motion.pairs, r->run.n_interfaces, &r->motion.sums));
   PetscCall(ReducedFindSize(r, &size));
   for (PetscInt i = 0; i < n; i++) {
-    const ContactPair      *pair = &r->pair[i];
+    const ContactPair      *pair = &r->reduction.pair[i];
     const ContactInterface *c    = &r->run.interfaces[pair->interface];
 
     PetscCall(FrictionCheckNotNegative(r->comm, c->name, &c->friction));
     PetscCheck(pair->gap > -SLACK * size, r->comm, PETSC_ERR_USER_INPUT,
                "contact %s: bodies interpenetrate by %.6g m at %.6g, %.6g, %.6g m at the start", c->name,
                (double)-pair->gap, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2]);
-    r->model.gap[i]      = PetscMax(0, pair->gap);
-    r->model.friction[i] = FrictionAt(&c->friction, pair->speed);
-    r->pairs[i].gap      = r->model.gap[i];
+    r->reduction.model.gap[i]      = PetscMax(0, pair->gap);
+    r->reduction.model.friction[i] = FrictionAt(&c->friction, pair->speed);
+    r->motion.pairs[i].gap         = r->reduction.model.gap[i];
   }
   PetscFunctionReturn(0);
 }
@@ -88,13 +88,13 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
    a ContactState on the master: hence the sign of lambda_t. */
 static void PairSetState(ReducedRun r, PetscInt i)
 {
-  const PetscReal *p = &r->state.p[3 * i];
+  const PetscReal *p = &r->motion.state.p[3 * i];
 
-  r->pairs[i] = (ContactState){.status   = r->state.status[i],
-                               .gap      = r->model.gap[i] + r->state.y[3 * i],
-                               .slip     = {r->report.slip[2 * i], r->report.slip[2 * i + 1]},
-                               .lambda_n = p[0],
-                               .lambda_t = {-p[1], -p[2]}};
+  r->motion.pairs[i] = (ContactState){.status   = r->motion.state.status[i],
+                                      .gap      = r->reduction.model.gap[i] + r->motion.state.y[3 * i],
+                                      .slip     = {r->motion.report.slip[2 * i], r->motion.report.slip[2 * i + 1]},
+                                      .lambda_n = p[0],
+                                      .lambda_t = {-p[1], -p[2]}};
 }
 
 /* Works, forces and numbers of the pairs of interface k */
@@ -105,16 +105,16 @@ static void SumsTake(ReducedRun r, PetscInt k, ContactSums *sums)
   for (int i = 0; i < CONTACT_N_STATUS; i++) sums->n[i] = 0;
   for (int d = 0; d < 3; d++) sums->force[d] = 0;
   sums->normal = 0;
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
-    const ContactPair  *pair  = &r->pair[i];
-    const ContactState *state = &r->pairs[i];
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
+    const ContactPair  *pair  = &r->reduction.pair[i];
+    const ContactState *state = &r->motion.pairs[i];
 
     if (pair->interface != k) continue;
     sums->n[state->status]++;
     sums->normal += state->lambda_n;
-    sums->contact_work += r->report.contact[i];
-    sums->friction_work += r->report.friction[i];
-    sums->heat += r->report.heat[i];
+    sums->contact_work += r->motion.report.contact[i];
+    sums->friction_work += r->motion.report.friction[i];
+    sums->heat += r->motion.report.heat[i];
     for (int d = 0; d < 3; d++) {
       const PetscReal tangential = state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
 
@@ -124,13 +124,13 @@ static void SumsTake(ReducedRun r, PetscInt k, ContactSums *sums)
     }
   }
   sums->friction = Vec3Length(along) > 0 ? Vec3Dot(friction, along) / Vec3Length(along) : Vec3Length(friction);
-  sums->residual = PetscMax(sums->residual, r->report.residual);
+  sums->residual = PetscMax(sums->residual, r->motion.report.residual);
 }
 
 /* Residuals of the laws at t_{n+1}; the worst of the run is kept. On each rank alone, since all have all pairs. */
 static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
 {
-  const PetscInt n            = r->model.n_pairs;
+  const PetscInt n            = r->reduction.model.n_pairs;
   PetscReal      displacement = 0;
   ContactJudged *judged;
   ContactKKT     now;
@@ -138,33 +138,34 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &judged));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal *slip = r->pairs[i].slip;
-    const PetscReal  mu   = FrictionMu(&r->model.friction[i], hypot(slip[0], slip[1]) / dt);
+    const PetscReal *slip = r->motion.pairs[i].slip;
+    const PetscReal  mu   = FrictionMu(&r->reduction.model.friction[i], hypot(slip[0], slip[1]) / dt);
 
-    judged[i] =
-      (ContactJudged){&r->pairs[i], mu, PETSC_INFINITY, r->model.gap[i], PetscSqrtReal(r->pair[i].area), PETSC_FALSE};
-    for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(r->state.y[3 * i + d]));
+    judged[i] = (ContactJudged){
+      &r->motion.pairs[i], mu, PETSC_INFINITY, r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),
+      PETSC_FALSE};
+    for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(r->motion.state.y[3 * i + d]));
   }
   PetscCall(ContactJudge(PETSC_COMM_SELF, n, judged, displacement, &now));
   PetscCall(PetscFree(judged));
-  r->kkt.penetration     = PetscMax(r->kkt.penetration, now.penetration);
-  r->kkt.sign            = PetscMax(r->kkt.sign, now.sign);
-  r->kkt.complementarity = PetscMax(r->kkt.complementarity, now.complementarity);
-  r->kkt.cone            = PetscMax(r->kkt.cone, now.cone);
-  r->kkt.dissipation     = PetscMax(r->kkt.dissipation, now.dissipation);
+  r->result.kkt.penetration     = PetscMax(r->result.kkt.penetration, now.penetration);
+  r->result.kkt.sign            = PetscMax(r->result.kkt.sign, now.sign);
+  r->result.kkt.complementarity = PetscMax(r->result.kkt.complementarity, now.complementarity);
+  r->result.kkt.cone            = PetscMax(r->result.kkt.cone, now.cone);
+  r->result.kkt.dissipation     = PetscMax(r->result.kkt.dissipation, now.dissipation);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedTakePairs(ReducedRun r, PetscBool stepped)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) PairSetState(r, i);
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) PairSetState(r, i);
   for (PetscInt k = 0; k < r->run.n_interfaces; k++) {
-    SumsTake(r, k, &r->sums[k]);
-    if (stepped) ContactSumsCompare(&r->sums[k]);
-    r->sums[k].sweeps += stepped ? (PetscReal)r->report.its : 0;
-    r->sums[k].steps += stepped ? 1 : 0;
+    SumsTake(r, k, &r->motion.sums[k]);
+    if (stepped) ContactSumsCompare(&r->motion.sums[k]);
+    r->motion.sums[k].sweeps += stepped ? (PetscReal)r->motion.report.its : 0;
+    r->motion.sums[k].steps += stepped ? 1 : 0;
   }
-  if (stepped) PetscCall(ReducedJudge(r, r->dt));
+  if (stepped) PetscCall(ReducedJudge(r, r->motion.dt));
   PetscFunctionReturn(0);
 }

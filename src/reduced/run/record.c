@@ -15,30 +15,32 @@
    step. */
 void ReducedSetShown(ReducedRun r, PetscBool start)
 {
-  const PetscInt N = r->model.n_ports, n = 3 * r->model.n_pairs;
+  const PetscInt N = r->reduction.model.n_ports, n = 3 * r->reduction.model.n_pairs;
 
   for (PetscInt i = 0; i < N; i++) {
-    const PetscReal now = i < n ? r->state.q[i] : r->state.p[i], mean = (now - r->shown[i]) / r->dt;
+    const PetscReal now  = i < n ? r->motion.state.q[i] : r->motion.state.p[i],
+                    mean = (now - r->motion.shown[i]) / r->motion.dt;
 
-    r->shown[i] = now;
+    r->motion.shown[i] = now;
     if (start) continue;
-    r->p_rate[i]     = 1.5 * mean - 0.5 * r->p_rate[N + i];
-    r->p_rate[N + i] = mean;
+    r->motion.p_rate[i]     = 1.5 * mean - 0.5 * r->motion.p_rate[N + i];
+    r->motion.p_rate[N + i] = mean;
   }
 }
 
 /* eta'' = P'p - Omega^2 eta - C eta', m sqrt(kg)/s^2, without Cm q', the damping of the residual. */
 static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
-  const ReducedModel *model = &r->model;
+  const ReducedModel *model = &r->reduction.model;
   const PetscInt      m     = model->m;
 
   PetscFunctionBeginUser;
   ReducedTimes(&(DenseBlock){model->P, m, model->n_ports, m},
-               &(DenseBlock){r->state.p, model->n_ports, 1, model->n_ports}, r->acceleration);
+               &(DenseBlock){r->motion.state.p, model->n_ports, 1, model->n_ports}, r->motion.acceleration);
   for (PetscInt k = 0; k < m; k++) {
-    r->acceleration[k] -= model->omega2[k] * r->state.eta[k];
-    for (PetscInt j = 0; j < m && model->C; j++) r->acceleration[k] -= model->C[k + m * j] * r->state.rate[j];
+    r->motion.acceleration[k] -= model->omega2[k] * r->motion.state.eta[k];
+    for (PetscInt j = 0; j < m && model->C; j++)
+      r->motion.acceleration[k] -= model->C[k + m * j] * r->motion.state.rate[j];
   }
   PetscFunctionReturn(0);
 }
@@ -47,41 +49,41 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
 static void RecordNode(void *ctx, PetscInt node, PetscReal u[3], PetscReal v[3], PetscReal a[3])
 {
   const ReducedRun    r     = ctx;
-  const ReducedModel *model = &r->model;
-  const PetscInt      port  = r->vertex_port[node];
+  const ReducedModel *model = &r->reduction.model;
+  const PetscInt      port  = r->reduction.vertex_port[node];
 
   for (int d = 0; d < 3; d++) {
-    u[d] = ReducedPortDisplacement(model, r->state.eta, r->shown, port + d);
-    v[d] = ReducedPortDisplacement(model, r->state.rate, r->p_rate, port + d);
+    u[d] = ReducedPortDisplacement(model, r->motion.state.eta, r->motion.shown, port + d);
+    v[d] = ReducedPortDisplacement(model, r->motion.state.rate, r->motion.p_rate, port + d);
     a[d] = 0;
-    for (PetscInt k = 0; k < model->m; k++) a[d] += model->P[k + model->m * (port + d)] * r->acceleration[k];
+    for (PetscInt k = 0; k < model->m; k++) a[d] += model->P[k + model->m * (port + d)] * r->motion.acceleration[k];
   }
 }
 
 /* Phi coordinates + R V p at the local nodes, [nodes][3] */
 static PetscErrorCode RecordLiftOne(ReducedRun r, const PetscReal coordinates[], const PetscReal p[], PetscReal nodal[])
 {
-  const PetscInt n_pairs = 3 * r->model.n_pairs;
+  const PetscInt n_pairs = 3 * r->reduction.model.n_pairs;
   PetscScalar   *value;
   Vec            force, x, ports, others;
   Mat            B, X;
 
   PetscFunctionBeginUser;
-  PetscCall(MatDuplicate(r->column, MAT_DO_NOT_COPY_VALUES, &B));
-  PetscCall(MatDuplicate(r->column, MAT_DO_NOT_COPY_VALUES, &X));
-  PetscCall(MatCreateVecs(r->G, &x, &ports));
+  PetscCall(MatDuplicate(r->motion.column, MAT_DO_NOT_COPY_VALUES, &B));
+  PetscCall(MatDuplicate(r->motion.column, MAT_DO_NOT_COPY_VALUES, &X));
+  PetscCall(MatCreateVecs(r->reduction.G, &x, &ports));
   PetscCall(VecGetArray(ports, &value));
-  PetscCall(PetscArraycpy(value, &p[3 * r->begin], 3 * r->n_local));
+  PetscCall(PetscArraycpy(value, &p[3 * r->reduction.begin], 3 * r->reduction.n_local));
   PetscCall(VecRestoreArray(ports, &value));
   PetscCall(MatDenseGetColumnVecWrite(B, 0, &force));
-  PetscCall(MatMultTranspose(r->G, ports, force));
-  PetscCall(ReducedAddCombination(r->others, &p[n_pairs], force));
+  PetscCall(MatMultTranspose(r->reduction.G, ports, force));
+  PetscCall(ReducedAddCombination(r->reduction.others, &p[n_pairs], force));
   PetscCall(MatDenseRestoreColumnVecWrite(B, 0, &force));
   PetscCall(ReducedApplyResidual(r, B, X));
   PetscCall(MatDenseGetColumnVecRead(X, 0, &others));
   PetscCall(VecCopy(others, x));
   PetscCall(MatDenseRestoreColumnVecRead(X, 0, &others));
-  PetscCall(ReducedAddCombination(r->Phi, coordinates, x));
+  PetscCall(ReducedAddCombination(r->reduction.Phi, coordinates, x));
   PetscCall(ModelGetNodal(r->run.model, x, nodal));
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&ports));
@@ -95,8 +97,8 @@ static PetscErrorCode RecordLift(void *ctx, PetscReal u[], PetscReal v[])
   const ReducedRun r = ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(RecordLiftOne(r, r->state.eta, r->shown, u));
-  PetscCall(RecordLiftOne(r, r->state.rate, r->p_rate, v));
+  PetscCall(RecordLiftOne(r, r->motion.state.eta, r->motion.shown, u));
+  PetscCall(RecordLiftOne(r, r->motion.state.rate, r->motion.p_rate, v));
   PetscFunctionReturn(0);
 }
 
@@ -104,16 +106,16 @@ static PetscErrorCode RecordLift(void *ctx, PetscReal u[], PetscReal v[])
    ranks. */
 static PetscErrorCode RecordBalance(ReducedRun r, PetscBool first)
 {
-  LedgerPart *part = &r->ledger.part;
+  LedgerPart *part = &r->motion.ledger.part;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
-  ReducedEnergy(&r->model, &r->state, &part->kinetic, &part->strain);
+  ReducedEnergy(&r->reduction.model, &r->motion.state, &part->kinetic, &part->strain);
   if (rank) *part = (LedgerPart){0};
-  PetscCall(LedgerClose(r->comm, &r->ledger, r->run.n_interfaces, r->sums, first));
-  PetscCall(LedgerJudge(r->comm, &r->ledger.total, 0, r->step, r->state.time));
-  PetscCall(LedgerJudgeContact(r->comm, &r->ledger.total, r->step, r->state.time));
+  PetscCall(LedgerClose(r->comm, &r->motion.ledger, r->run.n_interfaces, r->motion.sums, first));
+  PetscCall(LedgerJudge(r->comm, &r->motion.ledger.total, 0, r->motion.step, r->motion.state.time));
+  PetscCall(LedgerJudgeContact(r->comm, &r->motion.ledger.total, r->motion.step, r->motion.state.time));
   PetscFunctionReturn(0);
 }
 
@@ -125,17 +127,17 @@ static PetscErrorCode RecordPairs(ReducedRun r, HistoryPairs *pairs, PetscInt **
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(r->run.model, &mesh));
-  PetscCall(PetscMalloc1(2 * r->n_local, interface));
-  PetscCall(PetscMalloc1(3 * r->n_local, x));
-  number = *interface + r->n_local;
-  for (PetscInt i = 0; i < r->n_local; i++) {
-    const ContactPair *pair = &r->pair[r->begin + i];
+  PetscCall(PetscMalloc1(2 * r->reduction.n_local, interface));
+  PetscCall(PetscMalloc1(3 * r->reduction.n_local, x));
+  number = *interface + r->reduction.n_local;
+  for (PetscInt i = 0; i < r->reduction.n_local; i++) {
+    const ContactPair *pair = &r->reduction.pair[r->reduction.begin + i];
 
     (*interface)[i] = pair->interface;
     number[i]       = pair->vertex;
     PetscCall(PetscArraycpy(&(*x)[3 * i], pair->x, 3));
   }
-  *pairs = (HistoryPairs){r->n_local, r->pairs + r->begin, *interface, number, *x};
+  *pairs = (HistoryPairs){r->reduction.n_local, r->motion.pairs + r->reduction.begin, *interface, number, *x};
   PetscFunctionReturn(0);
 }
 
@@ -145,12 +147,12 @@ PetscErrorCode ReducedRecord(ReducedRun r, PetscBool first)
   PetscInt            *interface;
   PetscReal           *x;
   HistoryPairs         pairs;
-  HistoryState         state = {.step         = r->step,
-                                .time         = r->state.time,
-                                .dt           = r->dt,
-                                .ledger       = &r->ledger.total,
+  HistoryState         state = {.step         = r->motion.step,
+                                .time         = r->motion.state.time,
+                                .dt           = r->motion.dt,
+                                .ledger       = &r->motion.ledger.total,
                                 .n_interfaces = r->run.n_interfaces,
-                                .sums         = r->sums,
+                                .sums         = r->motion.sums,
                                 .motions      = &motions,
                                 .pairs        = &pairs};
 

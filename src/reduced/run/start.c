@@ -20,13 +20,13 @@ static PetscErrorCode StartWeigh(ReducedRun r, Vec x, PetscReal *square)
   Mat            M, Z;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetMass(r->bodies, &M));
-  PetscCall(PencilGetMatrices(r->bodies, &pencil));
+  PetscCall(PencilGetMass(r->reduction.bodies, &M));
+  PetscCall(PencilGetMatrices(r->reduction.bodies, &pencil));
   PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
   PetscCall(VecDuplicate(x, &Mx));
   PetscCall(MatMult(M, x, Mx));
   PetscCall(MatCreateVecs(pencil.M, &y, &f));
-  PetscCall(PencilProjectForce(r->bodies, PETSC_FALSE, Mx, f));
+  PetscCall(PencilProjectForce(r->reduction.bodies, PETSC_FALSE, Mx, f));
   if (Z)
     PetscCall(MassSolve(pencil.M, f, y, "the motion of tied bodies nearest to that of the start"));
   else
@@ -52,10 +52,10 @@ static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[],
   PetscCall(VecGetLocalSize(x, &n));
   PetscCall(VecGetArrayRead(x, &value));
   PetscCall(MatCreateDense(r->comm, n, PETSC_DECIDE, PETSC_DETERMINE, 1, (PetscScalar *)value, &X));
-  PetscCall(PetscMalloc1(r->model.m, &sum));
-  PetscCall(ReducedGram(r->MPhi, X, sum));
+  PetscCall(PetscMalloc1(r->reduction.model.m, &sum));
+  PetscCall(ReducedGram(r->reduction.MPhi, X, sum));
   if (square) *square = 0;
-  for (PetscInt k = 0; k < r->model.m; k++) {
+  for (PetscInt k = 0; k < r->reduction.model.m; k++) {
     coordinates[k] += sum[k];
     if (square) *square += PetscSqr(sum[k]);
   }
@@ -93,7 +93,7 @@ static PetscErrorCode StartProjectNodal(ReducedRun r, const char what[], const P
     whole == 0 || *share >= START_SHARE, r->comm, PETSC_ERR_USER_INPUT,
     "-dynamics_cutoff %.6g Hz: the modes below it hold %.2g %% of the %s, must be %.0f %% at least; take a higher "
     "one, or -dynamics_model full",
-    (double)r->cutoff, (double)(100 * *share), what, 100 * START_SHARE);
+    (double)r->request.cutoff, (double)(100 * *share), what, 100 * START_SHARE);
   PetscFunctionReturn(0);
 }
 
@@ -121,8 +121,8 @@ static PetscErrorCode StartVelocities(ReducedRun r)
     PetscCall(PetscFree(node));
   }
   for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) nodal[i] /= PetscMax(1, count[i / 3]);
-  PetscCall(
-    StartProjectNodal(r, "kinetic energy of the starting velocities", nodal, r->state.rate, &r->held.velocities));
+  PetscCall(StartProjectNodal(r, "kinetic energy of the starting velocities", nodal, r->motion.state.rate,
+                              &r->reduction.held.velocities));
   PetscCall(PetscFree2(nodal, count));
   PetscFunctionReturn(0);
 }
@@ -138,14 +138,14 @@ static PetscErrorCode StartSliding(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(StaticsSolve(r->run.statics, NULL));
   PetscCall(StaticsGetState(r->run.statics, &local, &u));
-  PetscCall(GatherRecords(r->comm, r->n_local, sizeof(*local), local, NULL, &all));
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) {
-    r->state.p[3 * i] = all[i].lambda_n;
-    for (int d = 0; d < 2; d++) r->state.p[3 * i + 1 + d] = -all[i].lambda_t[d];
-    r->state.status[i] = all[i].status;
+  PetscCall(GatherRecords(r->comm, r->reduction.n_local, sizeof(*local), local, NULL, &all));
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
+    r->motion.state.p[3 * i] = all[i].lambda_n;
+    for (int d = 0; d < 2; d++) r->motion.state.p[3 * i + 1 + d] = -all[i].lambda_t[d];
+    r->motion.state.status[i] = all[i].status;
   }
   PetscCall(PetscFree(all));
-  PetscCall(StartProject(r, u, r->state.eta, NULL));
+  PetscCall(StartProject(r, u, r->motion.state.eta, NULL));
   PetscCall(StaticsRelease(r->run.statics));
   PetscFunctionReturn(0);
 }
@@ -160,8 +160,9 @@ static PetscErrorCode StartShape(ReducedRun r)
   PetscCall(ModelGetMesh(r->run.model, &mesh));
   PetscCall(PetscMalloc2(3 * mesh->n_nodes, &u, 3 * mesh->n_nodes, &v));
   PetscCall(DynamicsGetShape(r->dynamics, u, v));
-  PetscCall(StartProjectNodal(r, "displacements of -dynamics_shape", u, r->state.eta, &r->held.displacements));
-  PetscCall(StartProjectNodal(r, "velocities of -dynamics_shape", v, r->state.rate, &r->held.rates));
+  PetscCall(
+    StartProjectNodal(r, "displacements of -dynamics_shape", u, r->motion.state.eta, &r->reduction.held.displacements));
+  PetscCall(StartProjectNodal(r, "velocities of -dynamics_shape", v, r->motion.state.rate, &r->reduction.held.rates));
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(0);
 }
@@ -170,7 +171,7 @@ static PetscErrorCode StartShape(ReducedRun r)
    prescribed: those that are there are the guess. Without it the first step would be of first order */
 static PetscErrorCode StartLaws(ReducedRun r)
 {
-  const ReducedModel  *model = &r->model;
+  const ReducedModel  *model = &r->reduction.model;
   const PetscInt       n     = 3 * model->n_pairs;
   PetscReal           *W, *q, *slip0;
   ComplianceReport     solved;
@@ -181,9 +182,9 @@ static PetscErrorCode StartLaws(ReducedRun r)
   PetscCall(PetscMalloc3(n * n, &W, n, &q, 2 * model->n_pairs, &slip0));
   for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&W[n * j], &model->W[model->n_ports * j], n));
   for (PetscInt i = 0; i < n; i++) {
-    q[i] = ReducedPortDisplacement(model, r->state.eta, r->state.p, i) + (i % 3 ? 0 : model->gap[i / 3]);
+    q[i] = ReducedPortDisplacement(model, r->motion.state.eta, r->motion.state.p, i) + (i % 3 ? 0 : model->gap[i / 3]);
     if (i % 3) slip0[2 * (i / 3) + i % 3 - 1] = q[i];
-    for (PetscInt j = 0; j < n; j++) q[i] -= W[i + n * j] * r->state.p[j];
+    for (PetscInt j = 0; j < n; j++) q[i] -= W[i + n * j] * r->motion.state.p[j];
   }
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     PetscReal way;
@@ -192,13 +193,13 @@ static PetscErrorCode StartLaws(ReducedRun r)
     slip0[2 * i] -= way;
   }
   PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
-  PetscCall(ContactComplianceSetFriction(laws, model->friction, r->dt));
-  PetscCall(ContactComplianceSolve(laws, q, slip0, r->state.p, NULL, &solved));
+  PetscCall(ContactComplianceSetFriction(laws, model->friction, r->motion.dt));
+  PetscCall(ContactComplianceSolve(laws, q, slip0, r->motion.state.p, NULL, &solved));
   PetscCheck(solved.converged, r->comm, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at the start: residual %.2e of pair %" PetscInt_FMT,
              (double)solved.residual, solved.worst + 1);
   PetscCall(ContactComplianceGetStatus(laws, &status));
-  PetscCall(PetscArraycpy(r->state.status, status, model->n_pairs));
+  PetscCall(PetscArraycpy(r->motion.state.status, status, model->n_pairs));
   PetscCall(ContactComplianceDestroy(&laws));
   PetscCall(PetscFree3(W, q, slip0));
   PetscFunctionReturn(0);
@@ -208,16 +209,17 @@ static PetscErrorCode StartLaws(ReducedRun r)
    been there for long. */
 PetscErrorCode ReducedStart(ReducedRun r)
 {
-  ReducedState *s = &r->state;
+  ReducedState *s = &r->motion.state;
 
   PetscFunctionBeginUser;
   PetscCall(StartVelocities(r));
   if (r->run.from_static) PetscCall(StartSliding(r));
   PetscCall(StartShape(r));
-  ReducedSetLoads(r, 0, &s->p[3 * r->model.n_pairs]);
+  ReducedSetLoads(r, 0, &s->p[3 * r->reduction.model.n_pairs]);
   PetscCall(StartLaws(r));
-  PetscCall(PetscArraycpy(s->last, s->p, r->model.n_ports));
-  PetscCall(PetscArraycpy(s->q, s->p, 3 * r->model.n_pairs));
-  for (PetscInt i = 0; i < 3 * r->model.n_pairs; i++) s->y[i] = ReducedPortDisplacement(&r->model, s->eta, s->p, i);
+  PetscCall(PetscArraycpy(s->last, s->p, r->reduction.model.n_ports));
+  PetscCall(PetscArraycpy(s->q, s->p, 3 * r->reduction.model.n_pairs));
+  for (PetscInt i = 0; i < 3 * r->reduction.model.n_pairs; i++)
+    s->y[i] = ReducedPortDisplacement(&r->reduction.model, s->eta, s->p, i);
   PetscFunctionReturn(0);
 }

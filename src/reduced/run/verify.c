@@ -18,9 +18,10 @@ PetscErrorCode ReducedKeepForce(ReducedRun r)
   PetscReal sum = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < r->model.n_pairs; i++) sum += r->state.p[3 * i];
-  if (r->n_force % 1024 == 0) PetscCall(PetscRealloc((size_t)(r->n_force + 1024) * sizeof(PetscReal), &r->force));
-  r->force[r->n_force++] = sum;
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) sum += r->motion.state.p[3 * i];
+  if (r->result.n_force % 1024 == 0)
+    PetscCall(PetscRealloc((size_t)(r->result.n_force + 1024) * sizeof(PetscReal), &r->result.force));
+  r->result.force[r->result.n_force++] = sum;
   PetscFunctionReturn(0);
 }
 
@@ -31,14 +32,14 @@ static PetscErrorCode VerifyRun(ReducedRun r, PetscReal cutoff, PetscInt every, 
   ReducedRun   o;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedReduceAt(r, cutoff, r->p, other));
-  o     = *other;
-  o->dt = r->dt / (PetscReal)every;
+  PetscCall(ReducedReduceAt(r, cutoff, r->request.p, other));
+  o            = *other;
+  o->motion.dt = r->motion.dt / (PetscReal)every;
   PetscCall(ReducedStart(o));
-  PetscCall(ReducedStepperCreate(&o->model, o->dt, REDUCED_RTOL, &o->stepper));
-  for (PetscInt i = 1; i <= every * r->n_force; i++) {
+  PetscCall(ReducedStepperCreate(&o->reduction.model, o->motion.dt, REDUCED_RTOL, &o->motion.stepper));
+  for (PetscInt i = 1; i <= every * r->result.n_force; i++) {
     PetscCall(ReducedDriveSet(o, &drive));
-    PetscCall(ReducedStep(o->stepper, &drive, &o->state, &o->report));
+    PetscCall(ReducedStep(o->motion.stepper, &drive, &o->motion.state, &o->motion.report));
     if (i % every == 0) PetscCall(ReducedKeepForce(o));
   }
   PetscFunctionReturn(0);
@@ -81,26 +82,26 @@ static void ForceScatter(PetscInt n, const PetscReal force[], PetscReal *rms, Pe
    open time in the last half, with their standard errors, of both runs together. */
 static PetscErrorCode VerifyOne(ReducedRun r, PetscReal cutoff, PetscInt every, ReducedDifference *d)
 {
-  const PetscInt n = r->n_force, half = n / 2;
+  const PetscInt n = r->result.n_force, half = n / 2;
   PetscReal      rms[3], open[3], error[2][2], largest = 0, miss = 0, square = 0;
   ReducedRun     other;
 
   PetscFunctionBeginUser;
   PetscCall(VerifyRun(r, cutoff, every, &other));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal difference = other->force[i] - r->force[i];
+    const PetscReal difference = other->result.force[i] - r->result.force[i];
 
-    largest = PetscMax(largest, PetscAbsReal(r->force[i]));
+    largest = PetscMax(largest, PetscAbsReal(r->result.force[i]));
     miss    = PetscMax(miss, PetscAbsReal(difference));
     square += difference * difference / (PetscReal)n;
   }
-  ForceMeasure(n, r->force, &rms[0], &open[0]);
-  ForceMeasure(n - half, &r->force[half], &rms[1], &open[1]);
-  ForceMeasure(n - half, &other->force[half], &rms[2], &open[2]);
-  ForceScatter(n - half, &r->force[half], &error[0][0], &error[0][1]);
-  ForceScatter(n - half, &other->force[half], &error[1][0], &error[1][1]);
+  ForceMeasure(n, r->result.force, &rms[0], &open[0]);
+  ForceMeasure(n - half, &r->result.force[half], &rms[1], &open[1]);
+  ForceMeasure(n - half, &other->result.force[half], &rms[2], &open[2]);
+  ForceScatter(n - half, &r->result.force[half], &error[0][0], &error[0][1]);
+  ForceScatter(n - half, &other->result.force[half], &error[1][0], &error[1][1]);
   *d = (ReducedDifference){.cutoff      = cutoff,
-                           .dt          = r->dt / (PetscReal)every,
+                           .dt          = r->motion.dt / (PetscReal)every,
                            .rms         = rms[0] > 0 ? PetscSqrtReal(square) / rms[0] : 0,
                            .largest     = largest > 0 ? miss / largest : 0,
                            .level       = rms[1] > 0 ? rms[2] / rms[1] - 1 : 0,
@@ -124,10 +125,10 @@ static PetscBool VerifyIsOff(const ReducedDifference *d)
 PetscErrorCode ReducedJudgeVerified(ReducedRun r)
 {
   static const char *const more[2] = {"take a smaller -ts_dt", "take a higher -dynamics_cutoff"};
-  const ReducedDifference *both[2] = {&r->finer, &r->higher};
+  const ReducedDifference *both[2] = {&r->result.finer, &r->result.higher};
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < 2 && r->verify && r->n_force; i++)
+  for (int i = 0; i < 2 && r->request.verify && r->result.n_force; i++)
     PetscCheck(!VerifyIsOff(both[i]), r->comm, PETSC_ERR_NOT_CONVERGED,
                "-dynamics_verify: with steps of %.6g s below %.6g Hz the rms of the normal force is another one by "
                "%+.2g %% +- %.2g %%, and the time without contact by %+.2g %% +- %.2g %%, must be %.3g %% at most: %s",
@@ -140,15 +141,15 @@ PetscErrorCode ReducedJudgeVerified(ReducedRun r)
 PetscErrorCode ReducedVerify(ReducedRun r)
 {
   PetscFunctionBeginUser;
-  if (!r->n_force) PetscFunctionReturn(0);
-  PetscCall(VerifyOne(r, r->cutoff, 2, &r->finer));
-  PetscCall(VerifyOne(r, REDUCED_HIGHER * r->cutoff, 1, &r->higher));
+  if (!r->result.n_force) PetscFunctionReturn(0);
+  PetscCall(VerifyOne(r, r->request.cutoff, 2, &r->result.finer));
+  PetscCall(VerifyOne(r, REDUCED_HIGHER * r->request.cutoff, 1, &r->result.higher));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedVerifyView(ReducedRun r, PetscViewer viewer)
 {
-  const ReducedDifference *both[2] = {&r->finer, &r->higher};
+  const ReducedDifference *both[2] = {&r->result.finer, &r->result.higher};
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++) {

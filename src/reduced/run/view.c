@@ -14,7 +14,7 @@ static PetscErrorCode ReducedViewLaws(ReducedRun r, PetscViewer viewer)
   ComplianceReport         total;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactComplianceGetTotals(r->stepper->laws, &total));
+  PetscCall(ContactComplianceGetTotals(r->motion.stepper->laws, &total));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "contact laws: %" PetscInt_FMT " iterations, %" PetscInt_FMT " factors; steps by",
                                    total.iterations, total.factors));
@@ -38,11 +38,13 @@ static PetscErrorCode ReducedViewShare(const char what[], PetscReal share, Petsc
 static PetscErrorCode ReducedViewShares(ReducedRun r, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(ReducedViewShare("kinetic energy of the starting velocities", r->held.velocities, viewer));
-  PetscCall(ReducedViewShare("displacements of -dynamics_shape (squares, by mass)", r->held.displacements, viewer));
-  PetscCall(ReducedViewShare("velocities of -dynamics_shape (squares, by mass)", r->held.rates, viewer));
-  if (r->n_hits)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  only the modes below %.6g Hz receive impulses\n", (double)r->cutoff));
+  PetscCall(ReducedViewShare("kinetic energy of the starting velocities", r->reduction.held.velocities, viewer));
+  PetscCall(
+    ReducedViewShare("displacements of -dynamics_shape (squares, by mass)", r->reduction.held.displacements, viewer));
+  PetscCall(ReducedViewShare("velocities of -dynamics_shape (squares, by mass)", r->reduction.held.rates, viewer));
+  if (r->reduction.n_hits)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  only the modes below %.6g Hz receive impulses\n", (double)r->request.cutoff));
   PetscFunctionReturn(0);
 }
 
@@ -58,38 +60,40 @@ static PetscErrorCode ReducedViewSaved(ReducedRun r, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "saved: %" PetscInt_FMT " modes and %" PetscInt_FMT
                                    " pairs in each step instead of %" PetscInt_FMT " unknowns\n",
-                                   r->model.m, r->model.n_pairs, mesh->n_unknowns));
+                                   r->reduction.model.m, r->reduction.model.n_pairs, mesh->n_unknowns));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
 {
-  const double seconds = (double)r->seconds;
+  const double seconds = (double)r->result.seconds;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer,
-    "reduced model: %" PetscInt_FMT " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
-    "compliance of %" PetscInt_FMT " pairs\n",
-    r->model.m, (double)r->cutoff, r->why, r->model.C ? "damped" : "undamped", r->model.n_pairs));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "reduced model: %" PetscInt_FMT
+                                   " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
+                                   "compliance of %" PetscInt_FMT " pairs\n",
+                                   r->reduction.model.m, (double)r->request.cutoff, r->reduction.why,
+                                   r->reduction.model.C ? "damped" : "undamped", r->reduction.model.n_pairs));
   PetscCall(ReducedViewSaved(r, viewer));
   PetscCall(ExternalView(r->run.external, viewer));
   PetscCall(ReducedViewShares(r, viewer));
   PetscCall(ReducedCompareView(r, viewer));
   PetscCall(ReducedGrowthView(r, viewer));
-  if (!r->stepper) PetscFunctionReturn(0); /* nothing has run in time */
+  if (!r->motion.stepper) PetscFunctionReturn(0); /* nothing has run in time */
   PetscCall(PetscViewerASCIIPrintf(
     viewer,
     "%" PetscInt_FMT " steps of %.6g s to %.6g s in %.4g s: %.4g us per step, %.3g iterations "
     "of the contact laws; set-up %.4g s\n",
-    r->n_steps, (double)r->dt, (double)r->state.time, seconds, 1e6 * seconds / (double)PetscMax(1, r->n_steps),
-    (double)(r->n_its / (PetscReal)PetscMax(1, r->step)), (double)r->setup_seconds));
+    r->result.n_steps, (double)r->motion.dt, (double)r->motion.state.time, seconds,
+    1e6 * seconds / (double)PetscMax(1, r->result.n_steps),
+    (double)(r->result.n_its / (PetscReal)PetscMax(1, r->motion.step)), (double)r->result.setup_seconds));
   PetscCall(ReducedViewLaws(r, viewer));
-  if (r->verify) PetscCall(ReducedVerifyView(r, viewer));
-  PetscCall(LedgerView(&r->ledger.total, viewer));
+  if (r->request.verify) PetscCall(ReducedVerifyView(r, viewer));
+  PetscCall(LedgerView(&r->motion.ledger.total, viewer));
   if (r->run.view_kkt) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "the worst of all steps:\n"));
-    PetscCall(ContactViewKKT(&r->kkt, viewer));
+    PetscCall(ContactViewKKT(&r->result.kkt, viewer));
   }
   PetscFunctionReturn(0);
 }
