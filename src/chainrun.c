@@ -17,12 +17,14 @@ static PetscErrorCode ChainGivePencil(Chain *chain)
 
 static PetscErrorCode ChainSolveModes(Chain *chain)
 {
-  PetscBool components;
+  PetscBool components, changes;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesSolve(chain->modes));
   PetscCall(ModesWantComponents(chain->modes, &components));
+  PetscCall(ModesPlaceChanges(chain->modes, &changes));
+  PetscCall(ModesSolve(chain->modes));
   if (components) PetscCall(ModesFindComponents(chain->modes));
+  if (changes) PetscCall(ModesFindChanges(chain->modes));
   PetscFunctionReturn(0);
 }
 

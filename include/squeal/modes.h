@@ -84,6 +84,8 @@ the units of a part are in doubt
 .  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
 .  -modes_components <0>     - write which free modes of the bodies make up each mode, of those up to this multiple of
 the highest frequency
+.  -modes_changes <names>    - changes to try on the modes found, each the prefix of its -at, -part, -to, -to_part,
+-unknown, -to_unknown, -direction, -mass, -stiffness, -viscosity, -with
 .  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called
 disc, the only one with the word disc, disk, rotor or drum in its name, in any letters
 .  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
@@ -145,6 +147,17 @@ PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted);
     Errors: PETSC_ERR_USER_INPUT for loaded matrices. @*/
 PetscErrorCode ModesFindComponents(Modes modes);
 
+/*@ ModesPlaceChanges - whether the options give changes to try on the modes; then finds their places, and has
+    ModesSolve() keep its factorisation. Collective; after ModesSetPencil().
+    Errors: PETSC_ERR_USER_INPUT for a place that is far from any node or held, and a direction that is missing. @*/
+PetscErrorCode ModesPlaceChanges(Modes modes, PetscBool *wanted);
+
+/*@ ModesFindChanges - the modes of the system with each change of -modes_changes, by itself or with another one as its
+    -with says, for ModesView() and ModesWrite(): a mass, spring, dashpot or absorber is of low rank, and is solved on
+    the modes of the last solution and on answers by the factorisation that it kept. The error of each is what the last
+    of these answers have changed. Collective. @*/
+PetscErrorCode ModesFindChanges(Modes modes);
+
 /*@ ModesGet - the modes in order of frequency (borrowed). Not collective. @*/
 PetscErrorCode ModesGet(Modes modes, PetscInt *n, const Mode **mode);
 
@@ -168,7 +181,8 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);
 /*@ ModesView - the table of modes for people. Collective. @*/
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
 
-/*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv, modes_components.csv and the shapes. Collective. @*/
+/*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv, modes_components.csv, modes_changed.csv and the
+    shapes. Collective. @*/
 PetscErrorCode ModesWrite(Modes modes, Results results);
 
 /*@ ModesDestroy - frees the solver. Collective. @*/

@@ -195,6 +195,19 @@ PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[]
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);
 
+/*@ OperatorsGetNodeUnknowns - numbers of the unknowns of a node in x, y, z among all of them, -1 where it is held, on
+    every rank. vertex is its local node on one rank at least, -1 on the others. Collective. @*/
+PetscErrorCode OperatorsGetNodeUnknowns(Operators operators, PetscInt vertex, PetscInt unknown[3]);
+
+/*@ OperatorsFindUnknown - of matrices without a mesh the unknown, from 0, that an option names by its number from 1.
+    Collective. Errors: PETSC_ERR_USER_INPUT for what is no such number, naming the option. @*/
+PetscErrorCode OperatorsFindUnknown(Operators operators, const char option[], const char word[], PetscInt *unknown);
+
+/*@ OperatorsAddEntries - adds n values, alike on all ranks, to entries of a vector of all unknowns; entries of -1 are
+    left out. Collective. @*/
+PetscErrorCode OperatorsAddEntries(Operators operators, Vec u, PetscInt n, const PetscInt entry[],
+                                   const PetscReal value[]);
+
 /*@ OperatorsGetMesh - the mesh of the model, or the points of -operators_nodes as a mesh whose cells are points, NULL
    where
     there is neither (borrowed). Not collective; after OperatorsSetUp(). @*/

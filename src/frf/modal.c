@@ -7,37 +7,20 @@
    Left and right vectors are in one V, so that the moments of H at the shift that both chains match add up. The
    error at a frequency is the difference from the answer with one step more.
 */
-#include "frf/space/krylov.h"
-#include "frf/space/schur.h"
+#include "modes/space/krylov.h"
+#include "schur.h"
 #include "solver/block/orthonormal.h"
 
 /* Frequencies that are looked at while the space grows; all are looked at before it ends. */
 #define N_LOOKS 33
 
 typedef struct {
-  FrfSpace  space;
-  FrfKrylov right, left; /* left is empty for a symmetric pencil */
-  Vec       b, *l, *all; /* the force, the outputs, and both */
-  PetscReal shift;
-  FrfSchur  used, larger; /* the small response before the last step, and after it */
+  ModesSpace  space;
+  ModesKrylov right, left; /* left is empty for a symmetric pencil */
+  Vec         b, *l, *all; /* the force, the outputs, and both */
+  PetscReal   shift;
+  FrfSchur    used, larger; /* the small response before the last step, and after it */
 } Superposition;
-
-/* Columns of real and imaginary parts of all modes' vectors, right and left ones, as far as there are any */
-static PetscErrorCode ModesCount(Frf frf, PetscInt *n_columns)
-{
-  const Mode *mode;
-  PetscInt    n;
-  Vec         x[4];
-
-  PetscFunctionBeginUser;
-  PetscCall(ModesGet(frf->modes, &n, &mode));
-  *n_columns = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(ModesGetVectors(frf->modes, i, &x[0], &x[1], &x[2], &x[3]));
-    for (int k = 0; k < 4; k++) *n_columns += x[k] ? 1 : 0;
-  }
-  PetscFunctionReturn(0);
-}
 
 /* Space and chains with the modes. With a symmetric pencil left vectors are right ones: one chain begins with the
    force and the outputs. most = states of the modes, real and imaginary parts, and max_steps + 1 of each chain. The
@@ -55,13 +38,13 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   factor.progress = &frf->progress;
   factor.after    = NULL;
   PetscCall(PencilGetMatrices(frf->pencil, &pencil));
-  PetscCall(ModesCount(frf, &n_modes));
+  PetscCall(ModesCountVectors(frf->modes, &n_modes));
   PetscCall(FrfProject(frf, &s->b, &s->l));
   s->shift = factor.shift;
   most     = 2 * n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1);
-  PetscCall(FrfSpaceCreate(&pencil, n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1), &s->space));
-  PetscCall(FrfKrylovCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
-  PetscCall(FrfKrylovCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
+  PetscCall(ModesSpaceCreate(&pencil, n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1), &s->space));
+  PetscCall(ModesKrylovCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
+  PetscCall(ModesKrylovCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
   s->right.n_solves = s->left.n_solves = &frf->n_solves;
   PetscCall(PetscMalloc1(frf->n_outputs + 1, &s->all));
   s->all[0] = s->b;
@@ -70,8 +53,8 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   s->right.n_b = pencil.symmetric ? frf->n_outputs + 1 : 1;
   s->left.b    = s->l;
   s->left.n_b  = pencil.symmetric ? 0 : frf->n_outputs;
-  PetscCall(FrfKrylovAddModes(frf, &s->right));
-  if (!pencil.symmetric) PetscCall(FrfKrylovAddModes(frf, &s->left));
+  PetscCall(ModesKrylovAddModes(frf->modes, frf->pencil, &s->right));
+  if (!pencil.symmetric) PetscCall(ModesKrylovAddModes(frf->modes, frf->pencil, &s->left));
   PetscFunctionReturn(0);
 }
 
@@ -80,7 +63,7 @@ static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
 {
   PetscFunctionBeginUser;
   frf->n_steps++;
-  PetscCall(FrfKrylovStep(&s->space, (FrfKrylov *[]){&s->right, &s->left}));
+  PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
   PetscFunctionReturn(0);
 }
 
@@ -94,7 +77,7 @@ static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
   PetscCall(BlockCreate(s->space.space.V, frf->n_outputs + 1, &block));
   PetscCall(BVInsertVec(block, 0, s->b));
   for (PetscInt p = 0; p < frf->n_outputs; p++) PetscCall(BVInsertVec(block, p + 1, s->l[p]));
-  PetscCall(FrfSpaceCoordinates(&s->space, block, &ends->b));
+  PetscCall(ModesSpaceCoordinates(&s->space, block, &ends->b));
   ends->l = ends->b + s->space.size;
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
@@ -227,9 +210,9 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionBeginUser;
   PetscCall(FrfSchurDestroy(&s->used));
   PetscCall(FrfSchurDestroy(&s->larger));
-  PetscCall(FrfKrylovDestroy(&s->right));
-  PetscCall(FrfKrylovDestroy(&s->left));
-  PetscCall(FrfSpaceDestroy(&s->space));
+  PetscCall(ModesKrylovDestroy(&s->right));
+  PetscCall(ModesKrylovDestroy(&s->left));
+  PetscCall(ModesSpaceDestroy(&s->space));
   PetscCall(VecDestroy(&s->b));
   PetscCall(PetscFree(s->all));
   PetscCall(VecDestroyVecs(frf->n_outputs, &s->l));

@@ -32,51 +32,6 @@ static PetscErrorCode ProbeFind(Frf frf, const ModelScene *scene, const char opt
   PetscFunctionReturn(0);
 }
 
-/* Number, from 0, of an unknown of matrices without a mesh */
-static PetscErrorCode MatrixUnknown(Frf frf, const char option[], const char word[], PetscInt *unknown)
-{
-  char      *end;
-  const long number = strtol(word, &end, 10);
-  PetscInt   n;
-  Vec        u;
-
-  PetscFunctionBeginUser;
-  PetscCall(OperatorsCreateVec(frf->operators, &u));
-  PetscCall(VecGetSize(u, &n));
-  PetscCall(VecDestroy(&u));
-  PetscCheck(end != word && !*end && number >= 1 && number <= n, frf->comm, PETSC_ERR_USER_INPUT,
-             "%s '%s' must be the number of an unknown, 1 to %" PetscInt_FMT ": the matrices have no mesh", option,
-             word, n);
-  *unknown = (PetscInt)number - 1;
-  PetscFunctionReturn(0);
-}
-
-/* Global unknowns of a probe on every rank, -1 where it is held */
-static PetscErrorCode ProbeUnknowns(Frf frf, Model model, const Probe *probe, PetscInt unknown[3])
-{
-  const Mesh *mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(model, &mesh));
-  for (int d = 0; d < 3; d++) unknown[d] = probe->vertex >= 0 ? mesh->unknown[3 * probe->vertex + d] : -1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, unknown, 3, MPIU_INT, MPI_MAX, frf->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Adds values to entries of a vector, on the first rank; entries of -1 are left out */
-static PetscErrorCode VecFill(Vec v, PetscInt n, const PetscInt unknown[], const PetscReal value[])
-{
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)v), &rank));
-  PetscCall(VecSetOption(v, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  if (!rank) PetscCall(VecSetValues(v, n, unknown, value, ADD_VALUES));
-  PetscCall(VecAssemblyBegin(v));
-  PetscCall(VecAssemblyEnd(v));
-  PetscFunctionReturn(0);
-}
-
 /* The direction of words x, y, z, or of three numbers, as a unit vector */
 static PetscErrorCode DirectionParse(Frf frf, int n, char *words[], PetscReal direction[3])
 {
@@ -112,13 +67,13 @@ static PetscErrorCode ForceOnProbe(Frf frf, Model model, int n_words, char *word
   PetscCall(ProbeFind(frf, scene, "-frf_force", words[0], &index));
   PetscCall(DirectionParse(frf, n_words - 1, words + 1, direction));
   probe = &scene->probes[index];
-  PetscCall(ProbeUnknowns(frf, model, probe, unknown));
+  PetscCall(OperatorsGetNodeUnknowns(frf->operators, probe->vertex, unknown));
   for (int d = 0; d < 3; d++)
     if (direction[d] != 0 && unknown[d] >= 0) moves = PETSC_TRUE;
   PetscCheck(moves, frf->comm, PETSC_ERR_USER_INPUT,
              "-frf_force %s does nothing: the node at %.6g, %.6g, %.6g m is held in its direction", frf->force,
              (double)probe->x[0], (double)probe->x[1], (double)probe->x[2]);
-  PetscCall(VecFill(frf->f, 3, unknown, direction));
+  PetscCall(OperatorsAddEntries(frf->operators, frf->f, 3, unknown, direction));
   PetscCall(PetscSNPrintf(frf->input, sizeof(frf->input), "%s along %.6g, %.6g, %.6g", probe->name,
                           (double)direction[0], (double)direction[1], (double)direction[2]));
   PetscFunctionReturn(0);
@@ -141,8 +96,8 @@ PetscErrorCode FrfFindForce(Frf frf)
   if (model) {
     PetscCall(ForceOnProbe(frf, model, n_words, words));
   } else {
-    PetscCall(MatrixUnknown(frf, "-frf_force", frf->force, &unknown));
-    PetscCall(VecFill(frf->f, 1, &unknown, &one));
+    PetscCall(OperatorsFindUnknown(frf->operators, "-frf_force", frf->force, &unknown));
+    PetscCall(OperatorsAddEntries(frf->operators, frf->f, 1, &unknown, &one));
     PetscCall(PetscSNPrintf(frf->input, sizeof(frf->input), "unknown %s", frf->force));
   }
   PetscCall(PetscStrToArrayDestroy(n_words, words));
@@ -158,20 +113,20 @@ static PetscErrorCode OutputAdd(Frf frf, const char name[], PetscInt unknown)
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(frf->output[i].name, name, sizeof(frf->output[i].name)));
   PetscCall(OperatorsCreateVec(frf->operators, &frf->l[i]));
-  PetscCall(VecFill(frf->l[i], 1, &unknown, &one));
+  PetscCall(OperatorsAddEntries(frf->operators, frf->l[i], 1, &unknown, &one));
   frf->n_outputs++;
   PetscFunctionReturn(0);
 }
 
 /* The directions of a probe in which it is not held */
-static PetscErrorCode OutputsOfProbe(Frf frf, Model model, const Probe *probe)
+static PetscErrorCode OutputsOfProbe(Frf frf, const Probe *probe)
 {
   const PetscInt before = frf->n_outputs;
   PetscInt       unknown[3];
   char           name[128];
 
   PetscFunctionBeginUser;
-  PetscCall(ProbeUnknowns(frf, model, probe, unknown));
+  PetscCall(OperatorsGetNodeUnknowns(frf->operators, probe->vertex, unknown));
   for (int d = 0; d < 3; d++) {
     if (unknown[d] < 0 || !strchr(frf->directions, "xyz"[d])) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%c", probe->name, "xyz"[d]));
@@ -184,7 +139,7 @@ static PetscErrorCode OutputsOfProbe(Frf frf, Model model, const Probe *probe)
 }
 
 /* The nodes of a circle along its axis. Errors: one is held */
-static PetscErrorCode OutputsOfCircle(Frf frf, Model model, const Circle *circle)
+static PetscErrorCode OutputsOfCircle(Frf frf, const Circle *circle)
 {
   PetscInt unknown[3];
   char     name[128];
@@ -193,7 +148,7 @@ static PetscErrorCode OutputsOfCircle(Frf frf, Model model, const Circle *circle
   for (PetscInt k = 0; k < circle->n; k++) {
     const Probe *probe = &circle->probe[k];
 
-    PetscCall(ProbeUnknowns(frf, model, probe, unknown));
+    PetscCall(OperatorsGetNodeUnknowns(frf->operators, probe->vertex, unknown));
     PetscCheck(unknown[circle->axis] >= 0, frf->comm, PETSC_ERR_USER_INPUT,
                "circle %s cannot answer: the node at %.6g, %.6g, %.6g m is held in %c; choose others by -frf_probes",
                circle->name, (double)probe->x[0], (double)probe->x[1], (double)probe->x[2], "xyz"[circle->axis]);
@@ -204,18 +159,18 @@ static PetscErrorCode OutputsOfCircle(Frf frf, Model model, const Circle *circle
 }
 
 /* Outputs of the probe or circle of a name */
-static PetscErrorCode OutputsOfName(Frf frf, Model model, const ModelScene *scene, const char name[])
+static PetscErrorCode OutputsOfName(Frf frf, const ModelScene *scene, const char name[])
 {
   PetscInt index;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < scene->n_circles; i++) {
     if (strcmp(scene->circles[i].name, name)) continue;
-    PetscCall(OutputsOfCircle(frf, model, &scene->circles[i]));
+    PetscCall(OutputsOfCircle(frf, &scene->circles[i]));
     PetscFunctionReturn(0);
   }
   PetscCall(ProbeFind(frf, scene, "-frf_probes", name, &index));
-  PetscCall(OutputsOfProbe(frf, model, &scene->probes[index]));
+  PetscCall(OutputsOfProbe(frf, &scene->probes[index]));
   PetscFunctionReturn(0);
 }
 
@@ -226,9 +181,8 @@ static PetscErrorCode OutputsOfModel(Frf frf, Model model)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(model, &scene));
-  for (PetscInt i = 0; i < frf->n_places; i++) PetscCall(OutputsOfName(frf, model, scene, frf->place[i]));
-  for (PetscInt i = 0; i < scene->n_probes && !frf->n_places; i++)
-    PetscCall(OutputsOfProbe(frf, model, &scene->probes[i]));
+  for (PetscInt i = 0; i < frf->n_places; i++) PetscCall(OutputsOfName(frf, scene, frf->place[i]));
+  for (PetscInt i = 0; i < scene->n_probes && !frf->n_places; i++) PetscCall(OutputsOfProbe(frf, &scene->probes[i]));
   PetscFunctionReturn(0);
 }
 
@@ -244,7 +198,7 @@ static PetscErrorCode OutputsOfMatrices(Frf frf, PetscInt n)
              ALL_UNKNOWNS, n);
   for (PetscInt i = 0; i < (frf->n_places ? frf->n_places : n); i++) {
     unknown = i;
-    if (frf->n_places) PetscCall(MatrixUnknown(frf, "-frf_probes", frf->place[i], &unknown));
+    if (frf->n_places) PetscCall(OperatorsFindUnknown(frf->operators, "-frf_probes", frf->place[i], &unknown));
     PetscCall(PetscSNPrintf(name, sizeof(name), "u%" PetscInt_FMT, unknown + 1));
     PetscCall(OutputAdd(frf, name, unknown));
   }

@@ -117,6 +117,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
   PetscCall(ComponentsDestroy(&modes->components));
+  PetscCall(ChangesReset(modes));
   PetscCall(EPSDestroy(&modes->left_solver));
   PetscCall(ShiftInvertDestroy(&modes->factor));
   PetscCall(ShiftInvertDestroy(&modes->counter));
@@ -231,6 +232,7 @@ PetscErrorCode ModesDestroy(Modes *modes)
   PetscFunctionBeginUser;
   if (!*modes) PetscFunctionReturn(0);
   PetscCall(ModesReset(*modes));
+  PetscCall(ChangesDestroy(*modes));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(0);
 }

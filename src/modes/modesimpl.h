@@ -58,6 +58,10 @@ enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 /* components/ - which free modes of the bodies make up each mode */
 typedef struct _p_ModesComponents *ModesComponents;
 
+/* changes/ - masses, springs and dashpots to try on the modes found, and the modes that they make */
+typedef struct _p_ModesChange  *ModesChange;
+typedef struct _p_ModesChanged *ModesChanged;
+
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
@@ -77,6 +81,8 @@ struct _p_Modes {
   PetscInt     n_shifts; /* of a band; 0: chosen */
   char         disc[64];
   Progress     progress;
+  PetscInt     n_changes;
+  ModesChange  change; /* [n_changes] */
   /* results */
   Spectrum        right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode           *mode;
@@ -85,6 +91,7 @@ struct _p_Modes {
   double         *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
   ModesComponents components;    /* NULL: not asked for */
+  ModesChanged    changed;       /* [n_changes], NULL likewise */
   PetscBool       dense;         /* LAPACK found all eigenvalues */
   PetscInt        shifts;        /* in use */
   char            completeness[4096];
@@ -180,6 +187,15 @@ PETSC_INTERN PetscErrorCode ModesViewSensitivities(Modes modes, PetscViewer view
 
 /* growth/effects.c - modes_effects.csv, and fields, where modes are unstable. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, const Mesh *mesh, Results results);
+
+/* changes/records.c, changes.c - reads the changes; what they make of the modes, a line each, and modes_changed.csv;
+   frees them. Collective */
+PETSC_INTERN PetscErrorCode ChangesSetFromOptions(Modes modes);
+PETSC_INTERN PetscErrorCode ChangesVisit(Modes modes, const QuantityVisitor *visitor);
+PETSC_INTERN PetscErrorCode ChangesView(Modes modes, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode ChangesWrite(Modes modes, Results results);
+PETSC_INTERN PetscErrorCode ChangesReset(Modes modes);
+PETSC_INTERN PetscErrorCode ChangesDestroy(Modes modes);
 
 /* quantities.c - rows of the options */
 extern const QuantityTable modes_quantities;

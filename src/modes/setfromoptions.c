@@ -10,6 +10,8 @@ static PetscErrorCode ModesCheckValues(Modes modes)
              "-modes_filters needs left vectors: leave out -modes_left false");
   PetscCheck(modes->left || !modes->sensitivities, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_sensitivities needs left vectors: leave out -modes_left false");
+  PetscCheck(modes->left || !modes->n_changes, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_changes needs left vectors: leave out -modes_left false");
   PetscCheck(!modes->has_band || modes->band[1] > modes->band[0], modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_band %.6g,%.6g must satisfy 0 <= f1 < f2 (Hz)", (double)modes->band[0], (double)modes->band[1]);
   PetscFunctionReturn(0);
@@ -44,6 +46,7 @@ PetscErrorCode ModesSetFromOptions(Modes modes)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(modes->comm, &modes_quantities, modes));
+  PetscCall(ChangesSetFromOptions(modes));
   PetscCall(ModesCheckValues(modes));
   PetscCall(ModesChooseRange(modes));
   PetscFunctionReturn(0);
@@ -53,5 +56,6 @@ PetscErrorCode ModesVisit(Modes modes, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisit(visitor, &modes_quantities, NULL, modes, NULL));
+  PetscCall(ChangesVisit(modes, visitor));
   PetscFunctionReturn(0);
 }

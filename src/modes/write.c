@@ -78,6 +78,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   if (n[MODE_UNSTABLE]) PetscCall(ModesViewCauses(modes, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ModesViewSensitivities(modes, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ComponentsView(modes, viewer));
+  PetscCall(ChangesView(modes, viewer));
   if (ShiftInvertShows() && modes->solver[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "undamped modes: %s, %" PetscInt_FMT " shift%s\n", modes->solver,
                                      modes->shifts, modes->shifts == 1 ? "" : "s"));
@@ -185,6 +186,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(ModesWriteSensitivities(modes, results));
   PetscCall(ModesWriteEffects(modes, operators, mesh, results));
   PetscCall(ComponentsWrite(modes, results));
+  PetscCall(ChangesWrite(modes, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));

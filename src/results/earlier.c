@@ -37,6 +37,7 @@ static const struct {
   {"modes_effects.xmf", NULL},
   {"modes_components.csv", NULL},
   {"modes_sensitivities.csv", NULL},
+  {"modes_changed.csv", NULL},
   {"robustness.csv", NULL},
   {"parameters.csv", NULL},
   {"frf.csv", NULL},

@@ -45,7 +45,8 @@ static const char names_of_all[] =
   "-loads load -load_set S -load_force 0,0,1 -contacts contact -contact_surfaces S,M -contact_kn 1 -contact_slip 1,0,0 "
   "-probes probe -probe_at 0,0,0 -motions motion -motion_set S -motion_directions z "
   "-circles circle -circle_radius 1 -circle_count 8 -impulses impulse -impulse_at 0,0,0 "
-  "-impulse_impulse 0,0,1 -terms term -ties tie -tie_surfaces S,M";
+  "-impulse_impulse 0,0,1 -modes_changes change -change_at 0,0,0 -change_mass 1 -terms term -ties tie -tie_surfaces "
+  "S,M";
 
 /* Where the printers below put what they are told. PETSc's printers are bare function pointers without context: hence
    the one static record, alive only inside HelpCollect(). */

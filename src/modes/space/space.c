@@ -36,7 +36,7 @@ static PetscErrorCode NoiseCreate(Mat K, Mat *E)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSpaceCreate(const PencilMatrices *pencil, PetscInt size, FrfSpace *space)
+PetscErrorCode ModesSpaceCreate(const PencilMatrices *pencil, PetscInt size, ModesSpace *space)
 {
   PetscInt n;
   Mat      E;
@@ -70,7 +70,7 @@ static PetscErrorCode BlockNormalise(BV block)
 
 /* Columns are scaled first: Krylov vectors and modes differ in length by many powers of ten, and DEPENDENT is a
    length. */
-PetscErrorCode FrfSpaceAdd(FrfSpace *space, BV block)
+PetscErrorCode ModesSpaceAdd(ModesSpace *space, BV block)
 {
   PetscInt n;
   BV       fresh;
@@ -85,7 +85,7 @@ PetscErrorCode FrfSpaceAdd(FrfSpace *space, BV block)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSpaceCoordinates(const FrfSpace *space, BV block, PetscReal **coordinates)
+PetscErrorCode ModesSpaceCoordinates(const ModesSpace *space, BV block, PetscReal **coordinates)
 {
   PetscInt n;
   Mat      H;
@@ -100,7 +100,8 @@ PetscErrorCode FrfSpaceCoordinates(const FrfSpace *space, BV block, PetscReal **
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSpaceLift(const FrfSpace *space, PetscInt n, PetscInt stride, const PetscReal coordinates[], BV block)
+PetscErrorCode ModesSpaceLift(const ModesSpace *space, PetscInt n, PetscInt stride, const PetscReal coordinates[],
+                              BV block)
 {
   const PetscInt size = space->space.n;
   PetscReal     *packed;
@@ -113,7 +114,7 @@ PetscErrorCode FrfSpaceLift(const FrfSpace *space, PetscInt n, PetscInt stride, 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfSpaceDestroy(FrfSpace *space)
+PetscErrorCode ModesSpaceDestroy(ModesSpace *space)
 {
   PetscFunctionBeginUser;
   PetscCall(SubspaceDestroy(&space->space));

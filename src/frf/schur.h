@@ -1,7 +1,8 @@
 /* Private to frf/: the response on a small space, at many frequencies */
 #pragma once
 
-#include "space.h"
+#include "frfimpl.h"
+#include "modes/space/space.h"
 
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
@@ -25,7 +26,7 @@ typedef struct {
 } FrfEnds;
 
 /* rounded: with K + E in place of K */
-PETSC_INTERN PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift,
+PETSC_INTERN PetscErrorCode FrfSchurCreate(const ModesSpace *space, PetscBool rounded, PetscReal shift,
                                            const FrfEnds *ends, FrfSchur *schur);
 /* H at n <= FRF_BATCH frequencies omega (rad/s): re[n][n_outputs], im[n][n_outputs]; *pole is the index of one that is
    a pole to rounding, or -1 */

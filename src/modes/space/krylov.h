@@ -1,7 +1,9 @@
-/* Private to frf/: Krylov vectors of the pencil at the shift, beyond those of the modes */
+/* Private to modes/, frf/: Krylov vectors of the pencil at the shift, beyond those of the modes */
 #pragma once
 
 #include "space.h"
+#include "solver/factor/shiftinvert.h"
+#include <squeal/modes.h>
 
 /* With Q0 = K - shift M undamped, the states p are vectors and S p = Q0^-1 M p; with damping Q0 = Q(shift), they are
    pairs p, q and S [p; q] = [-Q0^-1 (g Q'(shift) p + g^2 M q); p], g = shift, so that
@@ -11,7 +13,7 @@
    States are kept as coordinates in the space, orthonormal: first those of the modes, which S maps on themselves, then
    those of the chain. Left chains are those of the transposed pencil. */
 typedef struct {
-  FrfSpace   *space;
+  ModesSpace *space;
   ShiftInvert factor; /* borrowed */
   PetscBool   transposed;
   PetscInt    n, capacity, length; /* states, most of them, numbers of each: size, or 2 size with damping */
@@ -21,13 +23,17 @@ typedef struct {
   const Vec  *b;                   /* [n_b] in the unknowns of the pencil */
   PetscBool   begun;
   PetscInt   *n_solves; /* counts right-hand sides */
-} FrfKrylov;
+} ModesKrylov;
 
 /* A chain of up to `capacity` states */
-PETSC_INTERN PetscErrorCode FrfKrylovCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed,
-                                            PetscInt capacity, FrfKrylov *chain);
+PETSC_INTERN PetscErrorCode ModesKrylovCreate(ModesSpace *space, const ShiftInvert *factor, PetscBool transposed,
+                                              PetscInt capacity, ModesKrylov *chain);
+/* How many real vectors all modes of the last solution have, right and left ones */
+PETSC_INTERN PetscErrorCode ModesCountVectors(Modes modes, PetscInt *n);
 /* Puts vectors and states of all modes into space and chain */
-PETSC_INTERN PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain);
+PETSC_INTERN PetscErrorCode ModesKrylovAddModes(Modes modes, Pencil pencil, ModesKrylov *chain);
+/* Leaves the first n states, behind which a chain from other vectors b begins */
+PETSC_INTERN PetscErrorCode ModesKrylovRestart(ModesKrylov *chain, PetscInt n, PetscInt n_b, const Vec b[]);
 /* One step of both chains, either of which may be empty: it begins with Q0^-1 b of its vectors b. The space grows. */
-PETSC_INTERN PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2]);
-PETSC_INTERN PetscErrorCode FrfKrylovDestroy(FrfKrylov *chain);
+PETSC_INTERN PetscErrorCode ModesKrylovStep(ModesSpace *space, ModesKrylov *chain[2]);
+PETSC_INTERN PetscErrorCode ModesKrylovDestroy(ModesKrylov *chain);

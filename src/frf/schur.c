@@ -13,9 +13,9 @@
 
 /* S into T, and [0; Q0^-1 b], the states being [q; p] there, into b: Q0 = K + g C + g^2 M damped, K - g M undamped
    (g in rad/s or (rad/s)^2), with E added to K where it is to be rounded otherwise. */
-static PetscErrorCode SchurForm(const FrfSpace *space, PetscBool rounded, const PetscReal b[], FrfSchur *s)
+static PetscErrorCode SchurForm(const ModesSpace *space, PetscBool rounded, const PetscReal b[], FrfSchur *s)
 {
-  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift, *E = space->space.term[FRF_E].small;
+  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift, *E = space->space.term[SPACE_E].small;
   DensePencil     pencil = SubspacePencil(&space->space);
   PetscReal      *Q, *K;
   PetscBLASInt   *pivot;
@@ -60,7 +60,7 @@ static PetscErrorCode SchurReduce(FrfSchur *s, PetscReal Z[])
 
 /* The Schur form is made once, 25 n^3 operations of `length` n; each frequency then costs n^2. Force and outputs
    are turned by Z: l' Z (T - ...)^-1 Z' b. */
-PetscErrorCode FrfSchurCreate(const FrfSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends,
+PetscErrorCode FrfSchurCreate(const ModesSpace *space, PetscBool rounded, PetscReal shift, const FrfEnds *ends,
                               FrfSchur *s)
 {
   const PetscInt n = space->space.n;

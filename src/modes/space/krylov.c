@@ -10,17 +10,17 @@
 
 #define STATE_DEPENDENT 1e-9 /* a state of length one that is nearer than this to those before is one of them */
 
-PetscErrorCode FrfKrylovCreate(FrfSpace *space, const ShiftInvert *factor, PetscBool transposed, PetscInt capacity,
-                               FrfKrylov *chain)
+PetscErrorCode ModesKrylovCreate(ModesSpace *space, const ShiftInvert *factor, PetscBool transposed, PetscInt capacity,
+                                 ModesKrylov *chain)
 {
   PetscFunctionBeginUser;
-  *chain        = (FrfKrylov){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
+  *chain        = (ModesKrylov){.space = space, .factor = *factor, .transposed = transposed, .capacity = capacity};
   chain->length = (space->pencil.C ? 2 : 1) * space->size;
   PetscCall(PetscCalloc1(capacity * chain->length, &chain->state));
   PetscFunctionReturn(0);
 }
 
-static PetscReal StateDot(const FrfKrylov *chain, const PetscReal a[], const PetscReal b[])
+static PetscReal StateDot(const ModesKrylov *chain, const PetscReal a[], const PetscReal b[])
 {
   PetscReal sum = 0;
 
@@ -29,7 +29,7 @@ static PetscReal StateDot(const FrfKrylov *chain, const PetscReal a[], const Pet
 }
 
 /* Scales a state to length one and returns the length before */
-static PetscReal StateScale(const FrfKrylov *chain, PetscReal a[])
+static PetscReal StateScale(const ModesKrylov *chain, PetscReal a[])
 {
   const PetscReal length = PetscSqrtReal(StateDot(chain, a, a));
 
@@ -39,7 +39,7 @@ static PetscReal StateScale(const FrfKrylov *chain, PetscReal a[])
 
 /* Takes in what a state (overwritten) holds beyond those of the chain, by Gram-Schmidt twice. Dependent states end
    their branch of the chain. */
-static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
+static PetscErrorCode StateAdd(ModesKrylov *chain, PetscReal a[])
 {
   PetscReal length;
 
@@ -60,7 +60,7 @@ static PetscErrorCode StateAdd(FrfKrylov *chain, PetscReal a[])
 
 /* States of a mode, real and imaginary part: x, or with damping [t x; x], t = g / (lambda - g), since S [t x; x] =
    t [t x; x] where Q(lambda) x = 0. x[0], x[1] are coordinates of the two parts, x[1] NULL for a real vector. */
-static PetscErrorCode StateAddMode(FrfKrylov *chain, PetscComplex lambda, const PetscReal *x[2])
+static PetscErrorCode StateAddMode(ModesKrylov *chain, PetscComplex lambda, const PetscReal *x[2])
 {
   const PetscInt     size = chain->space->size, two = chain->length > size;
   const PetscComplex t = chain->factor.shift / (lambda - chain->factor.shift);
@@ -81,8 +81,25 @@ static PetscErrorCode StateAddMode(FrfKrylov *chain, PetscComplex lambda, const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesCountVectors(Modes modes, PetscInt *n_vectors)
+{
+  const Mode *mode;
+  PetscInt    n;
+  Vec         x[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGet(modes, &n, &mode));
+  *n_vectors = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(ModesGetVectors(modes, i, &x[0], &x[1], &x[2], &x[3]));
+    for (int k = 0; k < 4; k++) *n_vectors += x[k] ? 1 : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The block of the modes' vectors, real parts and imaginary ones; column[i] is the first of mode i */
-static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, PetscInt column[], BV *block)
+static PetscErrorCode ModesBlock(Modes modes, Pencil pencil, const ModesKrylov *chain, PetscInt n, PetscInt column[],
+                                 BV *block)
 {
   Vec x[4], q;
 
@@ -92,12 +109,12 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, Pe
   for (PetscInt i = 0; i < n; i++) {
     const int first = chain->transposed ? 2 : 0;
 
-    PetscCall(ModesGetVectors(frf->modes, i, &x[0], &x[1], &x[2], &x[3]));
+    PetscCall(ModesGetVectors(modes, i, &x[0], &x[1], &x[2], &x[3]));
     column[i + 1] = column[i];
     for (int part = 0; part < 2; part++) {
       if (!x[first + part]) continue;
       PetscCall(BVGetColumn(*block, column[i + 1], &q));
-      PetscCall(PencilRestrict(frf->pencil, x[first + part], q));
+      PetscCall(PencilRestrict(pencil, x[first + part], q));
       PetscCall(BVRestoreColumn(*block, column[i + 1]++, &q));
     }
   }
@@ -106,7 +123,7 @@ static PetscErrorCode ModesBlock(Frf frf, const FrfKrylov *chain, PetscInt n, Pe
 }
 
 /* Vectors into the space first, then states of their coordinates, which are exact in it but for rounding. */
-PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
+PetscErrorCode ModesKrylovAddModes(Modes modes, Pencil pencil, ModesKrylov *chain)
 {
   const PetscInt size = chain->space->size;
   const Mode    *mode;
@@ -115,11 +132,11 @@ PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
   BV             block;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesGet(frf->modes, &n, &mode));
+  PetscCall(ModesGet(modes, &n, &mode));
   PetscCall(PetscMalloc1(n + 1, &column));
-  PetscCall(ModesBlock(frf, chain, n, column, &block));
-  PetscCall(FrfSpaceAdd(chain->space, block));
-  PetscCall(FrfSpaceCoordinates(chain->space, block, &x));
+  PetscCall(ModesBlock(modes, pencil, chain, n, column, &block));
+  PetscCall(ModesSpaceAdd(chain->space, block));
+  PetscCall(ModesSpaceCoordinates(chain->space, block, &x));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal *part[2] = {&x[column[i] * size],
                                 column[i + 1] - column[i] == 2 ? &x[(column[i] + 1) * size] : NULL};
@@ -134,7 +151,7 @@ PetscErrorCode FrfKrylovAddModes(Frf frf, FrfKrylov *chain)
 }
 
 /* Y = A X, or A' X, of C or M */
-static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, int which, BV Y)
+static PetscErrorCode BlockApply(const ModesKrylov *chain, BV X, int which, BV Y)
 {
   const SubspaceTerm *term = &chain->space->space.term[which];
 
@@ -145,7 +162,7 @@ static PetscErrorCode BlockApply(const FrfKrylov *chain, BV X, int which, BV Y)
 
 /* The states [c; old] of n answers with coordinates c[n][size]; old is the first part of the states that they came
    from, zero in the first step. */
-static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c[])
+static PetscErrorCode KrylovTake(ModesKrylov *chain, PetscInt n, const PetscReal c[])
 {
   const PetscInt size = chain->space->size, from = chain->last;
   PetscReal     *a;
@@ -167,7 +184,7 @@ static PetscErrorCode KrylovTake(FrfKrylov *chain, PetscInt n, const PetscReal c
 }
 
 /* R = M P, or with damping -g Q'(shift) P - g^2 M Q = -g^2 M (2 P + Q) - g C P */
-static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const PetscReal states[], BV R)
+static PetscErrorCode KrylovResidual(const ModesKrylov *chain, PetscInt n, const PetscReal states[], BV R)
 {
   const PencilMatrices *m    = &chain->space->pencil;
   const PetscReal       g    = chain->factor.shift;
@@ -177,7 +194,7 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
 
   PetscFunctionBeginUser;
   PetscCall(BlockCreate(chain->space->space.V, n, &P));
-  PetscCall(FrfSpaceLift(chain->space, n, chain->length, states, P));
+  PetscCall(ModesSpaceLift(chain->space, n, chain->length, states, P));
   if (m->C) {
     PetscCall(BlockCreate(chain->space->space.V, n, &T));
     PetscCall(BlockApply(chain, P, SUBSPACE_C, T));
@@ -185,7 +202,7 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
     for (PetscInt j = 0; j < n; j++)
       for (PetscInt i = 0; i < size; i++)
         both[j * size + i] = 2 * states[j * chain->length + i] + states[j * chain->length + size + i];
-    PetscCall(FrfSpaceLift(chain->space, n, size, both, P));
+    PetscCall(ModesSpaceLift(chain->space, n, size, both, P));
     PetscCall(PetscFree(both));
   }
   PetscCall(BlockApply(chain, P, SUBSPACE_M, R));
@@ -199,7 +216,7 @@ static PetscErrorCode KrylovResidual(const FrfKrylov *chain, PetscInt n, const P
 }
 
 /* Right-hand sides of the next step: the n vectors b that the chain begins with, or those of the last states */
-static PetscErrorCode KrylovCreateSides(const FrfKrylov *chain, PetscInt n, BV *R)
+static PetscErrorCode KrylovCreateSides(const ModesKrylov *chain, PetscInt n, BV *R)
 {
   PetscFunctionBeginUser;
   PetscCall(BlockCreate(chain->space->space.V, n, R));
@@ -210,7 +227,7 @@ static PetscErrorCode KrylovCreateSides(const FrfKrylov *chain, PetscInt n, BV *
 
 /* Both chains are solved for at once. Afterwards the new states of each are those from `last` on; dependent ones
    are not among them. */
-PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
+PetscErrorCode ModesKrylovStep(ModesSpace *space, ModesKrylov *chain[2])
 {
   PetscInt   n[2];
   PetscReal *c;
@@ -225,15 +242,25 @@ PetscErrorCode FrfKrylovStep(FrfSpace *space, FrfKrylov *chain[2])
   PetscCall(ResidualsSolve(&chain[0]->factor, R, block));
   *chain[0]->n_solves += n[0] + n[1];
   for (int k = 0; k < 2; k++) PetscCall(BVDestroy(&R[k]));
-  PetscCall(FrfSpaceAdd(space, block));
-  PetscCall(FrfSpaceCoordinates(space, block, &c));
+  PetscCall(ModesSpaceAdd(space, block));
+  PetscCall(ModesSpaceCoordinates(space, block, &c));
   for (int k = 0; k < 2; k++) PetscCall(KrylovTake(chain[k], n[k], c + k * n[0] * space->size));
   PetscCall(PetscFree(c));
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FrfKrylovDestroy(FrfKrylov *chain)
+PetscErrorCode ModesKrylovRestart(ModesKrylov *chain, PetscInt n, PetscInt n_b, const Vec b[])
+{
+  PetscFunctionBeginUser;
+  chain->n = chain->last = n;
+  chain->n_b             = n_b;
+  chain->b               = b;
+  chain->begun           = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesKrylovDestroy(ModesKrylov *chain)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(chain->state));

@@ -1,0 +1,97 @@
+/*
+   The space on which a changed system is solved: all modes of the system as it was, right and left ones, and how it
+   answers to the change. A change adds c(lambda) a a' to Q(lambda), so that the new vectors obey
+
+      Q(lambda) x = -c(lambda) (a'x) a,
+
+   and are answers to forces along a at frequencies of the band: what its modes do not tell of them is spanned by few
+   Krylov vectors at the shift of the modes' own factorisation (modes/space/krylov.c). No new one is needed.
+*/
+#include "changes.h"
+#include "solver/block/orthonormal.h"
+
+#define CHANGE_STEPS 3 /* of the chains: the error of the last but one is stated, that of the last is smaller */
+
+PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *s)
+{
+  const ShiftInvert *factor;
+  PencilMatrices     pencil;
+  PetscInt           n, most;
+
+  PetscFunctionBeginUser;
+  *s = (ChangeSpace){.owner = modes->pencil};
+  PetscCall(ModesGetFactor(modes, &factor));
+  PetscCall(PencilGetMatrices(modes->pencil, &pencil));
+  PetscCall(ModesCountVectors(modes, &n));
+  most = 2 * n + CHANGE_STEPS * most_terms;
+  PetscCall(ModesSpaceCreate(&pencil, n + 2 * CHANGE_STEPS * most_terms, &s->space));
+  PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_FALSE, most, &s->right));
+  PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
+  s->right.n_solves = s->left.n_solves = &s->n_solves;
+  PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->right));
+  if (!pencil.symmetric) PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->left));
+  s->n_modes     = s->space.space.n;
+  s->n_states[0] = s->right.n;
+  s->n_states[1] = s->left.n;
+  PetscFunctionReturn(0);
+}
+
+/* Coordinates [n][columns of the space] of vectors */
+static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
+{
+  const Subspace *space = &s->space.space;
+  BV              block;
+  Mat             H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockCreate(space->V, n, &block));
+  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(block, j, a[j]));
+  PetscCall(PetscMalloc1(n * space->n, coordinates));
+  PetscCall(BVSetActiveColumns(space->V, 0, space->n));
+  PetscCall(BlockProducts(space->V, NULL, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, space->n, *coordinates));
+  PetscCall(MatDestroy(&H));
+  PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm terms[], PetscReal *side[2])
+{
+  Vec *a[2], like;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(VecDuplicateVecs(like, n, &a[i]));
+    for (PetscInt j = 0; j < n; j++)
+      PetscCall(PencilProjectForce(s->owner, i ? PETSC_TRUE : PETSC_FALSE, terms[j].force, a[i][j]));
+  }
+  PetscCall(ModesKrylovRestart(&s->right, s->n_states[0], n, a[0]));
+  PetscCall(ModesKrylovRestart(&s->left, s->n_states[1], s->space.pencil.symmetric ? 0 : n, a[1]));
+  for (int step = 0; step < CHANGE_STEPS; step++) {
+    s->first = s->space.space.n;
+    PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
+  }
+  for (int i = 0; i < 2; i++) {
+    PetscCall(SpaceCoordinates(s, n, a[i], &side[i]));
+    PetscCall(VecDestroyVecs(n, &a[i]));
+  }
+  PetscCall(VecDestroy(&like));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceForget(ChangeSpace *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SubspaceTruncate(&s->space.space, s->n_modes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceDestroy(ChangeSpace *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModesKrylovDestroy(&s->right));
+  PetscCall(ModesKrylovDestroy(&s->left));
+  PetscCall(ModesSpaceDestroy(&s->space));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,141 @@
+/*
+   Changes of a system whose modes are known: tried one by one, shown and written.
+*/
+#include "changes.h"
+
+#define CHANGE_ZERO 1e-5 /* of the highest frequency: where there are rigid modes what is lower is one of them */
+
+/* Modes are listed in the band, or from the lowest to the highest that was found; where some are rigid, from above
+   them */
+static ChangeRange RangeOf(const Modes modes)
+{
+  ChangeRange range = {.edge = {2 * PETSC_PI * modes->band[0], 2 * PETSC_PI * modes->band[1]}};
+
+  if (!modes->has_band) {
+    range.edge[0] = modes->mode[0].omega;
+    range.edge[1] = modes->mode[modes->n - 1].omega;
+  }
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m = &modes->mode[i];
+
+    if (m->rigid)
+      range.edge[0] = PetscMax(range.edge[0], CHANGE_ZERO * range.edge[1]);
+    else if (isfinite(m->condition))
+      range.noise = PetscMax(range.noise, m->error / m->condition);
+  }
+  range.growth = modes->growth > 0 ? modes->growth : 0.1 * range.edge[1];
+  return range;
+}
+
+/* The modes with change i */
+static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRange *range, PetscInt i)
+{
+  ModesChanged changed = &modes->changed[i];
+  PetscReal   *side[2];
+  PetscInt     n;
+  ChangeTerm  *terms;
+  ModesLimit   limit;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetLimit(modes, &limit));
+  PetscCall(ChangeCreateTerms(modes, i, &n, &terms));
+  PetscCall(ChangeSpaceRespond(space, n, terms, side));
+  PetscCall(ChangeSolve(space, n, terms, side, range, changed));
+  PetscCall(ChangeSpaceForget(space));
+  PetscCall(PetscMalloc1(changed->n, &changed->state));
+  for (PetscInt k = 0; k < changed->n; k++)
+    changed->state[k] =
+      ModesLimitJudge(&limit, creal(changed->lambda[k]), cimag(changed->lambda[k]), changed->error[k]);
+  for (int k = 0; k < 2; k++) PetscCall(PetscFree(side[k]));
+  PetscCall(ChangeDestroyTerms(n, &terms));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesPlaceChanges(Modes modes, PetscBool *wanted)
+{
+  PetscFunctionBeginUser;
+  *wanted = modes->n_changes ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 0; i < modes->n_changes; i++) {
+    PetscInt    n;
+    ChangeTerm *terms;
+
+    PetscCall(ChangeCreateTerms(modes, i, &n, &terms));
+    PetscCall(ChangeDestroyTerms(n, &terms));
+  }
+  if (*wanted) PetscCall(ModesKeepFactor(modes, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesFindChanges(Modes modes)
+{
+  const ChangeRange range = RangeOf(modes);
+  ChangeSpace       space;
+  PetscInt          most = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < modes->n_changes; i++) most = PetscMax(most, ChangeMostTerms(modes, i));
+  PetscCall(PetscCalloc1(modes->n_changes, &modes->changed));
+  PetscCall(ChangeSpaceCreate(modes, most, &space));
+  for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeTry(modes, &space, &range, i));
+  PetscCall(ChangeSpaceDestroy(&space));
+  PetscFunctionReturn(0);
+}
+
+/* Index of the mode that grows most, -1 where there is none, and how many are unstable */
+static PetscInt ChangedWorst(const struct _p_ModesChanged *changed, PetscInt *n_unstable)
+{
+  PetscInt worst = -1;
+
+  *n_unstable = 0;
+  for (PetscInt k = 0; k < changed->n; k++) {
+    *n_unstable += changed->state[k] == MODE_UNSTABLE;
+    if (worst < 0 || creal(changed->lambda[k]) > creal(changed->lambda[worst])) worst = k;
+  }
+  return worst;
+}
+
+PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < modes->n_changes && modes->changed; i++) {
+    const struct _p_ModesChanged *changed = &modes->changed[i];
+    const ModesChange             change  = &modes->change[i];
+    PetscInt                      n_unstable;
+    const PetscInt                worst = ChangedWorst(changed, &n_unstable);
+
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "with %s%s%s", change->name, change->with[0] ? " and " : "", change->with));
+    if (change->has_at)
+      PetscCall(PetscViewerASCIIPrintf(viewer, " (node at %.6g, %.6g, %.6g m)", (double)change->x[0][0],
+                                       (double)change->x[0][1], (double)change->x[0][2]));
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, ": %" PetscInt_FMT " modes, %" PetscInt_FMT " unstable", changed->n, n_unstable));
+    if (worst >= 0)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "; largest growth %.5g 1/s, error %.1e, at %.6g Hz",
+                                       (double)creal(changed->lambda[worst]), (double)changed->error[worst],
+                                       (double)(cimag(changed->lambda[worst]) / (2 * PETSC_PI))));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangesWrite(Modes modes, Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  if (!modes->changed) PetscFunctionReturn(0);
+  PetscCall(ResultsTableOpen(results, "modes_changed", "change,mode,freq_hz,growth_rad_s,damping_ratio,error_hz,state",
+                             &table));
+  for (PetscInt i = 0; i < modes->n_changes; i++)
+    for (PetscInt k = 0; k < modes->changed[i].n; k++) {
+      const PetscComplex lambda = modes->changed[i].lambda[k];
+
+      PetscCall(ResultsTableRow(
+        table, "%s,%d,%.15g,%.15g,%.15g,%.3g,%s", modes->change[i].name, (int)k + 1,
+        (double)(cimag(lambda) / (2 * PETSC_PI)), (double)creal(lambda), (double)(-creal(lambda) / cabs(lambda) + 0),
+        (double)(modes->changed[i].error[k] / (2 * PETSC_PI)), ModeStateName(modes->changed[i].state[k])));
+    }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,72 @@
+/* Private to modes/changes/: a point mass, a spring, a dashpot or an absorber that is added to a system whose modes are
+   known, and what these are then */
+#pragma once
+
+#include "modes/modesimpl.h"
+#include "modes/space/krylov.h"
+
+/* One change as its options give it */
+struct _p_ModesChange {
+  char     *name, *part, *to_part, *with, *unknown, *to_unknown; /* empty where not given */
+  PetscBool has_at, has_to, has_direction;
+  PetscReal at[3], to[3], direction[3]; /* places asked for, m */
+  PetscReal mass, stiffness, viscosity; /* kg, N/m, N s/m; a mass with one of the others hangs on it */
+  PetscInt  before;                     /* the change that is made with it, -1 for none */
+  PetscReal x[2][3];                    /* places of its nodes, m */
+};
+
+/* Of several changes together: m a a', c a a' and k a a' are added to M, C and K; `hung`: mass m on a spring k and a
+   dashpot c, whose motion is a further unknown */
+typedef struct {
+  Vec       force; /* a, of all unknowns */
+  PetscReal mass, viscosity, stiffness;
+  PetscBool hung;
+} ChangeTerm;
+
+#define CHANGE_TERMS 3 /* of one change: a mass along x, y, z */
+
+/* The modes of the changed system in the band */
+struct _p_ModesChanged {
+  PetscInt      n;
+  PetscComplex *lambda; /* [n] rad/s, in order of frequency */
+  PetscReal    *error;  /* [n] rad/s */
+  ModeState    *state;  /* [n] */
+};
+
+/* The modes of the system as it was, and behind them its answers to the terms of a change, in steps of two Krylov
+   chains; those of the last step are the columns of the space from `first` */
+typedef struct {
+  Pencil      owner;
+  ModesSpace  space;
+  ModesKrylov right, left; /* left is empty for a symmetric pencil */
+  PetscInt    n_modes, n_states[2], first;
+  PetscInt    n_solves;
+} ChangeSpace;
+
+/* place.c - how many terms a change may have with those made with it, and these; the caller destroys their vectors */
+PETSC_INTERN PetscInt       ChangeMostTerms(const Modes modes, PetscInt i);
+PETSC_INTERN PetscErrorCode ChangeCreateTerms(Modes modes, PetscInt i, PetscInt *n, ChangeTerm **terms);
+PETSC_INTERN PetscErrorCode ChangeDestroyTerms(PetscInt n, ChangeTerm **terms);
+
+/* basis.c - modes; responses to the terms, coordinates of Zl' a and Zr' a in side[0], side[1] [n][columns]; takes the
+   responses out again. Collective. */
+PETSC_INTERN PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *space);
+PETSC_INTERN PetscErrorCode ChangeSpaceRespond(ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
+                                               PetscReal *side[2]);
+PETSC_INTERN PetscErrorCode ChangeSpaceForget(ChangeSpace *space);
+PETSC_INTERN PetscErrorCode ChangeSpaceDestroy(ChangeSpace *space);
+
+/* Which eigenvalues are listed, omega in edge[0] to edge[1] and |sigma| <= growth, and what errors of the modes come to
+   over their conditions, rad/s */
+typedef struct {
+  PetscReal edge[2], growth, noise;
+} ChangeRange;
+
+/* dense.c - eigenvalues of the changed system on the space, and their errors */
+PETSC_INTERN PetscErrorCode ChangeSolve(const ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
+                                        PetscReal *const side[2], const ChangeRange *range,
+                                        struct _p_ModesChanged *changed);
+
+/* quantities.c - the list of the changes; place.c - what no row says of one */
+extern const QuantityList   changes_list;
+PETSC_INTERN PetscErrorCode ChangeCheck(MPI_Comm comm, void *modes, void *change);

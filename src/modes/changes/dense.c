@@ -1,0 +1,181 @@
+/*
+   The changed system on its space: of each term c(lambda) = k + lambda c + lambda^2 m adds c g_l g_r' to the dense
+   pencil, g_l = V'Zl'a, g_r = V'Zr'a. Of a mass that hangs on a spring k and a dashpot c the motion q is a further
+   unknown, with (k + lambda c) (q - a'u) between the two. All eigenvalues of that problem are found, so that pairs that
+   merge or part are right, however near to lock-in.
+
+   Error: the last responses Z are the end of the space. With Q_zz the block of Q(lambda) there and x_z, y_z the parts
+   of the vectors in it, leaving them out moves the eigenvalue to first order by
+
+      e = y_z' Q_zz(lambda) x_z / (y' Q'(lambda) x),
+
+   what the space with them leaves is less, as Krylov vectors converge: e stands for it. Near another eigenvalue at
+   the distance g the pair's plane counts: z (z - g) = -e g has a root at |z| = 2 |e| / (1 + sqrt(1 - 4 |e| / g)) at
+   most, or sqrt(|e| g) where e is larger than g / 4. The noise of the modes that the space is made of, their largest
+   error over condition, is added times the condition.
+*/
+#include "changes.h"
+#include <complex.h>
+
+/* A dense pencil with room for the unknowns of hung masses behind those of the space */
+typedef struct {
+  DensePencil q;
+  PetscInt    n_space, first; /* columns of the space; the first one of the last responses */
+} ChangedPencil;
+
+/* Copies a matrix of the space, NULL for zero, into the corner of one of n unknowns */
+static PetscErrorCode CornerCreate(PetscInt n_space, const PetscReal small[], PetscInt n, PetscReal A[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(A, n * n));
+  for (PetscInt j = 0; j < n_space && small; j++) PetscCall(PetscArraycpy(&A[j * n], &small[j * n_space], n_space));
+  PetscFunctionReturn(0);
+}
+
+/* A += value (g_l; -1 at hung) (g_r; -1 at hung)', hung negative for none */
+static void RankOneAdd(const ChangedPencil *c, PetscReal value, const PetscReal *const g[2], PetscInt hung,
+                       PetscReal A[])
+{
+  const PetscInt n = c->q.n, m = c->n_space;
+
+  if (value == 0) return;
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < m; i++) A[j * n + i] += value * g[0][i] * g[1][j];
+  if (hung < 0) return;
+  for (PetscInt i = 0; i < m; i++) {
+    A[hung * n + i] -= value * g[0][i];
+    A[i * n + hung] -= value * g[1][i];
+  }
+  A[hung * n + hung] += value;
+}
+
+/* The pencil of the changed system */
+static PetscErrorCode ChangedCreate(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[],
+                                    PetscReal *const side[2], ChangedPencil *c)
+{
+  const SubspaceTerm *small = s->space.space.term;
+  PetscInt            n = s->space.space.n, hung = s->space.space.n;
+
+  PetscFunctionBeginUser;
+  *c =
+    (ChangedPencil){.n_space = n, .first = s->first, .q = {.damped = small[SUBSPACE_C].A ? PETSC_TRUE : PETSC_FALSE}};
+  for (PetscInt t = 0; t < n_terms; t++) {
+    if (terms[t].hung) n++;
+    if (terms[t].viscosity > 0) c->q.damped = PETSC_TRUE;
+  }
+  c->q.n = n;
+  PetscCall(PetscMalloc3(n * n, &c->q.K, n * n, &c->q.C, n * n, &c->q.M));
+  PetscCall(CornerCreate(c->n_space, small[SUBSPACE_K].small, n, c->q.K));
+  PetscCall(CornerCreate(c->n_space, small[SUBSPACE_C].A ? small[SUBSPACE_C].small : NULL, n, c->q.C));
+  PetscCall(CornerCreate(c->n_space, small[SUBSPACE_M].small, n, c->q.M));
+  for (PetscInt t = 0; t < n_terms; t++) {
+    const ChangeTerm *term = &terms[t];
+    const PetscReal  *g[2] = {&side[0][t * c->n_space], &side[1][t * c->n_space]};
+    const PetscInt    at   = term->hung ? hung++ : -1;
+
+    RankOneAdd(c, term->stiffness, g, at, c->q.K);
+    RankOneAdd(c, term->viscosity, g, at, c->q.C);
+    if (at >= 0)
+      c->q.M[at * n + at] += term->mass;
+    else
+      RankOneAdd(c, term->mass, g, -1, c->q.M);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* |e| of an eigenvalue with its vectors, and the noise by its condition 2 |lambda| |x|_M |y|_M / |y'Q'x| */
+static PetscErrorCode ErrorFind(const ChangedPencil *c, PetscReal noise, PetscComplex lambda, const PetscComplex x[],
+                                const PetscComplex y[], PetscReal *error)
+{
+  const PetscInt n = c->q.n, first = c->first, m = c->n_space - first;
+  PetscComplex  *Q, left = 0, slope = 0, xx = 0, yy = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(PetscMax(1, m * m), &Q));
+  DensePencilEvaluate(&c->q, lambda, first, m, Q);
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < m; i++) left += y[first + i] * Q[j * m + i] * x[first + j];
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal M = c->q.M[j * n + i];
+
+      slope += y[i] * (2 * lambda * M + (c->q.damped ? c->q.C[j * n + i] : 0)) * x[j];
+      xx += conj(x[i]) * M * x[j];
+      yy += conj(y[i]) * M * y[j];
+    }
+  *error = cabs(left / slope) + noise * 2 * cabs(lambda) * PetscSqrtReal(cabs(xx) * cabs(yy)) / cabs(slope);
+  PetscCall(PetscFree(Q));
+  PetscFunctionReturn(0);
+}
+
+/* Puts an eigenvalue in the order of frequency, with its error */
+static void ChangedInsert(struct _p_ModesChanged *changed, PetscComplex lambda, PetscReal error)
+{
+  PetscInt k = changed->n++;
+
+  for (; k > 0 && cimag(changed->lambda[k - 1]) > cimag(lambda); k--) {
+    changed->lambda[k] = changed->lambda[k - 1];
+    changed->error[k]  = changed->error[k - 1];
+  }
+  changed->lambda[k] = lambda;
+  changed->error[k]  = error;
+}
+
+/* Distance of an eigenvalue from the next one, its own conjugate included */
+static PetscReal ChangedGap(const struct _p_ModesChanged *changed, PetscInt i)
+{
+  PetscReal gap = 2 * cimag(changed->lambda[i]);
+
+  for (PetscInt k = 0; k < changed->n; k++)
+    if (k != i) gap = PetscMin(gap, cabs(changed->lambda[i] - changed->lambda[k]));
+  return gap;
+}
+
+/* Errors in the plane of each with its neighbour */
+static PetscErrorCode ErrorsWiden(struct _p_ModesChanged *changed)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < changed->n; i++) {
+    const PetscReal e = changed->error[i], gap = ChangedGap(changed, i);
+
+    if (4 * e < gap)
+      changed->error[i] = 2 * e / (1 + PetscSqrtReal(1 - 4 * e / gap));
+    else
+      changed->error[i] = PetscMax(e, PetscSqrtReal(e * gap));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[], PetscReal *const side[2],
+                           const ChangeRange *range, struct _p_ModesChanged *changed)
+{
+  const PetscReal shift = PetscSqrtReal((PetscSqr(range->edge[0]) + PetscSqr(range->edge[1])) / 2);
+  ChangedPencil   c;
+  DenseShifted    w;
+  PetscComplex   *x, *y;
+
+  PetscFunctionBeginUser;
+  PetscCall(ChangedCreate(s, n_terms, terms, side, &c));
+  PetscCall(DenseShiftedSolve(&c.q, shift, &w));
+  PetscCall(PetscMalloc2(c.q.n, &x, c.q.n, &y));
+  PetscCall(PetscMalloc1(w.N, &changed->lambda));
+  PetscCall(PetscMalloc1(w.N, &changed->error));
+  changed->n = 0;
+  for (PetscInt i = 0; i < w.N; i++) {
+    PetscComplex lambda;
+    PetscReal    error;
+
+    if (!DenseShiftedLambda(&w, i, &lambda) || !(cimag(lambda) > 0)) continue;
+    if (cimag(lambda) < range->edge[0] || cimag(lambda) > range->edge[1]) continue;
+    if (PetscAbsReal(creal(lambda)) > range->growth) continue;
+    DenseShiftedRight(&w, i, x);
+    PetscCall(DenseShiftedLeft(&w, i, y));
+    PetscCall(ErrorFind(&c, range->noise, lambda, x, y, &error));
+    ChangedInsert(changed, lambda, error);
+  }
+  PetscCall(ErrorsWiden(changed));
+  PetscCall(PetscFree2(x, y));
+  PetscCall(DenseShiftedDestroy(&w));
+  PetscCall(DensePencilDestroy(&c.q));
+  PetscFunctionReturn(0);
+}
