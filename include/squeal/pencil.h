@@ -161,13 +161,13 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
    constant amplitude, twice the kinetic one; a cause of growth s feeds it with the power 2 E s.
 
    Input Parameters:
-+  sigma, omega - the eigenvalue, 1/s and rad/s, omega > 0
--  ur, ui       - its right vector, of all unknowns; ui NULL for a real one
++  lambda - the eigenvalue sigma + i omega, rad/s, omega > 0
+-  ur, ui - its right vector, of all unknowns; ui NULL for a real one
    Output Parameter:
-+  growth       - [causes of PencilGetCauses(), called before] 1/s
--  energy       - E, J, of displacements in m; NULL where it is not needed
++  growth - [causes of PencilGetCauses(), called before] 1/s
+-  energy - E, J, of displacements in m; NULL where it is not needed
 @*/
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[],
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscComplex lambda, Vec ur, Vec ui, PetscReal growth[],
                                    PetscReal *energy);
 
 /* What friction does at a pair, with the kinds of PencilCause for names */

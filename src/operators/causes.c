@@ -151,12 +151,13 @@ static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal
 
 /* growth [causes], 1/s; their sum is sigma but for the residual of the eigenpair, over |D|. ui NULL for a real
    vector; energy may be NULL. */
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscReal sigma, PetscReal omega, Vec ur, Vec ui, PetscReal growth[],
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscComplex lambda, Vec ur, Vec ui, PetscReal growth[],
                                    PetscReal *energy)
 {
-  CauseVector u = {{ur, ui}, NULL}, q;
-  PetscReal   form[2], D;
-  Mat         M;
+  const PetscReal sigma = creal(lambda), omega = cimag(lambda);
+  CauseVector     u = {{ur, ui}, NULL}, q;
+  PetscReal       form[2], D;
+  Mat             M;
 
   PetscFunctionBeginUser;
   /* D vanishes with omega, and the imaginary part of the equation with it */

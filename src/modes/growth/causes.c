@@ -47,8 +47,8 @@ static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, Mod
   PetscFunctionBeginUser;
   s->known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
   if (!s->known) PetscFunctionReturn(0);
-  PetscCall(PencilMeasureCauses(modes->pencil, m->sigma, m->omega, modes->right.xr[i], modes->right.xi[i], s->growth,
-                                &s->energy));
+  PetscCall(PencilMeasureCauses(modes->pencil, CMPLX(m->sigma, m->omega), modes->right.xr[i], modes->right.xi[i],
+                                s->growth, &s->energy));
   s->rest = m->sigma;
   for (PetscInt k = 0; k < n; k++) {
     s->rest -= s->growth[k];
