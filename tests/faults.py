@@ -26,22 +26,22 @@ FAULTS = (
     ("a chain of ties ends after one step", "src/operators/points/dependents.c", "    if (left > 0) PetscCall(MatAXPY(o->Z",
      "    if (left > 0 && power == o->E) PetscCall(MatAXPY(o->Z", "tie"),
     ("loads on nodes that follow are lost in a reduced model", "src/reduced/bodies/ports.c",
-     "    PetscCall(PortSetNodal(r, nodal, i, r->others));\n",
+     "    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));\n",
      """    Mat E;
     Vec q, column;
-    PetscCall(PortSetNodal(r, nodal, i, r->others));
+    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));
     PetscCall(OperatorsGetDependents(r->run.operators, NULL, &E));
     if (E) {
       PetscCall(MatCreateVecs(E, &q, NULL));
-      PetscCall(MatDenseGetColumnVec(r->others, i, &column));
+      PetscCall(MatDenseGetColumnVec(r->reduction.others, i, &column));
       PetscCall(MatMultTranspose(E, column, q));
       PetscCall(MatMult(E, q, column));
-      PetscCall(MatDenseRestoreColumnVec(r->others, i, &column));
+      PetscCall(MatDenseRestoreColumnVec(r->reduction.others, i, &column));
       PetscCall(VecDestroy(&q));
     }
 """, "reduced_tie"),
-    ("tied bodies give way 1e-6 more above the modes", "src/reduced/bodies/residual.c", "&r->inverse, Z, B, X));",
-     "&r->inverse, Z, B, X));\n  if (Z) PetscCall(MatScale(X, 1 + 1e-6));", "reduced_tie"),
+    ("tied bodies give way 1e-6 more above the modes", "src/reduced/bodies/residual.c", "&r->reduction.inverse, Z, B, X));",
+     "&r->reduction.inverse, Z, B, X));\n  if (Z) PetscCall(MatScale(X, 1 + 1e-6));", "reduced_tie"),
     ("tied bodies that part at the start have all their energy", "src/reduced/run/start.c", "VecDot(f, y, &product)",
      "VecDot(Mx, x, &product)", "reduced_tie"),
     ("forces on slaves of a tie do not reach supports", "src/contact/nodal.c",
@@ -52,8 +52,9 @@ FAULTS = (
     ("gap of the wrong side", "src/contact/surface/foot.c", "  return gap;\n", "  return -gap;\n", "static_motions"),
     ("mu is 1e-6 less in the step of dynamics: the balance of energy closes", "src/contact/projector/prepare.c",
      "  pair->mu = FrictionSteady(&c->friction);\n", "  pair->mu = (1 - 1e-6) * FrictionSteady(&c->friction);\n", "transient_laws"),
-    ("mu is 1e-6 less in a reduced model", "src/reduced/run/pairs.c", "    r->pairs[i].gap      = r->model.gap[i];\n",
-     "    r->pairs[i].gap      = r->model.gap[i];\n    FrictionScale(&r->model.friction[i], 1 - 1e-6);\n", "transient_laws"),
+    ("mu is 1e-6 less in a reduced model", "src/reduced/run/pairs.c",
+     "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n",
+     "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n    FrictionScale(&r->reduction.model.friction[i], 1 - 1e-6);\n", "transient_laws"),
     ("friction drives: it has the sign of the slip", "src/kernels/contact/friction.h",
      "return square <= radius * radius ? 1 : radius / sqrt(square)",
      "return square <= radius * radius ? 1 : -radius / sqrt(square)", "slipwork-1 transient_laws"),
