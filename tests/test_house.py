@@ -257,7 +257,7 @@ def options(house):
 
 
 ROW = re.compile(r'\{\s*"-(?P<name>\w+)",\s*(?P<help>(?:"[^"]*"\s*)+|NULL|\w+),\s*(?P<unit>NULL|"[^"]*"),\s*(?P<kind>QUANTITY_\w+)'
-                 r'(?:,\s*(?P<at>\w+\([\w.]+))?')
+                 r'(?:,\s*(?P<at>\w+\((?:(?:struct )?\w+, )?[\w.]+))?')
 
 
 def row_faults(row, words):
@@ -266,7 +266,7 @@ def row_faults(row, words):
         yield "has no help"
     if row["unit"] == "NULL" and row["kind"] in REALS and row["name"] not in UNITLESS:
         yield "has no unit"
-    if row["at"] and words[re.split(r"[(.]", row["at"])[-1]] < 3:  # its struct, its row, and who reads it
+    if row["at"] and words[re.split(r"[(., ]", row["at"])[-1]] < 3:  # its struct, its row, and who reads it
         yield "is read by nobody"
 
 
