@@ -54,7 +54,8 @@ FAULTS = (
      "  pair->mu = FrictionSteady(&c->friction);\n", "  pair->mu = (1 - 1e-6) * FrictionSteady(&c->friction);\n", "transient_laws"),
     ("mu is 1e-6 less in a reduced model", "src/reduced/run/pairs.c",
      "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n",
-     "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n    FrictionScale(&r->reduction.model.friction[i], 1 - 1e-6);\n", "transient_laws"),
+     "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n"
+     "    FrictionScale(&r->reduction.model.friction[i], 1 - 1e-6);\n", "transient_laws"),
     ("friction drives: it has the sign of the slip", "src/kernels/contact/friction.h",
      "return square <= radius * radius ? 1 : radius / sqrt(square)",
      "return square <= radius * radius ? 1 : -radius / sqrt(square)", "slipwork-1 transient_laws"),
