@@ -113,10 +113,10 @@ typedef struct {
 +  key    - short unique name: mode_007 for the mode that modes.csv lists as 7
 .  title  - a line for people, e.g. "7: 3458.21 Hz, growth 298 1/s, (0,4+)"
 .  re, im - shape [local nodes][3]
--  more   - n further arrays of the mode, `<key>_<more key>`
+-  more   - a further array of the mode, `<key>_<more key>`, or NULL
 @*/
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
-                                     const PetscReal im[], PetscInt n, const ResultsNodal more[]);
+                                     const PetscReal im[], const ResultsNodal *more);
 
 /*@ ResultsFieldWriteNodal - one real state of the body: n arrays under one title, which ParaView shows as one grid.
     Collective. @*/

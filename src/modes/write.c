@@ -160,8 +160,8 @@ static PetscErrorCode ModesWriteShapes(Modes modes, Operators operators, const M
     PetscCall(OperatorsGetNodal(operators, modes->right.xr[i], re));
     PetscCall(OperatorsGetNodal(operators, modes->right.xi[i], im));
     PetscCall(ModesCreateFeedIn(modes, i, mesh, &density));
-    PetscCall(ResultsFieldWriteMode(field, key, title, re, im, density ? 1 : 0,
-                                    &(const ResultsNodal){"feed_in_w_m2", 1, density}));
+    PetscCall(ResultsFieldWriteMode(field, key, title, re, im,
+                                    density ? &(const ResultsNodal){"feed_in_w_m2", 1, density} : NULL));
     PetscCall(PetscFree(density));
   }
   PetscCall(ResultsFieldClose(&field));

@@ -222,7 +222,7 @@ static PetscErrorCode FieldWriteArray(ResultsField field, const char key[], cons
 }
 
 PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const char title[], const PetscReal re[],
-                                     const PetscReal im[], PetscInt n, const ResultsNodal more[])
+                                     const PetscReal im[], const ResultsNodal *more)
 {
   char suffix[64];
 
@@ -232,10 +232,10 @@ PetscErrorCode ResultsFieldWriteMode(ResultsField field, const char key[], const
   PetscCall(XdmfGridBegin(&field->xdmf, key, title, NULL));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_re", key, "_re", 3));
   PetscCall(XdmfNodal(&field->xdmf, "displacement_im", key, "_im", 3));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscSNPrintf(suffix, sizeof(suffix), "_%s", more[i].key));
-    PetscCall(FieldWriteArray(field, key, suffix, title, more[i].width, more[i].values));
-    PetscCall(XdmfNodal(&field->xdmf, more[i].key, key, suffix, more[i].width));
+  if (more) {
+    PetscCall(PetscSNPrintf(suffix, sizeof(suffix), "_%s", more->key));
+    PetscCall(FieldWriteArray(field, key, suffix, title, more->width, more->values));
+    PetscCall(XdmfNodal(&field->xdmf, more->key, key, suffix, more->width));
   }
   PetscCall(XdmfGridEnd(&field->xdmf));
   PetscCall(FieldCheck(field));

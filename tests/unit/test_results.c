@@ -129,8 +129,7 @@ static PetscErrorCode WriteField(Results results, const Mesh *mesh)
   error = ResultsFieldOpen(results, "field", mesh, &field);
   if (error) PetscFunctionReturn(error);
   PetscCall(PetscCalloc1(3 * mesh->n_nodes, &values));
-  for (int i = 0; i < 2 && !error; i++)
-    error = ResultsFieldWriteMode(field, keys[i], keys[i], mesh->x, values, 0, NULL);
+  for (int i = 0; i < 2 && !error; i++) error = ResultsFieldWriteMode(field, keys[i], keys[i], mesh->x, values, NULL);
   const ResultsNodal arrays[] = {{"pressure_pa", 1, values}, {"displacement_m", 3, values}};
   if (!error) error = ResultsFieldWriteNodal(field, "state", 2, arrays);
   PetscCall(PetscFree(values));

@@ -88,8 +88,8 @@ static PetscErrorCode WriteShape(Results results, const ModelOnRanks *m)
   }
   PetscCall(PetscSNPrintf(title, sizeof(title), "2: %.6g Hz, growth 1 1/s, (0,2+)", 2 * FREQUENCY));
   PetscCall(ResultsFieldOpen(results, "modes", m->mesh, &field));
-  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, im, 0, NULL));
-  PetscCall(ResultsFieldWriteMode(field, "mode_002", title, re, im, 0, NULL));
+  PetscCall(ResultsFieldWriteMode(field, "mode_001", title, im, im, NULL));
+  PetscCall(ResultsFieldWriteMode(field, "mode_002", title, re, im, NULL));
   PetscCall(ResultsFieldClose(&field));
   PetscCall(PetscFree2(re, im));
   PetscFunctionReturn(0);

@@ -137,9 +137,9 @@ static PetscReal PairNormal(const ContactPair *pair, PetscInt first, const Petsc
   return normal;
 }
 
-/* Adds the friction of n pairs of exact contact, `list` of this rank */
-static PetscErrorCode ExactAddPowers(Pencil pencil, PetscReal omega, PetscInt n, const PetscInt list[], const Vec x[2],
-                                     const Vec r[2], PetscReal powers[])
+/* Adds the friction of n pairs of exact contact, `list` of this rank, r times omega / 2 */
+static PetscErrorCode ExactAddPowers(Pencil pencil, PetscInt n, const PetscInt list[], const Vec x[2], const Vec r[2],
+                                     PetscReal powers[])
 {
   const ContactPair *pair;
   const PetscScalar *slip[2], *force[2];
@@ -160,7 +160,7 @@ static PetscErrorCode ExactAddPowers(Pencil pencil, PetscReal omega, PetscInt n,
     const ContactPair *own = &pair[list[i]];
     const PetscReal im = slip[0][i] * PairNormal(own, first, force[1]) - slip[1][i] * PairNormal(own, first, force[0]);
 
-    powers[list[i] * PENCIL_N_POWERS + PENCIL_FRICTION] += omega / 2 * PairFriction(pencil, own) * im;
+    powers[list[i] * PENCIL_N_POWERS + PENCIL_FRICTION] += PairFriction(pencil, own) * im;
   }
   for (int k = 0; k < 2; k++) {
     PetscCall(VecRestoreArrayRead(Tx[k], &slip[k]));
@@ -187,7 +187,8 @@ static PetscErrorCode ExactAddAll(Pencil pencil, PetscComplex lambda, const Vec 
   for (PetscInt p = 0; p < n; p++)
     if (interface[pair[p].interface].law == CONTACT_CONSTRAINT && pencil->group[p] >= 0) list[n_exact++] = p;
   PetscCall(ForcesCreate(pencil, lambda, x, r));
-  PetscCall(ExactAddPowers(pencil, cimag(lambda), n_exact, list, x, r, powers));
+  for (int k = 0; k < 2; k++) PetscCall(VecScale(r[k], cimag(lambda) / 2));
+  PetscCall(ExactAddPowers(pencil, n_exact, list, x, r, powers));
   PetscCall(PartsDestroy(r));
   PetscCall(PetscFree(list));
   PetscFunctionReturn(0);
