@@ -46,7 +46,8 @@ class Brake:
         self.C = matrix(folder / "C.bin")
         self.places, self.of = nodes_of(results / "modes_effects.h5")
         with h5py.File(results / "modes.h5") as file:
-            free = numpy.flatnonzero(sum(abs(shape[()]).reshape(-1) for shape in file["VTKHDF/PointData"].values()) > 0)
+            free = numpy.flatnonzero(sum(abs(shape[()]).reshape(-1) for key, shape in file["VTKHDF/PointData"].items()
+                                         if key[-3:] in ("_re", "_im")) > 0)
         self.number = numpy.full(3 * len(self.places), -1)
         self.number[free] = numpy.arange(len(free))
 

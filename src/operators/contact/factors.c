@@ -60,12 +60,14 @@ static PetscErrorCode RowsLongest(Mat A, PetscInt *longest)
   PetscFunctionReturn(0);
 }
 
-/* The first term after t that has another left factor */
+/* The first term after t that has another left factor, or is no stiffness: damping of friction has factors too */
 static PetscInt BlockEnd(const Terms *terms, PetscInt t)
 {
-  PetscInt end = t + 1;
+  const OperatorsTerm *term = &terms->term[t];
+  PetscInt             end  = t + 1;
 
-  while (end < terms->n && terms->term[t].left && terms->term[end].left == terms->term[t].left) end++;
+  while (end < terms->n && term->left && terms->term[end].left == term->left && terms->term[end].kind == term->kind)
+    end++;
   return end;
 }
 
