@@ -121,7 +121,7 @@ def limit(work):
 
 def brake(work):
     scene = work.folder / "brake.yaml"
-    scene.write_text(SCENE + 'modes: {band: "0,6000"}\nsweep: {parameter: contact_mu, values: "0.1:2:2"}\n')
+    scene.write_text(SCENE + 'modes: {band: "0,6000"}\nsweep: {parameter: contact_mu, values: "0.1:2:4"}\n')
     out = work.done(scene, "--refine", "2")
     for said in ("-rows_stiffness is per node: 12 on the scene's mesh, 20", "-contact_kn is per pair: 9 on the scene's mesh, 25"):
         require(said in out.text, f"'{said}' is not said: {out.text}")

@@ -280,7 +280,7 @@ PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool 
 /*@ ContactAddChecksum - adds surfaces and parameters of each interface. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactAddChecksum(Contact contact, Checksum checksum);
 
-/*@ ContactWrite - check.h5 and check.xmf: the surfaces of the contacts and the gaps of the mesh as it is. Collective; after
+/*@ ContactWrite - check.h5 and check.xmf: surfaces of the contacts and gaps of the mesh as it is. Collective; after
     ContactSetUp(). @*/
 PetscErrorCode ContactWrite(Contact contact, Results results);
 

@@ -226,6 +226,10 @@ PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(M
 @*/
 PetscErrorCode OptionsCheckArguments(int argc, char *const argv[]);
 
+/*@ OptionsMoveFiles - puts the options files before all other words, in their order: PETSc reads the command line from
+    left to right, and what is typed on it is in force wherever it stands. As OptionsCheckArguments(), after it. @*/
+PetscErrorCode OptionsMoveFiles(int argc, char *argv[]);
+
 /*@ OptionsNamesFile - whether a word of the command line names an options file, and one of YAML whatever its ending.
    Not
     collective. @*/

@@ -113,6 +113,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   PetscCall(PetscPushErrorHandler(KeepError, error_message));
   PetscErrorHandlingInitialized = PETSC_TRUE; /* as PetscInitialize() begins: errors are kept from now on */
   PetscCall(OptionsCheckArguments(*argc, *argv));
+  PetscCall(OptionsMoveFiles(*argc, *argv));
   PetscCall(SlepcInitialize(argc, argv, NULL, help));
   PetscCall(MemoryPrepare(PETSC_COMM_WORLD));
   PrintInstall();

@@ -14,7 +14,7 @@ typedef struct {
   PetscReal *slave, *master, *gap; /* [local nodes] */
 } CheckedNodes;
 
-static PetscErrorCode NodesMark(Model model, const char set[], PetscReal number, PetscReal mark[])
+static PetscErrorCode CheckedMark(Model model, const char set[], PetscReal number, PetscReal mark[])
 {
   PetscInt n, *node;
 
@@ -62,8 +62,8 @@ PetscErrorCode ContactWrite(Contact contact, Results results)
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(PetscCalloc3(mesh->n_nodes, &nodes.slave, mesh->n_nodes, &nodes.master, mesh->n_nodes, &nodes.gap));
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
-    PetscCall(NodesMark(contact->model, contact->interfaces[i].slave, -(PetscReal)(1 + i), nodes.slave));
-    PetscCall(NodesMark(contact->model, contact->interfaces[i].master, (PetscReal)(1 + i), nodes.master));
+    PetscCall(CheckedMark(contact->model, contact->interfaces[i].slave, -(PetscReal)(1 + i), nodes.slave));
+    PetscCall(CheckedMark(contact->model, contact->interfaces[i].master, (PetscReal)(1 + i), nodes.master));
   }
   PetscCall(NodesSetPairs(contact, mesh, &nodes));
   PetscCall(ResultsFieldOpen(results, "check", mesh, &field));

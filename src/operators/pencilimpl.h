@@ -53,7 +53,7 @@ struct _p_Pencil {
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
 
-/* causes.c - keeps the terms that make modes grow or decay at the present point, where they are there */
+/* causes/causes.c - keeps the terms that make modes grow or decay at the present point, where they are there */
 PETSC_INTERN PetscErrorCode PencilFormCauses(Pencil pencil);
 
 /* The sum that is K without friction in the unknowns of the pencil */

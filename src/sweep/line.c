@@ -200,7 +200,7 @@ static PetscErrorCode PointLabel(Sweep sweep, const LinePoints *points, PetscInt
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(modes->n, &list, modes->n, &label));
   for (PetscInt k = 0; k < modes->n; k++)
-    if (at[points->branch[i][k]] == i) list[n++] = k;
+    if (points->branch[i][k] >= 0 && at[points->branch[i][k]] == i) list[n++] = k;
   if (n) {
     PetscCall(ReducedModesSelect(modes, n, list, &some));
     PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], &some, label));

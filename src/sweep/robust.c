@@ -12,9 +12,11 @@
 #include "sweepimpl.h"
 #include <squeal/options.h>
 
-/* Of a box in more than six dimensions the first 64 corners are looked at: those with the seventh and further
-   parameters at their lower ends. */
+/* Of a box in more than six dimensions 64 corners are looked at, a fractional factorial design: the side of a further
+   parameter is the product of those of three of the first six, so that each parameter is at either end in half of them,
+   and any two of them in all four combinations equally often. */
 #define MAX_CORNERS 64
+#define FREE_SIDES  6
 /* Points of the Halton sequence. A region of one percent of the box escapes 200 random points with probability
    0.99^200 = 0.13. */
 #define N_INSIDE 200
@@ -118,7 +120,17 @@ static void BoxMove(const ParameterBox *box, PetscInt k, PetscReal side, PetscRe
   for (PetscInt m = 0; m < box->n_moved[k]; m++) p[box->moved[k][m]] *= 1 + side * box->half[k];
 }
 
-/* Point i: 0 the scene itself, then corners by the bits of i - 1, then the inside. The primes are those of as many
+/* 1 or -1: on which side of parameter k corner i = 0, 1, ... lies */
+static PetscReal CornerSide(PetscInt i, PetscInt k)
+{
+  static const unsigned products[SWEEP_MAX_UNCERTAIN - FREE_SIDES] = {007, 013, 015, 016, 023, 025, 026, 031, 032, 034};
+  unsigned              odd = (unsigned)i & (k < FREE_SIDES ? 1U << k : products[k - FREE_SIDES]);
+
+  for (int half = 4; half; half /= 2) odd ^= odd >> half;
+  return odd & 1 ? 1 : -1;
+}
+
+/* Point i: 0 the scene itself, then corners, then the inside. The primes are those of as many
    parameters as may be named. */
 static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n_parameters, PetscInt n_corners,
                      PetscInt i, PetscReal p[])
@@ -127,7 +139,7 @@ static void BoxPoint(const ParameterBox *box, const PetscReal base[], PetscInt n
 
   for (PetscInt k = 0; k < n_parameters; k++) p[k] = base[k];
   for (PetscInt k = 0; k < box->n && i > 0; k++)
-    BoxMove(box, k, i <= n_corners ? (((i - 1) >> k) & 1 ? 1 : -1) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1, p);
+    BoxMove(box, k, i <= n_corners ? CornerSide(i - 1, k) : 2 * VanDerCorput(i - n_corners, primes[k]) - 1, p);
 }
 
 /* Risks of the modes of the nominal point, by what they become at the others; the last entry is for modes that the

@@ -110,7 +110,7 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 {
   const SweepGrid *grid  = &sweep->grid;
   const PetscInt   n_all = grid->n_places, n_parameters = grid->n_parameters;
-  const PetscInt   step = exceeding ? 1 : PetscMax(1, (n_all - 1) / (MAX_TRAIN - 1));
+  const PetscInt   step = exceeding ? 1 : PetscMax(1, (n_all + MAX_TRAIN - 3) / (MAX_TRAIN - 1)); /* rounded up */
   PetscInt         n    = 0;
   PetscReal       *points;
 

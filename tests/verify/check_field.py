@@ -10,9 +10,14 @@ import h5py
 def main(folder, pairs, masters, gap):
     with h5py.File(Path(folder) / "check.h5") as file:
         found = {}
-        file.visititems(lambda name, item: found.update({name.split("/")[-1]: item[...].ravel()}) if isinstance(item, h5py.Dataset) else None)
+        def keep(name, item):
+            if isinstance(item, h5py.Dataset):
+                found[name.split("/")[-1]] = item[...].ravel()
+
+        file.visititems(keep)
     slave, master, gaps = found["slave"], found["master"], found["gap_m"]
-    print(f"{(slave == 1).sum()} slaves, {(master == 1).sum()} masters, gaps {gaps[slave == 1].min():.17g} to {gaps[slave == 1].max():.17g}")
+    of_slaves = gaps[slave == 1]
+    print(f"{of_slaves.size} slaves, {(master == 1).sum()} masters, gaps {of_slaves.min():.17g} to {of_slaves.max():.17g}")
     holds = ((slave == 1).sum() == int(pairs) and not ((slave != 0) & (slave != 1)).any() and (master == 1).sum() == int(masters) and
              abs(gaps[slave == 1] - float(gap)).max() < 1e-15 and not gaps[slave == 0].any())
     return 0 if holds else 1

@@ -59,6 +59,30 @@ PetscErrorCode OptionsCheckArguments(int argc, char *const argv[])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsMoveFiles(int argc, char *argv[])
+{
+  char    **word;
+  int       n = 0;
+  PetscBool file, is_yaml;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(argc, &word));
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 1; i < argc; i++) {
+      PetscBool is_name = PETSC_TRUE;
+
+      PetscCall(OptionsNamesFile(argv[i], &file, &is_yaml));
+      if (i + 1 < argc) PetscCall(PetscOptionsValidKey(argv[i + 1], &is_name));
+      if ((int)file != pass) word[n++] = argv[i];
+      if (is_name) continue;
+      if ((int)file != pass) word[n++] = argv[i + 1];
+      i++;
+    }
+  PetscCall(PetscArraycpy(&argv[1], word, n));
+  PetscCall(PetscFree(word));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsFindLargest(char text[], size_t size)
 {
   char    **word;

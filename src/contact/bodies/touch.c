@@ -51,17 +51,19 @@ static PetscBool InOtherBox(const BodyGraph *b, const PetscReal box[], PetscReal
   return PETSC_FALSE;
 }
 
-/* Sets the bit of a joint at the candidates of a set; at[local nodes] is -1 for no candidate */
+/* Sets the bit of a joint (joints beyond the room of the mask share the last one: a note may then be missing, but none
+   is wrong) at the candidates of a set; at[local nodes] is -1 for no candidate */
 static PetscErrorCode SideMark(const BodyGraph *b, const char set[], int side, PetscInt joint, const PetscInt at[],
                                BodyNode node[])
 {
-  PetscInt n, *of;
+  const PetscInt bit = PetscMin(joint, 64 * MASK_WORDS - 1);
+  PetscInt       n, *of;
 
   PetscFunctionBeginUser;
-  if (!set || !set[0] || joint >= 64 * MASK_WORDS) PetscFunctionReturn(0);
+  if (!set || !set[0]) PetscFunctionReturn(0);
   PetscCall(ModelGetSetNodes(b->contact->model, set, &n, &of));
   for (PetscInt i = 0; i < n; i++)
-    if (at[of[i]] >= 0) node[at[of[i]]].side[side][joint / 64] |= (uint64_t)1 << (joint % 64);
+    if (at[of[i]] >= 0) node[at[of[i]]].side[side][bit / 64] |= (uint64_t)1 << (bit % 64);
   PetscCall(PetscFree(of));
   PetscFunctionReturn(0);
 }

@@ -27,7 +27,8 @@ CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal w
   return pair;
 }
 
-/* v = free + [(1 - t) W kappa + t I] l; columns of pairs without force are left out, most of them when few are closed */
+/* v = free + [(1 - t) W kappa + t I] l; columns of pairs without force are left out, most of them when few are
+   closed */
 PetscErrorCode ComplianceMove(ContactCompliance c)
 {
   const PetscInt N = 3 * c->n;

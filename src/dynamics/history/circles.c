@@ -118,7 +118,7 @@ PetscErrorCode CirclesWriteNodes(History history)
       CirclePolar(c, x, at);
       PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g,%c,%.15g,%.15g,%d", c->probe[k].name, c->name,
                                 (double)x[0], (double)x[1], (double)x[2], "xyz"[c->axis], (double)at[0],
-                                (double)(at[1] - (has_angle ? from[1] : 0)), (int)has_angle));
+                                (double)remainder(at[1] - (has_angle ? from[1] : 0), 2 * PETSC_PI), (int)has_angle));
     }
   }
   PetscCall(ResultsTableClose(&table));

@@ -42,15 +42,17 @@ PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, con
 }
 
 /* Marks modes of an undamped system that are zero: |lambda|^2 |y^T M x| <= ROUNDING_RIGID noise. Modes are sorted
-   by frequency, so that it ends at the first that is not small; E is formed only if there are such. */
+   by frequency, so that it ends at the first whose frequency is not small; E is formed only if there are such. */
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes)
 {
-  const PetscInt n = modes->size;
-  PetscReal     *E = NULL, noise;
+  const PetscInt  n     = modes->size;
+  const PetscReal small = ROUNDING_SMALL * window->high; /* rad/s */
+  PetscReal      *E     = NULL, noise;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n && cabs(modes->lambda[i]) < ROUNDING_SMALL * window->high; i++) {
+  for (PetscInt i = 0; i < modes->n && PetscAbsReal(cimag(modes->lambda[i])) < small; i++) {
+    if (cabs(modes->lambda[i]) >= small) continue; /* it diverges, or decays without a frequency */
     if (!E) {
       PetscCall(PetscMalloc1(n * n, &E));
       RoundingEnergy(reduced, p, E);

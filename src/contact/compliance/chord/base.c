@@ -2,7 +2,8 @@
    The linear system of chord.c: its indices in the frames of their pairs, the factors of a base set, and what borders
    them. Index 4 p + kind belongs to pair p; kinds 0 to 3 are those of chord.c's table.
 
-      A(i, j) = r_i' (W kappa) t_j + c [i = j of kind 1],     r_i the row of index i at its pair, t_j the force of a unit of j
+      A(i, j) = r_i' (W kappa) t_j + c [i = j of kind 1],   r_i the row of index i at its pair, t_j the force of a unit
+      of j
 
    Without unit, since W kappa has none. Base and border: with A0 the base's matrix, V = A0^-1 [A_0B, E_D] and the
    Schur complement S = [A_BB, 0; 0, 0] - [A_B0; E_D'] V, one row and column for each index that joined (B) or left

@@ -11,7 +11,7 @@
    Zr q = 0: interface i adds w_i = mu_i (Zl_i q)^H (...) u, of which -Im w_i / D is the share, the limit of the
    penalty's.
 */
-#include "pencilimpl.h"
+#include "products.h"
 #include <complex.h>
 
 /* Whether a term can have a share */
@@ -87,51 +87,6 @@ PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **c
   PetscFunctionReturn(0);
 }
 
-/* A complex vector, x[1] NULL where it is real, and room for a product */
-typedef struct {
-  Vec x[2], y;
-} CauseVector;
-
-/* re + i im = x^H A x with x = x_r + i x_i: re = x_r'A x_r + x_i'A x_i, im = x_r'A x_i - x_i'A x_r, which is 0 but
-   for rounding where A is symmetric */
-static PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
-{
-  PetscScalar d[2] = {0, 0};
-
-  PetscFunctionBeginUser;
-  form[0] = form[1] = 0;
-  for (int k = 0; k < 2 && v->x[k]; k++) {
-    PetscCall(MatMult(A, v->x[k], v->y));
-    PetscCall(VecMDot(v->y, v->x[1] ? 2 : 1, v->x, d));
-    form[0] += PetscRealPart(d[k]);
-    form[1] += k ? PetscRealPart(d[0]) : -PetscRealPart(d[1]);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* The vector in the unknowns of the pencil, u = Zr q; NULL where nothing is projected, and the terms of all
-   unknowns do. */
-static PetscErrorCode VectorRestrict(Pencil pencil, const CauseVector *u, CauseVector *q)
-{
-  PetscFunctionBeginUser;
-  *q = (CauseVector){{NULL, NULL}, NULL};
-  if (!pencil->Zr) PetscFunctionReturn(0);
-  for (int k = 0; k < 2 && u->x[k]; k++) {
-    PetscCall(MatCreateVecs(pencil->Zr, &q->x[k], NULL));
-    PetscCall(PencilRestrict(pencil, u->x[k], q->x[k]));
-  }
-  PetscCall(VecDuplicate(q->x[0], &q->y));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode VectorDestroy(CauseVector *v)
-{
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++) PetscCall(VecDestroy(&v->x[k]));
-  PetscCall(VecDestroy(&v->y));
-  PetscFunctionReturn(0);
-}
-
 /* What a term adds to -sigma D, and to D where it is damping, of form = x^H A x times the coefficient (N m, N s m, kg
    m^2 with u in m). sigma in 1/s, omega in rad/s, so that growth[] is in rad/s. */
 static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal omega, const PetscReal form[2],
@@ -178,39 +133,6 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscComplex lambda, Vec ur, V
   if (energy) *energy = omega * D / 4;
   PetscCall(VectorDestroy(&q));
   PetscCall(VecDestroy(&u.y));
-  PetscFunctionReturn(0);
-}
-
-/* product = y' z, without conjugation */
-static PetscErrorCode VectorDot(const CauseVector *y, const CauseVector *z, PetscComplex *product)
-{
-  PetscScalar d[2];
-
-  PetscFunctionBeginUser;
-  *product = 0;
-  for (int k = 0; k < 2 && z->x[k]; k++) {
-    PetscCall(VecMDot(z->x[k], y->x[1] ? 2 : 1, (Vec *)y->x, d));
-    *product += (k ? I : 1) * CMPLX(d[0], y->x[1] ? d[1] : 0);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* product = y' A x, or y' A' x */
-static PetscErrorCode VectorProduct(const CauseVector *y, Mat A, PetscBool turned, const CauseVector *x,
-                                    PetscComplex *product)
-{
-  CauseVector z = {{NULL, NULL}, NULL};
-
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 2 && x->x[k]; k++) {
-    PetscCall(VecDuplicate(x->x[k], &z.x[k]));
-    if (turned)
-      PetscCall(MatMultTranspose(A, x->x[k], z.x[k]));
-    else
-      PetscCall(MatMult(A, x->x[k], z.x[k]));
-  }
-  PetscCall(VectorDot(y, &z, product));
-  PetscCall(VectorDestroy(&z));
   PetscFunctionReturn(0);
 }
 
@@ -263,36 +185,5 @@ PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *v, PetscIn
     PetscCall(VectorDestroy(&y[1][a]));
     PetscCall(VecDestroy(&x[0][a].y));
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode PencilMeasureDerivatives(Pencil pencil, PetscReal sigma, PetscReal omega, const PencilVectors *v,
-                                        PetscComplex derivative[])
-{
-  const PetscComplex lambda   = CMPLX(sigma, omega);
-  const PetscComplex powers[] = {
-    [OPERATORS_STIFFNESS] = 1, [OPERATORS_DAMPING] = lambda, [OPERATORS_MASS] = lambda * lambda};
-  const OperatorsTerm *term;
-  const PetscReal     *p;
-  PetscInt             n, n_parameters;
-  CauseVector          x[2] = {{{v->xr[0], v->xi[0]}, NULL}}, y[2] = {{{v->yr[0], v->yi[0]}, NULL}};
-  const int            space = pencil->Zr ? 1 : 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PencilGetTerms(pencil, &n, &term));
-  PetscCall(PencilGetParameters(pencil, &n_parameters, NULL, &p));
-  PetscCall(PetscArrayzero(derivative, n_parameters));
-  PetscCall(VectorRestrict(pencil, &x[0], &x[1]));
-  PetscCall(VectorRestrict(pencil, &y[0], &y[1]));
-  for (PetscInt t = 0; t < n; t++) {
-    PetscComplex product;
-
-    if (!term[t].n) continue;
-    PetscCall(VectorProduct(&y[space], term[t].A, PETSC_FALSE, &x[space], &product));
-    for (PetscInt j = 0; j < n_parameters; j++)
-      derivative[j] += OperatorsTermDerivative(&term[t], p, j) * powers[term[t].kind] * product;
-  }
-  PetscCall(VectorDestroy(&x[1]));
-  PetscCall(VectorDestroy(&y[1]));
   PetscFunctionReturn(0);
 }
