@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""scripts/cure on a small brake with three unstable modes: the cheapest set, added to the matrices, leaves what is stated by scipy's
+eigenvalues. Breaks when a direction, a unit or a node is mixed up, a set is called stable that is not, or bad input is not one line.
+
+    test_cure.py SQUEAL"""
+
+import csv
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(SOURCE / "tests/verify"))
+from changes import Brake  # noqa: E402
+
+SCENE = """
+rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}
+modes: {band: "1,8000"}
+contact: {friction_damping: true, speed: 2, force: 500, mu_slope: -0.02}
+disc: {beta: 1e-8}
+pad: {alpha: 20}
+dashpots: hang
+hang: {set: pad, viscosity_total: "0,3,0"}
+"""
+MU = 0.5
+LIMIT = 1e-5  # of the eigenvalue: growth that is no instability
+OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity"}
+
+
+def call(folder, *words):
+    return subprocess.run([sys.executable, SOURCE / "scripts/cure", *map(str, words)], capture_output=True, text=True, cwd=folder,
+                          check=False)
+
+
+def exact(folder, rows):
+    """Largest growth of the matrices with a set of changes, and its eigenvalue."""
+    brake = Brake(folder / "out", folder / "matrices", MU)
+    for i, row in enumerate(rows):
+        brake.scene.given.update({f"c{i}_at": ",".join(row[f"{axis}_m"] for axis in "xyz"), f"c{i}_part": row["part"],
+                                  f"c{i}_direction": ",".join(row[f"direction_{axis}"] for axis in "xyz"),
+                                  f"c{i}_{OPTION[row['change']]}": row["amount"], **({f"c{i}_with": f"c{i - 1}"} if i else {})})
+    band = [2 * math.pi * edge for edge in (1.5, 7992)]
+    return max(brake.modes(f"c{len(rows) - 1}", band, 60), key=lambda value: value.real)
+
+
+def check_set(folder, rows, what):
+    """A set of cure.csv beside its matrices; what is wrong."""
+    value = exact(folder, rows)
+    stated, error, count = (float(rows[0][name]) for name in ("growth_rad_s", "growth_error_rad_s", "n_unstable"))
+    print(f"{what}: {len(rows)} changes, growth {value.real:.6g} of the matrices, {stated:.6g} +- {error:.1g} stated")
+    off = abs(value.real - stated) > error + 1e-9 * abs(value)
+    return [f"{what}: growth"] if off or (count == 0) != (value.real <= LIMIT * abs(value)) else []
+
+
+def main(squeal):
+    faults = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "small.yaml").write_text(SCENE)
+        subprocess.run([squeal, "-options_file", SOURCE / "options/massi2005.yaml", "-options_file", "small.yaml", "-output_dir", "out",
+                        "-operators_save", "matrices"], cwd=folder, check=True, capture_output=True)
+        done = call(folder, "out", "--program", squeal, "--most", "dashpot=12,mass=60", "--tries", "12")
+        print(done.stdout + done.stderr)
+        with (folder / "out/cure/cure.csv").open(newline="") as table:
+            rows = list(csv.DictReader(table))
+        sets = {}
+        for row in rows:
+            sets.setdefault(int(row["set"]), []).append(row)
+        costs = [float(own[0]["cost"]) for own in sets.values() if own[0]["n_unstable"] == "0"]
+        faults += ["cheapest first"] * (not costs or costs != sorted(costs))
+        pair = next(own for own in sets.values() if len(own) == 2)
+        for own, what in ((sets[1], "the cheapest"), (pair, "a pair"), (sets[max(sets)], "the worst")):
+            faults += check_set(folder, own, what)
+        for words, said in ((["none"], "none/scene.yaml: no such file"), (["out", "--changes", "glue"], "must be of mass, spring, dashpot"),
+                            (["out", "--price", "mass=-1"], "a positive number"), (["out", "--parts", "wheel"], "has no mass"),
+                            (["out", "--most", "mass=1e-9,spring=1e-9,dashpot=1e-9"], "raise --most")):
+            done = call(folder, *words, "--program", squeal)
+            faults += [] if done.returncode and said in done.stderr.splitlines()[-1] else [f"{words}: {done.stderr}"]
+    print("\n".join(faults))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve()))
