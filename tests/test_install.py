@@ -105,7 +105,7 @@ def check_scripts(top, bin_dir, faults):
 def check_manual(place, squeal, faults):
     """The page beside what the program that is installed tells of its options."""
     page = next(place.rglob("man1/squeal.1"))
-    options = options_of([squeal], folder=place)
+    options = options_of(squeal if isinstance(squeal, list) else [squeal], folder=place)
     text = page.read_text().replace("\\-", "-").replace("\\(aq", "'")
     lost = [option.name for option in options if f".B -{option.name}\n" not in text
             or f"[default {default_of(option)}]" not in "[default ]" + text.partition(f".B -{option.name}\n")[2].partition(".TP")[0]]
