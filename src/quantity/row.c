@@ -154,6 +154,20 @@ PetscErrorCode QuantityGetOption(const char name[], const Quantity *row, size_t 
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for an option without a value, before others are told that it is not there */
+static PetscErrorCode QuantityCheckValue(OptionsItems PetscOptionsObject, const Quantity *row)
+{
+  const char *const prefix = PetscOptionsObject->prefix;
+  const char       *text;
+  PetscBool         set;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsFindPair(PetscOptionsObject->options, prefix, row->name, &text, &set));
+  PetscCheck(!set || (text && text[0]), PetscOptionsObject->comm, PETSC_ERR_USER_INPUT,
+             "-%s%s has no value; give one, or leave the option out", prefix ? prefix : "", row->name + 1);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[], const Quantity *row, void *owner)
 {
   void     *value = QuantityValue(row, owner);
@@ -163,6 +177,7 @@ PetscErrorCode QuantityRead(OptionsItems PetscOptionsObject, const char header[]
 
   PetscFunctionBeginUser;
   PetscCall(HelpWithUnit(row, sizeof(help), help));
+  if (row->kind <= QUANTITY_MANY) PetscCall(QuantityCheckValue(PetscOptionsObject, row));
   if (row->kind <= QUANTITY_MANY) PetscCall(OptionsCheckNumber(PetscOptionsObject, row->name));
   switch (row->kind) {
   case QUANTITY_BOOL:
