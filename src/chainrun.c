@@ -28,49 +28,6 @@ static PetscErrorCode ChainSolveModes(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ChainWriteModes(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ModesWrite(chain->modes, chain->results));
-  PetscFunctionReturn(0);
-}
-
-/* A sweep makes pencils of its own */
-static PetscErrorCode ChainForgetPencil(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PencilDestroy(&chain->pencil));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainSolveSweep(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SweepSolve(chain->sweep, chain->results));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainWriteSweep(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SweepWrite(chain->sweep, chain->results));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainSolveStatics(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(StaticsSolve(chain->statics, chain->p));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainWriteStatics(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(StaticsWrite(chain->statics, chain->results));
-  PetscFunctionReturn(0);
-}
-
 /* In time on the mesh, or reduced */
 static PetscErrorCode ChainIntegrate(Chain *chain)
 {
@@ -85,20 +42,6 @@ static PetscErrorCode ChainIntegrate(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ChainJudgeReduced(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedJudgeVerified(chain->reduced));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainSolveFrf(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(FrfSolve(chain->frf));
-  PetscFunctionReturn(0);
-}
-
 /* The response, and the modes that it is made of */
 static PetscErrorCode ChainWriteFrf(Chain *chain)
 {
@@ -109,27 +52,6 @@ static PetscErrorCode ChainWriteFrf(Chain *chain)
   PetscCall(FrfWrite(chain->frf, chain->results));
   PetscCall(ModesGet(chain->modes, &n, &mode));
   if (n) PetscCall(ModesWrite(chain->modes, chain->results));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainSolveMap(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MapSolve(chain->map, chain->results));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainJudgeMap(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(MapJudge(chain->map));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ChainSolveCycle(Chain *chain)
-{
-  PetscFunctionBeginUser;
-  PetscCall(CycleSolve(chain->cycle, chain->results));
   PetscFunctionReturn(0);
 }
 
@@ -151,6 +73,27 @@ static PetscErrorCode ChainWriteScene(Chain *chain)
   if (chain->contact) PetscCall(ContactWrite(chain->contact, chain->results));
   PetscFunctionReturn(0);
 }
+
+/* A step of an analysis that is one call */
+#define STEP(name, call)                                                                                               \
+  static PetscErrorCode name(Chain *chain)                                                                             \
+  {                                                                                                                    \
+    PetscFunctionBeginUser;                                                                                            \
+    PetscCall(call);                                                                                                   \
+    PetscFunctionReturn(0);                                                                                            \
+  }
+
+STEP(ChainWriteModes, ModesWrite(chain->modes, chain->results))
+STEP(ChainForgetPencil, PencilDestroy(&chain->pencil)) /* A sweep makes pencils of its own */
+STEP(ChainSolveSweep, SweepSolve(chain->sweep, chain->results))
+STEP(ChainWriteSweep, SweepWrite(chain->sweep, chain->results))
+STEP(ChainSolveStatics, StaticsSolve(chain->statics, chain->p))
+STEP(ChainWriteStatics, StaticsWrite(chain->statics, chain->results))
+STEP(ChainJudgeReduced, ReducedJudgeVerified(chain->reduced))
+STEP(ChainSolveFrf, FrfSolve(chain->frf))
+STEP(ChainSolveMap, MapSolve(chain->map, chain->results))
+STEP(ChainJudgeMap, MapJudge(chain->map))
+STEP(ChainSolveCycle, CycleSolve(chain->cycle, chain->results))
 
 /* NULL for what an analysis has not. Those in time write as they go, and look for checkpoints before they begin */
 static const struct {

@@ -31,10 +31,11 @@ static PetscErrorCode NodesSetPairs(Contact contact, const Mesh *mesh, CheckedNo
   PetscInt *local, first = PETSC_MAX_INT, last = -1; /* of the numbers that this rank owns */
 
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < mesh->n_nodes; v++)
-    if (mesh->owned[v]) first = PetscMin(first, mesh->number[v]);
-  for (PetscInt v = 0; v < mesh->n_nodes; v++)
-    if (mesh->owned[v]) last = PetscMax(last, mesh->number[v]);
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
+    if (!mesh->owned[v]) continue;
+    first = PetscMin(first, mesh->number[v]);
+    last  = PetscMax(last, mesh->number[v]);
+  }
   PetscCall(PetscMalloc1(last < 0 ? 0 : last - first + 1, &local));
   for (PetscInt v = 0; v < mesh->n_nodes; v++)
     if (mesh->owned[v]) local[mesh->number[v] - first] = v;

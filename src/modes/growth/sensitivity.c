@@ -65,7 +65,7 @@ static PetscErrorCode SensitivityWrite(PetscInt i, const OperatorsParameter q[],
     if (!ParameterIsListed(&q[j])) continue;
     PetscCall(ResultsTableRow(table, "%d,%s,%.15g,%s,%.15g,%.15g,%.15g,%.15g,%.3g", (int)i + 1, q[j].name, (double)p[j],
                               q[j].unit, (double)(hz + 0), (double)(growth + 0), (double)(hz * percent + 0),
-                              (double)(growth * percent), (double)(s->error / 100)));
+                              (double)(growth * percent + 0), (double)(s->error / 100)));
   }
   PetscFunctionReturn(0);
 }
