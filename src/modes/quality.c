@@ -304,7 +304,7 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   noise /= norm_x * norm_x;
   /* error of lambda^2: of a double eigenvalue, whose condition has no limit, the root of rounding */
   if (has_left && isfinite(mode->condition)) amplified = PetscMax(1, mode->condition);
-  square = PetscMax(PetscMin(amplified, QUALITY_DOUBLE) * noise, has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
+  square = PetscMin(amplified, QUALITY_DOUBLE) * PetscMax(noise, has_left ? p.y_Qx / (norm_x * norm_y) : 0);
   noise *= amplified;
   mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
   square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);

@@ -27,8 +27,8 @@ CHANGES = (("contact contact", "-contact_mu", "0.4"), ("materials", "-beam_poiss
            ("contact contact", "-contact_slip", "1,0,0", "-rows_stiffness", "1e6,8.422e6,0"),
            ("the mesh", "-model_element", "full"),
            ("spring rows", "-rows_stiffness", "0,8.422e6,1"), ("the mesh", "-rig_disc_spread", "0.5"))
-# Places in the second file, and what is put there: another kind of file, lengths in the head, a bit of a vector, an end
-DAMAGE = ((0, b"Squeal"), (72, b"\xff\xff\xff\xff"), (-1000, b"\x01"), (-8, None))
+# Places in the second file, and bits that change there: another kind of file, lengths in the head, a bit of a vector; an end
+DAMAGE = ((0, b"\x20"), (72, b"\xff\xff\xff\xff"), (-1000, b"\x01"), (-8, None))
 # Pairs that are closed at some places only, groups of them among the parameters; fewer groups without the last two
 GROUPS = ("-sweep_parameter", "contact_mu", "-sweep_values", "0.05,0.06,0.07", "-sweep_verify", "0",
           "-sweep_uncertain", "pad_young", "-sweep_percent", "10")
@@ -86,12 +86,15 @@ def begin_anew(arguments, folder, output, parts, *options):
 
 def check_damage(arguments, folder):
     """Damaged files: each is named and left out, and the sweep ends as if it had not been there."""
-    for number, (place, bytes_) in enumerate(DAMAGE):
+    for number, (place, bits) in enumerate(DAMAGE):
         output = f"damaged{number}"
         shutil.copytree(folder / "other", folder / output)
         file = folder / output / "sweep_restart_001"
         data = bytearray(file.read_bytes())
-        data[place:len(data) if bytes_ is None else place + len(bytes_)] = bytes_ or b""
+        if bits is None:
+            del data[place:]
+        for i, mask in enumerate(bits or b"", place):
+            data[i] ^= mask
         file.write_bytes(data)
         printed = complete(arguments, folder, output)
         if not re.search("sweep_restart_001 is .*(damaged|truncated).*; the sweep goes on without it$", printed, re.M):

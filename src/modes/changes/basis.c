@@ -5,7 +5,8 @@
       Q(lambda) x = -c(lambda) (a'x) a,
 
    and are answers to forces along a at frequencies of the band: what its modes do not tell of them is spanned by few
-   Krylov vectors at the shift of the modes' own factorisation (modes/space/krylov.c). No new one is needed.
+   Krylov vectors at the shift of the modes' own factorisation (modes/space/krylov.c). A damped solution by projection
+   leaves none, and one is made.
 */
 #include "changes.h"
 #include "solver/block/orthonormal.h"
