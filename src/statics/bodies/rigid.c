@@ -30,31 +30,21 @@ static PetscReal RigidMotion(int k, int d, const PetscReal x[3], const RigidBody
   return d == a ? -(x[b] - c[b]) / rigid->length : d == b ? (x[a] - c[a]) / rigid->length : 0;
 }
 
-/* Centre and half the extent of each body, from its boxes on all ranks */
+/* Centre and half the extent of each body */
 static PetscErrorCode RigidMeasure(Model model, PetscInt n_bodies, const PetscInt body[], RigidBody rigid[])
 {
-  const Mesh *mesh;
-  PetscReal  *box;
-  MPI_Comm    comm;
+  PetscReal *box;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetComm(model, &comm));
-  PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(PetscMalloc1(6 * n_bodies, &box)); /* upper ends, and lower ones with the other sign */
-  for (PetscInt i = 0; i < 6 * n_bodies; i++) box[i] = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
-    PetscReal *end = &box[6 * body[i / 3] + i % 3];
-
-    if (body[i / 3] < 0) continue;
-    end[0] = PetscMax(end[0], mesh->x[i]);
-    end[3] = PetscMax(end[3], -mesh->x[i]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * n_bodies), MPIU_REAL, MPI_MAX, comm));
+  PetscCall(PetscMalloc1(6 * n_bodies, &box));
+  PetscCall(ModelMeasureBodies(model, body, 0, n_bodies, box));
   for (PetscInt i = 0; i < n_bodies; i++) {
+    const PetscReal *upper = &box[6 * i], *lower = upper + 3; /* lower ends with the other sign */
+
     rigid[i].length = 0;
     for (int d = 0; d < 3; d++) {
-      rigid[i].centre[d] = (box[6 * i + d] - box[6 * i + 3 + d]) / 2;
-      rigid[i].length    = PetscMax(rigid[i].length, (box[6 * i + d] + box[6 * i + 3 + d]) / 2);
+      rigid[i].centre[d] = (upper[d] - lower[d]) / 2;
+      rigid[i].length    = PetscMax(rigid[i].length, (upper[d] + lower[d]) / 2);
     }
   }
   PetscCall(PetscFree(box));
