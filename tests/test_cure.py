@@ -26,7 +26,7 @@ hang: {set: pad, viscosity_total: "0,3,0"}
 """
 MU = 0.5
 LIMIT = 1e-5  # of the eigenvalue: growth that is no instability
-OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity"}
+OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity", "relative_spring": "stiffness", "relative_dashpot": "viscosity"}
 
 
 def call(folder, *words):
@@ -40,7 +40,9 @@ def exact(folder, rows):
     for i, row in enumerate(rows):
         brake.scene.given.update({f"c{i}_at": ",".join(row[f"{axis}_m"] for axis in "xyz"), f"c{i}_part": row["part"],
                                   f"c{i}_direction": ",".join(row[f"direction_{axis}"] for axis in "xyz"),
-                                  f"c{i}_{OPTION[row['change']]}": row["amount"], **({f"c{i}_with": f"c{i - 1}"} if i else {})})
+                                  f"c{i}_{OPTION[row['change']]}": row["amount"],
+                                  **({f"c{i}_to": ",".join(row[f"to_{axis}_m"] for axis in "xyz"), f"c{i}_to_part": row["to_part"]}
+                                     if row["to_part"] else {}), **({f"c{i}_with": f"c{i - 1}"} if i else {})})
     band = [2 * math.pi * edge for edge in (1.5, 7992)]
     return max(brake.modes(f"c{len(rows) - 1}", band, 60), key=lambda value: value.real)
 
@@ -73,9 +75,9 @@ def main(squeal):
         pair = next(own for own in sets.values() if len(own) == 2)
         for own, what in ((sets[1], "the cheapest"), (pair, "a pair"), (sets[max(sets)], "the worst")):
             faults += check_set(folder, own, what)
-        for words, said in ((["none"], "none/scene.yaml: no such file"), (["out", "--changes", "glue"], "must be of mass, spring, dashpot"),
+        for words, said in ((["none"], "none/scene.yaml: no such file"), (["out", "--changes", "glue"], "must be of mass, spring, dashpot, relative_spring, relative_dashpot"),
                             (["out", "--price", "mass=-1"], "a positive number"), (["out", "--parts", "wheel"], "has no mass"),
-                            (["out", "--most", "mass=1e-9,spring=1e-9,dashpot=1e-9"], "raise --most")):
+                            (["out", "--most", ",".join(f"{kind}=1e-9" for kind in OPTION)], "raise --most")):
             done = call(folder, *words, "--program", squeal)
             faults += [] if done.returncode and said in done.stderr.splitlines()[-1] else [f"{words}: {done.stderr}"]
     print("\n".join(faults))

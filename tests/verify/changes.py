@@ -5,8 +5,9 @@
     changes.py absorber RESULTS CHANGE RATIO    the response of a mass with Den Hartog's absorber, made of the eigenvalues
 
 full: the changes of scene.yaml are added to the matrices of -operators_save; each mode of the band stands in the table once, no farther
-off than its stated error. absorber: a mass of 1 kg on 1 N/m with an absorber of RATIO kg, k = RATIO / (1 + RATIO)^2 N/m, is excited by
-1 N: at both fixed points the amplitude is sqrt(1 + 2 / RATIO) m, whatever the dashpot (J. P. Den Hartog, Mechanical Vibrations)."""
+off than its stated error, with the mode before the change that its shape resembles most.
+absorber: a mass of 1 kg on 1 N/m with an absorber of RATIO kg, k = RATIO / (1 + RATIO)^2 N/m, is excited by 1 N: at both fixed
+points the amplitude is sqrt(1 + 2 / RATIO) m, whatever the dashpot (J. P. Den Hartog, Mechanical Vibrations)."""
 
 import csv
 import math
@@ -25,15 +26,17 @@ from squeal.provenance import Provenance # noqa: E402
 LOOSE = 1e-9  # of an eigenvalue: what scipy leaves
 EDGE = 1e-3  # of the band, left out at its ends
 LARGEST = 2e-3  # of a frequency, that an error may state
+OVERLAP = 2e-4  # of the table: it has four digits
 
 
 def table(folder):
-    """Change -> eigenvalues and errors, rad/s."""
+    """Change -> eigenvalues and errors, rad/s, and the mode before with its overlap."""
     found = {}
     with (folder / "modes_changed.csv").open(newline="") as file:
         for row in csv.DictReader(file):
             value = complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"]))
-            found.setdefault(row["change"], []).append((value, 2 * math.pi * float(row["error_hz"])))
+            before = int(row.get("before", 0)) - 1, float(row.get("overlap", "nan"))
+            found.setdefault(row["change"], []).append((value, 2 * math.pi * float(row["error_hz"]), before))
     return found
 
 
@@ -76,7 +79,11 @@ class Brake:
         return K, C, M
 
     def modes(self, name, band, count):
-        """Eigenvalues in the band, of the linearised problem about the middle of it."""
+        """Eigenvalues in the band."""
+        return [value for value, _ in self.shapes(name, band, count)]
+
+    def shapes(self, name, band, count):
+        """Eigenvalues in the band with their vectors, of the linearised problem about the middle of it."""
         K, C, M = self.changed(name)
         n, shift = K.shape[0], 1j * math.hypot(*band) / math.sqrt(2)
         factors = scipy.sparse.linalg.splu((K + shift * C + shift**2 * M).tocsc())
@@ -90,11 +97,16 @@ class Brake:
         operator = scipy.sparse.linalg.LinearOperator((2 * n, 2 * n), matvec=lambda z: solve(
             numpy.concatenate([z[:n], M @ z[n:]])), dtype=complex)
         start = numpy.random.default_rng(1).standard_normal(2 * n)
-        theta = scipy.sparse.linalg.eigs(operator, count, which="LM", return_eigenvectors=False, v0=start, tol=1e-12)
+        theta, vectors = scipy.sparse.linalg.eigs(operator, count, which="LM", v0=start, tol=1e-12)
         values = shift + 1 / theta
         if abs(values - shift).max() < max(band) - abs(shift):
             sys.exit("too few eigenvalues of scipy: raise their count")
-        return [value for value in values if band[0] < value.imag < band[1]]
+        return [(value, vector) for value, vector in zip(values, vectors[:n].T) if band[0] < value.imag < band[1]]
+
+    def overlap(self, x, u):
+        """|u^H M x|^2 / (u^H M u x^H M x)."""
+        Mx, Mu = self.M @ x, self.M @ u
+        return abs(numpy.vdot(u, Mx))**2 / (numpy.vdot(u, Mu).real * numpy.vdot(x, Mx).real)
 
 
 def full(results, folder, mu):
@@ -102,24 +114,28 @@ def full(results, folder, mu):
     brake, worst, largest = Brake(results, folder, mu), 0, 0
     edges = [2 * math.pi * float(edge) for edge in brake.scene.value("modes_band").split(",")]
     band = edges[0] + EDGE * edges[1], edges[1] * (1 - EDGE)
+    old = sorted(brake.shapes("", band, 2 * max(map(len, table(results).values()))), key=lambda entry: entry[0].imag)
     for name, rows in table(results).items():
-        exact = brake.modes(name, band, 2 * len(rows))
-        inside = [(value, error) for value, error in rows if band[0] < value.imag < band[1]]
+        exact = brake.shapes(name, band, 2 * len(rows))
+        inside = [row for row in rows if band[0] < row[0].imag < band[1]]
         if len(exact) != len(inside):
             sys.exit(f"{name}: {len(inside)} modes in the table, {len(exact)} of the matrices")
-        for value, error in inside:
-            nearest = min(exact, key=lambda other: abs(other - value))
-            exact.remove(nearest)
-            off = abs(nearest - value) / (error + LOOSE * abs(value))
+        for value, error, (before, overlap) in inside:
+            nearest = min(range(len(exact)), key=lambda i: abs(exact[i][0] - value))
+            other, vector = exact.pop(nearest)
+            off = abs(other - value) / (error + LOOSE * abs(value))
             worst, largest = max(worst, off), max(largest, error / abs(value))
-        print(f"{name}: {len(inside)} modes, largest growth {max(value.real for value, _ in inside):.6g} 1/s")
+            overlaps = [brake.overlap(vector, shape) for _, shape in old]
+            if before >= len(old) or abs(overlaps[before] - overlap) > OVERLAP or max(overlaps) > overlap + OVERLAP:
+                sys.exit(f"{name}: {value} is said to be mode {before + 1}, {overlap}; of the matrices {max(overlaps)}")
+        print(f"{name}: {len(inside)} modes, largest growth {max(value.real for value, _, _ in inside):.6g} 1/s")
     print(f"off by {worst:.2g} of the stated error at most, which is {largest:.1e} of the eigenvalue at most")
     return worst <= 1 and largest <= LARGEST
 
 
 def absorber(results, name, ratio):
     """|k - m w^2 + i w c| / |ratio prod(i w - lambda)| at the fixed points, with the damping that the sum of eigenvalues tells."""
-    values = numpy.array([value for value, _ in table(results)[name]])
+    values = numpy.array([value for value, _, _ in table(results)[name]])
     if len(values) != 2:
         return False
     k = ratio / (1 + ratio)**2

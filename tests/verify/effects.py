@@ -3,11 +3,12 @@
 
     effects.py RESULTS MATRICES MU [--tolerance 1e-6]
 
-A mass, springs and dashpots at nodes are added to the matrices of -operators_save, with either sign; the central difference of the
-eigenvalue is the rate. The nodes are those of the table and some others; the rows of the table must be the best of each part."""
+A mass, springs and dashpots at nodes, and between two, are added to the matrices of -operators_save, with either sign; the
+central difference of the eigenvalue is the rate. The nodes are those of the table and some others; the rows of the table must be the best of each part."""
 
 import argparse
 import csv
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -140,23 +141,30 @@ def main():
             sys.exit(f"mode {mode}: {value}, of the matrices {exact}, {len(free)} unknowns of {problem.M.shape[0]}")
         rates = fields(args.results / "modes_effects.h5", mode)
 
-        def difference(node, kind, direction):
-            """Rate by the central difference."""
+        def difference(ends, kind, direction):
+            """Rate by the central difference, of a node alone or with another end."""
             axes = numpy.eye(3) if kind == "mass" else numpy.array([direction]).T
             unit = numpy.zeros((len(free), axes.shape[1]))
-            for a in range(3):
+            for (sign, node), a in itertools.product(zip((1, -1), ends), range(3)):
                 if number[3 * node + a] >= 0:
-                    unit[number[3 * node + a]] = axes[a]
+                    unit[number[3 * node + a]] += sign * axes[a]
             return problem.rate(unit, kind)
+
+        def node_at(row, to):
+            """The node of a part at a place."""
+            at = [float(row[f"{to}{x}_m"]) for x in "xyz"]
+            return int(numpy.argmin(((places - at)**2).sum(1) + ~of[parts.index(row[f"{to}part"])]))
 
         for row in rows:
             if int(row["mode"]) != mode:
                 continue
-            kind, at = row["change"], [float(row[f"{x}_m"]) for x in "xyz"]
+            kind = row["change"].removeprefix("relative_")
+            if (kind != row["change"]) != bool(row["to_part"]):
+                sys.exit(f"{row}: its other end")
             direction = numpy.array([float(row[f"direction_{x}"]) for x in "xyz"])
-            node = int(numpy.argmin(((places - at)**2).sum(1) + ~of[parts.index(row["part"])]))
+            ends = [node_at(row, to) for to in ("", "to_")[:1 + (kind != row["change"])]]
             guess = complex(float(row["growth_rad_s_per_unit"]), 2 * math.pi * float(row["freq_hz_per_unit"]))
-            found, noise = difference(node, kind, direction)
+            found, noise = difference(ends, kind, direction)
             off = (abs(found - guess) - noise) / abs(guess)
             worst, count = max(worst, off), count + 1
         for kind, rate in rates.items():
@@ -169,7 +177,7 @@ def main():
             for node in numpy.random.default_rng(mode).choice(len(places), OTHERS, replace=False):
                 for axis in range(width):
                     guess = max(abs(rate[node, axis]), 1e-3 * scale)
-                    found, noise = difference(node, kind, numpy.eye(3)[axis])
+                    found, noise = difference([node], kind, numpy.eye(3)[axis])
                     worst, count = max(worst, (abs(found.real - rate[node, axis]) - noise) / guess), count + 1
     print(f"{count} rates, off by {worst:.1e} at most")
     if not worst <= args.tolerance:

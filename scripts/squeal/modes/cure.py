@@ -6,24 +6,29 @@ from dataclasses import dataclass
 
 from ..provenance import Provenance
 from ..run.program import measured_run
-from ..tables import BadInput, flag, quoted, read_table
+from ..tables import BadInput, flag, optional, quoted, read_table
 
 MODES = {"mode": int, "freq_hz": float, "growth_rad_s": float, "unstable": flag}
 EFFECTS = {"mode": int, "change": str, "part": str, **{f"direction_{axis}": float for axis in "xyz"},
-           **{f"{axis}_m": float for axis in "xyz"}, "first_order_units_to_zero": float}
-CHANGED = {"change": str, "mode": int, "freq_hz": float, "growth_rad_s": float, "error_hz": float, "state": str}
-KINDS = {"mass": ("mass", "kg", 1e3, "g"), "spring": ("stiffness", "N/m", 1e-3, "N/mm"), "dashpot": ("viscosity", "N s/m", 1.0, "N s/m")}
-FACTORS = 0.5, 1.0, 2.0, 4.0  # of the amount that would stop a mode if the first order held
-PAIRED = 7  # single changes that are tried two by two: those that leave least
+           **{f"{axis}_m": float for axis in "xyz"}, "first_order_units_to_zero": float,
+           "to_part": str, **{f"to_{axis}_m": optional for axis in "xyz"}}
+CHANGED = {"change": str, "mode": int, "freq_hz": float, "growth_rad_s": float, "error_hz": float, "state": str, "before": int}
+STIFF, VISCOUS = ("stiffness", "N/m", 1e-3, "N/mm"), ("viscosity", "N s/m", 1.0, "N s/m")
+KINDS = {"mass": ("mass", "kg", 1e3, "g"), "spring": STIFF, "dashpot": VISCOUS, "relative_spring": STIFF, "relative_dashpot": VISCOUS}
+FACTORS = 1.0, 2.0, 4.0, 0.5  # of the amount that would stop a mode if the first order held, the likeliest first
+SEVERAL = 20  # sets of two that are tried, and of three
 TWO_PI = 6.283185307179586
 
 
 @dataclass
 class Change:
-    """One change: its option `amount` in the units of the scene, `size` in easy ones, and what that costs."""
+    """One change: its option `amount` in the units of the scene, `size` in easy ones, and what that costs; to_part is empty for the
+    ground."""
     kind: str
     part: str
     place: list
+    to_part: str
+    to_place: list
     direction: list
     amount: float
     size: float
@@ -33,6 +38,8 @@ class Change:
         """As an entry of an options file."""
         words = [f'at: "{",".join(f"{x:.15g}" for x in self.place)}"', f"part: {quoted(self.part)}",
                  f"{KINDS[self.kind][0]}: {self.amount:.6g}"]
+        if self.to_part:
+            words += [f'to: "{",".join(f"{x:.15g}" for x in self.to_place)}"', f"to_part: {quoted(self.to_part)}"]
         if any(self.direction):
             words.append(f'direction: "{",".join(f"{x:.9g}" for x in self.direction)}"')
         return "{" + ", ".join(words + ([f"with: {partner}"] if partner else [])) + "}"
@@ -40,17 +47,26 @@ class Change:
     def words(self):
         """For people."""
         along = f" along {', '.join(f'{x + 0:.2f}' for x in self.direction)}" if any(self.direction) else ""
-        return f"{self.kind} {self.size:.4g} {KINDS[self.kind][3]} on {self.part} at {', '.join(f'{x:.5g}' for x in self.place)}{along}"
+        there = f" to {self.to_part} at {', '.join(f'{x:.5g}' for x in self.to_place)}" if self.to_part else ""
+        return (f"{self.kind.replace('_', ' ')} {self.size:.4g} {KINDS[self.kind][3]} on {self.part} at "
+                f"{', '.join(f'{x:.5g}' for x in self.place)}{there}{along}")
+
+    @property
+    def where(self):
+        """What it is and between what, whatever its amount."""
+        return self.kind, tuple(self.place), tuple(self.to_place)
 
 
 @dataclass
 class Trial:
-    """What one set of changes leaves: modes that are unstable, the largest growth, 1/s, with its error and frequency."""
+    """What one set of changes leaves: modes that are unstable, the largest growth, 1/s, with its error and frequency; the largest growth
+    of those that each mode of the run has become."""
     changes: list
     unstable: int
     growth: float
     error: float
     freq: float
+    became: dict
 
     @property
     def cost(self):
@@ -64,7 +80,9 @@ class Cure:
         self.args, self.scene = args, Provenance(args.results / "scene.yaml")
         if self.scene.value("analysis", "modes") != "modes":
             raise BadInput(f"{args.results}: is of -analysis {self.scene.value('analysis')}; needed is a run of modes")
-        self.unstable = [row for row in read_table(args.results / "modes.csv", MODES) if row["unstable"]]
+        modes = read_table(args.results / "modes.csv", MODES)
+        self.growth = {row["mode"]: row["growth_rad_s"] for row in modes}
+        self.unstable = [row for row in modes if row["unstable"]]
         effects = args.results / "modes_effects.csv"
         if self.unstable and not effects.exists():
             raise BadInput(f"{effects}: no such file; a run of modes on a mesh with left vectors writes it")
@@ -73,37 +91,56 @@ class Cure:
             raise BadInput(f"{effects}: has no {', '.join(args.changes)}{' on ' + ', '.join(args.parts) if args.parts else ''}")
 
     def is_wanted(self, row):
-        return row["change"] in self.args.changes and (not self.args.parts or row["part"] in self.args.parts)
+        return row["change"] in self.args.changes and (
+            not self.args.parts or (row["part"] in self.args.parts and (row["to_part"] or row["part"]) in self.args.parts))
+
+    def change(self, row, factor):
+        """A row of modes_effects.csv with so many times the amount that would stop its mode."""
+        _, unit, easy, _ = KINDS[row["change"]]
+        amount = factor * row["first_order_units_to_zero"]
+        size = amount * self.scene.si(unit) * easy
+        return Change(row["change"], row["part"], [row[f"{axis}_m"] for axis in "xyz"], row["to_part"],
+                      [row[f"to_{axis}_m"] for axis in "xyz"] if row["to_part"] else [], [row[f"direction_{axis}"] for axis in "xyz"],
+                      amount, size, size * self.args.price[row["change"]])
 
     def candidates(self):
-        """The cheapest changes, several amounts at each place."""
-        found = {}
-        for row, factor in itertools.product(self.rows, FACTORS):
-            _, unit, easy, _ = KINDS[row["change"]]
-            amount = factor * row["first_order_units_to_zero"]
-            size = amount * self.scene.si(unit) * easy
-            if not 0 < size <= self.args.most[row["change"]]:
+        """The likeliest changes: of each mode and kind the cheapest place with the first amount, then with the next amount, or the next
+        place with the first one, and so on."""
+        places, waiting, found = {}, [], {}
+        for row in self.rows:
+            places.setdefault((row["mode"], row["change"]), []).append(row)
+        for own in places.values():
+            own.sort(key=lambda row: row["first_order_units_to_zero"])
+            waiting += [(i + j, self.change(row, factor)) for i, row in enumerate(own) for j, factor in enumerate(FACTORS)]
+        for _, change in sorted(waiting, key=lambda pair: (pair[0], pair[1].cost)):
+            if 0 < change.size <= self.args.most[change.kind]:
+                found.setdefault((*change.where, f"{change.amount:.6g}"), change)
+        return sorted(list(found.values())[:self.args.tries], key=lambda change: change.cost)
+
+    def likeliest(self, singles, count):
+        """Sets of `count` single changes whose shifts of each mode's growth, added up, leave least, then the cheapest."""
+        left = {}
+        for trials in itertools.combinations(singles, count):
+            if len({trial.changes[0].where for trial in trials}) < count:
                 continue
-            change = Change(row["change"], row["part"], [row[f"{axis}_m"] for axis in "xyz"],
-                            [row[f"direction_{axis}"] for axis in "xyz"], amount, size, size * self.args.price[row["change"]])
-            found.setdefault((change.kind, tuple(change.place), f"{amount:.6g}"), change)
-        return sorted(found.values(), key=lambda change: change.cost)[:self.args.tries]
+            growth = [before + sum(trial.became.get(mode, before) - before for trial in trials) for mode, before in self.growth.items()]
+            changes = [trial.changes[0] for trial in trials]
+            left[tuple(id(change) for change in changes)] = (sum(value for value in growth if value > 0),
+                                                             sum(change.cost for change in changes), changes)
+        return [changes for _, _, changes in sorted(left.values(), key=lambda entry: entry[:2])[:SEVERAL]]
 
     def run(self, sets, name):
-        """The trials of sets of one change or two, by one run of squeal."""
+        """The trials of sets of changes, by one run of squeal."""
         folder = self.args.output / name
         folder.mkdir(parents=True, exist_ok=True)
-        singles = list({id(change): change for changes in sets for change in changes}.values())
-        names = {id(change): f"cure_{i + 1}" for i, change in enumerate(singles)}
-        entries = {names[id(change)]: change.options() for change in singles}
-        made = {}
-        for i, changes in enumerate(sets):
-            if len(changes) == 1:
-                made[names[id(changes[0])]] = changes
-            else:
-                label = f"cure_pair_{i + 1}"
-                entries[label] = changes[1].options(names[id(changes[0])])
-                made[label] = changes
+        names, entries, made = {}, {}, {}
+        for changes in sets:
+            for n in range(1, len(changes) + 1):  # each is made with those before it
+                key = tuple(id(change) for change in changes[:n])
+                if key not in names:
+                    names[key] = f"cure_{len(names) + 1}"
+                    entries[names[key]] = changes[n - 1].options(names.get(key[:-1], ""))
+            made[names[key]] = changes
         path = folder / "changes.yaml"
         path.write_text(f'modes_changes: "{",".join(entries)}"\n' + "".join(f"{key}: {text}\n" for key, text in entries.items()),
                         encoding="utf-8")
@@ -115,20 +152,19 @@ class Cure:
     @staticmethod
     def judge(changes, rows):
         """A set is a cure where no mode of the band is unstable."""
-        worst = max(rows, key=lambda row: row["growth_rad_s"])
+        worst, became = max(rows, key=lambda row: row["growth_rad_s"]), {}
+        for row in rows:
+            became[row["before"]] = max(row["growth_rad_s"], became.get(row["before"], row["growth_rad_s"]))
         return Trial(changes, sum(row["state"] == "unstable" for row in rows), worst["growth_rad_s"], TWO_PI * worst["error_hz"],
-                     worst["freq_hz"])
+                     worst["freq_hz"], became)
 
     def trials(self):
-        """Single changes, then pairs of those that leave least where too few of them do."""
+        """Single changes, then sets of two where too few of them do, then of three where none does."""
         singles = self.candidates()
         if not singles:
             raise BadInput("no change is small enough to stop a mode: raise --most")
-        found = self.run([[change] for change in singles], "single")
-        if len(singles) > 1 and sum(not trial.unstable for trial in found) < self.args.count:
-            best = {}
-            for trial in sorted((trial for trial in found if trial.unstable), key=lambda trial: (trial.unstable, trial.growth)):
-                best.setdefault((trial.changes[0].kind, tuple(trial.changes[0].place)), trial.changes[0])
-            pairs = [list(pair) for pair in itertools.combinations(list(best.values())[:PAIRED], 2)]
-            found += self.run(pairs, "pairs") if pairs else []
+        tried = found = self.run([[change] for change in singles], "single")
+        for count, name, enough in ((2, "pairs", self.args.count), (3, "triples", 1)):
+            sets = self.likeliest(tried, count) if sum(not trial.unstable for trial in found) < enough else []
+            found = found + (self.run(sets, name) if sets else [])
         return sorted(found, key=lambda trial: (trial.unstable, trial.cost if not trial.unstable else trial.growth))

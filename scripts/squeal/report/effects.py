@@ -1,11 +1,12 @@
-"""What small changes do to unstable modes: at a node, modes_effects.csv, and of a parameter, modes_sensitivities.csv."""
+"""What small changes do to unstable modes: at a node or between two, modes_effects.csv, and of a parameter, modes_sensitivities.csv."""
 
-from ..tables import read_table
+from ..tables import header, optional, read_table
 from .markup import Column, figures, fixed, signed, table, tag
 
 KINDS = {"mode": int, "change": str, "part": str, **{f"direction_{axis}": float for axis in "xyz"},
          **{f"{axis}_m": float for axis in "xyz"}, "growth_rad_s_per_unit": float, "error_rad_s_per_unit": float, "unit": str,
          "first_order_units_to_zero": float}
+BETWEEN = {"to_part": str, **{f"to_{axis}_m": optional for axis in "xyz"}}  # since there are changes between two nodes
 EASY = {"kg": (1e-3, "g"), "N/m": (1e3, "N/mm"), "N s/m": (1, "N s/m")}  # amount of a small change, and its unit
 SHOWN = 8  # unstable modes, fastest first
 PARAMETERS = 6  # of a mode, with the largest effects
@@ -20,8 +21,25 @@ def direction(row):
     return "(" + ", ".join(fixed(0.0 if abs(x) < LEAST else x, 2) for x in vector) + ")"
 
 
-def place(row):
-    return ", ".join(figures(1e3 * row[f"{axis}_m"], 4) for axis in "xyz")
+def place(row, end=""):
+    return ", ".join(figures(1e3 * row[f"{end}{axis}_m"], 4) for axis in "xyz")
+
+
+def other_end(row):
+    """Part and place, or the ground; a mass has none."""
+    if row.get("to_part"):
+        return f"{row['to_part']}: {place(row, 'to_')}"
+    return "–" if row["change"] == "mass" else "ground"
+
+
+def fewest(rows):
+    """All changes at a node, and between two nodes the best of each kind and mode."""
+    best = {}
+    for row in rows:
+        key = row["mode"], row["change"]
+        if row.get("to_part") and (key not in best or row["first_order_units_to_zero"] < best[key]["first_order_units_to_zero"]):
+            best[key] = row
+    return [row for row in rows if not row.get("to_part") or best[row["mode"], row["change"]] is row]
 
 
 def effects(modes, folder):
@@ -29,13 +47,15 @@ def effects(modes, folder):
     path, unstable = folder.path / "modes_effects.csv", [row["mode"] for row in modes.unstable[:SHOWN]]
     if not path.exists() or not unstable:
         return None
-    rows = [row for row in read_table(path, KINDS) if row["mode"] in unstable]
+    kinds = {**KINDS, **(BETWEEN if "to_part" in header(path) else {})}
+    rows = fewest([row for row in read_table(path, kinds) if row["mode"] in unstable])
     if not rows:
         return None
     columns = [Column("mode", lambda row: row["mode"]),
-               Column("change", lambda row: row["change"], left=True),
+               Column("change", lambda row: row["change"].replace("_", " "), left=True),
                Column("part", lambda row: row["part"], left=True),
                Column("place, mm", place, left=True),
+               Column("other end", other_end, left=True),
                Column("direction", direction, left=True),
                Column("growth by it, 1/s", lambda row: EASY[row["unit"]][0] * row["growth_rad_s_per_unit"],
                       lambda value: signed(value, 3)),
@@ -43,8 +63,9 @@ def effects(modes, folder):
                Column("that would stop it", lambda row: row["first_order_units_to_zero"] / EASY[row["unit"]][0],
                       lambda value: figures(value, 3), hint="to first order"),
                Column("unit", lambda row: EASY[row["unit"]][1], left=True)]
-    said = tag("p", "The mass, the spring to the ground or the dashpot that lowers the growth most, on each part, and where. All is "
-                    "to first order: compute an amount that would stop the mode again, with it in the scene.")
+    said = tag("p", "The mass, spring or dashpot that lowers the growth most, on each part, and where; of springs and dashpots between "
+                    "two nodes the best one. All is to first order. scripts/cure tries such changes, and sets of them, and lists the "
+                    "cheapest that leave no mode unstable.")
     return [tag("h4", "What a small change does"), said, table(f"{folder.key}-effects-table", columns, rows)]
 
 

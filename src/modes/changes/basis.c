@@ -13,6 +13,45 @@
 
 #define CHANGE_STEPS 3 /* of the chains: the error of the last but one is stated, that of the last is smaller */
 
+/* Coordinates [n][columns of the space] of vectors */
+static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
+{
+  const Subspace *space = &s->space.space;
+  BV              block;
+  Mat             H;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockCreate(space->V, n, &block));
+  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(block, j, a[j]));
+  PetscCall(PetscMalloc1(n * space->n, coordinates));
+  PetscCall(BVSetActiveColumns(space->V, 0, space->n));
+  PetscCall(BlockProducts(space->V, NULL, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, space->n, *coordinates));
+  PetscCall(MatDestroy(&H));
+  PetscCall(BVDestroy(&block));
+  PetscFunctionReturn(0);
+}
+
+/* Coordinates of the right vectors of all modes */
+static PetscErrorCode SpaceKeepBefore(Modes modes, ChangeSpace *s)
+{
+  Vec *a, x[2], like;
+
+  PetscFunctionBeginUser;
+  s->n_before = modes->n;
+  PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
+  PetscCall(VecDuplicateVecs(like, 2 * modes->n, &a));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    PetscCall(ModesGetVectors(modes, i, &x[0], &x[1], NULL, NULL));
+    for (int part = 0; part < 2; part++)
+      if (x[part]) PetscCall(PencilRestrict(modes->pencil, x[part], a[2 * i + part]));
+  }
+  PetscCall(SpaceCoordinates(s, 2 * modes->n, a, &s->before));
+  PetscCall(VecDestroyVecs(2 * modes->n, &a));
+  PetscCall(VecDestroy(&like));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *s)
 {
   const ShiftInvert *factor;
@@ -31,28 +70,10 @@ PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *
   s->right.n_solves = s->left.n_solves = &s->n_solves;
   PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->right));
   if (!pencil.symmetric) PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->left));
-  s->n_modes     = s->space.space.n;
+  s->n_modes = s->space.space.n;
+  PetscCall(SpaceKeepBefore(modes, s));
   s->n_states[0] = s->right.n;
   s->n_states[1] = s->left.n;
-  PetscFunctionReturn(0);
-}
-
-/* Coordinates [n][columns of the space] of vectors */
-static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
-{
-  const Subspace *space = &s->space.space;
-  BV              block;
-  Mat             H;
-
-  PetscFunctionBeginUser;
-  PetscCall(BlockCreate(space->V, n, &block));
-  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(block, j, a[j]));
-  PetscCall(PetscMalloc1(n * space->n, coordinates));
-  PetscCall(BVSetActiveColumns(space->V, 0, space->n));
-  PetscCall(BlockProducts(space->V, NULL, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, space->n, *coordinates));
-  PetscCall(MatDestroy(&H));
-  PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
 
@@ -91,6 +112,7 @@ PetscErrorCode ChangeSpaceForget(ChangeSpace *s)
 PetscErrorCode ChangeSpaceDestroy(ChangeSpace *s)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->before));
   PetscCall(ModesKrylovDestroy(&s->right));
   PetscCall(ModesKrylovDestroy(&s->left));
   PetscCall(ModesSpaceDestroy(&s->space));

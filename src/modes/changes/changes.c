@@ -42,10 +42,11 @@ static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRan
   PetscCall(ChangeSpaceRespond(space, n, terms, side));
   PetscCall(ChangeSolve(space, n, terms, side, range, changed));
   PetscCall(ChangeSpaceForget(space));
-  PetscCall(PetscMalloc1(changed->n, &changed->state));
-  for (PetscInt k = 0; k < changed->n; k++)
-    changed->state[k] =
-      ModesLimitJudge(&limit, creal(changed->lambda[k]), cimag(changed->lambda[k]), changed->error[k]);
+  for (PetscInt k = 0; k < changed->n; k++) {
+    ChangedMode *m = &changed->mode[k];
+
+    m->state = ModesLimitJudge(&limit, creal(m->lambda), cimag(m->lambda), m->error);
+  }
   for (int k = 0; k < 2; k++) PetscCall(PetscFree(side[k]));
   PetscCall(ChangeDestroyTerms(n, &terms));
   PetscFunctionReturn(0);
@@ -88,8 +89,8 @@ static PetscInt ChangedWorst(const struct _p_ModesChanged *changed, PetscInt *n_
 
   *n_unstable = 0;
   for (PetscInt k = 0; k < changed->n; k++) {
-    *n_unstable += changed->state[k] == MODE_UNSTABLE;
-    if (worst < 0 || creal(changed->lambda[k]) > creal(changed->lambda[worst])) worst = k;
+    *n_unstable += changed->mode[k].state == MODE_UNSTABLE;
+    if (worst < 0 || creal(changed->mode[k].lambda) > creal(changed->mode[worst].lambda)) worst = k;
   }
   return worst;
 }
@@ -112,8 +113,8 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
       PetscViewerASCIIPrintf(viewer, ": %" PetscInt_FMT " modes, %" PetscInt_FMT " unstable", changed->n, n_unstable));
     if (worst >= 0)
       PetscCall(PetscViewerASCIIPrintf(viewer, "; largest growth %.5g 1/s, error %.1e, at %.6g Hz",
-                                       (double)creal(changed->lambda[worst]), (double)changed->error[worst],
-                                       (double)(cimag(changed->lambda[worst]) / (2 * PETSC_PI))));
+                                       (double)creal(changed->mode[worst].lambda), (double)changed->mode[worst].error,
+                                       (double)(cimag(changed->mode[worst].lambda) / (2 * PETSC_PI))));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
   PetscFunctionReturn(0);
@@ -125,16 +126,16 @@ PetscErrorCode ChangesWrite(Modes modes, Results results)
 
   PetscFunctionBeginUser;
   if (!modes->changed) PetscFunctionReturn(0);
-  PetscCall(ResultsTableOpen(results, "modes_changed", "change,mode,freq_hz,growth_rad_s,damping_ratio,error_hz,state",
-                             &table));
+  PetscCall(ResultsTableOpen(results, "modes_changed",
+                             "change,mode,freq_hz,growth_rad_s,damping_ratio,error_hz,state,before,overlap", &table));
   for (PetscInt i = 0; i < modes->n_changes; i++)
     for (PetscInt k = 0; k < modes->changed[i].n; k++) {
-      const PetscComplex lambda = modes->changed[i].lambda[k];
+      const ChangedMode *m = &modes->changed[i].mode[k];
 
-      PetscCall(ResultsTableRow(
-        table, "%s,%d,%.15g,%.15g,%.15g,%.3g,%s", modes->change[i].name, (int)k + 1,
-        (double)(cimag(lambda) / (2 * PETSC_PI)), (double)creal(lambda), (double)(-creal(lambda) / cabs(lambda) + 0),
-        (double)(modes->changed[i].error[k] / (2 * PETSC_PI)), ModeStateName(modes->changed[i].state[k])));
+      PetscCall(ResultsTableRow(table, "%s,%d,%.15g,%.15g,%.15g,%.3g,%s,%d,%.4g", modes->change[i].name, (int)k + 1,
+                                (double)(cimag(m->lambda) / (2 * PETSC_PI)), (double)creal(m->lambda),
+                                (double)(-creal(m->lambda) / cabs(m->lambda) + 0), (double)(m->error / (2 * PETSC_PI)),
+                                ModeStateName(m->state), (int)m->before + 1, (double)m->overlap));
     }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

@@ -25,12 +25,20 @@ typedef struct {
 
 #define CHANGE_TERMS 3 /* of one change: a mass along x, y, z */
 
-/* The modes of the changed system in the band */
+/* A mode of the changed system, and the one before the change that it resembles most: overlap = |u^H M x|^2 /
+   (u^H M u x^H M x) of their right vectors u and x, M as it was */
+typedef struct {
+  PetscComplex lambda;  /* rad/s */
+  PetscReal    error;   /* rad/s */
+  PetscInt     before;  /* index of that mode */
+  PetscReal    overlap; /* 0 to 1 */
+  ModeState    state;
+} ChangedMode;
+
+/* Those in the band, in order of frequency */
 struct _p_ModesChanged {
-  PetscInt      n;
-  PetscComplex *lambda; /* [n] rad/s, in order of frequency */
-  PetscReal    *error;  /* [n] rad/s */
-  ModeState    *state;  /* [n] */
+  PetscInt     n;
+  ChangedMode *mode; /* [n] */
 };
 
 /* The modes of the system as it was, and behind them its answers to the terms of a change, in steps of two Krylov
@@ -41,6 +49,8 @@ typedef struct {
   ModesKrylov right, left; /* left is empty for a symmetric pencil */
   PetscInt    n_modes, n_states[2], first;
   PetscInt    n_solves;
+  PetscInt    n_before; /* modes of the system as it was */
+  PetscReal  *before;   /* [2 n_before][n_modes] coordinates of their right vectors, real and imaginary parts */
 } ChangeSpace;
 
 /* place.c - how many terms a change may have with those made with it, and these; the caller destroys their vectors */
@@ -66,6 +76,10 @@ typedef struct {
 PETSC_INTERN PetscErrorCode ChangeSolve(const ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
                                         PetscReal *const side[2], const ChangeRange *range,
                                         struct _p_ModesChanged *changed);
+
+/* before.c - finds `before` and `overlap` of a mode with right vector x, of which as many numbers are of the space as it
+   has columns */
+PETSC_INTERN PetscErrorCode ChangeFindBefore(const ChangeSpace *space, const PetscComplex x[], ChangedMode *mode);
 
 /* quantities.c - the list of the changes; place.c - what no row says of one */
 extern const QuantityList   changes_list;

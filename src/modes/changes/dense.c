@@ -108,26 +108,23 @@ static PetscErrorCode ErrorFind(const ChangedPencil *c, PetscReal noise, PetscCo
   PetscFunctionReturn(0);
 }
 
-/* Puts an eigenvalue in the order of frequency, with its error */
-static void ChangedInsert(struct _p_ModesChanged *changed, PetscComplex lambda, PetscReal error)
+/* Puts a mode in the order of frequency */
+static void ChangedInsert(struct _p_ModesChanged *changed, const ChangedMode *mode)
 {
   PetscInt k = changed->n++;
 
-  for (; k > 0 && cimag(changed->lambda[k - 1]) > cimag(lambda); k--) {
-    changed->lambda[k] = changed->lambda[k - 1];
-    changed->error[k]  = changed->error[k - 1];
-  }
-  changed->lambda[k] = lambda;
-  changed->error[k]  = error;
+  for (; k > 0 && cimag(changed->mode[k - 1].lambda) > cimag(mode->lambda); k--)
+    changed->mode[k] = changed->mode[k - 1];
+  changed->mode[k] = *mode;
 }
 
 /* Distance of an eigenvalue from the next one, its own conjugate included */
 static PetscReal ChangedGap(const struct _p_ModesChanged *changed, PetscInt i)
 {
-  PetscReal gap = 2 * cimag(changed->lambda[i]);
+  PetscReal gap = 2 * cimag(changed->mode[i].lambda);
 
   for (PetscInt k = 0; k < changed->n; k++)
-    if (k != i) gap = PetscMin(gap, cabs(changed->lambda[i] - changed->lambda[k]));
+    if (k != i) gap = PetscMin(gap, cabs(changed->mode[i].lambda - changed->mode[k].lambda));
   return gap;
 }
 
@@ -136,12 +133,12 @@ static PetscErrorCode ErrorsWiden(struct _p_ModesChanged *changed)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < changed->n; i++) {
-    const PetscReal e = changed->error[i], gap = ChangedGap(changed, i);
+    const PetscReal e = changed->mode[i].error, gap = ChangedGap(changed, i);
 
     if (4 * e < gap)
-      changed->error[i] = 2 * e / (1 + PetscSqrtReal(1 - 4 * e / gap));
+      changed->mode[i].error = 2 * e / (1 + PetscSqrtReal(1 - 4 * e / gap));
     else
-      changed->error[i] = PetscMax(e, PetscSqrtReal(e * gap));
+      changed->mode[i].error = PetscMax(e, PetscSqrtReal(e * gap));
   }
   PetscFunctionReturn(0);
 }
@@ -158,20 +155,19 @@ PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeT
   PetscCall(ChangedCreate(s, n_terms, terms, side, &c));
   PetscCall(DenseShiftedSolve(&c.q, shift, &w));
   PetscCall(PetscMalloc2(c.q.n, &x, c.q.n, &y));
-  PetscCall(PetscMalloc1(w.N, &changed->lambda));
-  PetscCall(PetscMalloc1(w.N, &changed->error));
+  PetscCall(PetscMalloc1(w.N, &changed->mode));
   changed->n = 0;
   for (PetscInt i = 0; i < w.N; i++) {
-    PetscComplex lambda;
-    PetscReal    error;
+    ChangedMode mode;
 
-    if (!DenseShiftedLambda(&w, i, &lambda) || !(cimag(lambda) > 0)) continue;
-    if (cimag(lambda) < range->edge[0] || cimag(lambda) > range->edge[1]) continue;
-    if (PetscAbsReal(creal(lambda)) > range->growth) continue;
+    if (!DenseShiftedLambda(&w, i, &mode.lambda) || !(cimag(mode.lambda) > 0)) continue;
+    if (cimag(mode.lambda) < range->edge[0] || cimag(mode.lambda) > range->edge[1]) continue;
+    if (PetscAbsReal(creal(mode.lambda)) > range->growth) continue;
     DenseShiftedRight(&w, i, x);
     PetscCall(DenseShiftedLeft(&w, i, y));
-    PetscCall(ErrorFind(&c, range->noise, lambda, x, y, &error));
-    ChangedInsert(changed, lambda, error);
+    PetscCall(ErrorFind(&c, range->noise, mode.lambda, x, y, &mode.error));
+    PetscCall(ChangeFindBefore(s, x, &mode));
+    ChangedInsert(changed, &mode);
   }
   PetscCall(ErrorsWiden(changed));
   PetscCall(PetscFree2(x, y));

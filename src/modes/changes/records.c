@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* The change that one is made with */
-static PetscErrorCode ChangeFindBefore(Modes modes, PetscInt i)
+static PetscErrorCode ChangeFindFirst(Modes modes, PetscInt i)
 {
   ModesChange change = &modes->change[i];
 
@@ -24,7 +24,7 @@ PetscErrorCode ChangesSetFromOptions(Modes modes)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesReadList(modes->comm, &changes_list, modes, &modes->n_changes, &modes->change));
-  for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeFindBefore(modes, i));
+  for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeFindFirst(modes, i));
   PetscFunctionReturn(0);
 }
 
@@ -38,11 +38,7 @@ PetscErrorCode ChangesVisit(Modes modes, const QuantityVisitor *visitor)
 PetscErrorCode ChangesReset(Modes modes)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n_changes && modes->changed; i++) {
-    PetscCall(PetscFree(modes->changed[i].lambda));
-    PetscCall(PetscFree(modes->changed[i].error));
-    PetscCall(PetscFree(modes->changed[i].state));
-  }
+  for (PetscInt i = 0; i < modes->n_changes && modes->changed; i++) PetscCall(PetscFree(modes->changed[i].mode));
   PetscCall(PetscFree(modes->changed));
   PetscFunctionReturn(0);
 }

@@ -5,12 +5,17 @@
    lowest eigenvalue of S, its vector the direction. |S| <= |factor| |x| |y|, so that most nodes need no eigenvalues.
    Of nodes that are alike within rounding, as in a scene with symmetry, the first in the order of places is named, so
    that the answer is the same on any number of ranks.
+
+   Between nodes i and j the motions x_i - x_j and y_i - y_j stand in their place. All pairs of nodes are too many: one
+   end is held and the other looked for, in turns. What is found no move of one end improves; another pair may be better
+   still.
 */
 #include "effects.h"
 #include "base/algebra/dense.h"
 #include "base/algebra/vec3.h"
 
 #define DIRECTION_ZERO 1e-12 /* components of a direction below it are rounding */
+#define PAIR_TURNS     8     /* of the ends; two or three are the rule */
 
 /* Lowest rate of growth at a node, and where along */
 static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt node, EffectBest *here)
@@ -21,6 +26,10 @@ static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt
 
   PetscFunctionBeginUser;
   *here = (EffectBest){.at = {e->mesh->x[3 * node], e->mesh->x[3 * node + 1], e->mesh->x[3 * node + 2]}};
+  for (int a = 0; a < 3; a++) {
+    here->vector[0][a] = e->xr[3 * node + a], here->vector[1][a] = e->xi[3 * node + a];
+    here->vector[2][a] = e->yr[3 * node + a], here->vector[3][a] = e->yi[3 * node + a];
+  }
   EffectAtNode(e, kind, node, form);
   if (kind == EFFECT_MASS) {
     here->rate = form[0][0] + form[1][1] + form[2][2];
@@ -39,9 +48,11 @@ static PetscReal NodeBound(const ModeEffects *e, EffectKind kind, PetscInt node)
 {
   PetscReal xx = 0, yy = 0;
 
-  for (PetscInt i = 3 * node; i < 3 * node + 3; i++) {
-    xx += PetscSqr(e->xr[i]) + PetscSqr(e->xi[i]);
-    yy += PetscSqr(e->yr[i]) + PetscSqr(e->yi[i]);
+  for (int a = 0; a < 3; a++) {
+    const PetscInt i = 3 * node + a;
+
+    xx += PetscSqr(e->xr[i] - e->end[0][a]) + PetscSqr(e->xi[i] - e->end[1][a]);
+    yy += PetscSqr(e->yr[i] - e->end[2][a]) + PetscSqr(e->yi[i] - e->end[3][a]);
   }
   return cabs(e->factor[kind]) * PetscSqrtReal(xx * yy);
 }
@@ -81,19 +92,19 @@ static void BestTurn(EffectBest *best)
   for (int a = 0; a < 3; a++) best->direction[a] = best->direction[a] == 0 ? 0 : -best->direction[a];
 }
 
-/* The same of this rank's nodes of a part, each once: seen [local nodes] is the last part that a node was tried for */
-static PetscErrorCode BestOfPart(const ModeEffects *e, EffectKind kind, PetscInt part, PetscInt seen[],
-                                 EffectBest *best)
+/* The same of this rank's nodes of each part; seen [local nodes] is the last part that a node was tried for */
+static PetscErrorCode BestOfParts(const ModeEffects *e, EffectKind kind, PetscInt seen[], EffectBest best[])
 {
   const Mesh *mesh = e->mesh;
 
   PetscFunctionBeginUser;
-  *best = (EffectBest){.found = PETSC_FALSE};
+  for (PetscInt node = 0; node < mesh->n_nodes; node++) seen[node] = -1;
+  PetscCall(PetscMemzero(best, (size_t)mesh->n_parts * sizeof(*best)));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt k = mesh->cell_first[c]; k < mesh->cell_first[c + 1] && mesh->cell_part[c] == part; k++) {
-      const PetscInt node = mesh->cell_node[k];
+    for (PetscInt k = mesh->cell_first[c]; k < mesh->cell_first[c + 1]; k++) {
+      const PetscInt node = mesh->cell_node[k], part = mesh->cell_part[c];
 
-      if (seen[node] != part) PetscCall(BestTry(e, kind, node, best));
+      if (seen[node] != part) PetscCall(BestTry(e, kind, node, &best[part]));
       seen[node] = part;
     }
   PetscFunctionReturn(0);
@@ -109,8 +120,7 @@ PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind k
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscMalloc2(e->mesh->n_nodes, &seen, (PetscInt)size * n_parts, &all));
-  for (PetscInt node = 0; node < e->mesh->n_nodes; node++) seen[node] = -1;
-  for (PetscInt k = 0; k < n_parts; k++) PetscCall(BestOfPart(e, kind, k, seen, &best[k]));
+  PetscCall(BestOfParts(e, kind, seen, best));
   PetscCallMPI(MPI_Allgather(best, bytes, MPI_BYTE, all, bytes, MPI_BYTE, comm));
   for (PetscInt k = 0; k < n_parts; k++) {
     best[k] = all[k];
@@ -118,5 +128,51 @@ PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind k
     BestTurn(&best[k]);
   }
   PetscCall(PetscFree2(seen, all));
+  PetscFunctionReturn(0);
+}
+
+/* The part with the best node, the one of `part` or of all others; -1 where none lowers the growth */
+static PetscInt PairChoose(const EffectBest best[], PetscInt n_parts, PetscInt part, PetscBool within,
+                           PetscReal rounding)
+{
+  PetscInt chosen = -1;
+
+  for (PetscInt k = 0; k < n_parts; k++) {
+    if ((k == part) != within || !best[k].found) continue;
+    if (chosen < 0 || creal(best[k].rate) < creal(best[chosen].rate) * (1 + rounding)) chosen = k;
+  }
+  return chosen;
+}
+
+PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, PetscInt part, PetscBool within,
+                               EffectPair *pair)
+{
+  const PetscInt n_parts = e->mesh->n_parts;
+  EffectBest    *best;
+
+  PetscFunctionBeginUser;
+  *pair = (EffectPair){.part = {part, -1}};
+  PetscCall(PetscMalloc1(n_parts, &best));
+  PetscCall(EffectsFindBest(comm, e, kind, best));
+  pair->end[0] = best[part];
+  for (int turn = 0; turn < PAIR_TURNS && pair->end[0].found; turn++) {
+    const int       moves = turn % 2 ? 0 : 1; /* this end, the other one is held */
+    const PetscBool own   = moves == 0 || within ? PETSC_TRUE : PETSC_FALSE;
+    PetscInt        k;
+
+    PetscCall(PetscMemcpy(e->end, pair->end[1 - moves].vector, sizeof(e->end)));
+    PetscCall(EffectsFindBest(comm, e, kind, best));
+    k = PairChoose(best, n_parts, part, own, e->rounding);
+    if (k < 0) break;
+    if (turn > 0 && Vec3ComparePlaces(best[k].at, pair->end[moves].at) == 0 && k == pair->part[moves]) break;
+    pair->end[moves]  = best[k];
+    pair->part[moves] = k;
+    if (moves == 0) {
+      pair->end[1].rate = best[k].rate;
+      PetscCall(PetscArraycpy(pair->end[1].direction, best[k].direction, 3));
+    }
+  }
+  PetscCall(PetscArrayzero(&e->end[0][0], 12));
+  PetscCall(PetscFree(best));
   PetscFunctionReturn(0);
 }

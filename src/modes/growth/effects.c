@@ -1,5 +1,6 @@
 /*
-   What a small change at a node does to an unstable mode: modes_effects.csv, and fields over the whole mesh.
+   What a small change at a node, or between two, does to an unstable mode: modes_effects.csv, and fields over the whole
+   mesh.
 
    With right and left vectors x and y of the eigenvalue lambda of Q(s) = s^2 M + s C + K, to first order
 
@@ -8,7 +9,7 @@
 
    so that of the displacements x_n, y_n at a node n a point mass m (kg) does -lambda^2 m y_n'x_n, a spring to the
    ground k (N/m) along the unit vector d -k (y_n'd)(d'x_n), a dashpot to the ground c (N s/m) -lambda c (y_n'd)(d'x_n),
-   each over y'Q'(lambda) x. Growth is the real part, 1/s; the imaginary part over 2 pi is the shift of the
+   each over y'Q'(lambda) x. Between the nodes n and m it is the same of x_n - x_m and y_n - y_m. Growth is the real part, 1/s; the imaginary part over 2 pi is the shift of the
    frequency, Hz.
    Source: R. L. Fox, M. P. Kapoor, AIAA J. 6 (1968) 2426, with left vectors.
 
@@ -17,15 +18,16 @@
    hence 2 sqrt(d / g) times the largest rate of the kind.
 */
 #include "effects.h"
+#include "base/algebra/vec3.h"
 
 #define EFFECTS_ROUNDING 1e-6 /* of the largest rate: nodes that are no farther apart are alike */
 
 static const struct {
-  const char *name, *unit, *field;
+  const char *name, *between, *unit, *field;
 } kinds[N_EFFECTS] = {
-  [EFFECT_MASS]    = {"mass", "kg", "growth_rad_s_per_kg"},
-  [EFFECT_SPRING]  = {"spring", "N/m", "growth_rad_s_per_N_m"},
-  [EFFECT_DASHPOT] = {"dashpot", "N s/m", "growth_rad_s_per_N_s_m"},
+  [EFFECT_MASS]    = {"mass", NULL, "kg", "growth_rad_s_per_kg"},
+  [EFFECT_SPRING]  = {"spring", "relative_spring", "N/m", "growth_rad_s_per_N_m"},
+  [EFFECT_DASHPOT] = {"dashpot", "relative_dashpot", "N s/m", "growth_rad_s_per_N_s_m"},
 };
 
 /* Vectors and factors of mode i */
@@ -46,32 +48,86 @@ static PetscErrorCode EffectsSet(Modes modes, Operators operators, PetscInt i, M
   PetscFunctionReturn(0);
 }
 
+/* One row, where the change lowers the growth by more than the error of its rate; `to` is NULL for the ground */
+static PetscErrorCode EffectsWriteRow(Modes modes, const ModeEffects *e, PetscInt i, EffectKind kind,
+                                      const EffectBest *b, PetscInt part, const EffectBest *to, PetscInt to_part,
+                                      PetscReal error, ResultsTable table)
+{
+  char place[96] = ",,";
+
+  PetscFunctionBeginUser;
+  if (to)
+    PetscCall(PetscSNPrintf(place, sizeof(place), "%.15g,%.15g,%.15g", (double)to->at[0], (double)to->at[1],
+                            (double)to->at[2]));
+  if (!b->found || !(-creal(b->rate) > error)) PetscFunctionReturn(0);
+  PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3g,%s,%.15g,%s,%s",
+                            (int)i + 1, to ? kinds[kind].between : kinds[kind].name, e->mesh->part[part],
+                            (double)b->at[0], (double)b->at[1], (double)b->at[2], (double)b->direction[0],
+                            (double)b->direction[1], (double)b->direction[2], (double)creal(b->rate),
+                            (double)(cimag(b->rate) / (2 * PETSC_PI)), (double)error, kinds[kind].unit,
+                            (double)(-modes->mode[i].sigma / creal(b->rate)), to ? e->mesh->part[to_part] : "", place));
+  PetscFunctionReturn(0);
+}
+
+/* Error of a rate of mode i, of which the largest of its kind is given */
+static PetscReal EffectsError(const Modes modes, PetscInt i, PetscReal largest)
+{
+  return 2 * largest * PetscSqrtReal(PetscMin(1, modes->mode[i].error / ModeGap(modes, i)));
+}
+
 /* Rows of one kind: a part each, on which some node lowers the growth */
 static PetscErrorCode EffectsWriteRows(Modes modes, const ModeEffects *e, PetscInt i, EffectKind kind,
                                        ResultsTable table)
 {
-  const Mode *mode = &modes->mode[i];
   EffectBest *best;
-  PetscReal   largest = 0, error;
+  PetscReal   largest = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(e->mesh->n_parts, &best));
   PetscCall(EffectsFindBest(modes->comm, e, kind, best));
   for (PetscInt k = 0; k < e->mesh->n_parts; k++)
     if (best[k].found) largest = PetscMax(largest, cabs(best[k].rate));
-  error = 2 * largest * PetscSqrtReal(PetscMin(1, mode->error / ModeGap(modes, i)));
-  for (PetscInt k = 0; k < e->mesh->n_parts; k++) {
-    const EffectBest *b = &best[k];
-
-    if (!b->found || !(-creal(b->rate) > error)) continue;
-    PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3g,%s,%.15g",
-                              (int)i + 1, kinds[kind].name, e->mesh->part[k], (double)b->at[0], (double)b->at[1],
-                              (double)b->at[2], (double)b->direction[0], (double)b->direction[1],
-                              (double)b->direction[2], (double)creal(b->rate),
-                              (double)(cimag(b->rate) / (2 * PETSC_PI)), (double)error, kinds[kind].unit,
-                              (double)(-mode->sigma / creal(b->rate))));
-  }
+  for (PetscInt k = 0; k < e->mesh->n_parts; k++)
+    PetscCall(EffectsWriteRow(modes, e, i, kind, &best[k], k, NULL, -1, EffectsError(modes, i, largest), table));
   PetscCall(PetscFree(best));
+  PetscFunctionReturn(0);
+}
+
+/* Whether two pairs join the same nodes */
+static PetscBool PairsAreOne(const EffectPair *a, const EffectPair *b)
+{
+  for (int swap = 0; swap < 2; swap++) {
+    PetscBool same = PETSC_TRUE;
+
+    for (int end = 0; end < 2; end++) {
+      const int other = swap ? 1 - end : end;
+
+      if (a->part[end] != b->part[other] || Vec3ComparePlaces(a->end[end].at, b->end[other].at)) same = PETSC_FALSE;
+    }
+    if (same) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Rows of one kind between two nodes, for each part one within it and one to another part, each pair of nodes once */
+static PetscErrorCode EffectsWritePairs(Modes modes, ModeEffects *e, PetscInt i, EffectKind kind, ResultsTable table)
+{
+  const PetscInt n       = 2 * e->mesh->n_parts;
+  PetscReal      largest = 0;
+  EffectPair    *pair;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &pair));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(EffectsFindPair(modes->comm, e, kind, k / 2, k % 2 ? PETSC_FALSE : PETSC_TRUE, &pair[k]));
+    for (PetscInt j = 0; j < k && pair[k].end[1].found; j++)
+      if (pair[j].end[1].found && PairsAreOne(&pair[j], &pair[k])) pair[k].end[1].found = PETSC_FALSE;
+    if (pair[k].end[1].found) largest = PetscMax(largest, cabs(pair[k].end[1].rate));
+  }
+  for (PetscInt k = 0; k < n; k++)
+    PetscCall(EffectsWriteRow(modes, e, i, kind, &pair[k].end[1], pair[k].part[1], &pair[k].end[0], pair[k].part[0],
+                              EffectsError(modes, i, largest), table));
+  PetscCall(PetscFree(pair));
   PetscFunctionReturn(0);
 }
 
@@ -115,6 +171,8 @@ static PetscErrorCode EffectsWriteAll(Modes modes, Operators operators, const Me
     if (!modes->mode[i].unstable) continue;
     PetscCall(EffectsSet(modes, operators, i, &e));
     for (int kind = 0; kind < N_EFFECTS; kind++) PetscCall(EffectsWriteRows(modes, &e, i, (EffectKind)kind, table));
+    for (int kind = EFFECT_SPRING; kind < N_EFFECTS; kind++)
+      PetscCall(EffectsWritePairs(modes, &e, i, (EffectKind)kind, table));
     if (field) PetscCall(EffectsWriteFields(modes, &e, i, field));
   }
   PetscCall(PetscFree4(e.xr, e.xi, e.yr, e.yi));
@@ -131,10 +189,11 @@ PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, const Mesh *m
   for (PetscInt i = 0; i < modes->n; i++) unstable = unstable || modes->mode[i].unstable ? PETSC_TRUE : PETSC_FALSE;
   if (!mesh || !unstable || !modes->left_spectrum.n) PetscFunctionReturn(0);
   PetscCall(ResultsWantFields(results, &wanted));
-  PetscCall(ResultsTableOpen(results, "modes_effects",
-                             "mode,change,part,x_m,y_m,z_m,direction_x,direction_y,direction_z,growth_rad_s_per_unit,"
-                             "freq_hz_per_unit,error_rad_s_per_unit,unit,first_order_units_to_zero",
-                             &table));
+  PetscCall(ResultsTableOpen(
+    results, "modes_effects",
+    "mode,change,part,x_m,y_m,z_m,direction_x,direction_y,direction_z,growth_rad_s_per_unit,"
+    "freq_hz_per_unit,error_rad_s_per_unit,unit,first_order_units_to_zero,to_part,to_x_m,to_y_m,to_z_m",
+    &table));
   if (wanted) PetscCall(ResultsFieldOpen(results, "modes_effects", mesh, &field));
   PetscCall(EffectsWriteAll(modes, operators, mesh, table, field));
   PetscCall(ResultsTableClose(&table));

@@ -1,4 +1,4 @@
-/* Private to modes/effects/: what a small change at a node does to an eigenvalue */
+/* Private to modes/growth/: what a small change at a node, or between two, does to an eigenvalue */
 #pragma once
 
 #include "modes/modesimpl.h"
@@ -9,6 +9,7 @@ typedef enum { EFFECT_MASS, EFFECT_SPRING, EFFECT_DASHPOT, N_EFFECTS } EffectKin
 typedef struct {
   const Mesh  *mesh;
   PetscReal   *xr, *xi, *yr, *yi;
+  PetscReal    end[4][3];         /* the same at the other end of a spring or dashpot, zero: the ground */
   PetscComplex factor[N_EFFECTS]; /* d lambda / d change = factor d'y x'd along the direction d; of a mass its trace */
   PetscReal    rounding;          /* effects differ by rounding less than this part of the largest one */
 } ModeEffects;
@@ -17,21 +18,32 @@ typedef struct {
 typedef struct {
   PetscReal    at[3], direction[3]; /* place, m; unit vector, zero for a mass, which has none */
   PetscComplex rate;                /* d lambda / d change, rad/s per kg, N/m or N s/m */
+  PetscReal    vector[4][3];        /* xr, xi, yr, yi there */
   PetscBool    found;               /* some node lowers it */
 } EffectBest;
 
-/* y x^T at a node, its symmetric part times the factor of a kind, row-major */
+/* A spring or dashpot between nodes of two parts, or of one */
+typedef struct {
+  EffectBest end[2]; /* the rate and the direction stand at end[1] */
+  PetscInt   part[2];
+} EffectPair;
+
+/* y x^T of the motion at a node less that of the other end, its symmetric part times the factor of a kind, row-major */
 static inline void EffectAtNode(const ModeEffects *e, EffectKind kind, PetscInt node, PetscComplex form[3][3])
 {
-  for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++) {
-      const PetscInt     i = 3 * node + a, j = 3 * node + b;
-      const PetscComplex ab = CMPLX(e->yr[i], e->yi[i]) * CMPLX(e->xr[j], e->xi[j]);
-      const PetscComplex ba = CMPLX(e->yr[j], e->yi[j]) * CMPLX(e->xr[i], e->xi[i]);
+  PetscComplex x[3], y[3];
 
-      form[a][b] = e->factor[kind] * (ab + ba) / 2;
-    }
+  for (int a = 0; a < 3; a++) {
+    x[a] = CMPLX(e->xr[3 * node + a] - e->end[0][a], e->xi[3 * node + a] - e->end[1][a]);
+    y[a] = CMPLX(e->yr[3 * node + a] - e->end[2][a], e->yi[3 * node + a] - e->end[3][a]);
+  }
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) form[a][b] = e->factor[kind] * (y[a] * x[b] + y[b] * x[a]) / 2;
 }
 
 /* best.c - among the nodes of each part; best [n_parts]. Collective */
 PETSC_INTERN PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[]);
+/* The same between two nodes: from the best one of `part` to the ground, each end in turn moves to its best node, on
+   `part` and on it too (`within`) or on others, until both stay. e->end is zero again. Collective */
+PETSC_INTERN PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, PetscInt part,
+                                            PetscBool within, EffectPair *pair);
