@@ -18,8 +18,9 @@ VALUES = {"onsets.csv": ("critical_value", "error_estimate"), "modes_causes.csv"
           "modes_components.csv": ("share_percent", "error_percent")}
 # Columns that have no error of their own: of nodes that are nearly as good another may be named
 FOLLOW = {"modes_effects.csv": {*(f"{axis}_m" for axis in "xyz"), *(f"direction_{axis}" for axis in "xyz"), "freq_hz_per_unit",
-                                "first_order_units_to_zero", *(f"to_{axis}_m" for axis in "xyz")}, "modes_components.csv": {"energy_percent"},
-          "modes_changed.csv": {"before", "overlap"}, "modes_causes.csv": {"power_w"}, "modes_feed_in.csv": {"friction_damping_w", "falling_friction_w", "power_w_m2"},
+                                "first_order_units_to_zero", *(f"to_{axis}_m" for axis in "xyz")},
+          "modes_components.csv": {"energy_percent"}, "modes_changed.csv": {"before", "overlap"}, "modes_causes.csv": {"power_w"},
+          "modes_feed_in.csv": {"friction_damping_w", "falling_friction_w", "power_w_m2"},
           "modes_sensitivities.csv": {"freq_hz_per_unit", "growth_rad_s_per_unit", "freq_hz_per_percent"}}
 
 

@@ -75,7 +75,8 @@ def main(squeal):
         pair = next(own for own in sets.values() if len(own) == 2)
         for own, what in ((sets[1], "the cheapest"), (pair, "a pair"), (sets[max(sets)], "the worst")):
             faults += check_set(folder, own, what)
-        for words, said in ((["none"], "none/scene.yaml: no such file"), (["out", "--changes", "glue"], "must be of mass, spring, dashpot, relative_spring, relative_dashpot"),
+        for words, said in ((["none"], "none/scene.yaml: no such file"),
+                            (["out", "--changes", "glue"], f"must be of {', '.join(OPTION)}"),
                             (["out", "--price", "mass=-1"], "a positive number"), (["out", "--parts", "wheel"], "has no mass"),
                             (["out", "--most", ",".join(f"{kind}=1e-9" for kind in OPTION)], "raise --most")):
             done = call(folder, *words, "--program", squeal)

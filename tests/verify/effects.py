@@ -4,7 +4,8 @@
     effects.py RESULTS MATRICES MU [--tolerance 1e-6]
 
 A mass, springs and dashpots at nodes, and between two, are added to the matrices of -operators_save, with either sign; the
-central difference of the eigenvalue is the rate. The nodes are those of the table and some others; the rows of the table must be the best of each part."""
+central difference of the eigenvalue is the rate. The nodes are those of the table and some others; the rows of the table
+must be the best of each part."""
 
 import argparse
 import csv

@@ -77,8 +77,7 @@ PETSC_INTERN PetscErrorCode ChangeSolve(const ChangeSpace *space, PetscInt n, co
                                         PetscReal *const side[2], const ChangeRange *range,
                                         struct _p_ModesChanged *changed);
 
-/* before.c - finds `before` and `overlap` of a mode with right vector x, of which as many numbers are of the space as it
-   has columns */
+/* before.c - finds `before` and `overlap` of a mode with right vector x [at least the columns of the space] */
 PETSC_INTERN PetscErrorCode ChangeFindBefore(const ChangeSpace *space, const PetscComplex x[], ChangedMode *mode);
 
 /* quantities.c - the list of the changes; place.c - what no row says of one */

@@ -9,8 +9,8 @@
 
    so that of the displacements x_n, y_n at a node n a point mass m (kg) does -lambda^2 m y_n'x_n, a spring to the
    ground k (N/m) along the unit vector d -k (y_n'd)(d'x_n), a dashpot to the ground c (N s/m) -lambda c (y_n'd)(d'x_n),
-   each over y'Q'(lambda) x. Between the nodes n and m it is the same of x_n - x_m and y_n - y_m. Growth is the real part, 1/s; the imaginary part over 2 pi is the shift of the
-   frequency, Hz.
+   each over y'Q'(lambda) x. Between the nodes n and m it is the same of x_n - x_m and y_n - y_m. Growth is
+   the real part, 1/s; the imaginary part over 2 pi is the shift of the frequency, Hz.
    Source: R. L. Fox, M. P. Kapoor, AIAA J. 6 (1968) 2426, with left vectors.
 
    Error of a rate: right and left vectors that are off by e and f give an eigenvalue that is off by g e f, g the
@@ -42,54 +42,63 @@ static PetscErrorCode EffectsSet(Modes modes, Operators operators, PetscInt i, M
   PetscCall(OperatorsGetNodal(operators, right->xi[i], e->xi));
   PetscCall(OperatorsGetNodal(operators, left->xr[i], e->yr));
   PetscCall(OperatorsGetNodal(operators, left->xi[i], e->yi));
+  e->mode      = i;
+  e->sigma     = modes->mode[i].sigma;
+  e->uncertain = 2 * PetscSqrtReal(PetscMin(1, modes->mode[i].error / ModeGap(modes, i)));
+
   e->factor[EFFECT_MASS]    = -lambda * lambda / slope;
   e->factor[EFFECT_SPRING]  = -1 / slope;
   e->factor[EFFECT_DASHPOT] = -lambda / slope;
   PetscFunctionReturn(0);
 }
 
-/* One row, where the change lowers the growth by more than the error of its rate; `to` is NULL for the ground */
-static PetscErrorCode EffectsWriteRow(Modes modes, const ModeEffects *e, PetscInt i, EffectKind kind,
-                                      const EffectBest *b, PetscInt part, const EffectBest *to, PetscInt to_part,
-                                      PetscReal error, ResultsTable table)
+/* One row, where the change lowers the growth by more than the error of its rate */
+static PetscErrorCode EffectsWriteRow(const ModeEffects *e, EffectKind kind, const EffectPair *pair, PetscReal error,
+                                      ResultsTable table)
 {
-  char place[96] = ",,";
+  const EffectBest *b = &pair->end[1], *to = pair->part[0] < 0 ? NULL : &pair->end[0];
+  char              place[96] = ",,";
 
   PetscFunctionBeginUser;
+  if (!b->found || !(-creal(b->rate) > error)) PetscFunctionReturn(0);
   if (to)
     PetscCall(PetscSNPrintf(place, sizeof(place), "%.15g,%.15g,%.15g", (double)to->at[0], (double)to->at[1],
                             (double)to->at[2]));
-  if (!b->found || !(-creal(b->rate) > error)) PetscFunctionReturn(0);
   PetscCall(ResultsTableRow(table, "%d,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3g,%s,%.15g,%s,%s",
-                            (int)i + 1, to ? kinds[kind].between : kinds[kind].name, e->mesh->part[part],
+                            (int)e->mode + 1, to ? kinds[kind].between : kinds[kind].name, e->mesh->part[pair->part[1]],
                             (double)b->at[0], (double)b->at[1], (double)b->at[2], (double)b->direction[0],
                             (double)b->direction[1], (double)b->direction[2], (double)creal(b->rate),
                             (double)(cimag(b->rate) / (2 * PETSC_PI)), (double)error, kinds[kind].unit,
-                            (double)(-modes->mode[i].sigma / creal(b->rate)), to ? e->mesh->part[to_part] : "", place));
+                            (double)(-e->sigma / creal(b->rate)), to ? e->mesh->part[pair->part[0]] : "", place));
   PetscFunctionReturn(0);
 }
 
-/* Error of a rate of mode i, of which the largest of its kind is given */
-static PetscReal EffectsError(const Modes modes, PetscInt i, PetscReal largest)
+/* The rows of one kind */
+static PetscErrorCode EffectsWriteAlike(const ModeEffects *e, EffectKind kind, PetscInt n, const EffectPair pair[],
+                                        ResultsTable table)
 {
-  return 2 * largest * PetscSqrtReal(PetscMin(1, modes->mode[i].error / ModeGap(modes, i)));
+  PetscReal largest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++)
+    if (pair[k].end[1].found) largest = PetscMax(largest, cabs(pair[k].end[1].rate));
+  for (PetscInt k = 0; k < n; k++) PetscCall(EffectsWriteRow(e, kind, &pair[k], e->uncertain * largest, table));
+  PetscFunctionReturn(0);
 }
 
 /* Rows of one kind: a part each, on which some node lowers the growth */
-static PetscErrorCode EffectsWriteRows(Modes modes, const ModeEffects *e, PetscInt i, EffectKind kind,
-                                       ResultsTable table)
+static PetscErrorCode EffectsWriteRows(Modes modes, const ModeEffects *e, EffectKind kind, ResultsTable table)
 {
-  EffectBest *best;
-  PetscReal   largest = 0;
+  const PetscInt n = e->mesh->n_parts;
+  EffectBest    *best;
+  EffectPair    *pair;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(e->mesh->n_parts, &best));
+  PetscCall(PetscMalloc2(n, &best, n, &pair));
   PetscCall(EffectsFindBest(modes->comm, e, kind, best));
-  for (PetscInt k = 0; k < e->mesh->n_parts; k++)
-    if (best[k].found) largest = PetscMax(largest, cabs(best[k].rate));
-  for (PetscInt k = 0; k < e->mesh->n_parts; k++)
-    PetscCall(EffectsWriteRow(modes, e, i, kind, &best[k], k, NULL, -1, EffectsError(modes, i, largest), table));
-  PetscCall(PetscFree(best));
+  for (PetscInt k = 0; k < n; k++) pair[k] = (EffectPair){.end = {[1] = best[k]}, .part = {-1, k}};
+  PetscCall(EffectsWriteAlike(e, kind, n, pair, table));
+  PetscCall(PetscFree2(best, pair));
   PetscFunctionReturn(0);
 }
 
@@ -110,10 +119,9 @@ static PetscBool PairsAreOne(const EffectPair *a, const EffectPair *b)
 }
 
 /* Rows of one kind between two nodes, for each part one within it and one to another part, each pair of nodes once */
-static PetscErrorCode EffectsWritePairs(Modes modes, ModeEffects *e, PetscInt i, EffectKind kind, ResultsTable table)
+static PetscErrorCode EffectsWritePairs(Modes modes, ModeEffects *e, EffectKind kind, ResultsTable table)
 {
-  const PetscInt n       = 2 * e->mesh->n_parts;
-  PetscReal      largest = 0;
+  const PetscInt n = 2 * e->mesh->n_parts;
   EffectPair    *pair;
 
   PetscFunctionBeginUser;
@@ -122,11 +130,8 @@ static PetscErrorCode EffectsWritePairs(Modes modes, ModeEffects *e, PetscInt i,
     PetscCall(EffectsFindPair(modes->comm, e, kind, k / 2, k % 2 ? PETSC_FALSE : PETSC_TRUE, &pair[k]));
     for (PetscInt j = 0; j < k && pair[k].end[1].found; j++)
       if (pair[j].end[1].found && PairsAreOne(&pair[j], &pair[k])) pair[k].end[1].found = PETSC_FALSE;
-    if (pair[k].end[1].found) largest = PetscMax(largest, cabs(pair[k].end[1].rate));
   }
-  for (PetscInt k = 0; k < n; k++)
-    PetscCall(EffectsWriteRow(modes, e, i, kind, &pair[k].end[1], pair[k].part[1], &pair[k].end[0], pair[k].part[0],
-                              EffectsError(modes, i, largest), table));
+  PetscCall(EffectsWriteAlike(e, kind, n, pair, table));
   PetscCall(PetscFree(pair));
   PetscFunctionReturn(0);
 }
@@ -170,9 +175,9 @@ static PetscErrorCode EffectsWriteAll(Modes modes, Operators operators, const Me
   for (PetscInt i = 0; i < modes->n; i++) {
     if (!modes->mode[i].unstable) continue;
     PetscCall(EffectsSet(modes, operators, i, &e));
-    for (int kind = 0; kind < N_EFFECTS; kind++) PetscCall(EffectsWriteRows(modes, &e, i, (EffectKind)kind, table));
+    for (int kind = 0; kind < N_EFFECTS; kind++) PetscCall(EffectsWriteRows(modes, &e, (EffectKind)kind, table));
     for (int kind = EFFECT_SPRING; kind < N_EFFECTS; kind++)
-      PetscCall(EffectsWritePairs(modes, &e, i, (EffectKind)kind, table));
+      PetscCall(EffectsWritePairs(modes, &e, (EffectKind)kind, table));
     if (field) PetscCall(EffectsWriteFields(modes, &e, i, field));
   }
   PetscCall(PetscFree4(e.xr, e.xi, e.yr, e.yi));

@@ -8,6 +8,9 @@ typedef enum { EFFECT_MASS, EFFECT_SPRING, EFFECT_DASHPOT, N_EFFECTS } EffectKin
 /* One mode at the nodes of a rank: right vector x, left vector y, [local nodes][3] */
 typedef struct {
   const Mesh  *mesh;
+  PetscInt     mode;      /* its index */
+  PetscReal    sigma;     /* its growth, 1/s */
+  PetscReal    uncertain; /* of a rate, as a part of the largest one of its kind */
   PetscReal   *xr, *xi, *yr, *yi;
   PetscReal    end[4][3];         /* the same at the other end of a spring or dashpot, zero: the ground */
   PetscComplex factor[N_EFFECTS]; /* d lambda / d change = factor d'y x'd along the direction d; of a mass its trace */
@@ -24,8 +27,8 @@ typedef struct {
 
 /* A spring or dashpot between nodes of two parts, or of one */
 typedef struct {
-  EffectBest end[2]; /* the rate and the direction stand at end[1] */
-  PetscInt   part[2];
+  EffectBest end[2];  /* the rate and the direction stand at end[1] */
+  PetscInt   part[2]; /* -1 of part[0]: end[0] is the ground */
 } EffectPair;
 
 /* y x^T of the motion at a node less that of the other end, its symmetric part times the factor of a kind, row-major */
