@@ -116,6 +116,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(PetscFree(modes->residual));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
+  PetscCall(PetscFree(modes->label_part));
   PetscCall(ComponentsDestroy(&modes->components));
   PetscCall(ChangesReset(modes));
   PetscCall(EPSDestroy(&modes->left_solver));

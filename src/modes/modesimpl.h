@@ -90,6 +90,7 @@ struct _p_Modes {
   PetscInt        n;
   double         *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
+  PetscInt       *label_part;    /* the part that a mode is named after, -1 for none [n], NULL likewise */
   ModesComponents components;    /* NULL: not asked for */
   ModesChanged    changed;       /* [n_changes], NULL likewise */
   PetscBool       dense;         /* LAPACK found all eigenvalues */

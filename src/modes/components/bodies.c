@@ -159,8 +159,26 @@ PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies)
   PetscCall(VecGetArrayRead(part, &at));
   for (PetscInt i = 0; i < n_own; i++) bodies->of[i] = body[(PetscInt)at[i]];
   PetscCall(VecRestoreArrayRead(part, &at));
+  PetscCall(PetscMalloc1(mesh->n_parts, &bodies->of_part));
+  PetscCall(PetscArraycpy(bodies->of_part, body, mesh->n_parts));
   PetscCall(VecDestroy(&part));
   PetscCall(PetscFree2(joined, body));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscReal sums[])
+{
+  const PetscScalar *x, *y;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  if (!a || !b) PetscFunctionReturn(0);
+  PetscCall(VecGetLocalSize(a, &n));
+  PetscCall(VecGetArrayRead(a, &x));
+  PetscCall(VecGetArrayRead(b, &y));
+  for (PetscInt i = 0; i < n; i++) sums[bodies->of[i]] += x[i] * y[i];
+  PetscCall(VecRestoreArrayRead(b, &y));
+  PetscCall(VecRestoreArrayRead(a, &x));
   PetscFunctionReturn(0);
 }
 
@@ -170,6 +188,7 @@ static PetscErrorCode FreeBodiesDestroy(FreeBodies *bodies)
   for (PetscInt b = 0; b < bodies->n; b++) PetscCall(PetscFree(bodies->name[b]));
   PetscCall(PetscFree(bodies->name));
   PetscCall(PetscFree(bodies->of));
+  PetscCall(PetscFree(bodies->of_part));
   PetscFunctionReturn(0);
 }
 

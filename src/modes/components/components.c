@@ -18,7 +18,6 @@
 */
 #include "components.h"
 #include <complex.h>
-#include <string.h>
 
 #define LEVEL_EQUAL 1e-6 /* of the frequency: free modes of one frequency */
 
@@ -75,93 +74,6 @@ static PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
     c->level[c->n_levels++] = (FreeLevel){
       .first = k, .n = 1, .omega = omega, .rigid = free->mode[k].rigid, .mixed = ShapeOff(free->residual[k], gap)};
   }
-  PetscFunctionReturn(0);
-}
-
-/* sums[b] += sum of a_u b_u over the unknowns of body b; a zero vector is NULL */
-static PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscReal sums[])
-{
-  const PetscScalar *x, *y;
-  PetscInt           n;
-
-  PetscFunctionBeginUser;
-  if (!a || !b) PetscFunctionReturn(0);
-  PetscCall(VecGetLocalSize(a, &n));
-  PetscCall(VecGetArrayRead(a, &x));
-  PetscCall(VecGetArrayRead(b, &y));
-  for (PetscInt i = 0; i < n; i++) sums[bodies->of[i]] += x[i] * y[i];
-  PetscCall(VecRestoreArrayRead(b, &y));
-  PetscCall(VecRestoreArrayRead(a, &x));
-  PetscFunctionReturn(0);
-}
-
-/* own[free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
-static PetscErrorCode FreeModesLocate(const Modes free, Mat M, const FreeBodies *bodies, PetscReal own[])
-{
-  Vec x, Mx;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(M, NULL, &Mx));
-  for (PetscInt k = 0; k < free->n; k++) {
-    PetscCall(ModesGetVectors(free, k, &x, NULL, NULL, NULL));
-    PetscCall(MatMult(M, x, Mx));
-    PetscCall(FreeBodiesAddDot(bodies, x, Mx, &own[k * bodies->n]));
-  }
-  PetscCall(VecDestroy(&Mx));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, own, (PetscMPIInt)(free->n * bodies->n), MPIU_REAL, MPI_SUM, free->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Name of a level in one body: that of the disc's shape, without the contact's + where it is any of a plane; else its
-   number among the elastic ones of the body */
-static PetscErrorCode FreeLevelName(const Modes free, const FreeLevel *level, PetscInt n_bodies, const PetscReal own[],
-                                    PetscInt elastic, FreeMode *is)
-{
-  char        disc[32] = "", *plus;
-  char *const name     = is->name;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = level->first; k < level->first + level->n; k++) {
-    const char *label = free->mode[k].label;
-
-    if (own[k * n_bodies] > 0.5 && !disc[0] && (label[0] == '(' || !strncmp(label, "IP-", 3)))
-      PetscCall(PetscStrncpy(disc, label, sizeof(disc)));
-  }
-  plus = is->n > 1 ? strchr(disc, '+') : NULL;
-  if (plus) *plus = ')', plus[1] = 0;
-  if (level->rigid)
-    PetscCall(PetscStrncpy(name, "rigid", sizeof(is->name)));
-  else if (disc[0])
-    PetscCall(PetscStrncpy(name, disc, sizeof(is->name)));
-  else
-    PetscCall(PetscSNPrintf(name, sizeof(is->name), "elastic %" PetscInt_FMT, elastic + 1));
-  PetscFunctionReturn(0);
-}
-
-/* Numbers and names of the levels of each body */
-static PetscErrorCode FreeLevelsName(const Modes free, Mat M, ModesComponents c)
-{
-  const PetscInt n = c->bodies.n;
-  PetscReal     *own;
-  PetscInt      *number, *elastic;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(c->n_levels * n, &c->free));
-  PetscCall(PetscCalloc3(free->n * n, &own, n, &number, n, &elastic));
-  PetscCall(FreeModesLocate(free, M, &c->bodies, own));
-  for (PetscInt i = 0; i < c->n_levels * n; i++) {
-    const FreeLevel *level = &c->level[i / n];
-    FreeMode        *is    = &c->free[i];
-    PetscReal        sum   = 0;
-
-    for (PetscInt k = level->first; k < level->first + level->n; k++) sum += own[k * n + i % n];
-    is->n     = (PetscInt)(sum + 0.5);
-    is->first = number[i % n];
-    PetscCall(FreeLevelName(free, level, n, &own[i % n], elastic[i % n], is));
-    number[i % n] += is->n;
-    if (!level->rigid) elastic[i % n] += is->n;
-  }
-  PetscCall(PetscFree3(own, number, elastic));
   PetscFunctionReturn(0);
 }
 
@@ -290,8 +202,9 @@ PetscErrorCode ModesFindComponents(Modes modes)
   PetscCall(FreeModesSolve(modes, pencil, &free));
   PetscCall(FreeLevelsFind(free, c));
   PetscCall(PencilGetMass(modes->pencil, &M));
-  PetscCall(FreeLevelsName(free, M, c));
+  PetscCall(FreeLevelsName(modes, free, M, c));
   PetscCall(SharesFind(modes, free, c));
+  PetscCall(ComponentsLabel(modes));
   PetscCall(ModesDestroy(&free));
   PetscCall(PencilDestroy(&pencil));
   PetscFunctionReturn(0);

@@ -6,8 +6,9 @@
 /* Parts that share nodes, ties or rigid points are one body */
 typedef struct {
   PetscInt  n;
-  char    **name; /* [n] the names of its parts with + between */
-  PetscInt *of;   /* [unknowns of this rank] body of each */
+  char    **name;    /* [n] the names of its parts with + between */
+  PetscInt *of;      /* [unknowns of this rank] body of each */
+  PetscInt *of_part; /* [parts] body of each, -1 for a part without unknowns */
 } FreeBodies;
 
 /* Free modes of one frequency, which are any basis of a plane: they have one share */
@@ -36,3 +37,8 @@ struct _p_ModesComponents {
 
 /* bodies.c - bodies of the unknowns of a pencil whose pairs are open. Collective */
 PETSC_INTERN PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies);
+/* sums[b] += sum of a_u b_u over the unknowns of body b of this rank; a zero vector is NULL. Not collective */
+PETSC_INTERN PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscReal sums[]);
+/* names.c - numbers and names of the levels of each body; then new labels of the modes that are named after a part */
+PETSC_INTERN PetscErrorCode FreeLevelsName(Modes modes, const Modes free, Mat M, ModesComponents c);
+PETSC_INTERN PetscErrorCode ComponentsLabel(Modes modes);

@@ -118,7 +118,8 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
   if (unnamed && (!l->by_unknown || rigid))
     PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
   for (PetscInt part = 0; part < l->n_parts; part++) share[part] = total > 0 ? 100 * (share[part] / total) : 0;
-  *explained = unnamed && l->by_unknown && !rigid ? LABEL_UNKNOWN : 100 * *explained;
+  modes->label_part[i] = unnamed && !l->by_unknown && !rigid ? most : -1;
+  *explained           = unnamed && l->by_unknown && !rigid ? LABEL_UNKNOWN : 100 * *explained;
   PetscFunctionReturn(0);
 }
 
@@ -284,8 +285,10 @@ PetscErrorCode ModesLabel(Modes modes)
   if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
+  PetscCall(PetscFree(modes->label_part));
   PetscCall(PetscMalloc1(n, &modes->part_percent));
   PetscCall(PetscMalloc1(modes->n, &modes->label_percent));
+  PetscCall(PetscMalloc1(modes->n, &modes->label_part));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, mesh, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
@@ -311,6 +314,7 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   PetscFunctionBeginUser;
   shapes.n            = n;
   shapes.part_percent = shapes.label_percent = NULL;
+  shapes.label_part                          = NULL;
   PetscCall(SpectrumCreate(n, &shapes.right));
   PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
   PetscCall(PetscCalloc1(n, &shapes.mode));
@@ -331,5 +335,6 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   PetscCall(PetscFree(shapes.mode));
   PetscCall(PetscFree(shapes.part_percent));
   PetscCall(PetscFree(shapes.label_percent));
+  PetscCall(PetscFree(shapes.label_part));
   PetscFunctionReturn(0);
 }
