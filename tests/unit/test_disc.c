@@ -53,6 +53,19 @@ static void Breathing(PetscReal r, PetscReal z, PetscReal c[3], PetscReal s[3])
   c[1] = r;
 }
 
+static void BreathingCircle(PetscReal r, PetscReal z, PetscReal c[3], PetscReal s[3])
+{
+  (void)z, (void)s;
+  c[1] = 0.09 - r;
+}
+
+/* Held at its inner edge */
+static void TorsionHeld(PetscReal r, PetscReal z, PetscReal c[3], PetscReal s[3])
+{
+  (void)z, (void)s;
+  c[2] = r - 0.06;
+}
+
 static void Torsion(PetscReal r, PetscReal z, PetscReal c[3], PetscReal s[3])
 {
   (void)z, (void)s;
@@ -102,10 +115,13 @@ typedef struct {
 } Case;
 
 static const Case cases[] = {
-  {"IP-R(3+)", Flexure3, 3, 0, 0},           {"IP-R(3)", Flexure3Odd, 3, 0, 0.6}, {"IP-C(2)", Extension2, 2, 0, 0},
-  {"IP-C(2+)", Extension2Turned, 2, 0, 0.6}, {"IP-R(0)", Breathing, 0, 0, 0},     {"IP-C(0)", Torsion, 0, 0, 0},
-  {"IP-R(1+)", Translation, 1, 0, 0},        {"IP-C(1)", Stretch1, 1, 0, 0.6},    {"(0,4+)", Bending4, 4, 0, 0},
-  {"(1,5)", Bending5Circle, 5, 0, 0},        {"IP-R(3+)", Bell3, 3, 1, 0.6},
+  {"IP-R(3+)", Flexure3, 3, 0, 0},    {"IP-R(3)", Flexure3Odd, 3, 0, 0.6},
+  {"IP-C(2)", Extension2, 2, 0, 0},   {"IP-C(2+)", Extension2Turned, 2, 0, 0.6},
+  {"IP-R(0)", Breathing, 0, 0, 0},    {"IP-C(1,0)", Torsion, 0, 0, 0},
+  {"IP-C(0)", TorsionHeld, 0, 0, 0},  {"IP-R(1,0)", BreathingCircle, 0, 0, 0},
+  {"IP-R(1+)", Translation, 1, 0, 0}, {"IP-C(1)", Stretch1, 1, 0, 0.6},
+  {"(0,4+)", Bending4, 4, 0, 0},      {"(1,5)", Bending5Circle, 5, 0, 0},
+  {"IP-R(3+)", Bell3, 3, 1, 0.6},
 };
 
 #define N_CASES ((int)PETSC_STATIC_ARRAY_LENGTH(cases))

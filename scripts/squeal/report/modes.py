@@ -154,8 +154,8 @@ def mode_table(modes, folder):
                            hint="neutral: growth beyond its error that is no instability"),
                     Column("mechanism", mechanism_of, left=True, hint="why an unstable mode grows")]
     columns.append(Column("label", lambda row: row["label"], left=True,
-                          hint="(n,m): n nodal circles, m nodal diameters; in plane IP-R(m) radial, IP-C(m) circumferential; "
-                               "+ an antinode at the contact"))
+                          hint="(n,m): n nodal circles, m nodal diameters; in plane IP-R(m) radial, IP-C(m) circumferential, "
+                               "IP-R(n,m) with circles; + an antinode at the contact"))
     if "label_percent" in modes.has:
         columns.append(Column("label, %", lambda row: row["label_percent"], lambda v: fixed(v, 1),
                               hint="share of the shape that the label explains"))

@@ -66,8 +66,13 @@ PETSC_INTERN PetscReal DiscSampleWeight(const Disc *disc, PetscReal s);
 /* Energy of what harmonic m alone fits of directions first to last */
 PETSC_INTERN PetscErrorCode DiscExplain(const Disc *disc, PetscInt mode, int m, int first, int last, PetscReal *energy);
 PETSC_INTERN PetscErrorCode DiscDestroy(Disc *disc);
-/* label/name.c - "(circles,diameters+)"; energy of what the harmonic of the name alone fits */
+/* label/name.c - sign changes of the principal profile of harmonic m in a direction, with its moments; values below a
+   twentieth of the largest count as zero */
+PETSC_INTERN PetscErrorCode DiscNodalCircles(const Disc *disc, PetscInt mode, int direction, int m,
+                                             const PetscReal moments[], int *n);
+/* "(circles,diameters+)"; energy of what the harmonic of the name alone fits */
 PETSC_INTERN PetscErrorCode DiscName(const Disc *disc, PetscInt mode, char name[], size_t size, PetscReal *energy);
-/* label/inplane.c - "IP-C(diameters+)" or "IP-R(diameters+)", and the same energy in the plane */
+/* label/inplane.c - "IP-C(diameters+)" or "IP-R(diameters+)", with nodal circles "IP-C(circles,diameters+)", and the
+   same energy in the plane */
 PETSC_INTERN PetscErrorCode DiscNameInPlane(const Disc *disc, PetscInt mode, char name[], size_t size,
                                             PetscReal *energy);

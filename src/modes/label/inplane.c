@@ -9,6 +9,9 @@
       flexure      a = -n b   its circumference keeps its length: a + n b = 0   radial for n >= 2
       extension    b = n a    orthogonal to flexure                             circumferential for n >= 2
 
+   Where the profile of that displacement along the radius changes its sign, c times, the name has c before n: the shear
+   of a wide ring, which turns its inner edge against its outer one, is IP-C(1,0).
+
    For n = 1 both directions have half of the energy: then the hoop strain (a + n b) / r decides. Without it the ring
    moves as a whole, IP-R(1); where the circumference is stretched and compressed it is IP-C(1).
 */
@@ -51,7 +54,9 @@ static PetscBool InPlaneIsRadial(const InPlane *shape)
 
 PetscErrorCode DiscNameInPlane(const Disc *disc, PetscInt mode, char name[], size_t size, PetscReal *energy)
 {
-  InPlane   most = {.n = 0};
+  InPlane   most        = {.n = 0};
+  char      circles[16] = "";
+  int       n_circles;
   PetscReal m[N_DISC_VALUES * N_DISC_VALUES], even;
   PetscBool radial = PETSC_FALSE;
 
@@ -66,8 +71,10 @@ PetscErrorCode DiscNameInPlane(const Disc *disc, PetscInt mode, char name[], siz
   most.stretched = StretchedEnergy(disc, mode, most.n);
   radial         = InPlaneIsRadial(&most);
   even           = DiscMomentsOf(disc, mode, radial ? DISC_RADIAL : DISC_TANGENTIAL, most.n, m);
-  even           = m[0] + m[5] - 0.5 * even;
-  PetscCall(PetscSNPrintf(name, size, "IP-%c(%d%s)", radial ? 'R' : 'C', most.n,
+  PetscCall(DiscNodalCircles(disc, mode, radial ? DISC_RADIAL : DISC_TANGENTIAL, most.n, m, &n_circles));
+  if (n_circles) PetscCall(PetscSNPrintf(circles, sizeof(circles), "%d,", n_circles));
+  even = m[0] + m[5] - 0.5 * even;
+  PetscCall(PetscSNPrintf(name, size, "IP-%c(%s%d%s)", radial ? 'R' : 'C', circles, most.n,
                           disc->has_contact && most.n && even > 0 ? "+" : ""));
   PetscCall(DiscExplain(disc, mode, most.n, DISC_RADIAL, DISC_TANGENTIAL, energy));
   PetscFunctionReturn(0);

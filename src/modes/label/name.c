@@ -7,8 +7,8 @@
 #define ANGLES 360   /* angles at which the rim is read */
 #define RIPPLE 0.005 /* turns of the rim's displacement smaller than this part of the largest do not count */
 
-/* Sign changes of the principal profile; values below a twentieth of the largest count as zero */
-static PetscErrorCode NodalCircles(const Disc *disc, PetscInt mode, int m, const PetscReal moments[16], int *n)
+PetscErrorCode DiscNodalCircles(const Disc *disc, PetscInt mode, int direction, int m, const PetscReal moments[],
+                                int *n)
 {
   PetscReal a[16], values[4], profile[DISC_SAMPLES], v[4], largest = 0, last = 0;
 
@@ -16,7 +16,7 @@ static PetscErrorCode NodalCircles(const Disc *disc, PetscInt mode, int m, const
   PetscCall(PetscArraycpy(a, moments, 16));
   PetscCall(DenseSymmetricEigen(4, a, NULL, values, NULL));
   for (int s = 0; s < DISC_SAMPLES; s++) {
-    DiscProfile(disc, mode, DISC_AXIAL, m, DiscSample(disc, s), v);
+    DiscProfile(disc, mode, direction, m, DiscSample(disc, s), v);
     profile[s] = 0;
     for (int k = 0; k < 4; k++) profile[s] += a[12 + k] * v[k];
     largest = PetscMax(largest, PetscAbsReal(profile[s]));
@@ -50,7 +50,7 @@ static PetscErrorCode FamilyFind(const Disc *disc, PetscInt mode, Family *best)
     const PetscReal energy = DiscMomentsOf(disc, mode, DISC_AXIAL, m, moments);
     int             n;
 
-    PetscCall(NodalCircles(disc, mode, m, moments, &n));
+    PetscCall(DiscNodalCircles(disc, mode, DISC_AXIAL, m, moments, &n));
     n                 = PetscMin(n, DISC_POLYNOMIALS - 1);
     family[n].circles = n;
     family[n].energy += energy;
