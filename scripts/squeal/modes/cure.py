@@ -115,7 +115,8 @@ class Cure:
         for _, change in sorted(waiting, key=lambda pair: (pair[0], pair[1].cost)):
             if 0 < change.size <= self.args.most[change.kind]:
                 found.setdefault((*change.where, f"{change.amount:.6g}"), change)
-        return sorted(list(found.values())[:self.args.tries], key=lambda change: change.cost)
+        # those of one place follow each other: the program has its answer to a force there by then
+        return sorted(list(found.values())[:self.args.tries], key=lambda change: (*change.where, change.cost))
 
     def likeliest(self, singles, count):
         """Sets of `count` single changes whose shifts of each mode's growth, added up, leave least, then the cheapest."""

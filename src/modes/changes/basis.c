@@ -47,6 +47,8 @@ static PetscErrorCode SpaceKeepBefore(Modes modes, ChangeSpace *s)
       if (x[part]) PetscCall(PencilRestrict(modes->pencil, x[part], a[2 * i + part]));
   }
   PetscCall(SpaceCoordinates(s, 2 * modes->n, a, &s->before));
+  PetscCall(PetscMalloc1(modes->n, &s->length));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(ChangeMeasureBefore(s, i, &s->length[i]));
   PetscCall(VecDestroyVecs(2 * modes->n, &a));
   PetscCall(VecDestroy(&like));
   PetscFunctionReturn(0);
@@ -77,11 +79,45 @@ PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm terms[], PetscReal *side[2])
+/* Leaves the modes alone */
+static PetscErrorCode SpaceForget(ChangeSpace *s)
 {
-  Vec *a[2], like;
+  PetscFunctionBeginUser;
+  PetscCall(SubspaceTruncate(&s->space.space, s->n_modes));
+  PetscCall(VecDestroyVecs(s->n_forces, &s->force));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(s->side[i]));
+  s->n_forces = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the answers to the terms are there: those of another amount at the same place */
+static PetscErrorCode SpaceAnswers(const ChangeSpace *s, PetscInt n, const ChangeTerm terms[], PetscBool *answers)
+{
+  PetscFunctionBeginUser;
+  *answers = s->n_forces == n ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt j = 0; j < n && *answers; j++) PetscCall(VecEqual(s->force[j], terms[j].force, answers));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SpaceKeepForces(ChangeSpace *s, PetscInt n, const ChangeTerm terms[])
+{
+  PetscFunctionBeginUser;
+  s->n_forces = n;
+  PetscCall(VecDuplicateVecs(terms[0].force, n, &s->force));
+  for (PetscInt j = 0; j < n; j++) PetscCall(VecCopy(terms[j].force, s->force[j]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm terms[])
+{
+  Vec      *a[2], like;
+  PetscBool answers;
 
   PetscFunctionBeginUser;
+  PetscCall(SpaceAnswers(s, n, terms, &answers));
+  if (answers) PetscFunctionReturn(0);
+  PetscCall(SpaceForget(s));
+  PetscCall(SpaceKeepForces(s, n, terms));
   PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
   for (int i = 0; i < 2; i++) {
     PetscCall(VecDuplicateVecs(like, n, &a[i]));
@@ -95,24 +131,19 @@ PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm t
     PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
   }
   for (int i = 0; i < 2; i++) {
-    PetscCall(SpaceCoordinates(s, n, a[i], &side[i]));
+    PetscCall(SpaceCoordinates(s, n, a[i], &s->side[i]));
     PetscCall(VecDestroyVecs(n, &a[i]));
   }
   PetscCall(VecDestroy(&like));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChangeSpaceForget(ChangeSpace *s)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SubspaceTruncate(&s->space.space, s->n_modes));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ChangeSpaceDestroy(ChangeSpace *s)
 {
   PetscFunctionBeginUser;
+  PetscCall(SpaceForget(s));
   PetscCall(PetscFree(s->before));
+  PetscCall(PetscFree(s->length));
   PetscCall(ModesKrylovDestroy(&s->right));
   PetscCall(ModesKrylovDestroy(&s->left));
   PetscCall(ModesSpaceDestroy(&s->space));

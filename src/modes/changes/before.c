@@ -33,37 +33,41 @@ static void SpaceMass(const ChangeSpace *s, const PetscComplex x[], PetscComplex
     for (PetscInt i = 0; i < n; i++) z[i] += M[j * n + i] * x[j];
 }
 
-/* u^H M u */
-static PetscReal BeforeLength(const ChangeSpace *s, PetscInt i, PetscComplex u[], PetscComplex z[])
+PetscErrorCode ChangeMeasureBefore(const ChangeSpace *s, PetscInt i, PetscReal *length)
 {
-  const PetscReal *part[2] = {&s->before[2 * i * s->n_modes], &s->before[(2 * i + 1) * s->n_modes]};
-  PetscComplex     sum     = 0;
+  const PetscInt   n       = s->n_modes;
+  const PetscReal *part[2] = {&s->before[2 * i * n], &s->before[(2 * i + 1) * n]};
+  PetscComplex    *u, *z;
 
-  for (PetscInt k = 0; k < s->space.space.n; k++) u[k] = k < s->n_modes ? CMPLX(part[0][k], part[1][k]) : 0;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->space.space.n, &u, s->space.space.n, &z));
+  for (PetscInt k = 0; k < s->space.space.n; k++) u[k] = k < n ? CMPLX(part[0][k], part[1][k]) : 0;
   SpaceMass(s, u, z);
-  for (PetscInt k = 0; k < s->n_modes; k++) sum += conj(u[k]) * z[k];
-  return creal(sum);
+  *length = 0;
+  for (PetscInt k = 0; k < n; k++) *length += creal(conj(u[k]) * z[k]);
+  PetscCall(PetscFree2(u, z));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode ChangeFindBefore(const ChangeSpace *s, const PetscComplex x[], ChangedMode *mode)
 {
   const PetscInt n = s->space.space.n;
-  PetscComplex  *z, *u, *w, xx = 0;
+  PetscComplex  *z, xx = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n, &z, n, &u, n, &w));
+  PetscCall(PetscMalloc1(n, &z));
   SpaceMass(s, x, z);
   for (PetscInt k = 0; k < n; k++) xx += conj(x[k]) * z[k];
   mode->before  = -1;
   mode->overlap = 0;
   for (PetscInt i = 0; i < s->n_before; i++) {
     const PetscComplex ux  = BeforeProduct(s, 2 * i, z) - PETSC_i * BeforeProduct(s, 2 * i + 1, z);
-    const PetscReal    mac = PetscSqr(cabs(ux)) / (BeforeLength(s, i, u, w) * creal(xx));
+    const PetscReal    mac = PetscSqr(cabs(ux)) / (s->length[i] * creal(xx));
 
     if (mode->before >= 0 && !(mac > mode->overlap * (1 + OVERLAP_TIE))) continue;
     mode->before  = i;
     mode->overlap = PetscMin(1, mac);
   }
-  PetscCall(PetscFree3(z, u, w));
+  PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }

@@ -31,7 +31,6 @@ static ChangeRange RangeOf(const Modes modes)
 static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRange *range, PetscInt i)
 {
   ModesChanged changed = &modes->changed[i];
-  PetscReal   *side[2];
   PetscInt     n;
   ChangeTerm  *terms;
   ModesLimit   limit;
@@ -39,15 +38,13 @@ static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRan
   PetscFunctionBeginUser;
   PetscCall(ModesGetLimit(modes, &limit));
   PetscCall(ChangeCreateTerms(modes, i, &n, &terms));
-  PetscCall(ChangeSpaceRespond(space, n, terms, side));
-  PetscCall(ChangeSolve(space, n, terms, side, range, changed));
-  PetscCall(ChangeSpaceForget(space));
+  PetscCall(ChangeSpaceRespond(space, n, terms));
+  PetscCall(ChangeSolve(space, n, terms, range, changed));
   for (PetscInt k = 0; k < changed->n; k++) {
     ChangedMode *m = &changed->mode[k];
 
     m->state = ModesLimitJudge(&limit, creal(m->lambda), cimag(m->lambda), m->error);
   }
-  for (int k = 0; k < 2; k++) PetscCall(PetscFree(side[k]));
   PetscCall(ChangeDestroyTerms(n, &terms));
   PetscFunctionReturn(0);
 }

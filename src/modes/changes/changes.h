@@ -51,6 +51,10 @@ typedef struct {
   PetscInt    n_solves;
   PetscInt    n_before; /* modes of the system as it was */
   PetscReal  *before;   /* [2 n_before][n_modes] coordinates of their right vectors, real and imaginary parts */
+  PetscReal  *length;   /* [n_before] u^H M u of these */
+  PetscInt    n_forces; /* terms that it has answers to */
+  Vec        *force;    /* [n_forces] of these */
+  PetscReal  *side[2];  /* [n_forces][columns] coordinates of Zl' a and Zr' a */
 } ChangeSpace;
 
 /* place.c - how many terms a change may have with those made with it, and these; the caller destroys their vectors */
@@ -58,12 +62,9 @@ PETSC_INTERN PetscInt       ChangeMostTerms(const Modes modes, PetscInt i);
 PETSC_INTERN PetscErrorCode ChangeCreateTerms(Modes modes, PetscInt i, PetscInt *n, ChangeTerm **terms);
 PETSC_INTERN PetscErrorCode ChangeDestroyTerms(PetscInt n, ChangeTerm **terms);
 
-/* basis.c - modes; responses to the terms, coordinates of Zl' a and Zr' a in side[0], side[1] [n][columns]; takes the
-   responses out again. Collective. */
+/* basis.c - modes; in place of other answers those to the terms, which may be there already. Collective. */
 PETSC_INTERN PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *space);
-PETSC_INTERN PetscErrorCode ChangeSpaceRespond(ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
-                                               PetscReal *side[2]);
-PETSC_INTERN PetscErrorCode ChangeSpaceForget(ChangeSpace *space);
+PETSC_INTERN PetscErrorCode ChangeSpaceRespond(ChangeSpace *space, PetscInt n, const ChangeTerm terms[]);
 PETSC_INTERN PetscErrorCode ChangeSpaceDestroy(ChangeSpace *space);
 
 /* Which eigenvalues are listed, omega in edge[0] to edge[1] and |sigma| <= growth, and what errors of the modes come to
@@ -74,10 +75,11 @@ typedef struct {
 
 /* dense.c - eigenvalues of the changed system on the space, and their errors */
 PETSC_INTERN PetscErrorCode ChangeSolve(const ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
-                                        PetscReal *const side[2], const ChangeRange *range,
-                                        struct _p_ModesChanged *changed);
+                                        const ChangeRange *range, struct _p_ModesChanged *changed);
 
-/* before.c - finds `before` and `overlap` of a mode with right vector x [at least the columns of the space] */
+/* before.c - u^H M u of mode i as it was; finds `before` and `overlap` of a mode with right vector x [at least the
+   columns of the space] */
+PETSC_INTERN PetscErrorCode ChangeMeasureBefore(const ChangeSpace *space, PetscInt i, PetscReal *length);
 PETSC_INTERN PetscErrorCode ChangeFindBefore(const ChangeSpace *space, const PetscComplex x[], ChangedMode *mode);
 
 /* quantities.c - the list of the changes; place.c - what no row says of one */

@@ -50,8 +50,7 @@ static void RankOneAdd(const ChangedPencil *c, PetscReal value, const PetscReal 
 }
 
 /* The pencil of the changed system */
-static PetscErrorCode ChangedCreate(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[],
-                                    PetscReal *const side[2], ChangedPencil *c)
+static PetscErrorCode ChangedCreate(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[], ChangedPencil *c)
 {
   const SubspaceTerm *small = s->space.space.term;
   PetscInt            n = s->space.space.n, hung = s->space.space.n;
@@ -70,7 +69,7 @@ static PetscErrorCode ChangedCreate(const ChangeSpace *s, PetscInt n_terms, cons
   PetscCall(CornerCreate(c->n_space, small[SUBSPACE_M].small, n, c->q.M));
   for (PetscInt t = 0; t < n_terms; t++) {
     const ChangeTerm *term = &terms[t];
-    const PetscReal  *g[2] = {&side[0][t * c->n_space], &side[1][t * c->n_space]};
+    const PetscReal  *g[2] = {&s->side[0][t * c->n_space], &s->side[1][t * c->n_space]};
     const PetscInt    at   = term->hung ? hung++ : -1;
 
     RankOneAdd(c, term->stiffness, g, at, c->q.K);
@@ -143,8 +142,8 @@ static PetscErrorCode ErrorsWiden(struct _p_ModesChanged *changed)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[], PetscReal *const side[2],
-                           const ChangeRange *range, struct _p_ModesChanged *changed)
+PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[], const ChangeRange *range,
+                           struct _p_ModesChanged *changed)
 {
   const PetscReal shift = PetscSqrtReal((PetscSqr(range->edge[0]) + PetscSqr(range->edge[1])) / 2);
   ChangedPencil   c;
@@ -152,7 +151,7 @@ PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeT
   PetscComplex   *x, *y;
 
   PetscFunctionBeginUser;
-  PetscCall(ChangedCreate(s, n_terms, terms, side, &c));
+  PetscCall(ChangedCreate(s, n_terms, terms, &c));
   PetscCall(DenseShiftedSolve(&c.q, shift, &w));
   PetscCall(PetscMalloc2(c.q.n, &x, c.q.n, &y));
   PetscCall(PetscMalloc1(w.N, &changed->mode));
