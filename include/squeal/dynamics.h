@@ -10,10 +10,10 @@
 
    Energy ledger, J, of the half steps: kinetic 1/2 v'Mv, strain 1/2 u_{n+1}'K u_n; their change is the work of external
    forces, contact, friction, damping, and for b > 1/2 of the integrator. What is left over is energy_error_j: rounding.
-   It closes with any forces, since the works are those of the forces that acted. Hence a few steps are looked at by
-   second paths, which are in the view and in transient.csv, the worst so far: K u of the kernels beside that of the
-   elements, work of friction beside mu N on the way slid by the nodes' places, change of momentum beside the sum of
-   what acts.
+   It closes with any forces, since the works are those of the forces that acted. Where it is asked for, steps are
+   looked at by second paths, which are in the view and in transient.csv, the worst so far: K u of the kernels beside
+   that of the elements, work of friction beside mu N on the way slid by the nodes' places, change of momentum beside
+   the sum of what acts.
 */
 #pragma once
 
@@ -55,9 +55,7 @@ the next two:
 .  -dynamics_snapshot_interval <0> - between fields, s; 0 for none
 .  -dynamics_live <1>            - between live lines, s of the wall; 0 for none
 .  -contact_view_kkt <false>     - print the residuals of the contact laws in the last step
-.  -dynamics_check_interval <100000> - between looks at the laws by second paths, steps, besides 10, 100, 1000, ... and
-the last
-                                  one; 0 for none
+.  -dynamics_check_interval <0>  - between looks at the laws by second paths, steps, and the last one; 0 for none
 .  -dynamics_checkpoint_interval <0> - between checkpoints, steps; 0 for none
 -  -dynamics_restart <false>     - go on from the checkpoint in the output folder
    and of the scene

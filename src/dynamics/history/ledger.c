@@ -93,11 +93,7 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
 /* Steps 10, 100, 1000, ... and every multiple of the interval: early faults are found early, and looks cost nothing */
 PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
 {
-  PetscReal ten = 10;
-
-  if (!interval || n == 0) return PETSC_FALSE;
-  while (ten < (PetscReal)n) ten *= 10;
-  return (PetscReal)n == ten || n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return interval > 0 && n > 0 && n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Four checks, in this order: numbers; what is left over; damping that gives energy; and the sum of the kinetic

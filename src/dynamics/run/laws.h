@@ -1,8 +1,9 @@
 /*
    Laws (private to dynamics/) - looks at a few steps of a run by second paths. The balance of energy closes with any
    forces, since the works in it are those of the forces that acted: a wrong friction coefficient or stiffness passes.
-   Looked at are steps 10, 100, 1000, ..., the last one, and every -dynamics_check_interval steps. Errors, relative,
-   beyond rounding:
+   Looked at are every -dynamics_check_interval steps and the last one, where it is given: tests ask for it, and who
+   doubts a run. The forces inside a step are known to the run alone, so that no table can be asked instead. Errors,
+   relative, beyond rounding:
 
       stiffness   the kernels' K u, which is summed up step by step, beside K_e u_e of all elements; of the largest
       force at a node friction    work lambda_T . s beside mu lambda_n |s|, with the slip s from the places of the nodes
