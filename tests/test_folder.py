@@ -79,7 +79,7 @@ def check_names(r):
             "links with the final name are replaced, and a folder without a run's results is written to", done)
     kept = (r.folder / "out/scene.yaml").read_text()
     r.refused(r.run(*SMALL, "-output_dir", "out", "-output_overwrite", "false", ranks=2),
-              ["-output_dir out has the results of an earlier run"], "results that are not to be written over")
+              ["-output_dir out has finished results of an earlier run"], "results that are not to be written over")
     r.check(r.files() == WRITTEN and (r.folder / "out/scene.yaml").read_text() == kept, "they are as they were")
     r.check((r.folder / "precious").read_text() == "mine", "what links lead to stays as it is")
     os.mkfifo(r.fresh() / "checkpoint.bin")

@@ -159,6 +159,19 @@ static PetscErrorCode SceneRead(Results results, const char path[], int *error)
   PetscFunctionReturn(0);
 }
 
+/* Whether an earlier run left a finished result; what a killed one left is no reason not to go on with it */
+static PetscBool EarlierIsFinished(Results results)
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  for (PetscInt i = 0; i < results->n_earlier; i++) {
+    if (!NameMayGo(results, results->earlier[i])) continue;
+    if (PetscSNPrintf(path, sizeof(path), "%s/%s", results->dir, results->earlier[i])) return PETSC_TRUE;
+    if (!access(path, F_OK)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Reads which files earlier runs wrote, from the scene.yaml that is there before this run writes its own. On the first
    rank; the others have none. Collective */
 PetscErrorCode EarlierRead(Results results)
@@ -170,9 +183,11 @@ PetscErrorCode EarlierRead(Results results)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(results->comm, &rank));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/" SCENE ".yaml", results->dir));
-  if (rank == 0) results->has_earlier = access(path, F_OK) ? PETSC_FALSE : PETSC_TRUE;
   if (rank == 0) PetscCall(SceneRead(results, path, &error));
+  if (rank == 0) results->has_earlier = access(path, F_OK) ? PETSC_FALSE : PETSC_TRUE;
+  if (rank == 0) results->has_finished = EarlierIsFinished(results);
   PetscCallMPI(MPI_Bcast(&results->has_earlier, 1, MPIU_BOOL, 0, results->comm));
+  PetscCallMPI(MPI_Bcast(&results->has_finished, 1, MPIU_BOOL, 0, results->comm));
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, results->comm));
   PetscCheck(!error, results->comm, PETSC_ERR_FILE_OPEN,
              "cannot read %s, which names the files of earlier runs: %s; remove it, or choose another -output_dir",

@@ -16,8 +16,8 @@ static const Quantity rows[] = {
    QUANTITY_AT(struct _p_Results, dir), .text = "results", .path = "folder"},
   {"-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", NULL, QUANTITY_BOOL,
    QUANTITY_AT(struct _p_Results, fields), .initial = PETSC_TRUE},
-  {"-output_overwrite", "results of an earlier run give way to those of this one; else they are an error", NULL,
-   QUANTITY_BOOL, QUANTITY_AT(struct _p_Results, overwrite), .initial = PETSC_TRUE},
+  {"-output_overwrite", "finished results of an earlier run give way to those of this one; else they are an error",
+   NULL, QUANTITY_BOOL, QUANTITY_AT(struct _p_Results, overwrite), .initial = PETSC_TRUE},
 };
 static const QuantityTable results_quantities = {"Results", "results.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
                                                  .in = 0};
@@ -63,9 +63,10 @@ PetscErrorCode ResultsOpenDirectory(Results results)
   PetscCall(ResultsLock(results));
   WatchFolder(results->dir);
   PetscCall(EarlierRead(results));
-  PetscCheck(results->overwrite || !results->has_earlier, results->comm, PETSC_ERR_USER_INPUT,
-             "-output_dir %s has the results of an earlier run, and -output_overwrite is false: choose another folder",
-             results->dir);
+  PetscCheck(
+    results->overwrite || !results->has_finished, results->comm, PETSC_ERR_USER_INPUT,
+    "-output_dir %s has finished results of an earlier run, and -output_overwrite is false: choose another folder",
+    results->dir);
   PetscFunctionReturn(0);
 }
 

@@ -119,7 +119,7 @@ def main():
         complete(arguments, folder, "undisturbed")
         for n in (1, 2, 3):
             kill_after(arguments, folder, "killed", n)
-        printed = complete(arguments, folder, "killed")
+        printed = complete(arguments, folder, "killed", "-output_overwrite", "false")
         if not re.search("^going on with [3-9] full solutions", printed):
             raise SystemExit(f"FAILED: did not go on where it stopped:\n{printed}")
         for table in TABLES:
