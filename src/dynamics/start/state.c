@@ -49,35 +49,64 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
   PetscFunctionReturn(0);
 }
 
-/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real
-   and positive. Returns that component. */
-static PetscErrorCode StartTurn(MPI_Comm comm, PetscInt n, PetscReal re[], PetscReal im[], PetscReal *largest)
+#define START_EQUAL 1e-6 /* components that differ by less, relative, are equally large: a symmetric body has several */
+
+/* A component of a shape: its place, m, its direction, and its phase, a unit number */
+typedef struct {
+  double x[3], direction, phase[2];
+} StartComponent;
+
+/* By place, then by direction */
+static PetscBool StartIsBefore(const StartComponent *a, const StartComponent *b)
 {
-  struct {
-    double size;
-    int    rank;
-  } most          = {0};
-  double phase[2] = {1, 0};
+  const double at[2][4] = {{a->x[0], a->x[1], a->x[2], a->direction}, {b->x[0], b->x[1], b->x[2], b->direction}};
+
+  for (int d = 0; d < 4; d++)
+    if (at[0][d] != at[1][d]) return at[0][d] < at[1][d] ? PETSC_TRUE : PETSC_FALSE;
+  return PETSC_FALSE;
+}
+
+/* Of the components of all ranks that are as large as the largest the first by place, so that rounding does not choose */
+static PetscErrorCode StartFindLargest(MPI_Comm comm, const Mesh *mesh, const PetscReal re[], const PetscReal im[],
+                                       PetscReal *largest, StartComponent *first)
+{
+  StartComponent *all, mine = {{INFINITY, INFINITY, INFINITY}, 0, {1, 0}};
+  PetscMPIInt     n_ranks;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &most.rank));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal size = hypot(re[i], im[i]);
+  *largest = 0;
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) *largest = PetscMax(*largest, hypot(re[i], im[i]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 1, MPIU_REAL, MPI_MAX, comm));
+  for (PetscInt i = 0; i<3 * mesh->n_nodes && * largest> 0; i++) {
+    const PetscReal     *x = &mesh->x[i - i % 3], size = hypot(re[i], im[i]);
+    const StartComponent c = {{x[0], x[1], x[2]}, (double)(i % 3), {re[i] / size, im[i] / size}};
 
-    if (size <= most.size) continue;
-    most.size = size;
-    phase[0]  = re[i] / size;
-    phase[1]  = im[i] / size;
+    if (size >= (1 - START_EQUAL) * *largest && StartIsBefore(&c, &mine)) mine = c;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCallMPI(MPI_Bcast(phase, 2, MPI_DOUBLE, most.rank, comm));
-  for (PetscInt i = 0; i < n; i++) {
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
+  PetscCall(PetscMalloc1(n_ranks, &all));
+  PetscCallMPI(MPI_Allgather(&mine, 6, MPI_DOUBLE, all, 6, MPI_DOUBLE, comm));
+  *first = all[0];
+  for (PetscMPIInt r = 1; r < n_ranks; r++)
+    if (StartIsBefore(&all[r], first)) *first = all[r];
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* Turns the phase of x = re + i im, which eigensolvers leave to chance, to that in which its largest component is real
+   and positive. Returns that component. */
+static PetscErrorCode StartTurn(MPI_Comm comm, const Mesh *mesh, PetscReal re[], PetscReal im[], PetscReal *largest)
+{
+  StartComponent first;
+
+  PetscFunctionBeginUser;
+  PetscCall(StartFindLargest(comm, mesh, re, im, largest, &first));
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) {
     const PetscReal r = re[i];
 
-    re[i] = phase[0] * r + phase[1] * im[i];
-    im[i] = phase[0] * im[i] - phase[1] * r;
+    re[i] = first.phase[0] * r + first.phase[1] * im[i];
+    im[i] = first.phase[0] * im[i] - first.phase[1] * r;
   }
-  *largest = most.size;
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +127,7 @@ PetscErrorCode DynamicsGetShape(Dynamics d, PetscReal u[], PetscReal v[])
                       &(ShapeSource){"-dynamics_shape", "-dynamics_shape_mode", "-output_fields", d->shape, "modes.h5",
                                      "", d->shape_mode},
                       re, im, lambda));
-  PetscCall(StartTurn(d->comm, n, re, im, &largest));
+  PetscCall(StartTurn(d->comm, mesh, re, im, &largest));
   PetscCheck(largest > 0, d->comm, PETSC_ERR_USER_INPUT,
              "-dynamics_shape_mode %" PetscInt_FMT " of -dynamics_shape %s does not move", d->shape_mode, d->shape);
   for (PetscInt i = 0; i < n; i++) {
