@@ -42,6 +42,14 @@ typedef struct {
   PetscReal real[2]; /* of the two without friction and damping, rad/s, to second order */
 } ModeMechanism;
 
+/* Shares of the causes in the growth of a mode */
+typedef struct {
+  PetscReal *growth;      /* [causes] 1/s */
+  PetscReal  rest, error; /* of the growth, what they leave of it; of each share, 1/s */
+  PetscReal  energy;      /* of the vector, J (PencilMeasureCauses()) */
+  PetscBool  known;       /* the mode has a frequency */
+} ModeShares;
+
 /* Routes of a damped solution: by projection where its measure allows, always, never */
 typedef enum { DAMPING_AUTO, DAMPING_PROJECT, DAMPING_PEP } DampingRoute;
 
@@ -104,6 +112,7 @@ struct _p_Modes {
   ShiftInvert     counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* [n] or NULL: not asked for yet */
   ModeMechanism *mechanism;
+  ModeShares    *shares;
   /* of the solution under way */
   /* vectors in a block of the undamped eigensolver: at least, 0 for what it chooses; in use */
   PetscInt       block[2];
@@ -160,7 +169,11 @@ PETSC_INTERN PetscErrorCode ModesViewLimit(Modes modes, PetscBool decides, Petsc
 PETSC_INTERN PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms);
 PETSC_INTERN PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const ModeMechanism *m, PetscViewer viewer);
 
-/* growth/causes.c - modes_causes.csv; the largest shares of each unstable mode. Collective */
+/* growth/causes.c - measures the shares of all modes, once, where there are causes, and makes the growth of each their
+   sum; frees them. Collective */
+PETSC_INTERN PetscErrorCode ModesBalance(Modes modes);
+PETSC_INTERN PetscErrorCode ModesForgetShares(Modes modes);
+/* modes_causes.csv; the largest shares of each unstable mode. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteCauses(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 /* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */

@@ -58,6 +58,7 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
   PetscInt n[] = {[MODE_STABLE] = 0, [MODE_NEUTRAL] = 0, [MODE_UNSTABLE] = 0};
 
   PetscFunctionBeginUser;
+  PetscCall(ModesBalance(modes));
   PetscCall(
     PetscViewerASCIIPrintf(viewer, "mode    freq Hz   growth 1/s  damping %%  error Hz  condition  backward  label\n"));
   for (PetscInt i = 0; i < modes->n; i++) {
@@ -177,6 +178,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   const Mesh *mesh;
 
   PetscFunctionBeginUser;
+  PetscCall(ModesBalance(modes));
   PetscCall(ModesGetModel(modes, &model, NULL));
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));

@@ -5,7 +5,7 @@
     causes.py uniform RESULTS A B      C = A M + B K: -A / 2 and -B |lambda|^2 / 2
     causes.py limit RESULTS OTHER TOL  an exact contact beside a stiff penalty: the same causes, TOL of the largest share
     causes.py spin RESULTS MATRICES MU a part that spins, matrices of -operators_save, vectors of LAPACK: friction, damping, spin
-    causes.py closes RESULTS           their sum alone: what the vector leaves is within the error of the eigenvalue
+    causes.py closes RESULTS           their sum alone
 """
 
 import csv
@@ -36,7 +36,7 @@ def eigenvalues(folder):
 
 
 def shares(folder):
-    """Mode -> cause -> 1/s; the rest must be within the error of the eigenvalue, and all of them add up to its growth."""
+    """Mode -> cause -> 1/s, which add up to the growth: the rest is 1e-12 of the largest at most."""
     found = defaultdict(dict)
     for row in read(folder, "modes_causes.csv"):
         found[int(row["mode"])][row["cause"], row["kind"]] = float(row["growth_rad_s"])
@@ -46,8 +46,9 @@ def shares(folder):
         largest = max(map(abs, causes.values()))
         if abs(sum(causes.values()) - values[mode].real) > 1e-12 * largest:
             sys.exit(f"mode {mode}: {causes} do not add up to {values[mode].real}")
-        if abs(causes.pop(("", "rest"))) > errors[mode] + 1e-12 * largest:
-            sys.exit(f"mode {mode}: the rest is more than the error {errors[mode]}")
+        rest = abs(causes.pop(("", "rest")))
+        if rest > (1e-12 * largest if errors[mode] >= 0 else 1e-9 * largest):  # without left vectors no error is known
+            sys.exit(f"mode {mode}: the rest is {rest / largest} of the largest")
     if set(found) != {mode for mode, value in values.items() if value.imag > 0}:
         sys.exit(f"{sorted(found)} of {sorted(values)} have causes")
     return found
