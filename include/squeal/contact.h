@@ -16,6 +16,8 @@
    exact, and the pressure at single nodes off by tens of percent, of second order more than of first.
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
+   where the pressure is no multiple of the closing, p = P(c) (pressurelaw.h), k_n is that of small motions about the
+   pressure p of each pair of area A, k_n = A P'(c), P(c) = p.
    Constraint: N u = 0 with force directions N' - mu T'.
    Friction, in every analysis: mu(s), s the length of the slip velocity (m/s), by the law of the interface
    (frictionlaw.h), with the stated sliding speed of the pair, 0 m/s where nothing slides as told; linearised about that
@@ -26,6 +28,7 @@
 #include <squeal/contactstatus.h>
 #include <squeal/frictionlaw.h>
 #include <squeal/model.h>
+#include <squeal/pressurelaw.h>
 #include <squeal/results.h>
 
 typedef struct _p_Contact *Contact;
@@ -56,14 +59,15 @@ typedef struct {
    relative to the master, lambda_t = mu lambda_n */
 typedef struct {
   ContactStatus status;
-  PetscReal     gap;         /* m, positive open; with the penalty law -lambda_n / k_n when closed */
+  PetscReal     gap;         /* m, positive open; with the penalty law minus its closing when closed */
   PetscReal     slip[2];     /* displacement of the slave relative to the master along t and b, in time in a step, m */
   PetscReal     lambda_n;    /* normal force, N, compressive >= 0 */
   PetscReal     lambda_t[2]; /* friction on the master along t and b, N */
 } ContactState;
 
 /* How well states obey the laws of contact and friction; each number is relative, to the largest lambda_n or to the
-   largest displacement or gap at any pair. With the penalty law gap + lambda_n / k_n stands for the gap. */
+   largest displacement or gap at any pair. With the penalty law the gap and the closing that
+   lambda_n has stands for the gap. */
 typedef struct {
   PetscReal penetration;     /* max(0, -gap) */
   PetscReal sign;            /* max(0, -lambda_n) */
@@ -78,6 +82,7 @@ typedef struct {
   ContactLaw law;
   /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
   FrictionLaw friction;
+  PressureLaw pressure;     /* with the penalty law; where it is linear kn says how stiff it is */
   char        kn_text[128]; /* -contact_kn as it is given */
   PetscBool   has_kn, has_kt;
   PetscReal   kn;       /* stiffness per pair, N/m, or per area, N/m^3 */
@@ -137,6 +142,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
+.  -contact_pressure_law, ...      - or: pressure over closing (PressureSetFromOptions())
 .  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given):
 stiffness
                                    along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
@@ -257,16 +263,20 @@ PetscErrorCode ContactPassForces(Contact contact, Vec local);
 @*/
 PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
 
-/*@ ContactPairStiffness - the stiffness of a pair, N/m, of an interface with this value of kn, as ContactInterface has
-   it. Not
-    collective. @*/
-PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, PetscReal kn);
+/*@ ContactPairStiffness - the stiffness of a pair, N/m, that carries lambda_n (N), by a law of its interface, whose k
+   is per pair or per area as ContactInterface has it. Not collective. @*/
+PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
+                               PetscReal lambda_n);
 
-/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu of each and kn (infinite for the constraint)
-   of each
-    interface; displacement is the largest of the local pairs, m. Collective. @*/
+/*@ ContactPairClosing - the closing of that pair, m: 0 for exact contact, the law's onset where it carries nothing. Not
+    collective. @*/
+PetscReal ContactPairClosing(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
+                             PetscReal lambda_n);
+
+/*@ ContactComputeKKT - residuals of the states of the local pairs, with mu of each and the law of each interface;
+   displacement is the largest of the local pairs, m. Collective. @*/
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
-                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt);
+                                 const PressureLaw law[], PetscReal displacement, ContactKKT *kkt);
 
 /*@ ContactViewKKT - the residuals in one line each. Collective. @*/
 PetscErrorCode ContactViewKKT(const ContactKKT *kkt, PetscViewer viewer);

@@ -97,7 +97,8 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part
-   that spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty), kt (N/m, holding by
+   that spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty) or, where the
+   pressure is not linear, the parameters of its law (pressurelaw.h), kt (N/m, holding by
    friction), and with friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu
    standing for the parameters of its friction law (frictionlaw.h), of which those that decide mu' alone are there with
    friction damping; contact_mu for loaded or dense matrices with H, and what -terms name (borrowed). An interface of
@@ -132,11 +133,10 @@ PetscErrorCode OperatorsAddChecksum(Operators operators, Checksum checksum);
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material);
 
-/*@ OperatorsGetInterface - friction coefficient at the stated speed and stiffness per pair (N/m, infinite for the
-   constraint) of
-    an interface at p. Not collective. @*/
+/*@ OperatorsGetInterface - friction coefficient at the stated speed and pressure law (linear and infinite for the
+   constraint) of an interface at p. Not collective. @*/
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
-                                     PetscReal *kn);
+                                     PressureLaw *law);
 
 /*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed. Not collective. @*/
 PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu);

@@ -7,9 +7,9 @@
       K u + N' lambda_n - T' lambda_t - B' lambda_b = f
 
    K of parts and springs; gap g = g0 - N u. Normal law: 0 <= lambda_n, 0 <= g, lambda_n g = 0 (constraint) or lambda_n
-   = k_n max(0, -g) (penalty). Friction: where an interface slides (-contact_slip or -contact_rotation), lambda_t = mu
-   lambda_n, lambda_b = 0 at every closed pair; else Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of
-   the slave along the friction on the master.
+   = k_n max(0, -g) (penalty) or A P(-g), by a pressure law P and the area A of the pair. Friction: where an interface
+   slides (-contact_slip or -contact_rotation), lambda_t = mu lambda_n, lambda_b = 0 at every closed pair; else
+   Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of the slave along the friction on the master.
 
    Motions (-motions) hold u = d: these displacements are no unknowns, f has -K_fd d more, and gaps and slip count d. In
    modes about the state they are held. Their reactions are rows of reactions.csv.
@@ -18,7 +18,8 @@
    from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
    forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,
    K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
-   kappa is only a device: it drops out of the solution. Where the iteration does not settle with Coulomb's law,
+   kappa is only a device: it drops out of the solution. Where pressures are not linear, Newton's method goes on about
+   that active set, with tangents to the laws (pressure.c). Where the iteration does not settle with Coulomb's law,
    continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid
    motions that neither supports nor springs nor any pair resists are held at single unknowns,
    whose reactions vanish in equilibrium; u has no part of them.
@@ -110,7 +111,8 @@ PetscErrorCode StaticsGetKKT(Statics statics, ContactKKT *kkt, PetscReal *equili
 
 /*@
    StaticsIsAffine - whether pencils about the sliding state differ from those with all pairs closed by the pairs
-   that are open alone, so that they stay affine in the parameters. Friction damping (-contact_friction_damping),
+   that are open alone, so that they stay affine in the parameters. Pressure laws, friction damping
+   (-contact_friction_damping),
    -static_geometric and -static_follower depend on the forces and displacements of the state: with any of them they are
    not. Not collective.
 @*/

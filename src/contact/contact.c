@@ -41,6 +41,28 @@ static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
   PetscFunctionReturn(0);
 }
 
+/* A stiffness that is given beside a law that is not linear: refused on the command line, of a file it is taken out,
+   with a warning */
+static PetscErrorCode StiffnessDrop(MPI_Comm comm, ContactInterface *c)
+{
+  const char *const names[] = {"kn", "kn_per_area"};
+  char              option[256], instead[256], why[256];
+
+  PetscFunctionBeginUser;
+  if (PressureIsLinear(&c->pressure)) PetscFunctionReturn(0);
+  PetscCall(
+    PetscSNPrintf(why, sizeof(why), "not used with -%s_pressure_law %s", c->name, PressureGetName(&c->pressure)));
+  PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_pressure_law is %s", c->name, PressureGetName(&c->pressure)));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names); i++) {
+    PetscCall(OptionsRefuseOf(comm, c->name, names[i], why));
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", c->name, names[i]));
+    PetscCall(OptionsDrop(comm, option, instead));
+  }
+  c->kn     = 0;
+  c->has_kn = c->per_area = c->identify = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
 {
   Contact           contact = owner;
@@ -51,6 +73,8 @@ PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
   PetscCheck(!c->has_kt || !c->kt_per_area, comm, PETSC_ERR_USER_INPUT,
              "-%s_kt and -%s_kt_per_area are given; give one of them", c->name, c->name);
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
+  PetscCall(PressureSetFromOptions(comm, c->name, &c->pressure));
+  PetscCall(StiffnessDrop(comm, c));
   c->friction.speed = c->speed;
   /* a law mu(s) that changes with the slip speed s has no value in modes without one; with neither slip nor rotation
      nothing slides as told, and s = 0 m/s holds */
@@ -68,10 +92,16 @@ PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
    the options are read, since runs in time read the same options and have no penalty law. */
 static PetscErrorCode InterfaceCheck(MPI_Comm comm, const ContactInterface *c)
 {
+  const PetscBool linear = PressureIsLinear(&c->pressure);
+
   PetscFunctionBeginUser;
-  PetscCheck(c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm, PETSC_ERR_USER_INPUT,
-             "-%s_kn%s %.6g must be given and positive (N/m%s), or choose -%s_law constraint", c->name,
-             c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);
+  PetscCheck(linear || c->law == CONTACT_PENALTY, comm, PETSC_ERR_USER_INPUT,
+             "-%s_pressure_law %s does nothing with -%s_law constraint; choose -%s_law penalty, or -%s_pressure_law "
+             "linear",
+             c->name, PressureGetName(&c->pressure), c->name, c->name, c->name);
+  PetscCheck(!linear || c->law == CONTACT_CONSTRAINT || (c->kn > 0 && !PetscIsInfReal(c->kn)), comm,
+             PETSC_ERR_USER_INPUT, "-%s_kn%s %.6g must be given and positive (N/m%s), or choose -%s_law constraint",
+             c->name, c->per_area ? "_per_area" : "", (double)c->kn, c->per_area ? "^3" : "", c->name);
   PetscCheck(c->law == CONTACT_PENALTY || !c->identify, comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify does nothing with -%s_law constraint; choose -%s_law penalty", c->name, c->name, c->name);
   PetscCheck(c->kt == 0 || FrictionExists(&c->friction), comm, PETSC_ERR_USER_INPUT,
@@ -117,6 +147,8 @@ PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor)
   PetscCall(QuantitiesVisitList(visitor, &contacts_list, contact->n_interfaces, contact->interfaces));
   for (PetscInt i = 0; i < contact->n_interfaces; i++)
     PetscCall(FrictionVisit(&contact->interfaces[i].friction, contact->interfaces[i].name, visitor));
+  for (PetscInt i = 0; i < contact->n_interfaces; i++)
+    PetscCall(PressureVisit(&contact->interfaces[i].pressure, contact->interfaces[i].name, visitor));
   PetscCall(QuantitiesVisitList(visitor, &ties_list, contact->n_ties, contact->ties));
   PetscFunctionReturn(0);
 }
@@ -223,6 +255,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(flags), flags));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
     PetscCall(FrictionAddChecksum(&f->friction, c));
+    PetscCall(PressureAddChecksum(&f->pressure, c));
     PetscCall(ChecksumAddReals(c, 3, f->slip));
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
     PetscCall(ChecksumAddReals(c, 3, f->centre));

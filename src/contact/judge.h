@@ -7,10 +7,10 @@
 typedef struct {
   const ContactState *state;
   PetscReal           mu;
-  PetscReal           kn;    /* N/m, infinite where contact is exact */
-  PetscReal           gap;   /* of the mesh as it is, m */
-  PetscReal           width; /* m */
-  PetscBool           told;  /* slips along t as it is told, not where it moves to */
+  PetscReal           closing; /* that the law has at lambda_n, m; 0 where contact is exact */
+  PetscReal           gap;     /* of the mesh as it is, m */
+  PetscReal           width;   /* m */
+  PetscBool           told;    /* slips along t as it is told, not where it moves to */
 } ContactJudged;
 
 /* kkt.c - residuals of the pairs of all ranks; displacement is the largest of this rank, m. Collective. */

@@ -1,7 +1,8 @@
 /*
    Residuals of the laws of contact and friction. Per pair, with F the largest |lambda_n| and L the largest gap,
    closing, slip or displacement at any pair (bodies that move far together have the gap between them no finer than
-   that), g = gap + lambda_n / k_n, s the slip:
+   that), g = gap + c, c the closing that the law has at
+   lambda_n, s the slip:
       penetration      max(0, -g) / L
       sign             max(0, -lambda_n) / F
       complementarity  |min(lambda_n / F, g / L)|
@@ -68,11 +69,11 @@ static PetscReal SlipResidual(const ContactJudged *pair)
 }
 
 /* Raises the residuals to those of one pair. Infinity stands for what is no number, since PetscMax(0, nan) is 0 and
-   would hide it. With kn infinite (constraint) gap + lambda_n / kn is the gap itself. */
+   would hide it. */
 static void PairRaise(const ContactJudged *pair, const Scale *scale, ContactKKT *kkt)
 {
   const ContactState *state = pair->state;
-  const PetscReal     gap   = Relative(state->gap + state->lambda_n / pair->kn, scale->length);
+  const PetscReal     gap   = Relative(state->gap + pair->closing, scale->length);
   const PetscReal     force = Relative(state->lambda_n, scale->force);
   const PetscReal     over  = Length2(state->lambda_t) - PetscAbsReal(pair->mu) * state->lambda_n;
   PetscReal           rest  = 0;
@@ -105,7 +106,7 @@ PetscErrorCode ContactJudge(MPI_Comm comm, PetscInt n, const ContactJudged pair[
 }
 
 PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], const PetscReal mu[],
-                                 const PetscReal kn[], PetscReal displacement, ContactKKT *kkt)
+                                 const PressureLaw law[], PetscReal displacement, ContactKKT *kkt)
 {
   ContactJudged *judged;
 
@@ -117,7 +118,7 @@ PetscErrorCode ContactComputeKKT(Contact contact, const ContactState state[], co
 
     judged[p] = (ContactJudged){&state[p],
                                 mu[p],
-                                ContactPairStiffness(&contact->interfaces[i], pair, kn[i]),
+                                ContactPairClosing(&contact->interfaces[i], pair, &law[i], state[p].lambda_n),
                                 pair->gap,
                                 PetscSqrtReal(pair->area),
                                 contact->interfaces[i].slides};

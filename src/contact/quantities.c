@@ -53,7 +53,11 @@ static const char *ContactIdleStiffness(const void *contact, const QuantityRun *
 static const char *ContactIdleForce(const void *contact, const QuantityRun *run)
 {
   (void)run;
-  return ((const ContactInterface *)contact)->damping ? NULL : "not used by modes without -@friction_damping";
+  const ContactInterface *c = contact;
+
+  return c->damping || !PressureIsLinear(&c->pressure)
+           ? NULL
+           : "not used by modes without -@friction_damping or a -@pressure_law";
 }
 
 /* Of a speed without a direction, and where neither friction nor its damping hangs on it */

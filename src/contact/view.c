@@ -72,7 +72,11 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(ModelGetUnit(contact->model, c->per_area ? "N/m^3" : "N/m", &unit));
     if (c->identify)
       PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, stiffness identified by pressing\n"));
-    else if (c->law == CONTACT_PENALTY)
+    else if (!PressureIsLinear(&c->pressure)) {
+      PetscCall(PetscViewerASCIIPrintf(viewer, "penalty, "));
+      PetscCall(PressureView(&c->pressure, viewer));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+    } else if (c->law == CONTACT_PENALTY)
       PetscCall(
         PetscViewerASCIIPrintf(viewer, "penalty %.6g %s%s\n", (double)c->kn, unit, c->per_area ? "" : " per pair"));
     else

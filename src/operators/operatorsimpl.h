@@ -18,7 +18,7 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
-  PetscInt  law[FRICTION_PARAMETERS];
+  PetscInt  law[FRICTION_PARAMETERS], pressure[PRESSURE_PARAMETERS];
   PetscInt  kn, kt, force, speed;
   PetscReal stated;   /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
   PetscReal range[2]; /* least and most sliding speed of its pairs, of V */

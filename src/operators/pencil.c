@@ -71,6 +71,7 @@ PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
   PetscCall(PetscArraycmp(pencil->parameters.p, p, n, &same));
   if (same) PetscFunctionReturn(0);
   PetscCall(OperatorsCheckFriction(pencil->operators, p));
+  PetscCall(PencilCheckPressure(pencil, p));
   PetscCall(PencilCheckTerms(pencil));
   PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;

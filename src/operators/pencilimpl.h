@@ -79,6 +79,9 @@ PETSC_INTERN PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *s
    would be linearised about */
 PETSC_INTERN PetscErrorCode PencilAddContact(Pencil pencil);
 PETSC_INTERN PetscErrorCode PencilCheckSliding(Pencil pencil);
+/* friction.c - raises an error for a point with another normal force of an interface whose pressure is not linear,
+   where that force alone tells its stiffness */
+PETSC_INTERN PetscErrorCode PencilCheckPressure(Pencil pencil, const PetscReal p[]);
 
 /* constraint.c - null spaces of the closed pairs that obey the exact constraint; terms between them, where they are not
    there yet */

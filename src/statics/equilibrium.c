@@ -31,7 +31,8 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
                          "-static_load_steps where pairs can stick",
     [ACTIVE_SLOW]      = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
     [ACTIVE_JAMMED]    = "the bodies jam: friction presses them together by more than they yield",
-    [ACTIVE_UNSOLVED]  = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it"};
+    [ACTIVE_UNSOLVED]  = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it",
+    [ACTIVE_UNSETTLED] = "the pressures and closings of the pairs do not settle; give -static_load_steps"};
   char dense[96] = "";
 
   PetscFunctionBeginUser;
@@ -169,7 +170,7 @@ static PetscErrorCode EquilibriumStep(Active *a)
   PetscFunctionBeginUser;
   PetscCall(ComplianceSolve(a->compliance, 0, a->f, NULL, NULL, a->u));
   PetscCall(ComplianceGetRows(a->compliance, a->u, a->free));
-  PetscCall(ActiveSolve(a, &outcome));
+  PetscCall(PressuresSolve(a, &outcome));
   if (outcome != ACTIVE_CONVERGED) PetscCall(EquilibriumComplain(a, outcome));
   PetscFunctionReturn(0);
 }

@@ -15,7 +15,8 @@ PetscErrorCode StaticsIsAffine(Statics s, PetscBool *affine)
   *affine = s->geometric || s->follower ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
-    if (interfaces[i].damping || interfaces[i].kt > 0) *affine = PETSC_FALSE;
+    if (interfaces[i].damping || interfaces[i].kt > 0 || !PressureIsLinear(&interfaces[i].pressure))
+      *affine = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

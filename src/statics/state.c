@@ -134,18 +134,25 @@ static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement
 /* Residuals of the contact laws */
 static PetscErrorCode StaticsMeasureKKT(Statics s)
 {
-  PetscReal *mu, *kn, steady, displacement;
+  PetscReal *mu, displacement;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->rows.n_pairs, &mu, s->rows.n_interfaces, &kn));
-  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCall(OperatorsGetInterface(s->operators, s->p, i, &steady, &kn[i]));
+  PetscCall(PetscMalloc1(s->rows.n_pairs, &mu));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++)
     PetscCall(OperatorsGetPairMu(s->operators, s->p, &s->rows.pair[i], &mu[i]));
   PetscCall(StaticsFindDisplacement(s, &displacement));
-  PetscCall(ContactComputeKKT(s->contact, s->state, mu, kn, displacement, &s->kkt));
-  PetscCall(PetscFree2(mu, kn));
+  PetscCall(ContactComputeKKT(s->contact, s->state, mu, s->rows.pressure, displacement, &s->kkt));
+  PetscCall(PetscFree(mu));
   PetscFunctionReturn(0);
+}
+
+PetscReal StaticsPairStiffness(Statics s, PetscInt p)
+{
+  const ContactPair *pair = &s->rows.pair[p];
+
+  if (s->state[p].status == CONTACT_OPEN) return 0;
+  return ContactPairStiffness(&s->rows.interface[pair->interface], pair, &s->rows.pressure[pair->interface],
+                              s->state[p].lambda_n);
 }
 
 PetscErrorCode StaticsSetState(Statics s, Vec f, const PetscReal l[])

@@ -14,12 +14,22 @@ typedef struct {
   const ContactInterface *interface;
   CoulombPair            *law;   /* [n_pairs] mu, k, gap and rows of each pair; mu is 0 in the law of a sliding pair */
   PetscReal              *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
+  PressureLaw            *pressure;        /* [n_interfaces] at the point */
+  PetscReal              *closing;         /* [n_pairs] at which a law that is not linear has its tangent, m */
   PetscInt                n, n_all, begin; /* rows of this rank, of all, first of this rank */
   PetscInt               *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
   PetscReal              *moved;           /* [rows] contact displacements by motions, m; NULL without */
   Mat                     G;               /* [rows][unknowns] n, t, b */
   Mat                     S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
 } PairRows;
+
+/* Whether the pressure of some interface is not linear; alike on all ranks */
+static inline PetscBool PairRowsCurved(const PairRows *rows)
+{
+  for (PetscInt i = 0; i < rows->n_interfaces; i++)
+    if (!PressureIsLinear(&rows->pressure[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
 
 /* Whether some pair follows Coulomb's law */
 static inline PetscBool PairRowsCoulomb(const PairRows *rows)
@@ -88,7 +98,8 @@ typedef enum {
   ACTIVE_REPEATS,
   ACTIVE_SLOW,
   ACTIVE_JAMMED,
-  ACTIVE_UNSOLVED
+  ACTIVE_UNSOLVED,
+  ACTIVE_UNSETTLED /* of pressure laws */
 } ActiveOutcome;
 
 /* The contact problem at one load, and its iterate; forces divided by kappa, m */
@@ -105,13 +116,14 @@ typedef struct {
   PetscReal         rtol;       /* of GMRES on the small system */
   PetscReal         scale;      /* m, of the contact displacements; what is below `rounding` of it decides nothing */
   PetscReal         rounding;
-  ContactStatus    *status;   /* [n_pairs] to begin with, then as found */
-  PetscReal        *free;     /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
-  PetscReal        *l, *w;    /* [rows] contact forces over kappa, m; displacements of the rows, m */
-  PetscBool         hasty;    /* the iteration gives up soon, since other ways follow */
-  ActiveOutcome     first;    /* of the iteration with the whole friction */
-  PetscBool         pressed;  /* an equilibrium without friction was found */
-  PetscBool         reversed; /* the system of the last iteration has a determinant of the wrong sign */
+  ContactStatus    *status;    /* [n_pairs] to begin with, then as found */
+  PetscReal        *free;      /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
+  PetscReal        *l, *w;     /* [rows] contact forces over kappa, m; displacements of the rows, m */
+  PetscBool         hasty;     /* the iteration gives up soon, since other ways follow */
+  ActiveOutcome     first;     /* of the iteration with the whole friction */
+  PetscBool         pressed;   /* an equilibrium without friction was found */
+  PetscBool         tentative; /* laws are tangents of others: whether bodies jam is asked at the last ones alone */
+  PetscBool         reversed;  /* the system of the last iteration has a determinant of the wrong sign */
 } Active;
 
 /* Whether the laws of all pairs are linear at each status */
@@ -163,6 +175,7 @@ PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t si
    interfaces at p */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
+PETSC_INTERN void           PairRowsSetClosing(PairRows *rows, PetscInt pair, PetscReal kappa, PetscReal closing);
 /* moved.c - contact displacements by motions; gaps at a part of them, and slip that counts from w [rows] and the part
    before, NULL and 0 at the first load step */
 PETSC_INTERN PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows);
@@ -241,6 +254,9 @@ PETSC_INTERN PetscErrorCode ActiveSoften(Active *active, ActiveOutcome *outcome)
    outcome and active->friction tell where it ended. */
 PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 
+/* pressure.c - the same with pressure laws, at which Newton's method aims by tangents */
+PETSC_INTERN PetscErrorCode PressuresSolve(Active *active, ActiveOutcome *outcome);
+
 /* equilibrium.c - the whole solution, from rows, compliance, f, u, size, load_steps, status and l (zeros) */
 PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Active *active);
 
@@ -258,6 +274,9 @@ PETSC_INTERN PetscErrorCode RigidDescribe(Operators operators, Vec r, size_t siz
 
 /* state.c - states, resultants and residuals of a solution */
 PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscReal l[]);
+
+/* state.c - dP/dc times the area of a local pair, N/m: infinite of exact contact, 0 where it is open */
+PETSC_INTERN PetscReal StaticsPairStiffness(Statics statics, PetscInt pair);
 
 /* loadvector.c - f of the loads and the weight at p, unknowns only, and its size by all of them, N */
 PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *f, PetscReal *size);

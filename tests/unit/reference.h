@@ -41,9 +41,11 @@ static inline PetscErrorCode ReferenceStiffness(Chain *chain, const PetscReal fa
   PetscCall(MatMult(bodies, x, y));
   PetscCall(ContactGetInterfaces(chain->contact, &n_interfaces, &c));
   for (PetscInt i = 0; i < n_interfaces; i++, first += n) {
-    PetscReal mu, kn;
+    PetscReal   mu, kn;
+    PressureLaw law;
 
-    PetscCall(OperatorsGetInterface(chain->operators, point, i, &mu, &kn));
+    PetscCall(OperatorsGetInterface(chain->operators, point, i, &mu, &law));
+    kn = PressureSlope(&law, 0);
     PetscCall(InterfaceOperators(chain->contact, i, &N, &T, NULL));
     PetscCall(MatGetLocalSize(N, &n, NULL));
     PetscCall(AddProduct(kn, N, &factor[first], N, x, y));
@@ -77,7 +79,8 @@ static inline PetscErrorCode ReferenceDamping(Chain *chain, const PetscReal fact
   const ContactPair *pair;
   const PetscReal   *point;
   PetscInt           n, n_all;
-  PetscReal          force, mu, kn, slope, speed, total = 0, weight[MAX_PAIRS];
+  PetscReal          force, mu, slope, speed, total = 0, weight[MAX_PAIRS];
+  PressureLaw        law;
   Mat                C, T, B;
 
   PetscFunctionBeginUser;
@@ -87,7 +90,7 @@ static inline PetscErrorCode ReferenceDamping(Chain *chain, const PetscReal fact
   PetscCall(ParameterGet(chain->pencil, "contact_force", &force));
   PetscCall(ParameterGet(chain->pencil, "contact_mu_slope", &slope));
   PetscCall(ParameterGet(chain->pencil, "contact_speed", &speed));
-  PetscCall(OperatorsGetInterface(chain->operators, point, 0, &mu, &kn));
+  PetscCall(OperatorsGetInterface(chain->operators, point, 0, &mu, &law));
   PetscCall(ContactGetPairs(chain->contact, &n, &n_all, &pair));
   for (PetscInt p = 0; p < n; p++) total += pair[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD));

@@ -38,14 +38,16 @@ static PetscErrorCode RowsCompare(const Chain *chain, PetscReal mu, Vec u, const
    contact at the closed pairs, anything else at the open ones; as many unknowns less as there are closed pairs */
 static PetscErrorCode TestNullSpace(Chain *chain, const PetscInt group[], int *failed)
 {
-  PetscReal      mu, kn, closed, open;
+  PetscReal      mu, closed, open;
+  PressureLaw    law;
   PetscInt       n, n_all, n_closed = 0, size, reduced;
   PencilMatrices pencil;
   Vec            q, u;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetInterface(chain->operators, NULL, 0, &mu, &kn));
-  *failed += CheckTrue("k_n of the constraint is infinite", PetscIsInfReal(kn), (double)kn);
+  PetscCall(OperatorsGetInterface(chain->operators, NULL, 0, &mu, &law));
+  *failed += CheckTrue("k_n of the constraint is infinite", PetscIsInfReal(PressureSlope(&law, 0)),
+                       (double)PressureSlope(&law, 0));
   PetscCall(PencilGetMatrices(chain->pencil, &pencil));
   PetscCall(MatCreateVecs(pencil.K, &q, NULL));
   PetscCall(OperatorsCreateVec(chain->operators, &u));

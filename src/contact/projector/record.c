@@ -181,8 +181,8 @@ PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)
     const ContactState  *state = &p->state[k];
 
     if (pair->facet < 0) continue;
-    judged[n++] = (ContactJudged){
-      state, pair->mu, PETSC_INFINITY, state->gap, p->master[pair->interface].surface->size, PETSC_FALSE};
+    judged[n++] =
+      (ContactJudged){state, pair->mu, 0, state->gap, p->master[pair->interface].surface->size, PETSC_FALSE};
     for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(p->nodes.u[3 * pair->slave + d]));
   }
   PetscCall(ContactJudge(p->share.comm, n, judged, displacement, kkt));

@@ -4,7 +4,7 @@
 
    With contact displacements w = (w_n, w_t, w_b) of the master relative to the slave, closing positive, and internal
    forces l = (lambda_n, -lambda_t, -lambda_b), both in the frame (n, t, b):
-      normal   open: l_n = 0 <= g0 - w_n;   closed: l_n = k (w_n - g0) >= 0, or w_n = g0 for k infinite
+      normal   open: l_n = 0 <= g0 - w_n;   closed: l_n = k (w_n - g1) >= 0, or w_n = g1 for k infinite; g1 = g0 + shift
       slides   lambda_t = mu lambda_n is in the equilibrium itself; the pair has a normal row only (d = 1)
       Coulomb  p = (lambda_t, lambda_b), slip of the slave s = -(w_T - w_T0):   p = Proj_C(p + s), C = {|p| <= mu l_n}
    (natural map with unit factor; P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991, 353). Every status
@@ -38,6 +38,7 @@ typedef struct {
   int    d;        /* rows: 1 (slides, or no friction) or 3 */
   double mu, k;    /* k may be infinite */
   double g0;       /* m */
+  double shift;    /* where a tangent to the pressure law begins, beyond g0, m; 0 where that is linear */
   double slip0[2]; /* w_t, w_b from which slip counts, m */
   double fall;     /* d mu / d|s| at the present slip, 1/m */
   double soft;     /* slip over friction before it gives way, 0 for Coulomb's law itself; none with a fall */
@@ -49,6 +50,12 @@ typedef struct {
 typedef struct {
   double P[3][3], Q[3][3], p0[3], q0[3];
 } CoulombLaw;
+
+/* Closing w_n at which the normal law begins, g1 above, m */
+static inline double CoulombOrigin(const CoulombPair *pair)
+{
+  return pair->g0 + pair->shift;
+}
 
 /* rho of s in what the natural map projects */
 static inline double CoulombShare(const CoulombPair *pair)
@@ -72,8 +79,8 @@ static inline void CoulombClosedNormal(const CoulombPair *pair, CoulombLaw *law)
 
   law->P[0][0] = stiff ? 1 : pair->k;
   law->Q[0][0] = stiff ? 1 / pair->k : 1;
-  law->p0[0]   = stiff ? 0 : -pair->k * pair->g0;
-  law->q0[0]   = stiff ? pair->g0 : 0;
+  law->p0[0]   = stiff ? 0 : -pair->k * CoulombOrigin(pair);
+  law->q0[0]   = stiff ? CoulombOrigin(pair) : 0;
 }
 
 /* Tangential rows in slip, at the present l, w */
@@ -108,7 +115,7 @@ static inline void CoulombLinearise(const CoulombPair *pair, ContactStatus statu
   if (status == CONTACT_OPEN) {
     for (int i = 0; i < pair->d; i++) law->Q[i][i] = 1;
     law->P[0][0] = pair->pull;
-    law->p0[0]   = -pair->pull * pair->g0;
+    law->p0[0]   = -pair->pull * CoulombOrigin(pair);
     return;
   }
   CoulombClosedNormal(pair, law);
@@ -127,9 +134,9 @@ static inline void CoulombLinearise(const CoulombPair *pair, ContactStatus statu
 /* How far a pair is from the border between open and closed: positive closed */
 static inline double CoulombClosing(const CoulombPair *pair, const double l[], const double w[])
 {
-  return isinf(pair->k) ? l[0] + w[0] - pair->g0
-         : pair->k < 1  ? w[0] - pair->g0
-                        : l[0] + w[0] - pair->g0 - l[0] / pair->k;
+  const double beyond = w[0] - CoulombOrigin(pair);
+
+  return isinf(pair->k) ? l[0] + beyond : pair->k < 1 ? beyond : l[0] + beyond - l[0] / pair->k;
 }
 
 /* The status that l, w ask for; a pair on a border, within tol (m), stays what it was */

@@ -1,7 +1,8 @@
 /*
    Terms of the contact, linearised about steady sliding with normal force N0 and speed v per pair:
       K += k_n N'N + mu k_n (-T'N)             normal stiffness and friction          (seed paper, eq. 1); with a k_n
-                                               per area N'A N and -T'A N, A the areas of the pairs
+                                               per area N'A N and -T'A N, A the areas of the pairs; where the
+                                               pressure is not linear, k_n of each pair at its pressure
       K += k_t (T'T + B'B)                     pairs that stick, of an interface that holds by friction; also per area
       C += |mu| N / V B'B_w + mu' N T'T_w      friction damping across and along the slip, mu' = d mu / d v
    of each interface. N is its total normal force (of the sliding state, or -contact_force), V its sliding speed or,
@@ -150,29 +151,48 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Areas of the pairs where the stiffness is per area, else NULL */
+/* What the parameter kn of a pair is multiplied by: its area (m^2) where the stiffness is per area, else 1; where the
+   pressure is not linear, of which no parameter is left, the stiffness itself (N/m), at the force of the sliding
+   state */
+static PetscErrorCode PairWeight(Pencil pencil, const FrictionGroup *g, PetscInt p, PetscReal *weight)
+{
+  PressureLaw        law = PressureLinear(1);
+  const ContactPair *pairs;
+  PetscReal          mu;
+  PetscInt           n, n_all;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  if (g->q.kn < 0) PetscCall(OperatorsGetInterface(pencil->operators, pencil->parameters.p, g->interface, &mu, &law));
+  *weight = ContactPairStiffness(g->c, &pairs[p], &law, pencil->force[p]);
+  PetscFunctionReturn(0);
+}
+
+/* These weights, NULL where all are 1 */
 static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g, Vec *weights)
 {
-  const ContactPair *pairs;
-  PetscInt           n, n_all, row;
+  PetscReal weight;
+  PetscInt  row;
 
   PetscFunctionBeginUser;
   *weights = NULL;
-  if (!g->c->per_area) PetscFunctionReturn(0);
-  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  if (!g->c->per_area && g->q.kn >= 0) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(g->N, NULL, weights));
   PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
-  for (PetscInt i = 0; i < g->n; i++)
-    PetscCall(VecSetValue(*weights, row + i, ContactPairStiffness(g->c, &pairs[g->pair[i]], 1), INSERT_VALUES));
+  for (PetscInt i = 0; i < g->n; i++) {
+    PetscCall(PairWeight(pencil, g, g->pair[i], &weight));
+    PetscCall(VecSetValue(*weights, row + i, weight, INSERT_VALUES));
+  }
   PetscCall(VecAssemblyBegin(*weights));
   PetscCall(VecAssemblyEnd(*weights));
   PetscFunctionReturn(0);
 }
 
-/* Areas of the pairs times their part at speed k of several; NULL where all are 1 */
+/* The same times their part at speed k of several; NULL where all are 1 */
 static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec *weights)
 {
   const ContactPair *pairs;
+  PetscReal          weight;
   PetscInt           n, n_all, row;
 
   PetscFunctionBeginUser;
@@ -182,21 +202,20 @@ static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, 
   if (!*weights) PetscCall(MatCreateVecs(g->N, NULL, weights));
   PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
   for (PetscInt i = 0; i < g->n; i++) {
-    const ContactPair *pair = &pairs[g->pair[i]];
-
-    PetscCall(VecSetValue(*weights, row + i,
-                          FrictionNodeShare(&g->q, k, pair->speed) * ContactPairStiffness(g->c, pair, 1),
-                          INSERT_VALUES));
+    PetscCall(PairWeight(pencil, g, g->pair[i], &weight));
+    PetscCall(
+      VecSetValue(*weights, row + i, FrictionNodeShare(&g->q, k, pairs[g->pair[i]].speed) * weight, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(*weights));
   PetscCall(VecAssemblyEnd(*weights));
   PetscFunctionReturn(0);
 }
 
-/* The term of friction at speed k, k_n mu(v_k) T' (-L_k A N), unsymmetric, with its two factors for factors.c */
+/* The term of friction at speed k, k_n mu(v_k) T' (-L_k A N), unsymmetric, with its two factors for factors.c. Without
+   a parameter kn the list of factors begins one later */
 static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k)
 {
-  const PetscInt mu[] = {g->q.kn, -1, g->closed};
+  const PetscInt mu[] = {g->q.kn, -1, g->closed}, own = g->q.kn < 0 ? 1 : 0;
   Mat            TN, WN;
   Vec            weights;
 
@@ -206,8 +225,8 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
   PetscCall(MatScale(WN, -1));
   if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
   PetscCall(TermsProduct(1, g->T, NULL, WN, &TN));
-  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 + g->more, mu));
-  PetscCall(TermsSetFriction(&pencil->base, 1, &g->q.node[k], PETSC_FALSE));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, TN, PETSC_FALSE, 2 - own + g->more, mu + own));
+  PetscCall(TermsSetFriction(&pencil->base, 1 - own, &g->q.node[k], PETSC_FALSE));
   PetscCall(TermsSetCause(&pencil->base, "friction", NULL, g->c->name));
   PetscCall(TermsSetFactors(&pencil->base, g->T, WN, g->interface, g->group));
   PetscCall(MatDestroy(&WN));
@@ -219,14 +238,14 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
 /* Terms of the penalty law; without friction where nothing says along what the interface slides */
 static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 {
-  const PetscInt kn[] = {g->q.kn, g->closed};
+  const PetscInt kn[] = {g->q.kn, g->closed}, own = g->q.kn < 0 ? 1 : 0;
   Mat            NN;
   Vec            weights;
 
   PetscFunctionBeginUser;
   PetscCall(PenaltyCreateWeights(pencil, g, &weights));
   PetscCall(TermsProduct(1, g->N, weights, g->N, &NN));
-  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 + g->more, kn));
+  PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 - own + g->more, kn + own));
   PetscCall(MatDestroy(&NN));
   PetscCall(VecDestroy(&weights));
   for (PetscInt k = 0; k < g->q.n_nodes; k++) PetscCall(SlideAdd(pencil, g, k));
@@ -333,6 +352,32 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
     PetscCheck(!c[i].damping || c[i].force > 0 || pencil->has_forces, pencil->comm, PETSC_ERR_USER_INPUT,
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
     PetscCall(FrictionCheckDamps(pencil->comm, &c[i]));
+    PetscCheck(c[i].law == CONTACT_CONSTRAINT || PressureIsLinear(&c[i].pressure) || c[i].force > 0 ||
+                 pencil->has_forces,
+               pencil->comm, PETSC_ERR_USER_INPUT,
+               "contact %s: the stiffness of -%s_pressure_law %s is that at a pressure: give -%s_force (N), or -loads "
+               "and -modes_contact static",
+               c[i].name, c[i].name, PressureGetName(&c[i].pressure), c[i].name);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilCheckPressure(Pencil pencil, const PetscReal p[])
+{
+  const ContactInterface *c;
+  PetscInt                n;
+
+  PetscFunctionBeginUser;
+  if (!pencil->operators->model || pencil->has_forces) PetscFunctionReturn(0);
+  PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt force = pencil->operators->interface[i].force;
+
+    PetscCheck(PressureIsLinear(&c[i].pressure) || force < 0 || p[force] == pencil->parameters.p[force], pencil->comm,
+               PETSC_ERR_USER_INPUT,
+               "%s_force changes the stiffness of -%s_pressure_law %s from point to point; vary the -loads, with "
+               "-modes_contact static",
+               c[i].name, c[i].name, PressureGetName(&c[i].pressure));
   }
   PetscFunctionReturn(0);
 }

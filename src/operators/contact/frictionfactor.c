@@ -116,15 +116,22 @@ static PetscErrorCode InterfaceGetLaw(Operators o, const PetscReal p[], PetscInt
 }
 
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
-                                     PetscReal *kn)
+                                     PressureLaw *pressure)
 {
-  const PetscInt at = operators->interface[interface].kn;
-  FrictionLaw    law;
+  const InterfaceParameters *q     = &operators->interface[interface];
+  const PetscReal           *value = OperatorsPoint(operators, p);
+  const ContactInterface    *c;
+  FrictionLaw                law;
+  PetscInt                   n;
 
   PetscFunctionBeginUser;
   PetscCall(InterfaceGetLaw(operators, p, interface, &law));
   *mu = FrictionSteady(&law);
-  *kn = at < 0 ? INFINITY : OperatorsPoint(operators, p)[at];
+  PetscCall(ContactGetInterfaces(operators->contact, &n, &c));
+  *pressure = c[interface].pressure;
+  if (PressureIsLinear(pressure)) *pressure = PressureLinear(q->kn < 0 ? INFINITY : value[q->kn]);
+  for (int j = 0; j < PRESSURE_PARAMETERS; j++)
+    if (q->pressure[j] >= 0) pressure->parameter[j] = value[q->pressure[j]];
   PetscFunctionReturn(0);
 }
 
@@ -162,8 +169,28 @@ static PetscErrorCode LawAddParameters(Operators o, const ContactInterface *c, P
   PetscFunctionReturn(0);
 }
 
-/* Parameters of one interface, in a fixed order: the law's steady ones, kn, kt, those of its slope, force, speed.
-   Other files find them by their indices, sweeps by their names. */
+/* Parameters of a pressure law that is not linear: modes know of them through the pressures of the sliding state */
+static PetscErrorCode PressureAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
+{
+  const Quantity *row;
+  const PetscInt  n = c->law == CONTACT_PENALTY ? PressureGetParameters(&c->pressure, &row) : 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < n; j++) {
+    const OperatorsParameter like = {.row    = &row[j],
+                                     .value  = c->pressure.parameter[j],
+                                     .lower  = row[j].least,
+                                     .upper  = row[j].most,
+                                     .closed = row[j].least > 0 ? PETSC_TRUE : PETSC_FALSE,
+                                     .state  = PETSC_TRUE};
+
+    PetscCall(ParametersAdd(&o->parameters, c->name, row[j].name + 1, &like, &q->pressure[j]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Parameters of one interface, in a fixed order: the law's steady ones, those of the pressure, kn, kt, those
+   of its slope, force, speed. Other files find them by their indices, sweeps by their names. */
 static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface *c, InterfaceParameters *q)
 {
   const PetscReal turning = Vec3Length(c->rotation); /* rad/s */
@@ -174,7 +201,10 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     OperatorsParameter like;
     PetscInt          *index;
   } what[] = {
-    {c->law == CONTACT_PENALTY, c->per_area ? "kn_per_area" : "kn", {.value = c->kn}, &q->kn},
+    {c->law == CONTACT_PENALTY && PressureIsLinear(&c->pressure),
+     c->per_area ? "kn_per_area" : "kn",
+     {.value = c->kn},
+     &q->kn},
     {c->kt > 0, c->kt_per_area ? "kt_per_area" : "kt", {.value = c->kt}, &q->kt},
     {c->damping, "force", {.value = c->force, .closed = PETSC_TRUE}, &q->force},
     {moves && turning > 0, "rotation", {.value = turning}, &q->speed},
@@ -184,7 +214,9 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
   PetscFunctionBeginUser;
   *q = (InterfaceParameters){.kn = -1, .kt = -1, .force = -1, .speed = -1, .stated = turning > 0 ? turning : c->speed};
   for (int j = 0; j < FRICTION_PARAMETERS; j++) q->law[j] = -1;
+  for (int j = 0; j < PRESSURE_PARAMETERS; j++) q->pressure[j] = -1;
   if (c->slides) PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));
+  PetscCall(PressureAddParameters(o, c, q));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(what); i++) {
     if (i == 2 && !c->slides && c->kt > 0 && FrictionExists(&c->friction))
       PetscCall(LawAddParameters(o, c, PETSC_TRUE, q));

@@ -142,8 +142,7 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
     const PetscReal  mu   = FrictionMu(&r->reduction.model.friction[i], hypot(slip[0], slip[1]) / dt);
 
     judged[i] = (ContactJudged){
-      &r->motion.pairs[i], mu, PETSC_INFINITY, r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),
-      PETSC_FALSE};
+      &r->motion.pairs[i], mu, 0, r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area), PETSC_FALSE};
     for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(r->motion.state.y[3 * i + d]));
   }
   PetscCall(ContactJudge(PETSC_COMM_SELF, n, judged, displacement, &now));

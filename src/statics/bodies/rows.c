@@ -4,6 +4,7 @@
    and S holds t beside it; so has a pair without friction, without S.
 */
 #include "statics/staticsimpl.h"
+#include <math.h>
 
 /* Rows per pair of each interface, and their sums */
 static PetscErrorCode PairRowsCount(PetscBool pressing, PairRows *rows)
@@ -12,6 +13,8 @@ static PetscErrorCode PairRowsCount(PetscBool pressing, PairRows *rows)
   PetscCall(PetscMalloc1(rows->n_pairs + 1, &rows->first));
   PetscCall(PetscCalloc1(rows->n_pairs, &rows->law));
   PetscCall(PetscCalloc1(rows->n_pairs, &rows->slide));
+  PetscCall(PetscCalloc1(rows->n_pairs, &rows->closing));
+  PetscCall(PetscCalloc1(rows->n_interfaces, &rows->pressure));
   rows->first[0] = 0;
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const ContactInterface *c = &rows->interface[rows->pair[p].interface];
@@ -70,18 +73,38 @@ PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows 
   PetscFunctionReturn(0);
 }
 
+/* k and shift of the tangent l = k (w - g0 - shift) to a law at the closing c, forces l = lambda_n / kappa:
+   k = A P'(c) / kappa, shift = c - P(c) / P'(c). At the onset, where P' may vanish, the pair is rigid: what it carries
+   then tells how far it closes. */
+void PairRowsSetClosing(PairRows *rows, PetscInt p, PetscReal kappa, PetscReal c)
+{
+  const ContactPair      *pair      = &rows->pair[p];
+  const ContactInterface *interface = &rows->interface[pair->interface];
+  const PressureLaw      *law       = &rows->pressure[pair->interface];
+  const PetscReal         slope = PressureSlope(law, c), pressure = PressureAt(law, c);
+
+  rows->closing[p]   = c;
+  rows->law[p].shift = 0;
+  rows->law[p].k     = ContactPairStiffness(interface, pair, law, 0) / kappa;
+  if (PressureIsLinear(law)) return;
+  rows->law[p].k     = pressure > 0 ? pair->area * slope / kappa : INFINITY;
+  rows->law[p].shift = pressure > 0 ? c - pressure / slope : c;
+}
+
 PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < rows->n_pairs; k++) {
-    const PetscInt i = rows->pair[k].interface;
-    PetscReal      mu, kn;
+  PetscReal unused;
 
-    PetscCall(OperatorsGetInterface(operators, p, i, &mu, &kn));
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rows->n_interfaces; i++)
+    PetscCall(OperatorsGetInterface(operators, p, i, &unused, &rows->pressure[i]));
+  for (PetscInt k = 0; k < rows->n_pairs; k++) {
+    PetscReal mu;
+
     PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k], &mu));
-    rows->law[k].k  = ContactPairStiffness(&rows->interface[i], &rows->pair[k], kn) / kappa;
+    PairRowsSetClosing(rows, k, kappa, PressureOnset(&rows->pressure[rows->pair[k].interface]));
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
-    rows->slide[k]  = rows->interface[i].slides ? mu : 0;
+    rows->slide[k]  = rows->interface[rows->pair[k].interface].slides ? mu : 0;
   }
   PetscFunctionReturn(0);
 }
@@ -94,6 +117,8 @@ PetscErrorCode PairRowsDestroy(PairRows *rows)
   PetscCall(PetscFree(rows->first));
   PetscCall(PetscFree(rows->law));
   PetscCall(PetscFree(rows->slide));
+  PetscCall(PetscFree(rows->closing));
+  PetscCall(PetscFree(rows->pressure));
   PetscCall(PetscFree(rows->moved));
   PetscFunctionReturn(0);
 }

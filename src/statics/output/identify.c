@@ -40,10 +40,11 @@ static void IdentifyFit(PetscInt n, const IdentifyReading reading[], StaticsStif
 static void IdentifySetLaws(PairRows *rows, ContactStatus status[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    rows->law[p].k  = INFINITY;
-    rows->law[p].mu = 0;
-    rows->slide[p]  = 0;
-    status[p]       = CONTACT_SLIP;
+    rows->law[p].k     = INFINITY;
+    rows->law[p].shift = 0;
+    rows->law[p].mu    = 0;
+    rows->slide[p]     = 0;
+    status[p]          = CONTACT_SLIP;
   }
 }
 

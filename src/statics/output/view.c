@@ -29,11 +29,42 @@ static PetscErrorCode InterfaceView(Model model, const ContactInterface *c, cons
   PetscFunctionReturn(0);
 }
 
+/* Least and most pressure, closing and stiffness per area of the closed pairs, where the pressure is not linear */
+static PetscErrorCode PressureRangeView(Statics s, PetscInt interface, PetscViewer viewer)
+{
+  static const char *const si[] = {"Pa", "m", "N/m^3"}, *const what[] = {"pressure", "closing", "stiffness"};
+  PetscReal   extreme[2][3] = {{-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL}};
+  const char *unit;
+
+  PetscFunctionBeginUser;
+  if (PressureIsLinear(&s->rows.pressure[interface])) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(extreme[1], extreme[0], 3));
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) {
+    const ContactPair *pair     = &s->rows.pair[p];
+    const PetscReal    value[3] = {s->state[p].lambda_n / pair->area, -s->state[p].gap,
+                                   StaticsPairStiffness(s, p) / pair->area};
+
+    for (int k = 0; k < 3 && pair->interface == interface && s->state[p].status != CONTACT_OPEN; k++) {
+      extreme[0][k] = PetscMax(extreme[0][k], -value[k]);
+      extreme[1][k] = PetscMax(extreme[1][k], value[k]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, extreme, 6, MPIU_REAL, MPI_MAX, s->comm));
+  for (int k = 0; k < 3 && extreme[1][0] >= 0; k++) {
+    PetscCall(ModelGetUnit(s->model, si[k], &unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s%s %.6g to %.6g %s%s", k ? ", " : "  ", what[k], (double)-extreme[0][k],
+                                     (double)extreme[1][k], unit, k < 2 ? "" : "\n"));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
     PetscCall(InterfaceView(s->model, &s->rows.interface[i], &s->resultant[i], viewer));
+    PetscCall(PressureRangeView(s, i, viewer));
+  }
   if (s->n_free)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "%" PetscInt_FMT " rigid motion%s that nothing resists or loads %s left out\n",

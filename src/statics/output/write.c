@@ -10,7 +10,7 @@
 /* One row of the table */
 typedef struct {
   PetscInt     interface;
-  PetscReal    x[3], t[3], n[3], area, pressure;
+  PetscReal    x[3], t[3], n[3], area, pressure, stiffness;
   ContactState state;
 } StaticsRecord;
 
@@ -58,6 +58,7 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
   PetscCall(PetscMalloc1(rows->n_pairs, &local));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     local[p] = (StaticsRecord){.interface = rows->pair[p].interface, .area = rows->pair[p].area, .state = s->state[p]};
+    local[p].stiffness = StaticsPairStiffness(s, p);
     PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
     PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
     PetscCall(PetscArraycpy(local[p].n, rows->pair[p].n, 3));
@@ -80,7 +81,7 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
   PetscCall(StaticsGatherRecords(s, &n, &record));
   PetscCall(ResultsTableOpen(results, "static",
                              "pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,lambda_b_n,area_m2,"
-                             "pressure_pa,slip_t_m,slip_b_m,t_x,t_y,t_z,n_x,n_y,n_z",
+                             "pressure_pa,slip_t_m,slip_b_m,t_x,t_y,t_z,n_x,n_y,n_z,stiffness_n_m",
                              &table));
   for (PetscInt i = 0; i < n; i++) {
     const StaticsRecord *r = &record[i];
@@ -89,11 +90,12 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
     PetscCall(ResultsTableRow(
       table,
       "%" PetscInt_FMT ",%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,"
-      "%.15g,%.15g,%.15g",
+      "%.15g,%.15g,%.15g,%.15g",
       i + 1, (double)r->x[0], (double)r->x[1], (double)r->x[2], (double)q->gap, (double)q->lambda_n,
       (double)q->lambda_t[0], ContactStatusNames[q->status], s->rows.interface[r->interface].name,
       (double)q->lambda_t[1], (double)r->area, (double)r->pressure, (double)q->slip[0], (double)q->slip[1],
-      (double)r->t[0], (double)r->t[1], (double)r->t[2], (double)r->n[0], (double)r->n[1], (double)r->n[2]));
+      (double)r->t[0], (double)r->t[1], (double)r->t[2], (double)r->n[0], (double)r->n[1], (double)r->n[2],
+      (double)r->stiffness));
   }
   PetscCall(ResultsTableClose(&table));
   PetscCall(PetscFree(record));

@@ -301,7 +301,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
     if (a->hasty && SafeguardGivesUp(&guard, n_changed)) *outcome = ACTIVE_REPEATS;
     if (n_changed || residual > SLIPPING) continue;
     if (a->rtol == EXACT || a->compliance->W) {
-      if (!a->compliance->W) PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));
+      if (!a->compliance->W && !a->tentative) PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));
       *outcome = a->reversed ? ACTIVE_JAMMED : ACTIVE_CONVERGED;
     }
     a->rtol = EXACT;

@@ -175,7 +175,7 @@ static PetscErrorCode PivotGather(const PairRows *rows, PetscReal friction, Pivo
     for (PetscInt i = rows->first[p]; i < rows->first[p + 1]; i++) {
       law[i] = (PivotLaw){.tangential = PETSC_TRUE};
       if (i == rows->first[p])
-        law[i] = (PivotLaw){1 / rows->law[p].k, rows->law[p].g0, friction * rows->slide[p], PETSC_FALSE};
+        law[i] = (PivotLaw){1 / rows->law[p].k, CoulombOrigin(&rows->law[p]), friction * rows->slide[p], PETSC_FALSE};
     }
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PivotLaw), law, NULL, all));
   PetscCall(PetscFree(law));

@@ -102,9 +102,11 @@ static PetscErrorCode SoftenMeasure(Active *a, PetscReal *residual)
     a->status[p] = CoulombDecide(&pair, a->status[p], l, w, 0);
     if (a->status[p] == CONTACT_OPEN) {
       pair.mu = 0;
-      normal  = l[0] - pair.pull * (w[0] - pair.g0);
+      normal  = l[0] - pair.pull * (w[0] - CoulombOrigin(&pair));
     } else {
-      normal = pair.k > 1 ? l[0] / pair.k - w[0] + pair.g0 : l[0] - pair.k * (w[0] - pair.g0);
+      const PetscReal beyond = w[0] - CoulombOrigin(&pair);
+
+      normal = pair.k > 1 ? l[0] / pair.k - beyond : l[0] - pair.k * beyond;
     }
     sum += PetscSqr(normal) + PetscSqr(CoulombResidual(&pair, l, w));
   }

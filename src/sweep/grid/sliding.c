@@ -114,10 +114,11 @@ static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
   PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
   for (PetscInt p = 0; p < n; p++) {
-    PetscReal mu, kn;
+    PetscReal   mu;
+    PressureLaw law;
 
-    PetscCall(OperatorsGetInterface(sweep->operators, NULL, pair[p].interface, &mu, &kn));
-    if (group[p] > 0 && PetscIsInfReal(kn)) exact = PETSC_TRUE;
+    PetscCall(OperatorsGetInterface(sweep->operators, NULL, pair[p].interface, &mu, &law));
+    if (group[p] > 0 && PetscIsInfReal(PressureSlope(&law, 0))) exact = PETSC_TRUE;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
   (void)SweepClosedRange(sweep, &least, &most);
@@ -185,13 +186,13 @@ PetscErrorCode SweepChooseMethod(Sweep sweep)
   PetscCall(StaticsIsAffine(sweep->statics, &affine));
   if (affine) PetscFunctionReturn(0);
   if (sweep->n_verify || sweep->uncertain[0] || sweep->sensitivities) asked = PETSC_TRUE; /* not of full solutions */
-  PetscCheck(
-    !asked, sweep->comm, PETSC_ERR_SUP,
-    "a sweep about the sliding state: pairs that hold by friction, friction damping, -static_geometric and "
-    "-static_follower change with it from point to point; give -sweep_method full alone, or -modes_contact all");
+  PetscCheck(!asked, sweep->comm, PETSC_ERR_SUP,
+             "a sweep about the sliding state: pairs that hold by friction, friction damping, the stiffness of a "
+             "-contact_pressure_law, -static_geometric and -static_follower change with it from point to point; give "
+             "-sweep_method full alone, or -modes_contact all");
   sweep->method = SWEEP_FULL;
-  PetscCall(PetscPrintf(sweep->comm, "-sweep_method full: pairs that hold by friction, friction damping, geometric "
-                                     "stiffness or follower forces change with the sliding state\n"));
+  PetscCall(PetscPrintf(sweep->comm, "-sweep_method full: pairs that hold by friction, friction damping, pressure "
+                                     "laws, geometric stiffness or follower forces change with the sliding state\n"));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,68 @@
+/*
+   PressureLaw - the pressure p = P(c) (Pa) of a contact with the penalty law over its closing c (m), as one value: its
+   kind and its parameters. c is how far the surfaces have come into each other, minus the gap; rough surfaces press
+   before they meet, at c below 0. P is 0 up to the onset, rises from there on, and P' = dP/dc (N/m^3) is the stiffness
+   per area that small motions see. Passed whole and copied; every analysis asks it for P, P' and its inverse, none
+   knows its parameters by name. A new law is a file in src/contact/pressure/ and a row in pressure.c there.
+*/
+#pragma once
+
+#include <squeal/quantity.h>
+
+#define PRESSURE_PARAMETERS 2 /* of a law, at most */
+
+typedef struct {
+  PetscInt64 kind; /* place in the table of laws; 0: linear, its parameter 0 is -contact_kn, infinite: exact contact */
+  PetscReal  parameter[PRESSURE_PARAMETERS];
+} PressureLaw;
+
+/*@ PressureLinear - p = k c, k N/m^3 (of a force per pair N/m), infinite for exact contact. Not collective. @*/
+PressureLaw PressureLinear(PetscReal k);
+
+/*@ PressureIsLinear - whether P' is the same at every pressure. Not collective. @*/
+PetscBool PressureIsLinear(const PressureLaw *law);
+
+/*@ PressureOnset - the closing (m) up to which there is no pressure. Not collective. @*/
+PetscReal PressureOnset(const PressureLaw *law);
+
+/*@ PressureAt, PressureSlope - P(c), Pa, and P'(c), N/m^3, at the onset that to its right. Not collective. @*/
+PetscReal PressureAt(const PressureLaw *law, PetscReal c);
+PetscReal PressureSlope(const PressureLaw *law, PetscReal c);
+
+/*@ PressureClosing - the closing (m) at a pressure (Pa); the onset for none. Not collective. @*/
+PetscReal PressureClosing(const PressureLaw *law, PetscReal p);
+
+/*@ PressureGetParameters - number of parameters and their rows, -pressure_c0, of laws of this kind (borrowed). Not
+    collective. @*/
+PetscInt PressureGetParameters(const PressureLaw *law, const Quantity **rows);
+
+/*@ PressureGetName - the word of -contact_pressure_law. Not collective. @*/
+const char *PressureGetName(const PressureLaw *law);
+
+/*@
+   PressureSetFromOptions - reads the law of a contact. Collective.
+
+   Input Parameters:
++  comm - ranks that read, all alike
+-  name - of the contact, prefix of the options; shown for `contact`
+
+   Output Parameter:
+.  law  - a linear one has no stiffness yet
+
+   Options Database Keys:
++  -contact_pressure_law <linear|exponential|power> - which law
+.  -contact_pressure_c0, -contact_pressure_p0       - exponential: p0 / (e - 1) x (e^x - 1), x = c / c0 + 1, c > -c0
+-  -contact_pressure_k, -contact_pressure_m         - power: k c^m
+
+   Errors: PETSC_ERR_USER_INPUT for parameters beyond their limits, and on the command line for those of another law.
+@*/
+PetscErrorCode PressureSetFromOptions(MPI_Comm comm, const char name[], PressureLaw *law);
+
+/*@ PressureVisit - shows the rows of all laws of a contact. Collective. @*/
+PetscErrorCode PressureVisit(const PressureLaw *law, const char name[], const QuantityVisitor *visitor);
+
+/*@ PressureView - a law that is not linear, e.g. "pressure exponential, c0 1e-05, p0 1e+06". Collective. @*/
+PetscErrorCode PressureView(const PressureLaw *law, PetscViewer viewer);
+
+/*@ PressureAddChecksum - adds kind and parameters. Not collective. @*/
+PetscErrorCode PressureAddChecksum(const PressureLaw *law, Checksum checksum);

@@ -1,0 +1,141 @@
+/*
+   Pressure laws that are not linear, lambda_n = A P(c), c = w - g0 the closing (m): Newton's method about the active
+   set. At closings c_i each pair is linear, a tangent
+
+      l = k_i (w - g0 - s_i),   k_i = A P'(c_i) / kappa,   s_i = c_i - P(c_i) / P'(c_i),
+
+   and one active set finds l and w of all pairs, on the one factorisation. Each pair then has two points on its law,
+   that at the closing w - g0 and that at the pressure kappa l / A; the tangent is laid anew at the one that lies nearer
+   to c_i. On a law that stiffens this is the pressure on the way up and the closing on the way down, so that no
+   exponential runs away (as junctions are limited in circuits: L. W. Nagel, SPICE2, 1975), and near the solution both
+   are one, which makes the last steps quadratic.
+
+   It begins with all pairs rigid at the onset of their laws, where P' may vanish: forces of exact contact tell first
+   closings whatever the units of a law. So does a pair that was open. A pair that the tangent calls open beyond the
+   onset is closed in truth, and gets its tangent there.
+*/
+#include "statics/staticsimpl.h"
+
+/* of the largest force, or of the largest closing beyond the onset */
+#define PRESSURES_SETTLED 1e-12
+/* what rounding of w leaves where bodies move much farther than they close: no better after one more step */
+#define PRESSURES_ROUNDED 1e-8
+#define PRESSURES_STEPS   100
+
+/* Closing (m) and force (N) of a pair as they are */
+typedef struct {
+  PetscReal closing, force;
+} PairNow;
+
+static PairNow PairSee(const Active *a, PetscInt p)
+{
+  const PetscInt first = a->rows->first[p];
+
+  return (PairNow){a->w[first] - a->rows->law[p].g0, a->compliance->kappa * a->l[first]};
+}
+
+/* The law of a pair, NULL where it is linear */
+static const PressureLaw *PairLaw(const PairRows *rows, PetscInt p)
+{
+  const PressureLaw *law = &rows->pressure[rows->pair[p].interface];
+
+  return PressureIsLinear(law) ? NULL : law;
+}
+
+/* The largest miss of all laws, as a force or as a closing, whichever is less */
+static PetscErrorCode PressuresMeasure(const Active *a, PetscReal *residual)
+{
+  const PairRows *rows    = a->rows;
+  PetscReal       size[2] = {0, 0}; /* N, m */
+
+  PetscFunctionBeginUser;
+  *residual = 0;
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    const PressureLaw *law = PairLaw(rows, p);
+    const PairNow      now = PairSee(a, p);
+
+    size[0] = PetscMax(size[0], PetscAbsReal(now.force));
+    if (law) size[1] = PetscMax(size[1], PressureClosing(law, now.force / rows->pair[p].area) - PressureOnset(law));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, size, 2, MPIU_REAL, MPI_MAX, rows->comm));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    const PressureLaw *law = PairLaw(rows, p);
+    const PetscReal    A   = rows->pair[p].area;
+    const PairNow      now = PairSee(a, p);
+    PetscReal          force, closing;
+
+    if (!law) continue;
+    force   = PetscAbsReal(now.force - A * PressureAt(law, now.closing));
+    closing = PetscAbsReal(PetscMax(now.closing, PressureOnset(law)) - PressureClosing(law, now.force / A));
+    if (force == 0 || closing == 0) continue;
+    *residual = PetscMax(*residual, PetscMin(force / size[0], closing / size[1]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, residual, 1, MPIU_REAL, MPI_MAX, rows->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Where the tangent of a pair is laid next, m */
+static PetscReal PairNext(const Active *a, PetscInt p, const PressureLaw *law)
+{
+  const PetscReal at = a->rows->closing[p], onset = PressureOnset(law);
+  const PairNow   now      = PairSee(a, p);
+  const PetscReal pressing = PressureClosing(law, now.force / a->rows->pair[p].area);
+
+  if (a->status[p] == CONTACT_OPEN) return PetscMax(now.closing, onset);
+  if (at <= onset) return pressing;
+  return PetscAbsReal(now.closing - at) < PetscAbsReal(pressing - at) ? PetscMax(now.closing, onset) : pressing;
+}
+
+/* Tangents at the points found, or, where exact contact jams or leaves a motion, with the stiffness kappa from the
+   onset on to begin with */
+static void PressuresNext(Active *a, PetscBool softly)
+{
+  PairRows *rows = a->rows;
+
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    const PressureLaw *law = PairLaw(rows, p);
+
+    if (!law) continue;
+    if (softly)
+      rows->law[p].k = 1;
+    else
+      PairRowsSetClosing(rows, p, a->compliance->kappa, PairNext(a, p, law));
+  }
+}
+
+/* Steps of the tangents until the laws hold */
+static PetscErrorCode PressuresIterate(Active *a, ActiveOutcome *outcome)
+{
+  PetscReal residual, before = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  PetscCall(ActiveSolve(a, outcome));
+  if (*outcome != ACTIVE_CONVERGED) {
+    PressuresNext(a, PETSC_TRUE);
+    PetscCall(ActiveSolve(a, outcome));
+  }
+  for (PetscInt it = 0; it < PRESSURES_STEPS && *outcome == ACTIVE_CONVERGED; it++) {
+    PetscCall(PressuresMeasure(a, &residual));
+    if (residual <= PRESSURES_SETTLED) PetscFunctionReturn(0);
+    if (residual <= PRESSURES_ROUNDED && residual > before / 2) PetscFunctionReturn(0);
+    before = residual;
+    PressuresNext(a, PETSC_FALSE);
+    PetscCall(ActiveSolve(a, outcome));
+  }
+  if (*outcome == ACTIVE_CONVERGED) *outcome = ACTIVE_UNSETTLED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PressuresSolve(Active *a, ActiveOutcome *outcome)
+{
+  PetscFunctionBeginUser;
+  a->tentative = PairRowsCurved(a->rows);
+  if (a->tentative)
+    PetscCall(PressuresIterate(a, outcome));
+  else
+    PetscCall(ActiveSolve(a, outcome));
+  if (!a->tentative || a->compliance->W || *outcome != ACTIVE_CONVERGED) PetscFunctionReturn(0);
+  PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));
+  if (a->reversed) *outcome = ACTIVE_JAMMED;
+  PetscFunctionReturn(0);
+}
