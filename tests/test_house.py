@@ -45,7 +45,7 @@ LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "t
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
                   "joint": "kernels", "material": "kernels", "mesh": "kernels", "options": "base",
-                  "frictionlaw": "contact", "pencil": "operators", "projector": "contact", "sys": "base"}
+                  "frictionlaw": "contact", "pressurelaw": "contact", "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
              "DampedStop": "PEPSetStoppingTestFunction()", "UndampedStop": "EPSSetStoppingTestFunction()"}
