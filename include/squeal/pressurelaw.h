@@ -14,6 +14,8 @@
 typedef struct {
   PetscInt64 kind; /* place in the table of laws; 0: linear, its parameter 0 is -contact_kn, infinite: exact contact */
   PetscReal  parameter[PRESSURE_PARAMETERS];
+  PetscInt   n_points; /* of a table */
+  PetscReal *point;    /* [n_points][2] closing, m, and pressure, Pa; the contact owns them, copies borrow */
 } PressureLaw;
 
 /*@ PressureLinear - p = k c, k N/m^3 (of a force per pair N/m), infinite for exact contact. Not collective. @*/
@@ -50,11 +52,13 @@ const char *PressureGetName(const PressureLaw *law);
 .  law  - a linear one has no stiffness yet
 
    Options Database Keys:
-+  -contact_pressure_law <linear|exponential|power> - which law
++  -contact_pressure_law <linear|exponential|power|table> - which law
 .  -contact_pressure_c0, -contact_pressure_p0       - exponential: p0 / (e - 1) x (e^x - 1), x = c / c0 + 1, c > -c0
--  -contact_pressure_k, -contact_pressure_m         - power: k c^m
+.  -contact_pressure_k, -contact_pressure_m         - power: k c^m
+-  -contact_pressure_table, -contact_pressure_file  - table: points closing,pressure, straight lines between them
 
-   Errors: PETSC_ERR_USER_INPUT for parameters beyond their limits, and on the command line for those of another law.
+   Errors: PETSC_ERR_USER_INPUT for parameters beyond their limits, and on the command line for those of another law;
+   for a table that does not rise, or does not begin without pressure.
 @*/
 PetscErrorCode PressureSetFromOptions(MPI_Comm comm, const char name[], PressureLaw *law);
 
@@ -64,5 +68,8 @@ PetscErrorCode PressureVisit(const PressureLaw *law, const char name[], const Qu
 /*@ PressureView - a law that is not linear, e.g. "pressure exponential, c0 1e-05, p0 1e+06". Collective. @*/
 PetscErrorCode PressureView(const PressureLaw *law, PetscViewer viewer);
 
-/*@ PressureAddChecksum - adds kind and parameters. Not collective. @*/
+/*@ PressureAddChecksum - adds kind, parameters and points. Not collective. @*/
 PetscErrorCode PressureAddChecksum(const PressureLaw *law, Checksum checksum);
+
+/*@ PressureDestroy - frees what a law owns. Not collective. @*/
+PetscErrorCode PressureDestroy(PressureLaw *law);

@@ -272,6 +272,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].name));
     PetscCall(PetscFree((*contact)->interfaces[i].slave));
     PetscCall(PetscFree((*contact)->interfaces[i].master));
+    PetscCall(PressureDestroy(&(*contact)->interfaces[i].pressure));
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
   }
   PetscCall(PetscFree((*contact)->interfaces));

@@ -5,6 +5,7 @@
 
 #define EXPONENTIAL 1
 #define POWER       2
+#define TABLE       3
 
 /* Breaks when: the curve is not p0 / (e - 1) x (e^x - 1), x = c / c0 + 1. By hand: P(0) = p0, P(c0) = 2 (e + 1) p0, and at
    0 the slope p0 / c0 (2 e - 1) / (e - 1) */
@@ -38,6 +39,24 @@ static int TestPower(void)
   return failed;
 }
 
+/* Breaks when: a line of the table is missed, or the last does not go on. By hand */
+static int TestTable(void)
+{
+  PetscReal         points[] = {-2, 0, -1, 10, 1, 30, 3, 70};
+  const PressureLaw law      = {.kind = TABLE, .n_points = 4, .point = points};
+  int               failed   = CheckClose("within the first line", PressureAt(&law, -1.5), 5, 1e-15);
+
+  failed += CheckClose("within the second", PressureAt(&law, 0), 20, 1e-14);
+  failed += CheckClose("beyond", PressureAt(&law, 5), 110, 1e-14);
+  failed += CheckClose("apart", PressureAt(&law, -3), 0, 0);
+  failed += CheckClose("slope at the onset", PressureSlope(&law, -2), 10, 0);
+  failed += CheckClose("slope at a point, to its right", PressureSlope(&law, 1), 20, 1e-14);
+  failed += CheckClose("closing within", PressureClosing(&law, 20), 0, 1e-15);
+  failed += CheckClose("closing beyond", PressureClosing(&law, 110), 5, 1e-15);
+  failed += CheckClose("no pressure", PressureClosing(&law, 0), -2, 0);
+  return failed;
+}
+
 /* Breaks when: the inverse is none at some pressure, 1e-8 to 1e30 of that of the law, or the slope is not P'. References:
    P itself; its central difference */
 static int TestInverse(const char name[], PressureLaw law, PetscReal pressure)
@@ -59,7 +78,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
   PetscFunctionBeginUser;
   (void)size;
-  *failed += TestExponential() + TestPower();
+  *failed += TestExponential() + TestPower() + TestTable();
   *failed += TestInverse("exponential", (PressureLaw){.kind = EXPONENTIAL, .parameter = {1e-5, 2e5}}, 2e5);
   *failed += TestInverse("power", (PressureLaw){.kind = POWER, .parameter = {1e17, 2.5}}, 1e5);
   *failed += TestInverse("steep power", (PressureLaw){.kind = POWER, .parameter = {1e45, 8}}, 1e5);

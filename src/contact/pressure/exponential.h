@@ -58,6 +58,7 @@ static const Quantity exponential_rows[] = {
 
 static const PressureKind exponential_pressure = {.name     = "exponential",
                                                   .n        = 2,
+                                                  .n_rows   = 2,
                                                   .row      = exponential_rows,
                                                   .onset    = ExponentialOnset,
                                                   .pressure = ExponentialPressure,

@@ -6,19 +6,29 @@
 /* A law; each file has one, with its parameters and functions. c: closing above the onset, m; p: pressure above 0,
    Pa */
 typedef struct {
-  const char     *name; /* word of -contact_pressure_law */
-  PetscInt        n;
-  const Quantity *row;                        /* [n] parameters, none of them may be 0 */
+  const char     *name;                       /* word of -contact_pressure_law */
+  PetscInt        n, n_rows;                  /* parameters; rows, those of the parameters first */
+  const Quantity *row;                        /* [n_rows] none of the parameters may be 0 */
   PetscReal (*onset)(const PressureLaw *law); /* m */
   PetscReal (*pressure)(const PressureLaw *law, PetscReal c);
   PetscReal (*slope)(const PressureLaw *law, PetscReal c); /* also at the onset */
   PetscReal (*closing)(const PressureLaw *law, PetscReal p);
 } PressureKind;
 
+/* What options say: a law, and the file of its points */
+typedef struct {
+  PressureLaw law;
+  char        file[PETSC_MAX_PATH_LEN];
+} PressureOptions;
+
+/* points.c - the points of a table, from its option in the law, or from the file; errors for those that are none */
+PETSC_INTERN PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], const char file[], PressureLaw *law);
+
+#define PRESSURE_ROOM  2000 /* numbers of a table, at most */
+#define PRESSURE_EXACT ", whose contact is exact: no penalty, no linearisation"
+
 /* Where parameter j lies */
 #define PRESSURE_PARAMETER(j)                                                                                          \
   .at = offsetof(PressureLaw, parameter) + (j) * sizeof(PetscReal), .size = sizeof(PetscReal)
 /* Who reads it, and who varies it */
-#define PRESSURE_READ                                                                                                  \
-  .in = RUN_LINEAR | RUN_STATIC, .unread = ", whose contact is exact: no penalty, no linearisation",                   \
-  .varies = VARIES_LINEAR
+#define PRESSURE_READ .in = RUN_LINEAR | RUN_STATIC, .unread = PRESSURE_EXACT, .varies = VARIES_LINEAR

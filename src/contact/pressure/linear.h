@@ -27,6 +27,7 @@ static PetscReal LinearClosing(const PressureLaw *law, PetscReal p)
 
 static const PressureKind linear_pressure = {.name     = "linear",
                                              .n        = 0,
+                                             .n_rows   = 0,
                                              .onset    = LinearOnset,
                                              .pressure = LinearPressure,
                                              .slope    = LinearSlope,

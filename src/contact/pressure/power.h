@@ -43,6 +43,7 @@ static const Quantity power_rows[] = {
 
 static const PressureKind power_pressure = {.name     = "power",
                                             .n        = 2,
+                                            .n_rows   = 2,
                                             .row      = power_rows,
                                             .onset    = PowerOnset,
                                             .pressure = PowerPressure,

@@ -6,8 +6,10 @@
 #include "exponential.h"
 #include "linear.h"
 #include "power.h"
+#include "table.h"
 
-static const PressureKind *const pressures[] = {&linear_pressure, &exponential_pressure, &power_pressure};
+static const PressureKind *const pressures[] = {&linear_pressure, &exponential_pressure, &power_pressure,
+                                                &table_pressure};
 
 #define N_PRESSURES ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(pressures))
 
@@ -57,11 +59,12 @@ const char *PressureGetName(const PressureLaw *law)
   return PressureKindOf(law)->name;
 }
 
-/* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind */
-static PetscErrorCode PressuresVisit(const char name[], PressureLaw *law, const QuantityVisitor *visitor)
+/* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind. What is read for
+   another law is refused afterwards. */
+static PetscErrorCode PressuresVisit(const char name[], PressureOptions *read, const QuantityVisitor *visitor)
 {
   const char    *word[N_PRESSURES + 1] = {NULL};
-  int            chosen                = (int)law->kind;
+  int            chosen                = (int)read->law.kind;
   const Quantity row                   = {"-pressure_law",
                                           "penalty: how the pressure depends on the closing",
                                           NULL,
@@ -69,7 +72,7 @@ static PetscErrorCode PressuresVisit(const char name[], PressureLaw *law, const 
                                           .size   = sizeof(chosen),
                                           .words  = word,
                                           .in     = RUN_LINEAR | RUN_STATIC,
-                                          .unread = ", whose contact is exact: no penalty, no linearisation"};
+                                          .unread = PRESSURE_EXACT};
   char           title[160];
 
   PetscFunctionBeginUser;
@@ -77,24 +80,24 @@ static PetscErrorCode PressuresVisit(const char name[], PressureLaw *law, const 
   PetscCall(QuantitiesVisit(visitor, &(QuantityTable){"Pressure of contact", "pressurelaw.h", 1, &row, .in = 0}, name,
                             &chosen, NULL));
   for (PetscInt k = 0; k < N_PRESSURES; k++) {
-    const QuantityTable table = {title, "pressurelaw.h", pressures[k]->n, pressures[k]->row, .in = 0};
-    PressureLaw         other = {.kind = k};
+    const QuantityTable table = {title, "pressurelaw.h", pressures[k]->n_rows, pressures[k]->row, .in = 0};
+    PressureOptions     other = {.law = {.kind = k}};
 
-    if (!pressures[k]->n && k != chosen) continue;
     PetscCall(PetscSNPrintf(title, sizeof(title), "Pressure by the law %s of contact", pressures[k]->name));
     PetscCall(QuantitiesInit(&table, &other));
-    if (k == chosen && law->kind != chosen) *law = other;
-    if (pressures[k]->n) PetscCall(QuantitiesVisit(visitor, &table, name, k == chosen ? law : &other, NULL));
+    if (k == chosen && read->law.kind != chosen) *read = other;
+    if (pressures[k]->n_rows) PetscCall(QuantitiesVisit(visitor, &table, name, k == chosen ? read : &other, NULL));
+    if (k != chosen) PetscCall(PressureDestroy(&other.law));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PressureVisit(const PressureLaw *law, const char name[], const QuantityVisitor *visitor)
 {
-  PressureLaw copy = *law;
+  PressureOptions read = {.law = *law};
 
   PetscFunctionBeginUser;
-  PetscCall(PressuresVisit(name, &copy, visitor));
+  PetscCall(PressuresVisit(name, &read, visitor));
   PetscFunctionReturn(0);
 }
 
@@ -107,7 +110,7 @@ static PetscErrorCode PressuresRefuse(MPI_Comm comm, const char name[], const Pr
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_pressure_law %s", name, PressureKindOf(chosen)->name));
   PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_pressure_law is %s", name, PressureKindOf(chosen)->name));
   for (PetscInt k = 0; k < N_PRESSURES; k++)
-    for (PetscInt j = 0; j < pressures[k]->n && k != chosen->kind; j++) {
+    for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++) {
       const char *const own = pressures[k]->row[j].name + 1;
 
       PetscCall(OptionsRefuseOf(comm, name, own, why));
@@ -119,10 +122,13 @@ static PetscErrorCode PressuresRefuse(MPI_Comm comm, const char name[], const Pr
 
 PetscErrorCode PressureSetFromOptions(MPI_Comm comm, const char name[], PressureLaw *law)
 {
+  PressureOptions read = {.law = {.kind = 0}};
+
   PetscFunctionBeginUser;
-  *law = (PressureLaw){.kind = 0};
-  PetscCall(PressuresVisit(name, law, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
+  PetscCall(PressuresVisit(name, &read, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
+  *law = read.law;
   PetscCall(PressuresRefuse(comm, name, law));
+  if (PressureKindOf(law) == &table_pressure) PetscCall(PressurePointsSet(comm, name, read.file, law));
   for (PetscInt j = 0; j < PressureKindOf(law)->n; j++) {
     const Quantity *row = &PressureKindOf(law)->row[j];
 
@@ -140,6 +146,7 @@ PetscErrorCode PressureView(const PressureLaw *law, PetscViewer viewer)
   for (PetscInt j = 0; j < PressureKindOf(law)->n; j++)
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %s %.6g", PressureKindOf(law)->row[j].name + sizeof("-pressure_") - 1,
                                      (double)law->parameter[j]));
+  if (law->n_points) PetscCall(PetscViewerASCIIPrintf(viewer, " of %" PetscInt_FMT " points", law->n_points));
   PetscFunctionReturn(0);
 }
 
@@ -150,5 +157,13 @@ PetscErrorCode PressureAddChecksum(const PressureLaw *law, Checksum checksum)
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddInts(checksum, 1, &kind));
   PetscCall(ChecksumAddReals(checksum, PressureKindOf(law)->n, law->parameter));
+  PetscCall(ChecksumAddReals(checksum, 2 * law->n_points, law->point));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PressureDestroy(PressureLaw *law)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(law->point));
   PetscFunctionReturn(0);
 }

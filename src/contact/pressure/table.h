@@ -1,0 +1,70 @@
+/*
+   The law of a table: points (c_i, p_i), closing (m) and pressure (Pa), both ascending, straight lines between them,
+
+      P(c) = p_i + P' (c - c_i),   P'(c) = (p_(i+1) - p_i) / (c_(i+1) - c_i),   c_i <= c < c_(i+1),
+
+   the last line going on. The first pressure is 0: its closing is the onset. P' jumps at the points.
+*/
+#pragma once
+
+#include "kind.h"
+
+/* The point before which the line of c lies, or with k = 1 that of the pressure c: the last, but never the end */
+static const PetscReal *TableFind(const PressureLaw *law, int k, PetscReal c)
+{
+  PetscInt low = 0, high = law->n_points - 1;
+
+  while (high - low > 1) {
+    const PetscInt middle = (low + high) / 2;
+
+    if (law->point[2 * middle + k] <= c)
+      low = middle;
+    else
+      high = middle;
+  }
+  return &law->point[2 * low];
+}
+
+static PetscReal TableOnset(const PressureLaw *law)
+{
+  return law->point[0];
+}
+
+static PetscReal TableSlope(const PressureLaw *law, PetscReal c)
+{
+  const PetscReal *at = TableFind(law, 0, c);
+
+  return (at[3] - at[1]) / (at[2] - at[0]);
+}
+
+static PetscReal TablePressure(const PressureLaw *law, PetscReal c)
+{
+  const PetscReal *at = TableFind(law, 0, c);
+
+  return at[1] + (at[3] - at[1]) * ((c - at[0]) / (at[2] - at[0]));
+}
+
+static PetscReal TableClosing(const PressureLaw *law, PetscReal p)
+{
+  const PetscReal *at = TableFind(law, 1, p);
+
+  return at[0] + (at[2] - at[0]) * ((p - at[1]) / (at[3] - at[1]));
+}
+
+static const Quantity table_rows[] = {
+  {"-pressure_table", "closing, pressure, closing, pressure, ..., both ascending, the first pressure 0", "m, Pa",
+   QUANTITY_MANY, .at = offsetof(PressureLaw, point), .size = sizeof(PetscReal *),
+   .count = offsetof(PressureLaw, n_points), .room = PRESSURE_ROOM, .in = RUN_LINEAR | RUN_STATIC,
+   .unread = PRESSURE_EXACT},
+  {"-pressure_file", "or a file with closing,pressure in each line", NULL, QUANTITY_PATH, .path = "file",
+   .at = offsetof(PressureOptions, file), .size = PETSC_MAX_PATH_LEN, .in = RUN_LINEAR | RUN_STATIC,
+   .unread = PRESSURE_EXACT},
+};
+
+static const PressureKind table_pressure = {.name     = "table",
+                                            .n_rows   = 2,
+                                            .row      = table_rows,
+                                            .onset    = TableOnset,
+                                            .pressure = TablePressure,
+                                            .slope    = TableSlope,
+                                            .closing  = TableClosing};
