@@ -72,7 +72,7 @@ dashpots: oil
 oil: {set: block_top, viscosity: "0,0,10"}
 probes: tip
 tip: {at: "0,0,0.03"}
-modes: {target: 1, count: 12, growth: 5000}
+modes: {target: 1, count: 12, growth: 5000, contact: all}
 """
 RIG = """model: {source: rig}
 rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
@@ -255,9 +255,11 @@ def check_bad(top):
     (top / "gone/scene.yaml").write_text(scene.replace("pair.msh", "gone.msh"))
     (top / "torn.msh").write_bytes((top / "pair.msh").read_bytes()[:2000])
     (top / "short.msh").write_bytes((top / "hex27.msh").read_bytes()[:-400])
+    (top / "curved").mkdir()
+    (top / "curved/scene.yaml").write_text(f'{scene}\nrub_pressure_law: "power"\n')
     for words, said in ((["nowhere"], "no such folder"), (["empty"], "scene.yaml"), (["of27"], "hex27"), (["rig"], "-rig_save"),
                         (["matrices"], "is of matrices"),
-                        (["gone"], "gone.msh"), (["out", "--mesh", "torn.msh"], "torn.msh"),
+                        (["gone"], "gone.msh"), (["curved"], "_pressure_law power"), (["out", "--mesh", "torn.msh"], "torn.msh"),
                         (["out", "--mesh", "short.msh"], "short.msh"), (["out", "--mesh", "pair.yaml"], "no file of Gmsh"),
                         (["out", "--mesh", "hex27.msh"], "no volume named base"), (["out", "-o", "empty/no/deck.inp"], "deck.inp"),
                         (["of27", "--sliding"], "hex27")):

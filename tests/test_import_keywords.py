@@ -165,6 +165,13 @@ def not_taken(folder):
         options, listed = sections(folder, "deck.inp", body + steel + rest + text)
         check(f"{about}: tied is no contact, and a tie", "contacts" not in options and options.get("ties") == "i"
               and options["i_surfaces"] == "s,t" and sum("nodes of S follow T" in line for line in listed) == 1, (options, listed))
+    table = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR\n{}" + pair
+    options, listed = sections(folder, "deck.inp", body + steel + rest + table.format("0., -0.01\n0.5, 0.\n2., 0.004\n"))
+    check("a table of pressure and overclosure", options.get("i_pressure_law") == "table" and "i_law" not in options
+          and same(options["i_pressure_table"], "-1e-5,0,0,5e5,4e-6,2e6"), options)
+    options, listed = sections(folder, "deck.inp", body + steel + rest + table.format("0., 0.\n0.5, 1e-3\n0.4, 2e-3\n"))
+    check("a table that falls is listed", options.get("i_law") == "constraint" and "i_pressure_law" not in options
+          and sum("does not rise" in line for line in listed) == 1, (options, listed))
     tie = "*TIE, NAME=Glue, POSITION TOLERANCE=0.5, ADJUST=NO\nS, T\n"
     options, listed = sections(folder, "deck.inp", body + steel + rest + tie)
     check("TIE of nodes that are apart", options.get("ties") == "glue" and options["glue_surfaces"] == "s,t"

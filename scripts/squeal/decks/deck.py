@@ -106,6 +106,7 @@ class Contact:
     place: Place
     mu: float = None
     stiffness: float = None  # per area
+    points: tuple = ()  # or overclosure, pressure, overclosure, ...
     rotation: tuple = ()
     centre: tuple = ()
     turning: Place = None  # where the rotation is from

@@ -204,6 +204,8 @@ def add_contacts(assembly):
         rows = [("surfaces", f"{slave},{master}", f"{comment} slave,master")]
         if contact.stiffness:
             rows.append(("kn_per_area", ("stiffness_per_area", (contact.stiffness,)), comment))
+        elif contact.points:
+            rows += [("pressure_law", "table", comment), ("pressure_table", ("points", contact.points), comment)]
         else:
             rows.append(("law", "constraint", f"{comment} no stiffness is given: exact contact"))
         rows += gap_rows(assembly.deck, contact)

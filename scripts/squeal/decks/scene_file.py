@@ -1,12 +1,16 @@
 """The scene in YAML: what was understood, with the place that each line is from, then all that was not."""
 
+import itertools
+
+import numpy
+
 from ..tables import quoted, whole
 
 MOST_ALIKE = 3
 LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts", "ties")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
-           "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}
+           "points": lambda u: (u.length, u.stress), "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}
 
 
 def shown(value, units):
@@ -14,7 +18,8 @@ def shown(value, units):
     if isinstance(value, str):
         return f'"{value}"' if "," in value else value
     kind, values = value
-    words = [f"{number * FACTORS[kind](units):.15g}" for number in values]
+    factors = itertools.cycle(numpy.atleast_1d(FACTORS[kind](units)))
+    words = [f"{number * factor:.15g}" for number, factor in zip(values, factors)]
     return words[0] if len(words) == 1 else '"' + ",".join(words) + '"'
 
 

@@ -248,6 +248,10 @@ def contact_stiffness(build, owner, slave):
     options = build.options
     if options.text(f"{owner}_law", "penalty") == "constraint":
         return None
+    law = options.text(f"{owner}_pressure_law", "linear")
+    if law != "linear":
+        raise BadInput(f"{options.path}: {owner}_pressure_law {law}: the deck has one stiffness for all pairs; give {owner}_kn_per_area, "
+                       "stiffness_n_m over area_m2 of static.csv, and the law linear")
     if options.has(f"{owner}_kn_per_area"):
         return options.number(f"{owner}_kn_per_area")
     if options.text(f"{owner}_kn") == "identify":

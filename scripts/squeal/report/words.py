@@ -120,6 +120,8 @@ def contact_words(scene, name):
         kn, area = numbers(scene.value(f"{name}_kn")), scene.si("N/m^3") * scene.number(f"{name}_kn_per_area")
         law = (f"normal stiffness {figures(area, 4)} N/m³" if area else "normal stiffness found by pressing" if not kn else
                f"normal stiffness {quantity(scene.si('N/m') * kn[0], 'N/m')} per pair")
+        if scene.value(f"{name}_pressure_law", "linear") != "linear":
+            law = f"pressure over closing by the law {scene.value(f'{name}_pressure_law')}, stiffness that at the pressure of each pair"
     if scene.value("analysis", "modes") in ("transient", "map", "cycle"):
         law = "exact contact in time"
     return (f"{name}: {slave} on {master}, {motion}{f' at {figures(speed, 4)} m/s' if speed else ''}, "

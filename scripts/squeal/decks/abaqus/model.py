@@ -158,6 +158,18 @@ def do_friction(reader, _, card):
     other_rows(reader, card, rest)
 
 
+def points_of(reader, card):
+    """Overclosure and pressure, one after the other, of a table that rises from no pressure on; else it is listed, and nothing."""
+    rows = [(place, row) for place, row in numbers(card) if row]
+    points = numpy.array([row[1::-1] for _, row in rows if len(row) == 2])
+    if len(points) != len(rows) or len(points) < 2:
+        raise card.place.wrong("*SURFACE BEHAVIOR: a table needs two lines at least, each with pressure and overclosure")
+    if points[0, 1] == 0 and (numpy.diff(points, axis=0) > 0).all():
+        return tuple(points.ravel())
+    reader.deck.note(card.place, "*SURFACE BEHAVIOR: a table that does not rise from no pressure on, not taken: contact is exact")
+    return ()
+
+
 def do_behavior(reader, _, card):
     kind = choice(card.options.get("PRESSURE-OVERCLOSURE", "HARD"), "HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TIED",
                   "SCALE FACTOR", "USER DEFINED")
@@ -168,6 +180,8 @@ def do_behavior(reader, _, card):
         values["stiffness"] = first_row(card, 1)[0][0]
         if not values["stiffness"] > 0:
             raise card.place.wrong("*SURFACE BEHAVIOR: the stiffness must be positive")
+    elif kind == "TABULAR":
+        values["points"] = points_of(reader, card)
     elif kind == "TIED":
         values["tied"] = True
     elif kind != "HARD":
@@ -260,6 +274,7 @@ def finish(reader):
                                         f"*CONTACT PAIR {contact.slave}, {contact.master}, tied"))
             continue
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
+        contact.points = values.get("points", ())
         reader.deck.contacts.append(contact)
     ground_springs(reader, SPRINGS)
     finish_steps(reader)
