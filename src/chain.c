@@ -322,6 +322,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ModesGetContact(chain->modes, &sliding));
   if (sliding) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
+  PetscCall(MapSetModes(chain->map, chain->modes));
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));
   PetscCall(FrfSetModes(chain->frf, chain->modes));

@@ -94,6 +94,9 @@ PetscErrorCode MapVisit(Map map, const QuantityVisitor *visitor);
    collective. @*/
 PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[]);
 
+/*@ MapSetModes - takes from modes what counts as unstable. Not collective. @*/
+PetscErrorCode MapSetModes(Map map, Modes modes);
+
 /*@
    MapSolve - all points, and map.csv. Collective; each rank runs lines in one direction, or points apart, as it becomes
    free.

@@ -25,6 +25,7 @@ PetscErrorCode MapJournalOpen(Map map, Results results)
   PetscCall(ChecksumSetPart(c, "the map"));
   PetscCall(ChecksumAddInts(c, 4, (const PetscInt[]){sizeof(MapPoint), map->direction, map->n_axes, map->n_twins}));
   PetscCall(ChecksumAddReals(c, 4, (const PetscReal[]){map->dt, map->end, map->window, map->rtol}));
+  PetscCall(ChecksumAddReals(c, 2, (const PetscReal[]){map->limit.ratio, map->limit.growth}));
   for (PetscInt k = 0; k < map->n_axes; k++) {
     PetscCall(ChecksumAddReals(c, map->axis[k].n, map->axis[k].value));
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++) PetscCall(ChecksumAddString(c, map->axis[k].moved[i].name));

@@ -30,6 +30,13 @@ PetscErrorCode MapVisit(Map map, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MapSetModes(Map map, Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetLimit(modes, &map->limit));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MapSetRooms(Map map, ReducedRun reduced, Operators operators, const PetscReal p[])
 {
   PetscFunctionBeginUser;

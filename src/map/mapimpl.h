@@ -51,7 +51,7 @@ typedef struct {
   PetscInt  n_runs, n_loud, all_steps;
   PetscInt  regimes;                                    /* of these: sum of 1 << MapRegime */
   PetscReal quantile[MAP_N_QUANTILES];                  /* N, 5, 50, 95 % of the rms of their windows */
-  PetscInt  n_growing;                                  /* modes of the sliding state that grow */
+  PetscInt  n_growing, n_unstable;                      /* modes of the sliding state that grow; of these unstable */
   PetscReal sigma[MAP_MAX_MODES], omega[MAP_MAX_MODES]; /* of the fastest of these, rad/s */
 } MapPoint;
 
@@ -104,6 +104,7 @@ struct _p_Map {
   PetscInt   n_axes;
   MapAxis    axis[MAP_MAX_AXES];
   PetscReal *p;            /* of the operators */
+  ModesLimit limit;        /* what counts as unstable */
   PetscReal  dt, end;      /* s */
   PetscReal  cutoff;       /* Hz */
   PetscBool  lines_differ; /* each has bodies of its own */
@@ -180,7 +181,8 @@ PETSC_INTERN void MapCountWindows(Map map, PetscReal dt, PetscInt *n_steps, Pets
 
 /* point/modes.c - pure: of n eigenvalues (rad/s) the fastest mode; into the row those that grow, fastest first */
 PETSC_INTERN void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapFastest *fastest);
-PETSC_INTERN void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row);
+PETSC_INTERN void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], const ModesLimit *limit,
+                               MapPoint *row);
 
 /* map/bodies.c - bodies of a line of the map below a cut-off, Hz, 0: the map's; their friction, speeds of sliding
    [n_pairs] (m/s) and loads [n_loads] at a place */

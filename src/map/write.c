@@ -19,7 +19,7 @@ PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
     results, "map",
     "point,parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_peak_n,"
     "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status,n_"
-    "growing,runs,runs_vibrating,regimes,decided_by,force_rms_p05_n,force_rms_p50_n,force_rms_p95_n",
+    "growing,runs,runs_vibrating,regimes,decided_by,force_rms_p05_n,force_rms_p50_n,force_rms_p95_n,n_unstable",
     table));
   PetscFunctionReturn(0);
 }
@@ -71,7 +71,7 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   PetscCall(ResultsTableRow(
     table,
     "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d,%d,%d,%s,%s,"
-    "%.15g,%.15g,%.15g",
+    "%.15g,%.15g,%.15g,%d",
     (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
     map->direction == MAP_APART ? "apart"
     : r->down                   ? "down"
@@ -82,14 +82,15 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
     r->regime == MAP_BISTABLE   ? "rounding"
     : MapHangsOnWay(map, point) ? "direction"
                                 : "",
-    (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2]));
+    (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2], (int)r->n_unstable));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MapModesOpen(Results results, ResultsTable *table)
 {
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "map_modes", "point,value,value_2,freq_hz,growth_rad_s,damping_ratio", table));
+  PetscCall(
+    ResultsTableOpen(results, "map_modes", "point,value,value_2,freq_hz,growth_rad_s,damping_ratio,state", table));
   PetscFunctionReturn(0);
 }
 
@@ -102,9 +103,10 @@ PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *r)
   if (r->down && map->direction == MAP_BOTH) PetscFunctionReturn(0);
   if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
   for (PetscInt k = 0; k < PetscMin(r->n_growing, MAP_MAX_MODES); k++)
-    PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%.15g", (int)(r->line * x->n + r->place + 1),
+    PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%.15g,%s", (int)(r->line * x->n + r->place + 1),
                               (double)x->value[r->place], second, (double)(r->omega[k] / (2 * PETSC_PI)),
-                              (double)r->sigma[k], (double)(-r->sigma[k] / hypot(r->sigma[k], r->omega[k]))));
+                              (double)r->sigma[k], (double)(-r->sigma[k] / hypot(r->sigma[k], r->omega[k])),
+                              ModeStateName(ModesLimitJudge(&map->limit, r->sigma[k], r->omega[k], 0))));
   PetscFunctionReturn(0);
 }
 

@@ -11,28 +11,24 @@
 #include "map/mapimpl.h"
 #include "petscmain.h"
 
+static const ModesLimit limit = {0, 5.5}; /* 1/s */
+
 /* Breaks when: divergence is not growth, or an oscillation beside it hides it */
 static PetscErrorCode TestDivergence(int *failed)
 {
   PetscReal       omega2[2] = {1, 4}, P[6] = {1, 0, 1, 0, 0, 0}, W[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal       gap[1] = {0}, sigma[4], omega[4];
+  PetscReal       gap[1]    = {0}, sigma[4], omega[4];
   FrictionLaw     law       = {.speed = 1, .parameter = {5}};
   const PetscBool closed[1] = {PETSC_TRUE};
-  ReducedModel    model     = {.m       = 2,
-                               .n_pairs = 1,
-                               .n_ports = 3,
-                               .omega2  = omega2,
-                               .P       = P,
-                               .W       = W,
-                               .gap     = gap,
-                               .friction = &law};
-  MapFastest      fastest;
-  MapPoint        row = {0};
+  ReducedModel    model     = {
+           .m = 2, .n_pairs = 1, .n_ports = 3, .omega2 = omega2, .P = P, .W = W, .gap = gap, .friction = &law};
+  MapFastest fastest;
+  MapPoint   row = {0};
 
   PetscFunctionBeginUser;
   PetscCall(ReducedLinearise(&model, closed, sigma, omega));
   MapModesJudge(4, sigma, omega, &fastest);
-  MapModesTake(4, sigma, omega, &row);
+  MapModesTake(4, sigma, omega, &limit, &row);
   *failed += CheckClose("divergence: growth", fastest.growth, sqrt(3), 1e-14);
   *failed += CheckClose("its frequency", fastest.freq, 0, 0);
   *failed += CheckClose("index: growth over |lambda|", fastest.index, 1, 1e-15);
@@ -64,10 +60,11 @@ static int TestLists(void)
     turns[2 * k]                  = 1e4;
     turns[2 * k + 1]              = -1e4;
   }
-  MapModesTake(2 * n_most, many, turns, &row);
+  MapModesTake(2 * n_most, many, turns, &limit, &row);
   for (PetscInt k = 0; k < MAP_MAX_MODES; k++)
     if (row.sigma[k] != (PetscReal)(n_most - k)) ordered = 0;
   failed += CheckTrue("all are counted", row.n_growing == n_most, row.n_growing);
+  failed += CheckTrue("those up to the limit are not unstable", row.n_unstable == n_most - 5, row.n_unstable);
   return failed + CheckTrue("the fastest are listed, in order", ordered, row.sigma[0]);
 }
 

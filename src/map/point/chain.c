@@ -78,7 +78,7 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   w->growth = NAN;
   PetscCall(PetscArrayzero(w->known, model->n_pairs));
   if (found) PetscCall(MapMarchLinearise(w, w->rest.status, &fastest));
-  if (found) MapModesTake(2 * model->m, w->sigma, w->omega, row);
+  if (found) MapModesTake(2 * model->m, w->sigma, w->omega, &w->map->limit, row);
   if (found && model->Mx) PetscCall(MarchWeigh(w, row));
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
   row->growth    = fastest.growth;

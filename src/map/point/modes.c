@@ -1,7 +1,8 @@
 /*
    What the eigenvalues lambda = sigma + i omega about the sliding state say of a point: the mode that grows fastest,
-   the largest growth over angular frequency, and all modes that grow. A real lambda above what rounding makes of a
-   rigid mode is divergence, of frequency 0; other real ones are overdamped or rigid modes and count for nothing.
+   the largest growth over angular frequency, and all modes that grow, with how many of them are beyond the limit of
+   what is unstable (modes/growth/state.c). A real lambda above what rounding makes of a rigid mode is divergence, of
+   frequency 0; other real ones are overdamped or rigid modes and count for nothing.
 */
 #include "map/mapimpl.h"
 
@@ -36,17 +37,18 @@ void MapModesJudge(PetscInt n, const PetscReal sigma[], const PetscReal omega[],
   }
 }
 
-/* The growing modes by insertion, fastest first, as many as a row has room for; n_growing counts all. */
-void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], MapPoint *row)
+/* The growing modes by insertion, fastest first, as many as a row has room for; n_growing and n_unstable count all. */
+void MapModesTake(PetscInt n, const PetscReal sigma[], const PetscReal omega[], const ModesLimit *limit, MapPoint *row)
 {
   const PetscReal highest = LambdaHighest(n, sigma, omega);
 
-  row->n_growing = 0;
+  row->n_growing = row->n_unstable = 0;
   for (PetscInt k = 0; k < n; k++) {
     PetscInt i = PetscMin(row->n_growing, MAP_MAX_MODES);
 
     if (!(sigma[k] > 0) || !LambdaIsMode(sigma[k], omega[k], highest)) continue;
     row->n_growing++;
+    row->n_unstable += ModesLimitJudge(limit, sigma[k], omega[k], 0) == MODE_UNSTABLE;
     if (i == MAP_MAX_MODES && sigma[k] <= row->sigma[--i]) continue;
     for (; i > 0 && row->sigma[i - 1] < sigma[k]; i--) {
       row->sigma[i] = row->sigma[i - 1];
