@@ -179,6 +179,9 @@ PETSC_INTERN PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer);
 /* Distance of mode i from the next one, rad/s: of those listed, its own conjugate, or what may lie beyond the band */
 PETSC_INTERN PetscReal ModeGap(const Modes modes, PetscInt i);
 
+/* Goes on with a line about shares of mode i: another mode has the same eigenvalue within the errors of both */
+PETSC_INTERN PetscErrorCode ModeViewTwin(const Modes modes, PetscInt i, PetscViewer viewer);
+
 /* Relative error of the vector of mode i, an estimate of first order, at most 1; nan without left vectors */
 PETSC_INTERN PetscReal ModeVectorError(const Modes modes, PetscInt i);
 

@@ -106,14 +106,14 @@ static PetscInt ComponentNext(const ModesComponents c, PetscInt i, PetscReal sca
 PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer)
 {
   const ModesComponents c = modes->components;
-  PetscBool            *shown;
+  PetscBool            *shown, large = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!c) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(c->n_levels * c->bodies.n, &shown));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscReal scale = ErrorScale(c, i);
-    PetscReal       left  = 1;
+    PetscReal       left = 1, most = 0;
 
     if (!modes->mode[i].unstable) continue;
     PetscCall(PetscArrayzero(shown, c->n_levels * c->bodies.n));
@@ -126,11 +126,20 @@ PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer)
       shown[at] = PETSC_TRUE;
       part      = ContributionGet(c, i, at / c->bodies.n, b, scale);
       left -= part.share;
+      most = PetscMax(most, PetscAbsReal(part.share));
       PetscCall(PetscViewerASCIIPrintf(viewer, " %s %s %.3g %%,", c->bodies.name[b], c->free[at].name,
                                        (double)(100 * part.share)));
     }
-    PetscCall(PetscViewerASCIIPrintf(viewer, " others %.3g %%\n", (double)(100 * left)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " others %.3g %%", (double)(100 * left)));
+    PetscCall(ModeViewTwin(modes, i, viewer));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+    if (most > 1) large = PETSC_TRUE;
   }
+  if (large)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "shares above 100 %%: next to a lock-in left and right vector hardly overlap, y'M x = 0 at it, and shares "
+      "of both signs sum to 100 %%; energy_percent of modes_components.csv has none\n"));
   PetscCall(PetscFree(shown));
   PetscFunctionReturn(0);
 }

@@ -34,6 +34,26 @@ PetscReal ModeGap(const Modes modes, PetscInt i)
   return gap;
 }
 
+PetscErrorCode ModeViewTwin(const Modes modes, PetscInt i, PetscViewer viewer)
+{
+  const Mode *a = &modes->mode[i];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < modes->n; k++) {
+    const Mode     *b       = &modes->mode[k];
+    const PetscReal rounded = a->error + b->error + MODES_TINY * hypot(a->sigma, a->omega);
+
+    if (k == i || !(hypot(a->sigma - b->sigma, a->omega - b->omega) <= rounded)) continue;
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "; mode %" PetscInt_FMT
+                                     " has the same eigenvalue: any shape of their plane is a mode, and shares are "
+                                     "those of any one",
+                                     k + 1));
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscReal ModeVectorError(const Modes modes, PetscInt i)
 {
   const PetscReal gap = ModeGap(modes, i), error = modes->mode[i].error;
@@ -181,6 +201,7 @@ PetscErrorCode ModesViewCauses(Modes modes, PetscViewer viewer)
     if (!modes->mode[i].unstable) continue;
     PetscCall(ModesViewMechanism(modes, i, &mechanism[i], viewer));
     if (modes->shares) PetscCall(SharesView(cause, n, &modes->shares[i], shown, viewer));
+    PetscCall(ModeViewTwin(modes, i, viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
   PetscCall(PetscFree(shown));
