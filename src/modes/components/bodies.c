@@ -199,6 +199,7 @@ PetscErrorCode ComponentsDestroy(ModesComponents *c)
   PetscCall(FreeBodiesDestroy(&(*c)->bodies));
   PetscCall(PetscFree((*c)->level));
   PetscCall(PetscFree((*c)->free));
+  PetscCall(PetscFree((*c)->own));
   PetscCall(PetscFree3((*c)->share, (*c)->energy, (*c)->mixed));
   PetscCall(PetscFree(*c));
   PetscFunctionReturn(0);

@@ -77,13 +77,60 @@ static PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
   PetscFunctionReturn(0);
 }
 
-/* Sums of mode i with the free modes, [free modes][N_SUMS][bodies], then of the whole, [N_WHOLE][bodies] */
-static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, const FreeBodies *bodies, Vec product[],
+/* part = what of a vector belongs to body b, 0 elsewhere */
+static PetscErrorCode FreeBodiesTake(const FreeBodies *bodies, PetscInt b, Vec whole, Vec part)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(whole, &n));
+  PetscCall(VecGetArrayRead(whole, &from));
+  PetscCall(VecGetArrayWrite(part, &to));
+  for (PetscInt i = 0; i < n; i++) to[i] = bodies->of[i] == b ? from[i] : 0;
+  PetscCall(VecRestoreArrayWrite(part, &to));
+  PetscCall(VecRestoreArrayRead(whole, &from));
+  PetscFunctionReturn(0);
+}
+
+/* sums[free modes][N_SUMS][bodies] of product k: of each body with those of its free modes alone, many at once */
+static PetscErrorCode SharesDot(const Modes free, const ModesComponents c, Vec product, Vec part, int k,
                                 PetscReal sums[])
 {
-  PetscReal *whole = &sums[free->n * N_SUMS * bodies->n];
-  Vec        v[N_SUMS], phi;
-  Mat        M;
+  const PetscInt n = c->bodies.n;
+  PetscInt      *of;
+  PetscScalar   *dot;
+  Vec           *phi;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(free->n, &of, free->n, &dot, free->n, &phi));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscInt some = 0;
+
+    for (PetscInt j = 0; j < free->n; j++) {
+      if (!(c->own[j * n + b] > LABEL_TIE)) continue; /* alike on all ranks */
+      of[some] = j;
+      PetscCall(ModesGetVectors(free, j, &phi[some++], NULL, NULL, NULL));
+    }
+    if (!some) continue;
+    PetscCall(FreeBodiesTake(&c->bodies, b, product, part));
+    PetscCall(VecMDot(part, some, phi, dot));
+    for (PetscInt j = 0; j < some; j++) sums[(of[j] * N_SUMS + k) * n + b] = dot[j];
+  }
+  PetscCall(PetscFree3(of, dot, phi));
+  PetscFunctionReturn(0);
+}
+
+/* Sums of mode i with the free modes, [free modes][N_SUMS][bodies], then of the whole, [N_WHOLE][bodies]; product has
+   room for N_SUMS + 1 vectors */
+static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, const ModesComponents c, Vec product[],
+                                PetscReal sums[])
+{
+  const FreeBodies *bodies = &c->bodies;
+  PetscReal        *whole  = &sums[free->n * N_SUMS * bodies->n];
+  Vec               v[N_SUMS];
+  Mat               M;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMass(modes->pencil, &M));
@@ -93,19 +140,16 @@ static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, const
 
     if (v[k]) PetscCall(VecNorm(v[k], NORM_INFINITY, &size));
     if (size == 0) v[k] = NULL; /* the imaginary part of a real vector */
-    if (v[k]) PetscCall(MatMult(M, v[k], product[k]));
-  }
-  for (PetscInt j = 0; j < free->n * N_SUMS; j++) {
-    PetscCall(ModesGetVectors(free, j / N_SUMS, &phi, NULL, NULL, NULL));
-    PetscCall(FreeBodiesAddDot(bodies, v[j % N_SUMS] ? phi : NULL, product[j % N_SUMS], &sums[j * bodies->n]));
+    if (!v[k]) continue;
+    PetscCall(MatMult(M, v[k], product[k]));
+    PetscCall(SharesDot(free, c, product[k], product[N_SUMS], k, sums));
   }
   for (int k = 0; k < 4; k++)
     PetscCall(FreeBodiesAddDot(bodies, v[SUM_Y_RE + k / 2], v[SUM_X_RE + k % 2] ? product[SUM_X_RE + k % 2] : NULL,
                                &whole[(SUM_RE_RE + k) * bodies->n]));
   for (int k = 0; k < 2; k++)
     PetscCall(FreeBodiesAddDot(bodies, v[SUM_X_RE + k], product[SUM_X_RE + k], &whole[(SUM_X_X_RE + k) * bodies->n]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)((free->n * N_SUMS + N_WHOLE) * bodies->n), MPIU_REAL,
-                             MPI_SUM, modes->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, whole, (PetscMPIInt)(N_WHOLE * bodies->n), MPIU_REAL, MPI_SUM, modes->comm));
   PetscFunctionReturn(0);
 }
 
@@ -160,20 +204,20 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
 {
   const PetscInt n = (c->n_levels + 1) * c->bodies.n, n_sums = (free->n * N_SUMS + N_WHOLE) * c->bodies.n;
   PetscReal     *sums;
-  Vec            product[N_SUMS], yr;
+  Vec            product[N_SUMS + 1], yr;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(modes->n * n, &c->share, modes->n * n, &c->energy, modes->n, &c->mixed));
   PetscCall(PetscMalloc1(n_sums, &sums));
-  for (int k = 0; k < N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
+  for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
   for (PetscInt i = 0; i < modes->n; i++) {
     PetscCall(PetscArrayzero(sums, n_sums));
-    PetscCall(SharesSum(modes, free, i, &c->bodies, product, sums));
+    PetscCall(SharesSum(modes, free, i, c, product, sums));
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
     SharesForm(c, yr ? PETSC_TRUE : PETSC_FALSE, free->n, i, sums);
     c->mixed[i] = ShapeMixed(modes, i);
   }
-  for (int k = 0; k < N_SUMS; k++) PetscCall(VecDestroy(&product[k]));
+  for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDestroy(&product[k]));
   PetscCall(PetscFree(sums));
   PetscFunctionReturn(0);
 }

@@ -30,6 +30,7 @@ struct _p_ModesComponents {
   PetscInt   n_levels;
   FreeLevel *level;  /* [levels] by frequency */
   FreeMode  *free;   /* [levels][bodies] */
+  PetscReal *own;    /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
   PetscReal *share;  /* [modes][levels + 1][bodies], the last one of the whole body: by left and right vector */
   PetscReal *energy; /* likewise, of the right vector alone */
   PetscReal *mixed;  /* [modes] what the shape is off by, as in FreeLevel */

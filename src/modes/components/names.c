@@ -24,7 +24,6 @@ typedef struct {
   Modes       free;
   Operators   operators;
   const Mesh *mesh;
-  PetscReal  *own;    /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
   PetscReal  *nodal;  /* [local nodes][3] of one free mode */
   PetscReal **mass;   /* [bodies][local nodes] kg */
   SolidFrame *solid;  /* [bodies] */
@@ -69,7 +68,7 @@ static PetscErrorCode NamesCreateSolids(Modes modes, const FreeBodies *bodies, N
 }
 
 /* The name of the disc's shape in a level of a body, without the contact's + where it is any of a plane; "" for none */
-static PetscErrorCode DiscNameFind(const Names *names, const FreeLevel *level, PetscInt n_bodies, PetscInt b,
+static PetscErrorCode DiscNameFind(const ModesComponents c, const Names *names, const FreeLevel *level, PetscInt b,
                                    char name[32])
 {
   char *plus;
@@ -79,7 +78,7 @@ static PetscErrorCode DiscNameFind(const Names *names, const FreeLevel *level, P
   for (PetscInt k = level->first; k < level->first + level->n && !name[0]; k++) {
     const char *label = names->free->mode[k].label;
 
-    if (names->own[k * n_bodies + b] > 0.5 && (label[0] == '(' || !strncmp(label, "IP-", 3)))
+    if (c->own[k * c->bodies.n + b] > 0.5 && (label[0] == '(' || !strncmp(label, "IP-", 3)))
       PetscCall(PetscStrncpy(name, label, 32));
   }
   plus = level->n > 1 ? strchr(name, '+') : NULL;
@@ -101,8 +100,8 @@ static PetscErrorCode NamesMeasure(const ModesComponents c, Names *names)
       PetscCall(ModesGetVectors(names->free, k, &x, NULL, NULL, NULL));
       PetscCall(OperatorsGetNodal(names->operators, x, names->nodal));
       for (PetscInt b = 0; b < n; b++) {
-        if (!(names->own[k * n + b] > LABEL_TIE)) continue; /* alike on all ranks */
-        PetscCall(DiscNameFind(names, &c->level[l], n, b, disc));
+        if (!(c->own[k * n + b] > LABEL_TIE)) continue; /* alike on all ranks */
+        PetscCall(DiscNameFind(c, names, &c->level[l], b, disc));
         if (disc[0]) continue;
         PetscCall(SolidAddEnergies(&names->solid[b], names->nodal, &names->energy[(l * n + b) * N_SOLID_KINDS]));
       }
@@ -110,7 +109,7 @@ static PetscErrorCode NamesMeasure(const ModesComponents c, Names *names)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NamesCreate(Modes modes, const Modes free, Mat M, const ModesComponents c, Names *names)
+static PetscErrorCode NamesCreate(Modes modes, const Modes free, const ModesComponents c, Names *names)
 {
   const PetscInt n = c->bodies.n;
 
@@ -118,9 +117,7 @@ static PetscErrorCode NamesCreate(Modes modes, const Modes free, Mat M, const Mo
   *names = (Names){.free = free};
   PetscCall(PencilGetOperators(modes->pencil, &names->operators));
   PetscCall(OperatorsGetMesh(names->operators, &names->mesh));
-  PetscCall(PetscCalloc3(free->n * n, &names->own, 3 * names->mesh->n_nodes, &names->nodal,
-                         c->n_levels * n * N_SOLID_KINDS, &names->energy));
-  PetscCall(FreeModesLocate(free, M, &c->bodies, names->own));
+  PetscCall(PetscCalloc2(3 * names->mesh->n_nodes, &names->nodal, c->n_levels * n * N_SOLID_KINDS, &names->energy));
   PetscCall(NamesCreateSolids(modes, &c->bodies, names));
   PetscCall(NamesMeasure(c, names));
   PetscFunctionReturn(0);
@@ -134,7 +131,7 @@ static PetscErrorCode NamesDestroy(PetscInt n_bodies, Names *names)
     PetscCall(PetscFree(names->mass[b]));
   }
   PetscCall(PetscFree2(names->mass, names->solid));
-  PetscCall(PetscFree3(names->own, names->nodal, names->energy));
+  PetscCall(PetscFree2(names->nodal, names->energy));
   PetscFunctionReturn(0);
 }
 
@@ -151,7 +148,7 @@ static PetscErrorCode FreeLevelName(const ModesComponents c, const Names *names,
     PetscCall(PetscStrncpy(is->name, "rigid", sizeof(is->name)));
     PetscFunctionReturn(0);
   }
-  PetscCall(DiscNameFind(names, &c->level[l], c->bodies.n, b, is->name));
+  PetscCall(DiscNameFind(c, names, &c->level[l], b, is->name));
   if (!is->name[0])
     PetscCall(PetscSNPrintf(is->name, sizeof(is->name), "%s %" PetscInt_FMT, SolidKindName(kind), counts[kind] + 1));
   counts[SOLID_NONE] += is->n;
@@ -169,13 +166,15 @@ PetscErrorCode FreeLevelsName(Modes modes, const Modes free, Mat M, ModesCompone
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_levels * n, &c->free));
   PetscCall(PetscCalloc2(n, &number, n, &counts));
-  PetscCall(NamesCreate(modes, free, M, c, &names));
+  PetscCall(PetscCalloc1(free->n * n, &c->own));
+  PetscCall(FreeModesLocate(free, M, &c->bodies, c->own));
+  PetscCall(NamesCreate(modes, free, c, &names));
   for (PetscInt i = 0; i < c->n_levels * n; i++) {
     const FreeLevel *level = &c->level[i / n];
     FreeMode        *is    = &c->free[i];
     PetscReal        sum   = 0;
 
-    for (PetscInt k = level->first; k < level->first + level->n; k++) sum += names.own[k * n + i % n];
+    for (PetscInt k = level->first; k < level->first + level->n; k++) sum += c->own[k * n + i % n];
     is->n     = (PetscInt)(sum + 0.5);
     is->first = number[i % n];
     PetscCall(FreeLevelName(c, &names, i / n, i % n, counts[i % n], is));
