@@ -4,12 +4,15 @@
     verify/reduced.py agree FULL REDUCED COLUMN TOLERANCE
     verify/reduced.py lift FIELDS SNAPSHOT TOLERANCE
     verify/reduced.py verified RUN FINER HIGHER
+    verify/reduced.py accelerates RUN PROBE TOLERANCE
 
 FULL and REDUCED are output folders whose rows need not stand at the same times; the largest difference of the column over the
 time that both have, the second interpolated linearly to the times of the first, is relative to the largest value.
 
 RUN has said in RUN.log beside its folder what half the step and a higher cut-off change in the last half of its time: the rms of
 the force, relative, and the share of the time without contact. FINER and HIGHER are such runs, all with rows at the steps of RUN.
+
+The mean acceleration of PROBE in the last half of RUN is the change of its velocity over that time, in each direction to TOLERANCE, m/s^2.
 
 FIELDS and SNAPSHOT are files with displacements of one mesh; the largest difference is relative to the largest displacement."""
 
@@ -60,5 +63,16 @@ def verified(*folders):
     return not (len(said) == 2 and near and 0 < one[1] < 1 and any(share for _, share in found))
 
 
+def accelerates(run, probe, tolerance):
+    rows = history(run)
+    last = rows[len(rows) // 2:]
+    step, miss = numpy.diff(last["time_s"]), []
+    for d in "xyz":
+        v, a = last[f"{probe}_v{d}_m_s"], last[f"{probe}_a{d}_m_s2"]
+        miss.append(abs((step * (a[1:] + a[:-1]) / 2).sum() - (v[-1] - v[0])) / step.sum())
+    print(f"mean acceleration beside the change of velocity: off by {', '.join(f'{x:.2e}' for x in miss)} m/s^2, may be {tolerance}")
+    return not (len(last) > 100 and 0 < max(miss) < float(tolerance))
+
+
 if __name__ == "__main__":
-    sys.exit({"agree": agree, "lift": lift, "verified": verified}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit({"agree": agree, "lift": lift, "verified": verified, "accelerates": accelerates}[sys.argv[1]](*sys.argv[2:]))

@@ -28,7 +28,7 @@ void ReducedSetShown(ReducedRun r, PetscBool start)
   }
 }
 
-/* eta'' = P'p - Omega^2 eta - C eta', m sqrt(kg)/s^2, without Cm q', the damping of the residual. */
+/* eta'' = P'p - Omega^2 eta - C eta' - Cm q', m sqrt(kg)/s^2; q' by differences, as in velocities */
 static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
   const ReducedModel *model = &r->reduction.model;
@@ -41,6 +41,8 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
     r->motion.acceleration[k] -= model->omega2[k] * r->motion.state.eta[k];
     for (PetscInt j = 0; j < m && model->C; j++)
       r->motion.acceleration[k] -= model->C[k + m * j] * r->motion.state.rate[j];
+    for (PetscInt j = 0; j < 3 * model->n_pairs && model->Cm; j++)
+      r->motion.acceleration[k] -= model->Cm[k + m * j] * r->motion.p_rate[j];
   }
   PetscFunctionReturn(0);
 }
