@@ -90,7 +90,7 @@ PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal
     force[d] = mass * external->gravity[d];
     for (PetscInt i = 0; i < external->n_loads; i++)
       force[d] += RampValue(&external->loads[i].ramp, time) * scene->loads[i].force[d];
-    for (PetscInt i = 0; i < external->n_impulses; i++)
+    for (PetscInt i = 0; i < external->n_acting; i++)
       force[d] += external->impulses[i].last[0] * external->impulses[i].impulse[d];
   }
   *known = external->n_frames == 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -140,7 +140,7 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
     PetscCall(ChecksumSetPart(c, "motion %s", m->prescribed->name));
     PetscCall(ExternalAddRamp(&m->ramp, c));
   }
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
+  for (PetscInt i = 0; i < external->n_acting; i++) {
     const Impulse *hit = &external->impulses[i];
 
     PetscCall(ChecksumSetPart(c, "impulse %s", hit->name));

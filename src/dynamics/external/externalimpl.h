@@ -54,10 +54,10 @@ struct _p_External {
   MPI_Comm comm;
   Model    model;
   /* set by options */
-  PetscInt      n_loads, n_motions, n_impulses, n_parts, n_frames;
+  PetscInt      n_loads, n_motions, n_impulses, n_acting, n_parts, n_frames;
   TimedLoad    *loads;
   Drive        *motions;
-  Impulse      *impulses;
+  Impulse      *impulses;   /* those that act first */
   PetscReal     gravity[3]; /* of the model, m/s^2 */
   PetscReal    *velocity;   /* [n_parts][3], m/s */
   InertiaFrame *frames;     /* [n_parts] */

@@ -25,21 +25,21 @@ static PetscErrorCode ImpulseDestroy(Impulse *hit)
   PetscFunctionReturn(0);
 }
 
-/* Takes those out that are zero: so a command line does without one of its files */
-static PetscErrorCode ImpulsesOmitZero(External external)
+/* Those of zeros, by which a command line does without one of its files, come last and do not act. Their options stay
+   known to the run, so that one that it does not read is refused as any other. */
+static PetscErrorCode ImpulsesSetAsideZero(External external)
 {
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_impulses; i++) {
-    Impulse *hit = &external->impulses[i];
+    const Impulse hit = external->impulses[i];
 
-    if (hit->impulse[0] != 0 || hit->impulse[1] != 0 || hit->impulse[2] != 0)
-      external->impulses[n++] = *hit;
-    else
-      PetscCall(ImpulseDestroy(hit));
+    if (hit.impulse[0] == 0 && hit.impulse[1] == 0 && hit.impulse[2] == 0) continue;
+    external->impulses[i]   = external->impulses[n];
+    external->impulses[n++] = hit;
   }
-  external->n_impulses = n;
+  external->n_acting = n;
   PetscFunctionReturn(0);
 }
 
@@ -47,7 +47,7 @@ PetscErrorCode ImpulsesSetFromOptions(External external)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesReadList(external->comm, &impulses_list, external, &external->n_impulses, &external->impulses));
-  PetscCall(ImpulsesOmitZero(external));
+  PetscCall(ImpulsesSetAsideZero(external));
   PetscFunctionReturn(0);
 }
 
@@ -100,7 +100,7 @@ static PetscErrorCode ImpulseCheckMoves(External external, const Impulse *hit, P
 PetscErrorCode ImpulsesSetUp(External external)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
+  for (PetscInt i = 0; i < external->n_acting; i++) {
     Impulse  *hit = &external->impulses[i];
     PetscInt  vertex;
     PetscBool moves;
@@ -121,7 +121,7 @@ PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, Exte
   const PetscReal end = step->time + step->dt;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
+  for (PetscInt i = 0; i < external->n_acting; i++) {
     Impulse        *hit  = &external->impulses[i];
     const PetscBool acts = *external->begun != 0 && hit->last[1] == 0 && hit->time < end ? PETSC_TRUE : PETSC_FALSE;
     PetscReal       full;
@@ -139,7 +139,7 @@ PetscErrorCode ImpulsesAdvance(External external, const ExternalStep *step, Exte
 
 PetscBool ExternalIsHitting(External external)
 {
-  for (PetscInt i = 0; i < external->n_impulses; i++)
+  for (PetscInt i = 0; i < external->n_acting; i++)
     if (external->impulses[i].last[0] != 0) return PETSC_TRUE;
   return PETSC_FALSE;
 }
@@ -147,7 +147,7 @@ PetscBool ExternalIsHitting(External external)
 PetscErrorCode ExternalCountHits(External external, PetscInt *n)
 {
   PetscFunctionBeginUser;
-  *n = external->n_impulses;
+  *n = external->n_acting;
   PetscFunctionReturn(0);
 }
 
@@ -188,7 +188,7 @@ PetscErrorCode ExternalFindHit(External external, PetscInt i, ExternalHit *hit, 
 PetscErrorCode ImpulsesView(External external, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
+  for (PetscInt i = 0; i < external->n_acting; i++) {
     const Impulse   *hit = &external->impulses[i];
     const PetscReal *J = hit->impulse, *x = hit->x;
 

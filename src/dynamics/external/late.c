@@ -48,7 +48,7 @@ PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt,
   Late            step = {.option = "time", .why = "the last step of the run begins", .last = last};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < external->n_impulses; i++) {
+  for (PetscInt i = 0; i < external->n_acting; i++) {
     step.name = external->impulses[i].name;
     step.time = external->impulses[i].time;
     PetscCall(LateCheck(external, judge, &step));

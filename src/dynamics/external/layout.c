@@ -41,7 +41,7 @@ static PetscReal *ExternalTakeMemory(PetscReal **next, PetscInt n)
 PetscErrorCode ExternalLayMemory(External external)
 {
   const PetscInt n_before = external->n_memory;
-  PetscInt       n        = 2 + external->n_loads + 2 * external->n_impulses;
+  PetscInt       n        = 2 + external->n_loads + 2 * external->n_acting;
   PetscReal     *next;
 
   PetscFunctionBeginUser;
@@ -53,7 +53,7 @@ PetscErrorCode ExternalLayMemory(External external)
   external->begun    = ExternalTakeMemory(&next, 1);
   external->drives   = ExternalTakeMemory(&next, 1);
   for (PetscInt i = 0; i < external->n_loads; i++) external->loads[i].last = ExternalTakeMemory(&next, 1);
-  for (PetscInt i = 0; i < external->n_impulses; i++) external->impulses[i].last = ExternalTakeMemory(&next, 2);
+  for (PetscInt i = 0; i < external->n_acting; i++) external->impulses[i].last = ExternalTakeMemory(&next, 2);
   for (PetscInt i = 0; i < external->n_frames; i++)
     external->frames[i].last = ExternalTakeMemory(&next, 3 * external->frames[i].n);
   PetscFunctionReturn(0);

@@ -90,7 +90,7 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
   PetscFunctionReturn(0);
 }
 
-/* Steps 10, 100, 1000, ... and every multiple of the interval: early faults are found early, and looks cost nothing */
+/* Whether step n is a multiple of the interval; of 0 none is */
 PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
 {
   return interval > 0 && n > 0 && n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;

@@ -5,7 +5,8 @@
               rest. Then nothing
               moves until something disturbs it: all loads and sliding speeds are in force from the first step.
    On top of either a mode x of an earlier run, lambda = sigma + i omega: u_0 += A Re(x), v_0 += A Re(lambda x), in the
-   phase in which the largest component of x is positive, and with A such that it is the amplitude asked for. m, m/s.
+   phase in which the largest component of x is positive, of equally large ones (to 1e-6) the first by place x, y, z,
+   then by direction, and with A such that it is the amplitude asked for. m, m/s.
 */
 #include "dynamics/dynamicsimpl.h"
 #include "shape.h"
@@ -66,7 +67,7 @@ static PetscBool StartIsBefore(const StartComponent *a, const StartComponent *b)
   return PETSC_FALSE;
 }
 
-/* Of the components of all ranks that are as large as the largest the first by place, so that rounding does not choose */
+/* Of the components of all ranks that are as large as the largest the first by place: rounding does not choose */
 static PetscErrorCode StartFindLargest(MPI_Comm comm, const Mesh *mesh, const PetscReal re[], const PetscReal im[],
                                        PetscReal *largest, StartComponent *first)
 {
@@ -77,7 +78,7 @@ static PetscErrorCode StartFindLargest(MPI_Comm comm, const Mesh *mesh, const Pe
   *largest = 0;
   for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) *largest = PetscMax(*largest, hypot(re[i], im[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 1, MPIU_REAL, MPI_MAX, comm));
-  for (PetscInt i = 0; i<3 * mesh->n_nodes && * largest> 0; i++) {
+  for (PetscInt i = 0; *largest > 0 && i < 3 * mesh->n_nodes; i++) {
     const PetscReal     *x = &mesh->x[i - i % 3], size = hypot(re[i], im[i]);
     const StartComponent c = {{x[0], x[1], x[2]}, (double)(i % 3), {re[i] / size, im[i] / size}};
 
