@@ -69,7 +69,14 @@ def static(scene):
     more += ["-static_dense", "1"] if scene.happens(0.3) else []
     more += ["-static_load_steps", draw.choice((2, 3))] if scene.happens(0.3) else []
     more += ["-model_gravity", "0,3,-9.81"] if scene.happens(0.3) else []
-    return scene.words(without=ONLY_MODES | {"model_gravity"}) + more
+    without = ONLY_MODES | {"model_gravity"}
+    if "contact_kn" in scene.options and "-static_dense" not in more and scene.happens(0.5):
+        without |= {"contact_kn"}
+        more += draw.choice((["-contact_pressure_law", "exponential", "-contact_pressure_c0", scene.power(-8, -5),
+                              "-contact_pressure_p0", scene.power(3, 8)],
+                             ["-contact_pressure_law", "power", "-contact_pressure_k", scene.power(16, 20)],
+                             ["-contact_pressure_law", "table", "-contact_pressure_table", "-1e-6,0,0,1e4,1e-6,1e6,3e-6,1e8"]))
+    return scene.words(without=without) + more
 
 
 def frf(scene):
