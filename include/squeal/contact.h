@@ -1,19 +1,24 @@
 /*
    Contact - frictional interfaces in steady sliding, linearised: pairs of facing nodes with gap and slip operators.
 
-   Pair p joins a slave node s and the point of the master surface that it faces, which moves as u_m = sum_i w_i u_i
-   of the nodes of one master facet, with its own shape functions w_i, which may be negative where it is of second
-   order: one node of weight 1 where the meshes match, up to nine where they do not. Every node of a slave face is a
-   slave, those between its corners too. n is the master's outward normal, t the direction of the slave's sliding
-   velocity relative to the master, b = n x t. For displacements u (m)
+   Pair p belongs to a slave node. It joins a mean of the slave, u_s = sum_k v_k u_k, and one of the master,
+   u_m = sum_i w_i u_i, of any number of nodes each, both with weights of sum 1. Every node of a slave face is a slave,
+   those between its corners too. n is the master's outward normal, t the direction of the slave's sliding velocity
+   relative to the master, b = n x t. For displacements u (m)
       (N u)_p = n . (u_m - u_s)     closing of the gap
       (T u)_p = t . (u_m - u_s)     slip
       (B u)_p = b . (u_m - u_s)     transverse slip
-   Pairs are node to surface. Where meshes match, a uniform pressure passes exactly: nodes of faces of six nodes then
+   Node to surface: u_s is that of the node, u_m that of the point of the master surface that it faces, of the nodes of
+   one master facet with its own shape functions: one node of weight 1 where the meshes match, up to nine where they do
+   not. Where meshes match, a uniform pressure passes exactly: nodes of faces of six nodes then
    carry int N_i dA, nothing at corners, where rounding says whether they are closed (where the pressure varies some
    corners open, by gaps that vanish with the size of the mesh), and faces of eight nodes would have
    to pull there, so that these open with the exact law (a warning says so). Where they do not match, the total is
    exact, and the pressure at single nodes off by tens of percent, of second order more than of first.
+   Mortar: the sides are means over both surfaces, from integrals over the exact overlap of their facets with functions
+   phi_p of the slave nodes (contact/mortar/mortar.c): area = int phi_p dA over the master, w_i = int phi_p N_i dA /
+   area. A uniform pressure passes exactly between any meshes of flat surfaces, and the area is exact at borders, holes
+   and slots. lambda_n over the area is a mean of the pressure around the node, on faces of second order too.
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    where the pressure is no multiple of the closing, p = P(c) (pressurelaw.h), k_n is that of small motions about the
@@ -35,24 +40,32 @@ typedef struct _p_Contact *Contact;
 
 typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
 
+typedef enum { CONTACT_NODE, CONTACT_MORTAR } ContactDiscretization; /* node to surface, or integrals over surfaces */
+
 extern const char *const ContactStatusNames[CONTACT_N_STATUS]; /* "open", "stick", "slip" */
 
 #define CONTACT_MAX_MASTER 9 /* nodes of a facet, at most */
 
+/* A node of one side of a pair */
+typedef struct {
+  PetscInt  number;     /* global */
+  PetscInt  unknown[3]; /* global unknowns x, y, z; -1 when fixed by a support */
+  PetscReal weight;     /* sum 1 over a side */
+} ContactPairNode;
+
 /* One pair; the array of pairs is distributed, each pair lives on the rank that owns its slave node */
 typedef struct {
-  PetscInt  interface;                               /* index of the interface */
-  PetscInt  n_master;                                /* nodes of the master facet that take part */
-  PetscReal weight[CONTACT_MAX_MASTER];              /* their weights, sum 1 */
-  PetscInt  master[CONTACT_MAX_MASTER][3], slave[3]; /* global unknowns x, y, z; -1 when fixed by a support */
-  PetscInt  corner[CONTACT_MAX_MASTER], vertex;      /* global numbers of the nodes of master and slave */
-  PetscReal x[3];                                    /* position of the slave, m */
-  PetscReal n[3], t[3], b[3];                        /* unit vectors */
-  PetscReal area;                                    /* positive share of the slave node in its surface, m^2 */
-  PetscReal across; /* |sum_i w_i a_i| at the point that it faces (contact/surface/surface.h) */
-  PetscReal gap;    /* n . (x_s - x_m) of the mesh as it is, m, positive open */
-  PetscReal force;  /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
-  PetscReal speed;  /* stated sliding speed, m/s; 0 where nothing slides as told */
+  PetscInt               interface;         /* index of the interface */
+  PetscInt               vertex;            /* global number of the slave node that it belongs to */
+  PetscInt               n_slave, n_master; /* nodes of its sides */
+  const ContactPairNode *slave, *master;    /* borrowed, on the pair's rank alone; slave[0] is that of vertex */
+  PetscReal              x[3];              /* position of the slave, m */
+  PetscReal              n[3], t[3], b[3];  /* unit vectors */
+  PetscReal              area;              /* positive share of the slave node in its surface, m^2 */
+  PetscReal              gap;               /* n . (x_s - x_m) of the mesh as it is, m, positive open */
+  PetscReal              force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
+  PetscBool              mean;  /* lambda_n over area is a mean of the pressure, on faces of second order too */
+  PetscReal              speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
 
 /* State of one pair. Friction is given as the force on the master; in slip it has the direction of the slave's velocity
@@ -78,8 +91,9 @@ typedef struct {
 
 /* Parameters of an interface; SI units */
 typedef struct {
-  char      *name, *slave, *master; /* surfaces */
-  ContactLaw law;
+  char                 *name, *slave, *master; /* surfaces */
+  ContactLaw            law;
+  ContactDiscretization discretization;
   /* with the stated speed of the interface: as below, or 0 with a rotation, where pairs differ */
   FrictionLaw friction;
   PressureLaw pressure;     /* with the penalty law; where it is linear kn says how stiff it is */
@@ -139,6 +153,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 `contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
+.  -contact_discretization <node|mortar> - pairs of slave nodes and points of the master, or means over both surfaces;
+                                   not in time on the mesh
 .  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)

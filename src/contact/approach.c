@@ -2,7 +2,7 @@
    Approach of the second rows of nodes of slave and master, one element below their surfaces:
       d . u = mean over pairs of n . (u_m2 - u_s2)   (m)
    Below a node of the surface lies the other end of its edge with the largest cosine to the inward normal. The master
-   side moves with the weights of the pair's facet, u_m2 = sum_i w_i u_i2. A corner of the master held in all three
+   side moves with the weights of the pair, u_m2 = sum_i w_i u_i2. A corner of the master held in all three
    directions has no unknown by which it could be found: the node below it counts as held too.
 */
 #include "contactimpl.h"
@@ -166,9 +166,10 @@ static PetscErrorCode PairsAdd(Contact contact, PetscInt interface, const BelowL
     const PetscReal    share = 1 / (PetscReal)n_pairs;
 
     if (pair->interface != interface) continue;
-    PetscCall(BelowAdd(slave, pair->slave, -share, pair->n, d, &missing));
+    for (PetscInt k = 0; k < pair->n_slave; k++)
+      PetscCall(BelowAdd(slave, pair->slave[k].unknown, -pair->slave[k].weight * share, pair->n, d, &missing));
     for (PetscInt i = 0; i < pair->n_master; i++)
-      PetscCall(BelowAdd(master, pair->master[i], pair->weight[i] * share, pair->n, d, &missing));
+      PetscCall(BelowAdd(master, pair->master[i].unknown, pair->master[i].weight * share, pair->n, d, &missing));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &missing, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCheck(!missing, contact->comm, PETSC_ERR_USER_INPUT,

@@ -182,7 +182,7 @@ static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterfac
   PetscCheck(!second || !c->identify, contact->comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify needs elements of first order at %s and %s; give -%s_kn_per_area (N/m^3)", c->name,
              c->slave, c->master, c->name);
-  if (c->law == CONTACT_CONSTRAINT && slave[8])
+  if (c->law == CONTACT_CONSTRAINT && slave[8] && c->discretization == CONTACT_NODE)
     PetscCall(PetscFPrintf(contact->comm, stderr,
                            "squeal: warning: contact %s: %" PetscInt_FMT
                            " faces of %s have eight nodes (hex20, wedge15), whose corners open under a uniform "
@@ -244,7 +244,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     const ContactInterface *f         = &contact->interfaces[i];
-    const PetscInt          flags[]   = {i, f->law, f->identify, f->damping};
+    const PetscInt          flags[]   = {i, f->law, f->identify, f->damping, f->discretization};
     const PetscReal         kn        = f->identify ? 0 : f->per_area ? -f->kn : f->kn;
     const PetscReal         kt        = f->kt_per_area ? -f->kt : f->kt;
     const PetscReal         numbers[] = {f->tolerance, f->overhang, f->speed, kn, kt, f->force};
@@ -252,7 +252,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
     PetscCall(ModelAddSetChecksum(contact->model, f->master, PETSC_TRUE, c));
-    PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(flags), flags));
+    PetscCall(ChecksumAddInts(c, f->discretization == CONTACT_NODE ? 4 : 5, flags)); /* as before there were two */
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
     PetscCall(FrictionAddChecksum(&f->friction, c));
     PetscCall(PressureAddChecksum(&f->pressure, c));
@@ -274,9 +274,11 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].master));
     PetscCall(PressureDestroy(&(*contact)->interfaces[i].pressure));
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
+    PetscCall(PetscFree((*contact)->sides[i]));
   }
   PetscCall(PetscFree((*contact)->interfaces));
   PetscCall(PetscFree((*contact)->pairs));
+  PetscCall(PetscFree((*contact)->feet));
   PetscCall(ContactTiesDestroy(*contact));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);

@@ -7,6 +7,18 @@
 
 #define CONTACT_MAX 16 /* interfaces of one scene */
 
+/* The point that the slave node of a pair faces, with n, t and b of the pair, and the node */
+typedef struct {
+  PetscInt  facet;
+  PetscReal weight[CONTACT_MAX_MASTER]; /* of the facet's nodes */
+  PetscReal across;                     /* |sum_i w_i a_i| (surface/surface.h) */
+  PetscReal distance;                   /* of the node, m */
+  PetscReal beyond;                     /* that along the surface, of a node beyond the border of the master, m */
+  PetscBool slides;                     /* the slip has a part in the tangent plane */
+  PetscInt  node;                       /* local */
+  PetscReal normal[3];                  /* of the slave there, times area, m^2 */
+} ContactPairFoot;
+
 struct _p_Contact {
   MPI_Comm          comm;
   Model             model;
@@ -14,6 +26,8 @@ struct _p_Contact {
   ContactInterface *interfaces;
   PetscInt          n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair      *pairs;                /* ordered by interface */
+  ContactPairFoot  *feet;                 /* of the pairs */
+  ContactPairNode  *sides[CONTACT_MAX];   /* nodes of the pairs of each interface */
   ContactSurface    surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
   PetscInt          n_ties, n_links;      /* links of this rank */
   ContactTie       *ties;
@@ -25,10 +39,16 @@ PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt inter
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 
-/* cover.c - areas of n new pairs, of local nodes node[n], where faces of the slave lie partly over the master; takes
-   out those without. *lost: area over the master of faces without any pair, m^2. Collective. */
-PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
-                                              ContactPair pair[], PetscReal *lost);
+/* cover.c - areas of the pairs from the first on where faces of the slave lie partly over the master; takes out those
+   without. *lost: area over the master of faces without any pair, m^2. Collective. */
+PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt first, PetscReal *lost);
+/* cover.c - whether a facet of the master lies within the tolerance (m) of a face of this size (m), and looks towards
+   it; e[2] is the face's normal at its middle, the origin */
+PETSC_INTERN PetscBool ContactFacetFaces(const ContactFacet *facet, const double e[3][3], const double origin[3],
+                                         PetscReal size, PetscReal tolerance);
+/* mortar/mortar.c - sides, areas over the master (0 for none) and gaps of the pairs from the first on, which are those
+   of all slave nodes of the interface and have their feet. Collective. */
+PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first);
 
 /* quantities.c - the lists of interfaces and ties; contact.c, tie.c - what their rows do not say */
 /* Why nobody reads how it slides in time, where it does not slide as told */

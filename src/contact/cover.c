@@ -28,14 +28,13 @@ typedef struct {
   PetscReal               lost;
 } Cover;
 
-/* Whether a facet lies within the tolerance of a face, and looks towards it; e[2] is the face's normal */
-static PetscBool FacetFaces(const Cover *k, const ContactFacet *g, const double e[3][3], const double origin[3],
-                            PetscReal size)
+PetscBool ContactFacetFaces(const ContactFacet *g, const double e[3][3], const double origin[3], PetscReal size,
+                            PetscReal tolerance)
 {
   PetscReal away[3];
 
   for (int d = 0; d < 3; d++) away[d] = ContactFacetMiddle(g, d) / 4 - origin[d];
-  return Vec3Dot(g->normal, e[2]) < 0 && PetscAbsReal(Vec3Dot(away, e[2])) <= k->c->tolerance + (size + g->size) / 2
+  return Vec3Dot(g->normal, e[2]) < 0 && PetscAbsReal(Vec3Dot(away, e[2])) <= tolerance + (size + g->size) / 2
            ? PETSC_TRUE
            : PETSC_FALSE;
 }
@@ -63,7 +62,7 @@ static PetscErrorCode FaceCover(Cover *k, int n, const double x[][3], PetscReal 
   for (PetscInt i = 0; i < k->near.n; i++) {
     const ContactFacet *facet = &k->surface->facet[k->near.facet[i]];
 
-    if (!FacetFaces(k, facet, (const double(*)[3])e, origin, 2 * size)) continue;
+    if (!ContactFacetFaces(facet, (const double(*)[3])e, origin, 2 * size, k->c->tolerance)) continue;
     n_facing++;
     for (int b = 0; b < ContactFacetCorners(facet); b++)
       if (facet->beside[b] < 0) border = PETSC_TRUE;
@@ -135,10 +134,12 @@ static PetscErrorCode FacesGive(Contact contact, Cover *k, Vec has, Vec sums)
 }
 
 /* Collective. Pairs that keep no more than BARE of their area are taken out of the list. */
-PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *n, const PetscInt node[],
-                                 ContactPair pair[], PetscReal *lost)
+PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt first, PetscReal *lost)
 {
-  Cover              k = {.c = &contact->interfaces[interface]};
+  const PetscInt     n    = contact->n_pairs - first;
+  ContactPair       *pair = &contact->pairs[first];
+  ContactPairFoot   *foot = &contact->feet[first];
+  Cover              k    = {.c = &contact->interfaces[interface]};
   const PetscScalar *sum;
   PetscScalar       *one;
   PetscInt           kept = 0;
@@ -149,18 +150,20 @@ PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt *
   PetscCall(ModelCreateNodal(contact->model, &has));
   PetscCall(ModelCreateNodal(contact->model, &sums));
   PetscCall(VecGetArray(has, &one));
-  for (PetscInt i = 0; i < *n; i++) one[3 * node[i]] = 1;
+  for (PetscInt i = 0; i < n; i++) one[3 * foot[i].node] = 1;
   PetscCall(VecRestoreArray(has, &one));
   PetscCall(ModelSumShared(contact->model, has));
   PetscCall(FacesGive(contact, &k, has, sums));
   PetscCall(VecGetArrayRead(sums, &sum));
-  for (PetscInt i = 0; i < *n; i++) {
+  for (PetscInt i = 0; i < n; i++) {
     const PetscReal whole = pair[i].area;
 
-    if (PetscRealPart(sum[3 * node[i] + 1]) > 0) pair[i].area = PetscRealPart(sum[3 * node[i]]);
-    if (pair[i].area > BARE * whole) pair[kept++] = pair[i];
+    if (PetscRealPart(sum[3 * foot[i].node + 1]) > 0) pair[i].area = PetscRealPart(sum[3 * foot[i].node]);
+    if (pair[i].area <= BARE * whole) continue;
+    foot[kept]   = foot[i];
+    pair[kept++] = pair[i];
   }
-  *n = kept;
+  contact->n_pairs = first + kept;
   PetscCall(VecRestoreArrayRead(sums, &sum));
   PetscCallMPI(MPI_Allreduce(&k.lost, lost, 1, MPIU_REAL, MPI_SUM, contact->comm));
   PetscCall(PetscFree(k.near.facet));

@@ -1,7 +1,7 @@
 /*
-   Forces of the contact at the nodes of the mesh, N: f = -lambda_n n + lambda_t[0] t + lambda_t[1] b on the master
-   point, shared by the nodes of its facet with their weights, f_i = w_i f, and -f on the slave: the transpose of u_m
-   - u_s = sum_i w_i u_i - u_s, so that the forces of a pair do the work of the pair and balance (sum_i w_i = 1).
+   Forces of the contact at the nodes of the mesh, N: f = -lambda_n n + lambda_t[0] t + lambda_t[1] b on the master,
+   shared by its nodes with their weights, f_i = w_i f, and -v_k f on those of the slave: the transpose of u_m - u_s =
+   sum_i w_i u_i - sum_k v_k u_k, so that the forces of a pair do the work of the pair and balance (both sums are 1).
    Nodes that a support holds are included, for reactions. And what ties pass on: with u_s = sum_i A_i u_i
    (ContactLink.follow), a force f on the slave acts as A_i' f on the nodes that it follows.
 */
@@ -16,11 +16,13 @@ static PetscErrorCode PairAddForce(const ContactPair *pair, const ContactState *
   for (int d = 0; d < 3; d++)
     force[d] = -state->lambda_n * pair->n[d] + state->lambda_t[0] * pair->t[d] + state->lambda_t[1] * pair->b[d];
   for (PetscInt i = 0; i < pair->n_master; i++) {
-    for (int d = 0; d < 3; d++) part[d] = pair->weight[i] * force[d];
-    PetscCall(VecSetValuesBlocked(forces, 1, &pair->corner[i], part, ADD_VALUES));
+    for (int d = 0; d < 3; d++) part[d] = pair->master[i].weight * force[d];
+    PetscCall(VecSetValuesBlocked(forces, 1, &pair->master[i].number, part, ADD_VALUES));
   }
-  for (int d = 0; d < 3; d++) part[d] = -force[d];
-  PetscCall(VecSetValuesBlocked(forces, 1, &pair->vertex, part, ADD_VALUES));
+  for (PetscInt k = 0; k < pair->n_slave; k++) {
+    for (int d = 0; d < 3; d++) part[d] = -pair->slave[k].weight * force[d];
+    PetscCall(VecSetValuesBlocked(forces, 1, &pair->slave[k].number, part, ADD_VALUES));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -9,38 +9,30 @@
 */
 #include "contactimpl.h"
 
-/* Nodes with their weights, directions, speed (m/s) and gap (m); false where the slip has no part in the tangent
-   plane. Along a rotation the speed is |w x (x - c)| in the tangent plane, which differs from pair to pair; a
-   direction that is given has the speed of the options everywhere. across = |sum_i w_i a_i| (m^2, or without unit on
-   facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9 of the facet's size is
-   rounding of the coordinates, and 0. */
-static PetscBool PairSetMaster(const ContactInterface *c, const ContactSurface *surface, const ContactFoot *foot,
-                               ContactPair *pair)
+/* Weights, directions, speed (m/s) and gap (m). Along a rotation the speed is |w x (x - c)| in the tangent plane, which
+   differs from pair to pair; a direction that is given has the speed of the options everywhere. across = |sum_i w_i
+   a_i| (m^2, or without unit on facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9
+   of the facet's size is rounding of the coordinates, and 0. */
+static void PairSetFoot(const ContactInterface *c, const ContactFacet *facet, const ContactFoot *foot,
+                        ContactPair *pair, ContactPairFoot *at)
 {
-  const ContactFacet *facet = &surface->facet[foot->facet];
-  PetscReal           weight[CONTACT_MAX_MASTER], along[3], e[3][3], a[3] = {0, 0, 0}, speed;
+  PetscReal along[3], e[3][3], a[3] = {0, 0, 0}, speed;
 
   ContactSlideAlong(c, pair->x, along);
-  speed = ContactBasis(facet, foot->natural, along, weight, e);
-  for (int i = 0; i < facet->n; i++) {
-    if (weight[i] == 0) continue;
-    for (int d = 0; d < 3; d++) {
-      pair->master[pair->n_master][d] = facet->unknowns[i][d];
-      a[d] += weight[i] * facet->across[i][d];
-    }
-    pair->corner[pair->n_master]   = surface->vertex[facet->node[i]];
-    pair->weight[pair->n_master++] = weight[i];
-  }
+  at->facet = foot->facet;
+  speed     = ContactBasis(facet, foot->natural, along, at->weight, e);
+  for (int i = 0; i < facet->n; i++)
+    for (int d = 0; d < 3 && at->weight[i] != 0; d++) a[d] += at->weight[i] * facet->across[i][d];
   for (int d = 0; d < 3; d++) {
     pair->n[d] = e[0][d];
     pair->t[d] = e[1][d];
     pair->b[d] = e[2][d];
   }
-  pair->speed  = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
-  pair->across = Vec3Length(a);
-  pair->gap    = ContactGap(facet, weight, e[0], pair->x);
+  pair->speed = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
+  at->slides  = speed > 0 ? PETSC_TRUE : PETSC_FALSE;
+  at->across  = Vec3Length(a);
+  pair->gap   = ContactGap(facet, at->weight, e[0], pair->x);
   if (PetscAbsReal(pair->gap) < 1e-9 * facet->size) pair->gap = 0;
-  return speed > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the
@@ -54,101 +46,165 @@ typedef struct {
 } PairFailure;
 
 /* Counts a pair that has one node twice, or of which one surface looks towards the other or where that looks */
-static void PairLook(const ContactPair *pair, const PetscReal normal[3], PairFailure *failure)
+static void PairLook(const ContactSurface *surface, const ContactPair *pair, const ContactPairFoot *foot,
+                     PairFailure *failure)
 {
-  const PetscReal along = Vec3Dot(normal, pair->n);
+  const ContactFacet *facet = &surface->facet[foot->facet];
+  const PetscReal     along = Vec3Dot(foot->normal, pair->n);
 
   failure->n++;
-  for (PetscInt i = 0; i < pair->n_master; i++)
-    if (pair->corner[i] == pair->vertex && PetscAbsReal(pair->weight[i] - 1) < 1e-9) failure->n_common++;
+  for (int i = 0; i < facet->n; i++)
+    if (surface->vertex[facet->node[i]] == pair->vertex && PetscAbsReal(foot->weight[i] - 1) < 1e-9)
+      failure->n_common++;
   if (along < 0) failure->n_towards++;
   if (along > 0) failure->n_with++;
 }
 
 /* Keeps that a slave at x lies beyond the border of the master */
-static void PairOff(const ContactFoot *foot, const PetscReal x[3], PairFailure *failure)
+static void PairOff(const ContactPairFoot *foot, const PetscReal x[3], PairFailure *failure)
 {
   failure->n_off++;
-  failure->off = PetscMax(failure->off, foot->across);
-  if (failure->n_off > 1 && foot->across >= failure->nearest[0]) return;
-  failure->nearest[0] = foot->across;
+  failure->off = PetscMax(failure->off, foot->beyond);
+  if (failure->n_off > 1 && foot->beyond >= failure->nearest[0]) return;
+  failure->nearest[0] = foot->beyond;
   failure->nearest[1] = foot->distance;
   for (int d = 0; d < 3; d++) failure->nearest_x[d] = x[d];
 }
 
 /* Whether a slave lies farther beyond the border of the master than is allowed */
-static PetscBool FootIsOff(const ContactSurface *surface, const ContactFoot *foot)
+static PetscBool FootIsOff(const ContactSurface *surface, const ContactPairFoot *foot)
 {
-  const ContactFacet *facet = &surface->facet[foot->facet];
+  const ContactFacet *facet = foot->facet < 0 ? NULL : &surface->facet[foot->facet];
 
-  return foot->across > 0.5 * ContactEdge(surface, facet) * facet->size ? PETSC_TRUE : PETSC_FALSE;
+  return !facet || foot->beyond > 0.5 * ContactEdge(surface, facet) * facet->size ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Makes the pair of a slave node, but for its place in the list; false where no master lies under it */
-static PetscBool PairMake(const ContactInterface *c, const ContactSurface *surface, const PetscReal normal[3],
-                          ContactPair *pair, PairFailure *failure)
+/* The foot of the slave node of a pair */
+static void FootPair(const ContactInterface *c, const ContactSurface *surface, ContactPair *pair, ContactPairFoot *at)
 {
   ContactFoot foot;
-  PetscReal   distance;
 
   ContactFootFind(surface, pair->x, &foot);
-  if (foot.facet < 0 || FootIsOff(surface, &foot)) {
-    PairOff(&foot, pair->x, failure);
-    return PETSC_FALSE;
-  }
-  if (!PairSetMaster(c, surface, &foot, pair)) failure->no_slip = 1;
-  distance = foot.across > 0 ? PetscAbsReal(pair->gap) : foot.distance;
+  at->facet    = foot.facet;
+  at->distance = foot.distance;
+  at->beyond   = foot.across;
+  if (foot.facet >= 0) PairSetFoot(c, &surface->facet[foot.facet], &foot, pair, at);
+}
+
+/* Keeps what fails of a pair */
+static void PairJudge(const ContactSurface *surface, const ContactPair *pair, const ContactPairFoot *foot,
+                      PairFailure *failure)
+{
+  const PetscReal distance = foot->beyond > 0 ? PetscAbsReal(pair->gap) : foot->distance;
+
+  if (!foot->slides) failure->no_slip = 1;
   if (distance > failure->distance) {
     failure->distance = distance;
     for (int d = 0; d < 3; d++) failure->x[d] = pair->x[d];
   }
-  PairLook(pair, normal, failure);
-  return PETSC_TRUE;
+  PairLook(surface, pair, foot, failure);
 }
 
-/* Pairs the slave nodes that this rank owns with the facets under them; what fails is kept in *failure. vertices: of
-   the new pairs, which the caller frees */
-static PetscErrorCode PairNodes(Contact contact, PetscInt interface, const ContactSurface *surface,
-                                PairFailure *failure, PetscInt **vertices)
+/* The sides of a pair of a node and its foot: the node, and those of the facet that take part; *node is where the next
+   of the interface are put */
+static void PairSetSides(const ContactSurface *surface, const ContactPairFoot *foot, const PetscInt unknown[3],
+                         ContactPair *pair, ContactPairNode **node)
+{
+  const ContactFacet *facet = &surface->facet[foot->facet];
+  ContactPairNode    *side  = *node;
+
+  pair->n_slave = 1;
+  pair->slave   = side;
+  *side++       = (ContactPairNode){pair->vertex, {unknown[0], unknown[1], unknown[2]}, 1};
+  pair->master  = side;
+  for (int i = 0; i < facet->n; i++) {
+    const PetscInt *u = facet->unknowns[i];
+
+    if (foot->weight[i] != 0)
+      *side++ = (ContactPairNode){surface->vertex[facet->node[i]], {u[0], u[1], u[2]}, foot->weight[i]};
+  }
+  pair->n_master = (PetscInt)(side - pair->master);
+  *node          = side;
+}
+
+/* Appends a pair for each slave node that this rank owns, with its foot and its area in the surface of the slave */
+static PetscErrorCode FootPairs(Contact contact, PetscInt interface, const ContactSurface *surface)
 {
   const ContactInterface *c = &contact->interfaces[interface];
   const Mesh             *mesh;
   PetscReal              *normals; /* [node][3], times area, m^2 */
-  PetscInt                n, n_new = 0;
+  PetscInt                n, *vertex;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetSetNormals(contact->model, c->slave, &normals));
-  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &n, vertices));
+  PetscCall(ModelGetOwnedNodes(contact->model, c->slave, &n, &vertex));
   PetscCall(PetscRealloc(sizeof(ContactPair) * (size_t)(contact->n_pairs + n), &contact->pairs));
+  PetscCall(PetscRealloc(sizeof(ContactPairFoot) * (size_t)(contact->n_pairs + n), &contact->feet));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt v    = (*vertices)[i];
-    ContactPair   *pair = &contact->pairs[contact->n_pairs];
+    const PetscInt   v    = vertex[i];
+    ContactPair     *pair = &contact->pairs[contact->n_pairs];
+    ContactPairFoot *foot = &contact->feet[contact->n_pairs++];
 
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
+    *foot = (ContactPairFoot){.node = v};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
-    PetscCall(PetscArraycpy(pair->slave, &mesh->unknown[3 * v], 3));
-    if (!PairMake(c, surface, &normals[3 * v], pair, failure)) continue;
-    (*vertices)[n_new++] = v;
-    contact->n_pairs++;
+    PetscCall(PetscArraycpy(foot->normal, &normals[3 * v], 3));
+    FootPair(c, surface, pair, foot);
   }
+  PetscCall(PetscFree(vertex));
   PetscCall(PetscFree(normals));
+  PetscFunctionReturn(0);
+}
+
+/* Sides of the pairs from the first on; slaves beyond the border of the master are taken out. Of mortar contact that is
+   those without an area over it, but one that lies over the master is kept where it is too far from it, to say so. */
+static PetscErrorCode PairsChoose(Contact contact, PetscInt interface, PetscInt first, const ContactSurface *surface,
+                                  PairFailure *failure)
+{
+  const ContactInterface *c    = &contact->interfaces[interface];
+  PetscInt                kept = first;
+  ContactPairNode        *node = NULL;
+  const Mesh             *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(contact->model, &mesh));
+  if (c->discretization == CONTACT_MORTAR) {
+    PetscCall(ContactMortarPairs(contact, interface, first));
+  } else {
+    PetscCall(PetscMalloc1((1 + CONTACT_MAX_MASTER) * (contact->n_pairs - first), &node));
+    contact->sides[interface] = node;
+  }
+  for (PetscInt p = first; p < contact->n_pairs; p++) {
+    const ContactPairFoot *foot = &contact->feet[p];
+    ContactPair           *pair = &contact->pairs[p];
+    const PetscBool        far  = foot->beyond == 0 && foot->distance > c->tolerance ? PETSC_TRUE : PETSC_FALSE;
+
+    if (foot->facet < 0 || (node ? FootIsOff(surface, foot) : pair->area == 0 && !far)) {
+      PairOff(foot, pair->x, failure);
+      continue;
+    }
+    if (node) PairSetSides(surface, foot, &mesh->unknown[3 * foot->node], pair, &node);
+    PairJudge(surface, pair, foot, failure);
+    contact->feet[kept]    = *foot;
+    contact->pairs[kept++] = *pair;
+  }
+  contact->n_pairs = kept;
   PetscFunctionReturn(0);
 }
 
 /* Areas of the pairs from the first on; those on the border of the master, none of whose faces lies over it, are taken
    out: an error where they are all. lost: area over the master that no pair gets, m^2 */
-static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt first, const PetscInt vertices[],
-                                 PetscReal *lost)
+static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt first, PetscReal *lost)
 {
   ContactInterface *c = &contact->interfaces[interface];
-  PetscInt          n = contact->n_pairs - first, kept = n, all[2];
+  const PetscInt    n = contact->n_pairs - first;
+  PetscInt          all[2];
 
   PetscFunctionBeginUser;
-  PetscCall(ContactCoverAreas(contact, interface, &kept, vertices, &contact->pairs[first], lost));
-  contact->n_pairs = first + kept;
-  all[0]           = n - kept;
-  all[1]           = kept;
+  PetscCall(ContactCoverAreas(contact, interface, first, lost));
+  all[1] = contact->n_pairs - first;
+  all[0] = n - all[1];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_INT, MPI_SUM, contact->comm));
   PetscCheck(
     all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT,
@@ -278,17 +334,16 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   const PetscInt        first   = contact->n_pairs;
   PairFailure           failure = {.distance = 0};
   const ContactSurface *surface;
-  PetscReal             area = 0, lost;
-  PetscInt             *vertices;
+  PetscReal             area = 0, lost = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &surface));
   PetscCall(ModelGetUnit(contact->model, "m", &failure.metre));
-  PetscCall(PairNodes(contact, interface, surface, &failure, &vertices));
+  PetscCall(FootPairs(contact, interface, surface));
+  PetscCall(PairsChoose(contact, interface, first, surface, &failure));
   PetscCall(PartnerCheck(contact->comm, c, &failure));
-  PetscCall(PairsCover(contact, interface, first, vertices, &lost));
+  if (c->discretization == CONTACT_NODE) PetscCall(PairsCover(contact, interface, first, &lost));
   PetscCall(OffWarn(contact, c, lost));
-  PetscCall(PetscFree(vertices));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));
   for (PetscInt p = first; p < contact->n_pairs; p++)

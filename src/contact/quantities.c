@@ -7,8 +7,9 @@
 /* Two members, slave and master */
 #define SURFACES(type) .at = offsetof(type, slave), .size = 2 * sizeof(char *)
 
-static const char *const laws[] = {[CONTACT_PENALTY] = "penalty", [CONTACT_CONSTRAINT] = "constraint", NULL};
-static const char *const fars[] = {[PETSC_FALSE] = "error", [PETSC_TRUE] = "free", NULL};
+static const char *const laws[]            = {[CONTACT_PENALTY] = "penalty", [CONTACT_CONSTRAINT] = "constraint", NULL};
+static const char *const discretizations[] = {[CONTACT_NODE] = "node", [CONTACT_MORTAR] = "mortar", NULL};
+static const char *const fars[]            = {[PETSC_FALSE] = "error", [PETSC_TRUE] = "free", NULL};
 
 static const char *ContactIdleCentre(const void *contact, const QuantityRun *run)
 {
@@ -50,6 +51,14 @@ static const char *ContactIdleStiffness(const void *contact, const QuantityRun *
   return ((const ContactInterface *)contact)->identify ? NULL : ContactIdleArea(contact, run);
 }
 
+static const char *ContactIdleOverhang(const void *contact, const QuantityRun *run)
+{
+  (void)run;
+  return ((const ContactInterface *)contact)->discretization == CONTACT_MORTAR
+           ? "not used with -@discretization mortar, whose areas over the master are exact"
+           : NULL;
+}
+
 static const char *ContactIdleForce(const void *contact, const QuantityRun *run)
 {
   (void)run;
@@ -76,6 +85,8 @@ static const Quantity interface[] = {
    .required = PETSC_TRUE, .why = "slave,master"},
   {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws,
    .idle = ContactIdleLaw},
+  {"-discretization", "pairs of slave nodes and points of the master, or means over both surfaces (mortar)", NULL,
+   QUANTITY_WORD, INTERFACE(discretization), .words = discretizations},
   {"-kn_per_area", "instead: normal stiffness per area of the slave (penalty)", "N/m^3", QUANTITY_REAL, INTERFACE(kn),
    .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
    .idle = ContactIdleArea, .varies = VARIES_LINEAR},
@@ -90,7 +101,7 @@ static const Quantity interface[] = {
   {"-tolerance", "largest distance of a slave node from the master along the normal", "m", QUANTITY_REAL,
    INTERFACE(tolerance), .initial = 1e-5, QUANTITY_POSITIVE},
   {"-overhang", "slave nodes farther beyond the master's border have no pair; 0: 1 % of a facet", "m", QUANTITY_REAL,
-   INTERFACE(overhang), QUANTITY_NOT_NEGATIVE},
+   INTERFACE(overhang), QUANTITY_NOT_NEGATIVE, .idle = ContactIdleOverhang},
   {"-force", "total normal force in the sliding state", "N", QUANTITY_REAL, INTERFACE(force), QUANTITY_NOT_NEGATIVE,
    .in = RUN_LINEAR, .idle = ContactIdleForce, .varies = VARIES_LINEAR},
   {"-speed", "sliding speed", "m/s", QUANTITY_REAL, INTERFACE(speed), QUANTITY_NOT_NEGATIVE, .idle = ContactIdleSpeed,

@@ -1,9 +1,9 @@
 /*
-   Sparse rows d . (u_m - u_s) = d . (sum_i w_i u_i - u_s) of pairs: N (d = n, closing of the gap), T (d = t) and B (d
-   = b) of an interface, and rows along any direction d (unit vectors, no unit; the row times u is in m). Row i has 3
-   (1 + n_master) entries at most: w_i d at the unknowns of the master's nodes and -d at those of the slave. A
-   direction that a support holds has the unknown -1, which MatSetValues() leaves out: u is 0 there. Values are added,
-   since a node may be slave and master of one pair.
+   Sparse rows d . (u_m - u_s) = d . (sum_i w_i u_i - sum_k v_k u_k) of pairs: N (d = n, closing of the gap), T (d = t)
+   and B (d = b) of an interface, and rows along any direction d (unit vectors, no unit; the row times u is in m). Row i
+   has 3 (n_slave + n_master) entries at most: w_i d at the unknowns of the master's nodes and -v_k d at those of the
+   slave's. A direction that a support holds has the unknown -1, which MatSetValues() leaves out: u is 0 there. Values
+   are added, since a node may be slave and master of one pair.
 
    The transpose takes forces of pairs to nodes: a compressive lambda_n is the internal force N' lambda_n, and acts on
    the nodes as -N' lambda_n. Rows live on the rank that owns the slave; columns may belong to any.
@@ -13,15 +13,15 @@
 /* Sets one row: d . (u_m - u_s) */
 static PetscErrorCode PairRowSet(Mat rows, PetscInt row, const ContactPair *pair, const PetscReal d[3])
 {
-  const PetscScalar slave[3] = {-d[0], -d[1], -d[2]};
-
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < pair->n_master; i++) {
-    const PetscScalar master[3] = {pair->weight[i] * d[0], pair->weight[i] * d[1], pair->weight[i] * d[2]};
+  for (PetscInt i = 0; i < pair->n_master + pair->n_slave; i++) {
+    const PetscBool        master  = i < pair->n_master ? PETSC_TRUE : PETSC_FALSE;
+    const ContactPairNode *node    = master ? &pair->master[i] : &pair->slave[i - pair->n_master];
+    const PetscReal        w       = master ? node->weight : -node->weight;
+    const PetscScalar      part[3] = {w * d[0], w * d[1], w * d[2]};
 
-    PetscCall(MatSetValues(rows, 1, &row, 3, pair->master[i], master, ADD_VALUES));
+    PetscCall(MatSetValues(rows, 1, &row, 3, node->unknown, part, ADD_VALUES));
   }
-  PetscCall(MatSetValues(rows, 1, &row, 3, pair->slave, slave, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
@@ -33,7 +33,8 @@ PetscErrorCode ContactCreateRows(Contact contact, PetscInt n, const PetscInt pai
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  for (PetscInt i = 0; i < n; i++) n_entries = PetscMax(n_entries, 3 * (1 + contact->pairs[pair[i]].n_master));
+  for (PetscInt i = 0; i < n; i++)
+    n_entries = PetscMax(n_entries, 3 * (contact->pairs[pair[i]].n_slave + contact->pairs[pair[i]].n_master));
   PetscCall(MatCreateAIJ(contact->comm, n, mesh->n_own, PETSC_DETERMINE, PETSC_DETERMINE, n_entries, NULL, n_entries,
                          NULL, rows));
   PetscCall(MatGetOwnershipRange(*rows, &row, NULL));

@@ -45,8 +45,9 @@ static PetscErrorCode PairsView(Contact contact, PetscInt interface, PetscViewer
   PetscCall(ModelGetUnit(contact->model, "m^2", &area));
   if (e.n)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  %" PetscInt_FMT " pairs over %.4g %s, gaps of the mesh %.3g to %.3g %s\n", e.n,
-                                     (double)e.area, area, (double)e.least, (double)e.most, metre));
+                                     "  %" PetscInt_FMT " %spairs over %.4g %s, gaps of the mesh %.3g to %.3g %s\n",
+                                     e.n, c->discretization == CONTACT_MORTAR ? "mortar " : "", (double)e.area, area,
+                                     (double)e.least, (double)e.most, metre));
   if (c->n_off)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n",

@@ -121,7 +121,7 @@ static PetscErrorCode StaticsFindDisplacement(Statics s, PetscReal *displacement
   PetscCall(VecGetOwnershipRange(s->u, &begin, &end));
   PetscCall(VecGetArrayRead(s->u, &u));
   for (PetscInt i = 0; i < 3 * s->rows.n_pairs; i++) {
-    const PetscInt row = s->rows.pair[i / 3].slave[i % 3];
+    const PetscInt row = s->rows.pair[i / 3].slave[0].unknown[i % 3];
 
     if (row >= begin && row < end) *displacement = PetscMax(*displacement, PetscAbsScalar(u[row - begin]));
   }

@@ -107,7 +107,7 @@ static PetscErrorCode PairsMark(BodyGraph *b, PetscInt interface, const PetscInt
     for (PetscInt i = 0; i < pair->n_master; i++) {
       PetscInt at;
 
-      PetscCall(PetscFindInt(pair->corner[i], s->n_nodes, s->vertex, &at));
+      PetscCall(PetscFindInt(pair->master[i].number, s->n_nodes, s->vertex, &at));
       if (at >= 0 && of[at] >= 0) b->has[of[at]] = 1;
     }
   }

@@ -48,6 +48,11 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscCall(PetscStrcmp(c->slave, c->master, &same));
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);
+  PetscCheck(
+    c->discretization == CONTACT_NODE, comm, PETSC_ERR_SUP,
+    "-%s_discretization mortar is not supported in time on the mesh, where slave nodes follow the master: give "
+    "-%s_discretization node, or -dynamics_model reduced",
+    c->name, c->name);
   PetscCall(FrictionCheckNotNegative(comm, c->name, &c->friction));
   PetscFunctionReturn(0);
 }

@@ -132,21 +132,25 @@ static PetscErrorCode TurningCreate(Contact contact, const char set[], Mat *turn
 static PetscErrorCode InterpolationCreate(Contact contact, PetscInt interface, size_t offset, PetscInt n_columns,
                                           Mat *P)
 {
-  PetscInt row, n_entries = 0;
+  const PetscInt        n_entries = 3 * CONTACT_MAX_MASTER;
+  const ContactSurface *surface;
+  PetscInt              row;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) n_entries = PetscMax(n_entries, 3 * contact->pairs[p].n_master);
+  PetscCall(ContactGetSurface(contact, interface, &surface));
   PetscCall(MatCreateAIJ(contact->comm, contact->n_pairs, n_columns, PETSC_DETERMINE, PETSC_DETERMINE, n_entries, NULL,
                          n_entries, NULL, P));
   PetscCall(MatGetOwnershipRange(*P, &row, NULL));
   for (PetscInt p = 0; p < contact->n_pairs; p++, row++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const PetscReal   *d    = (const PetscReal *)((const char *)pair + offset);
+    const ContactPair     *pair  = &contact->pairs[p];
+    const ContactPairFoot *foot  = &contact->feet[p];
+    const ContactFacet    *facet = pair->interface == interface ? &surface->facet[foot->facet] : NULL;
+    const PetscReal       *d     = (const PetscReal *)((const char *)pair + offset);
 
-    if (pair->interface != interface) continue;
-    for (PetscInt i = 0; i < 3 * pair->n_master; i++)
-      PetscCall(MatSetValue(*P, row, 3 * pair->corner[i / 3] + i % 3, pair->weight[i / 3] * d[i % 3] / pair->across,
-                            ADD_VALUES));
+    for (PetscInt i = 0; facet && i < 3 * facet->n; i++)
+      if (foot->weight[i / 3] != 0)
+        PetscCall(MatSetValue(*P, row, 3 * surface->vertex[facet->node[i / 3]] + i % 3,
+                              foot->weight[i / 3] * d[i % 3] / foot->across, ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(*P, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*P, MAT_FINAL_ASSEMBLY));

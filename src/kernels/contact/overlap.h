@@ -11,7 +11,7 @@
 #include "base/algebra/vec3.h"
 
 #define FAN_MOST     8  /* triangles */
-#define POLYGON_MOST 24 /* corners of a triangle cut three times, whatever rounding does */
+#define POLYGON_MOST 64 /* corners of a quadrilateral cut four times, whatever rounding does */
 
 /* Triangles [n][3][2] in a plane */
 typedef struct {

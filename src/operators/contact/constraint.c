@@ -28,7 +28,7 @@ static PetscErrorCode ConstraintCheckFollowers(Pencil pencil, PetscInt n, const 
   PetscCall(MatGetOwnershipRange(o->E, &first, NULL));
   for (PetscInt p = 0; p < n; p++)
     for (int d = 0; d < 3; d++)
-      if (o->follows[list[p]->slave[d] - first]) follows = 1;
+      if (o->follows[list[p]->slave[0].unknown[d] - first]) follows = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &follows, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(
     !follows, pencil->comm, PETSC_ERR_SUP,
@@ -44,8 +44,7 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
                                        const ContactInterface **interfaces)
 {
   const ContactPair *pairs;
-  PetscInt           n_pairs, n_all, n_interfaces;
-  PetscInt           held = 0;
+  PetscInt           n_pairs, n_all, n_interfaces, fault[2] = {0, 0}; /* held, of several nodes */
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(pencil->operators->contact, &n_pairs, &n_all, &pairs));
@@ -56,10 +55,14 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
     if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT || pencil->group[p] < 0) continue;
     (*list)[(*n)++] = &pairs[p];
     for (int d = 0; d < 3; d++)
-      if (pairs[p].slave[d] < 0) held = 1;
+      if (pairs[p].slave[0].unknown[d] < 0) fault[0] = 1;
+    if (pairs[p].n_slave > 1) fault[1] = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, pencil->comm));
-  PetscCheck(!held, pencil->comm, PETSC_ERR_SUP,
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, 2, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!fault[1], pencil->comm, PETSC_ERR_SUP,
+             "the contact constraint cannot eliminate slaves of mortar contact with faces of second order: use "
+             "-contact_law penalty or -contact_discretization node");
+  PetscCheck(!fault[0], pencil->comm, PETSC_ERR_SUP,
              "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "
              "-contact_law penalty");
   PetscCall(ConstraintCheckFollowers(pencil, *n, *list));
@@ -110,9 +113,9 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
   PetscCall(VecDuplicate(slaves, &masters));
   PetscCall(VecSetOption(masters, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   for (PetscInt p = 0; p < n; p++) {
-    PetscCall(VecSetValues(slaves, 1, list[p]->slave, &one, ADD_VALUES));
+    PetscCall(VecSetValues(slaves, 1, list[p]->slave[0].unknown, &one, ADD_VALUES));
     for (PetscInt i = 0; i < list[p]->n_master; i++)
-      PetscCall(VecSetValues(masters, 1, list[p]->master[i], &large, INSERT_VALUES));
+      PetscCall(VecSetValues(masters, 1, list[p]->master[i].unknown, &large, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(slaves));
   PetscCall(VecAssemblyEnd(slaves));
@@ -162,9 +165,9 @@ static PetscErrorCode InjectionCreate(Pencil pencil, PetscInt n, const ContactPa
       const PetscScalar values[2]  = {part ? part[p] * pair->n[d] : pair->t[d], pair->b[d]};
       const PetscInt    columns[2] = {column, column + 1}, n_columns = part ? 1 : 2;
 
-      is_slave[pair->slave[d] - first] = PETSC_TRUE;
+      is_slave[pair->slave[0].unknown[d] - first] = PETSC_TRUE;
       if (part && part[p] == 0) continue;
-      PetscCall(MatSetValues(*E, 1, &pair->slave[d], n_columns, columns, values, INSERT_VALUES));
+      PetscCall(MatSetValues(*E, 1, &pair->slave[0].unknown[d], n_columns, columns, values, INSERT_VALUES));
     }
   }
   for (PetscInt i = 0; i < n_local && !part; i++)
@@ -194,8 +197,8 @@ static PetscErrorCode CouplingCreate(Pencil pencil, PetscInt n, const ContactPai
       PetscScalar block[9];
 
       for (int k = 0; k < 9; k++)
-        block[k] = pair->weight[i] * pair->n[k / 3] * (part ? -part[p] * pair->t[k % 3] : pair->n[k % 3]);
-      PetscCall(MatSetValues(*G, 3, pair->slave, 3, pair->master[i], block, INSERT_VALUES));
+        block[k] = pair->master[i].weight * pair->n[k / 3] * (part ? -part[p] * pair->t[k % 3] : pair->n[k % 3]);
+      PetscCall(MatSetValues(*G, 3, pair->slave[0].unknown, 3, pair->master[i].unknown, block, INSERT_VALUES));
     }
   }
   PetscCall(MatAssemblyBegin(*G, MAT_FINAL_ASSEMBLY));

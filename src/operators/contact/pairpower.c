@@ -133,7 +133,7 @@ static PetscReal PairNormal(const ContactPair *pair, PetscInt first, const Petsc
 {
   PetscReal normal = 0;
 
-  for (int d = 0; d < 3; d++) normal += pair->n[d] * r[pair->slave[d] - first];
+  for (int d = 0; d < 3; d++) normal += pair->n[d] * r[pair->slave[0].unknown[d] - first];
   return normal;
 }
 

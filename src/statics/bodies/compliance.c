@@ -41,7 +41,7 @@ static PetscErrorCode ComplianceFindKappa(Mat K, const PairRows *rows, PetscReal
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     sum[1] += 1;
     for (int i = 0; i < 3; i++) {
-      const PetscInt row = rows->pair[p].slave[i];
+      const PetscInt row = rows->pair[p].slave[0].unknown[i];
 
       if (row >= begin && row < end) sum[0] += PetscSqr(rows->pair[p].n[i]) * PetscRealPart(diagonal[row - begin]);
     }

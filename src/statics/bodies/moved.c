@@ -66,8 +66,8 @@ PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows)
     const PetscReal   *e[3] = {q->n, q->t, q->b};
     PetscReal          d[3] = {0, 0, 0};
 
-    for (PetscInt i = 0; i < q->n_master; i++) MovedAdd(n, all, q->corner[i], q->weight[i], d);
-    MovedAdd(n, all, q->vertex, -1, d);
+    for (PetscInt i = 0; i < q->n_master; i++) MovedAdd(n, all, q->master[i].number, q->master[i].weight, d);
+    for (PetscInt k = 0; k < q->n_slave; k++) MovedAdd(n, all, q->slave[k].number, -q->slave[k].weight, d);
     for (PetscInt i = 0; i < rows->law[p].d; i++) rows->moved[rows->first[p] + i] = Vec3Dot(e[i], d);
   }
   PetscCall(PetscFree(all));

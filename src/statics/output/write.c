@@ -24,7 +24,8 @@ static int StaticsCompareRecords(const void *one, const void *other)
 }
 
 /* Pressures of the pairs of one interface on this rank, Pa: lambda_n over the pair's area, or on faces of second
-   order what all nodes of the slave surface have (pressure.c). Collective, also on ranks without pairs. */
+   order, where that is no mean of the pressure, what all nodes of the slave surface have (pressure.c). Collective, also
+   on ranks without pairs. */
 static PetscErrorCode StaticsSetPressure(Statics s, PetscInt interface, StaticsRecord local[])
 {
   const PairRows *rows = &s->rows;
@@ -42,7 +43,7 @@ static PetscErrorCode StaticsSetPressure(Statics s, PetscInt interface, StaticsR
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     if (rows->pair[p].interface != interface) continue;
     local[p].pressure = s->state[p].lambda_n / rows->pair[p].area;
-    if (recovered) PetscCall(VecGetValues(forces, 1, &rows->pair[p].vertex, &local[p].pressure));
+    if (recovered && !rows->pair[p].mean) PetscCall(VecGetValues(forces, 1, &rows->pair[p].vertex, &local[p].pressure));
   }
   PetscCall(VecDestroy(&forces));
   PetscFunctionReturn(0);
