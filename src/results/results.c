@@ -16,7 +16,9 @@ static const Quantity rows[] = {
    QUANTITY_AT(struct _p_Results, dir), .text = "results", .path = "folder"},
   {"-output_fields", "write shapes for ParaView (*.h5, *.xmf) beside the tables", NULL, QUANTITY_BOOL,
    QUANTITY_AT(struct _p_Results, fields), .initial = PETSC_TRUE},
-  {"-output_overwrite", "finished results of an earlier run give way to those of this one; else they are an error",
+  {"-output_overwrite",
+   "finished results of an earlier run give way to those of this one; else they are an error; a killed run goes on "
+   "either way",
    NULL, QUANTITY_BOOL, QUANTITY_AT(struct _p_Results, overwrite), .initial = PETSC_TRUE},
 };
 static const QuantityTable results_quantities = {"Results", "results.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,

@@ -49,7 +49,7 @@ typedef struct {
   LedgerOrigin origin;
 } LedgerAccount;
 
-/* Whether the laws are looked at in step n: 10, 100, 1000, ..., and the multiples of the interval; 0 for never */
+/* Whether the laws are looked at in step n: multiples of the interval; 0 for never */
 PETSC_INTERN PetscBool LedgerIsLooked(PetscInt n, PetscInt interval);
 
 /* The bodies' sums at the beginning of a step: completes the damping work of the step before, of length dt_old */
