@@ -31,8 +31,9 @@ struct _p_Pencil {
   PetscReal *force; /* [n_pairs] normal force, N: of the state, or of -contact_force shared by area */
   PetscReal *total; /* [interfaces] their sums over all ranks */
   /* matrices */
-  Terms                     base;  /* in all unknowns: those of the bodies, of the contact, of the preload */
-  Mat                       Zr, E; /* right null space of the constraints and its injection; NULL without constraints */
+  Terms base;  /* in all unknowns: those of the bodies, of the contact, of the preload */
+  Mat   Zr, E; /* right null space of the constraints and its injection; NULL without constraints */
+  Mat T; /* displacements from those in which slaves have the means of their pairs (means.c); NULL for one node each */
   PetscInt                  n_left;         /* Zl = Zr + sum_i mu_i left[i] */
   Mat                      *left;           /* [n_left] */
   const OperatorsFriction **left_mu;        /* [n_left] mu_i (borrowed) */
@@ -68,6 +69,10 @@ PETSC_INTERN PetscErrorCode PencilRestore(Pencil pencil, PencilSum which);
 /* dependents.c - null space of displacements that follow others, where there is none of the contact. Collective. */
 PETSC_INTERN PetscErrorCode PencilTakeDependents(Pencil pencil);
 
+/* means.c - T of n pairs, NULL where every slave is one node; T X, or T'X, in place of X; E of u in place of E of u~ */
+PETSC_INTERN PetscErrorCode MeansCreate(Pencil pencil, PetscInt n, const ContactPair **list);
+PETSC_INTERN PetscErrorCode MeansFollow(Mat T, PetscBool transpose, Mat *X);
+PETSC_INTERN PetscErrorCode MeansTakeInjection(Pencil pencil, PetscInt n, const ContactPair **list);
 /* multipliers.c - of matrices without a mesh: scales of unknowns without mass as Zr and E, where they are far from one.
    Collective. */
 PETSC_INTERN PetscErrorCode PencilScaleMultipliers(Pencil pencil);

@@ -14,6 +14,10 @@
    E_d' of these, E and E_d their injection: Zr = P (E + G P E), Zl_i = P (F_i + G_i P E). A becomes Zl' A Zr, and
    constraint forces drop out: a term c A of all unknowns makes the terms c (Zr' A Zr) and c mu_i (Zl_i' A Zr) of the
    pencil. Open pairs are no constraints.
+
+   Where the slave's side is a mean of several nodes, u_s = sum_k v_k u_k, all of this is said of u_s in place of the
+   node's own displacement u_0, which follows: u_0 = (u_s - sum_k>0 v_k u_k) / v_0, u = T u~. Then T Zr and T Zl_i stand
+   for Zr and Zl_i, and forces are T' f.
 */
 #include "operators/pencilimpl.h"
 
@@ -44,7 +48,7 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
                                        const ContactInterface **interfaces)
 {
   const ContactPair *pairs;
-  PetscInt           n_pairs, n_all, n_interfaces, fault[2] = {0, 0}; /* held, of several nodes */
+  PetscInt           n_pairs, n_all, n_interfaces, held = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(pencil->operators->contact, &n_pairs, &n_all, &pairs));
@@ -55,14 +59,10 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
     if ((*interfaces)[pairs[p].interface].law != CONTACT_CONSTRAINT || pencil->group[p] < 0) continue;
     (*list)[(*n)++] = &pairs[p];
     for (int d = 0; d < 3; d++)
-      if (pairs[p].slave[0].unknown[d] < 0) fault[0] = 1;
-    if (pairs[p].n_slave > 1) fault[1] = 1;
+      if (pairs[p].slave[0].unknown[d] < 0) held = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, 2, MPIU_INT, MPI_MAX, pencil->comm));
-  PetscCheck(!fault[1], pencil->comm, PETSC_ERR_SUP,
-             "the contact constraint cannot eliminate slaves of mortar contact with faces of second order: use "
-             "-contact_law penalty or -contact_discretization node");
-  PetscCheck(!fault[0], pencil->comm, PETSC_ERR_SUP,
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, pencil->comm));
+  PetscCheck(!held, pencil->comm, PETSC_ERR_SUP,
              "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "
              "-contact_law penalty");
   PetscCall(ConstraintCheckFollowers(pencil, *n, *list));
@@ -224,7 +224,7 @@ static PetscErrorCode NullSpaceFill(Operators o, Mat X, Mat *filled)
   PetscFunctionReturn(0);
 }
 
-/* Zr = P (E + G P E) (part NULL), or Zl_i = P (F_i + G_i P E) of the parts [n] that pairs have in it */
+/* Zr = T P (E + G P E) (part NULL), or Zl_i = T P (F_i + G_i P E) of the parts [n] that pairs have in it */
 static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPair **list, const PetscReal part[],
                                       Mat *Z)
 {
@@ -238,6 +238,7 @@ static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPa
   PetscCall(MatProductClear(sum));
   PetscCall(MatAXPY(sum, 1, F, DIFFERENT_NONZERO_PATTERN));
   PetscCall(NullSpaceFill(pencil->operators, sum, Z));
+  PetscCall(MeansFollow(pencil->T, PETSC_FALSE, Z));
   if (part) PetscCall(MatDestroy(&F));
   PetscCall(MatDestroy(&PE));
   PetscCall(MatDestroy(&sum));
@@ -281,9 +282,11 @@ PetscErrorCode PencilCreateNullSpaces(Pencil pencil)
     for (PetscInt i = 0; i < n_interfaces; i++) n_nodes += pencil->operators->interface[i].n_nodes;
     PetscCall(PetscCalloc3(n_nodes, &pencil->left, n_nodes, &pencil->left_mu, n_nodes, &pencil->left_interface));
     PetscCall(InjectionCreate(pencil, n, list, NULL, &pencil->E));
+    PetscCall(MeansCreate(pencil, n, list));
     PetscCall(NullSpaceCreate(pencil, n, list, NULL, &pencil->Zr));
     for (PetscInt i = 0; i < n_interfaces; i++)
       if (interfaces[i].law == CONTACT_CONSTRAINT) PetscCall(NullSpacesAdd(pencil, n, list, i));
+    PetscCall(MeansTakeInjection(pencil, n, list));
   }
   PetscCall(PetscFree(list));
   PetscFunctionReturn(0);
@@ -296,6 +299,7 @@ PetscErrorCode PencilDestroyNullSpaces(Pencil pencil)
   PetscCall(PetscFree3(pencil->left, pencil->left_mu, pencil->left_interface));
   PetscCall(MatDestroy(&pencil->Zr));
   PetscCall(MatDestroy(&pencil->E));
+  PetscCall(MatDestroy(&pencil->T));
   PetscCall(TermsDestroy(&pencil->projected));
   PetscFunctionReturn(0);
 }

@@ -113,6 +113,10 @@ static PetscErrorCode ForcesCreate(Pencil pencil, PetscComplex lambda, const Vec
     PetscCall(MatMult(o->E, q, r[k]));
   }
   if (o->Z) PetscCall(VecDestroy(&q));
+  for (int k = 0; k < 2 && pencil->T; k++) {
+    PetscCall(MatMultTranspose(pencil->T, r[k], y));
+    PetscCall(VecCopy(y, r[k]));
+  }
   PetscCall(VecDestroy(&y));
   PetscFunctionReturn(0);
 }
