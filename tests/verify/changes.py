@@ -69,12 +69,17 @@ class Brake:
         while name:
             size = [self.scene.number(f"{name}_{word}") for word in ("stiffness", "viscosity", "mass")]
             axes = [numpy.array([float(x) for x in self.scene.value(f"{name}_direction").split(",")])] if sum(size[:2]) else numpy.eye(3)
+            hangs = size[2] > 0 and sum(size[:2]) > 0
             for axis in axes:
                 axis = axis / numpy.linalg.norm(axis)
                 a = self.vector(name, "at", axis)
                 if f"{name}_to" in self.scene.given:
                     a = a - self.vector(name, "to", axis)
-                K, C, M = (A + value * (a @ a.T) for A, value in zip((K, C, M), size))
+                a.resize(K.shape[0], 1)
+                if hangs:  # the motion of the mass is a further unknown
+                    K, C, M = (scipy.sparse.block_diag([A, [[value]]], "csc") for A, value in zip((K, C, M), (0, 0, size[2])))
+                    a = scipy.sparse.vstack([a, [[-1]]], "csc")
+                K, C, M = (A + value * (a @ a.T) for A, value in zip((K, C, M), (*size[:2], 0 if hangs else size[2])))
             name = self.scene.value(f"{name}_with")
         return K, C, M
 
@@ -103,8 +108,24 @@ class Brake:
             sys.exit("too few eigenvalues of scipy: raise their count")
         return [(value, vector) for value, vector in zip(values, vectors[:n].T) if band[0] < value.imag < band[1]]
 
+    def refined(self, name, value):
+        """An eigenvalue by inverse iteration with factors next to it, for Arnoldi's leave 1e-9 of it."""
+        K, C, M = self.changed(name)
+        for _ in range(2):
+            s = value * (1 + 1e-9)
+            factors = scipy.sparse.linalg.splu((K + s * C + s**2 * M).tocsc())
+            slope = (2 * s * M + C).tocsc()
+            x = numpy.random.default_rng(3).standard_normal(K.shape[0]) + 0j
+            y = x
+            for _ in range(3):
+                x, y = factors.solve(slope @ x), factors.solve(slope.T @ y, "T")
+                x, y = x / numpy.linalg.norm(x), y / numpy.linalg.norm(y)
+            value = s - (y @ (K @ x + s * (C @ x) + s**2 * (M @ x))) / (y @ (slope @ x))
+        return value
+
     def overlap(self, x, u):
         """|u^H M x|^2 / (u^H M u x^H M x)."""
+        x = x[:self.M.shape[0]]
         Mx, Mu = self.M @ x, self.M @ u
         return abs(numpy.vdot(u, Mx))**2 / (numpy.vdot(u, Mu).real * numpy.vdot(x, Mx).real)
 

@@ -16,6 +16,7 @@ CHANGED = {"change": str, "mode": int, "freq_hz": float, "growth_rad_s": float, 
 STIFF, VISCOUS = ("stiffness", "N/m", 1e-3, "N/mm"), ("viscosity", "N s/m", 1.0, "N s/m")
 KINDS = {"mass": ("mass", "kg", 1e3, "g"), "spring": STIFF, "dashpot": VISCOUS, "relative_spring": STIFF, "relative_dashpot": VISCOUS}
 FACTORS = 1.0, 2.0, 4.0, 0.5  # of the amount that would stop a mode if the first order held, the likeliest first
+MOST_CHANGES = 42  # of a run: each has up to eight options, of which PETSc 3.18 takes 512
 SEVERAL = 20  # sets of two that are tried, and of three
 TWO_PI = 6.283185307179586
 
@@ -131,7 +132,13 @@ class Cure:
         return [changes for _, _, changes in sorted(left.values(), key=lambda entry: entry[:2])[:SEVERAL]]
 
     def run(self, sets, name):
-        """The trials of sets of changes, by one run of squeal."""
+        """The trials of sets of changes, by as many runs of squeal as its number of options asks for."""
+        most = max(1, MOST_CHANGES // max(map(len, sets)))
+        runs = [sets[i:i + most] for i in range(0, len(sets), most)]
+        return [trial for i, own in enumerate(runs) for trial in self.run_once(own, f"{name}_{i + 1}" if i else name)]
+
+    def run_once(self, sets, name):
+        """The same by one run."""
         folder = self.args.output / name
         folder.mkdir(parents=True, exist_ok=True)
         names, entries, made = {}, {}, {}

@@ -11,7 +11,7 @@
 #include "changes.h"
 #include "solver/block/orthonormal.h"
 
-#define CHANGE_STEPS 3 /* of the chains: the error of the last but one is stated, that of the last is smaller */
+#define CHANGE_STEPS 4 /* of the chains; what the last two change tells the error (dense.c) */
 
 /* Coordinates [n][columns of the space] of vectors */
 static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
@@ -127,7 +127,8 @@ PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm t
   PetscCall(ModesKrylovRestart(&s->right, s->n_states[0], n, a[0]));
   PetscCall(ModesKrylovRestart(&s->left, s->n_states[1], s->space.pencil.symmetric ? 0 : n, a[1]));
   for (int step = 0; step < CHANGE_STEPS; step++) {
-    s->first = s->space.space.n;
+    s->first[0] = step ? s->first[1] : s->space.space.n;
+    s->first[1] = s->space.space.n;
     PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
   }
   for (int i = 0; i < 2; i++) {

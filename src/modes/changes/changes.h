@@ -42,12 +42,12 @@ struct _p_ModesChanged {
 };
 
 /* The modes of the system as it was, and behind them its answers to the terms of a change, in steps of two Krylov
-   chains; those of the last step are the columns of the space from `first` */
+   chains; those of the last two and of the last step are the columns of the space from first[0] and first[1] */
 typedef struct {
   Pencil      owner;
   ModesSpace  space;
   ModesKrylov right, left; /* left is empty for a symmetric pencil */
-  PetscInt    n_modes, n_states[2], first;
+  PetscInt    n_modes, n_states[2], first[2];
   PetscInt    n_solves;
   PetscInt    n_before; /* modes of the system as it was */
   PetscReal  *before;   /* [2 n_before][n_modes] coordinates of their right vectors, real and imaginary parts */
