@@ -158,10 +158,12 @@ Scope ChainGetScope(const Chain *chain)
                  .cycle     = chain->cycle};
 }
 
-PetscErrorCode ChainVisit(MPI_Comm comm, Chain *chain, const QuantityVisitor *visitor)
+PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
 {
+  Chain *chain = ctx;
+
   PetscFunctionBeginUser;
-  PetscCall(SquealVisit(comm, visitor));
+  PetscCall(SquealVisit(PETSC_COMM_WORLD, visitor));
   PetscCall(QuantitiesVisit(visitor, &chain_quantities, NULL, chain, NULL));
   PetscCall(QuantitiesVisit(visitor, &chain_views, NULL, chain, NULL));
   PetscCall(OperatorsVisit(chain->operators, visitor));
@@ -181,7 +183,7 @@ PetscErrorCode ChainVisit(MPI_Comm comm, Chain *chain, const QuantityVisitor *vi
 }
 
 /* Whether a sweep varies what makes damping. A component ends in _x, _y or _z: damper_viscosity_x */
-static PetscErrorCode ChainVariesDamping(MPI_Comm comm, Chain *chain, PetscBool *damps)
+static PetscErrorCode ChainVariesDamping(Chain *chain, PetscBool *damps)
 {
   const char *swept;
   char      **name;
@@ -198,7 +200,7 @@ static PetscErrorCode ChainVariesDamping(MPI_Comm comm, Chain *chain, PetscBool 
 
     for (int pass = 0; pass < 2 && !search.found; pass++) {
       if (pass && length > 2 && name[i][length - 2] == '_') name[i][length - 2] = '\0';
-      PetscCall(ChainVisit(comm, chain, &(QuantityVisitor){QuantitiesSearch, &search}));
+      PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesSearch, &search}));
     }
     if (search.found && search.row.varies & VARIES_DAMPING) *damps = PETSC_TRUE;
   }
@@ -212,10 +214,10 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
   QuantityRun run;
 
   PetscFunctionBeginUser;
-  PetscCall(ChainVariesDamping(comm, chain, &scope.damps));
+  PetscCall(ChainVariesDamping(chain, &scope.damps));
   if (chain->analysis == ANALYSIS_CHECK) PetscFunctionReturn(0); /* which reads what any analysis would */
   PetscCall(ScopeGetRun(comm, &scope, &run));
-  PetscCall(ChainVisit(comm, chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
+  PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
   PetscCall(ScopeCheck(&scope, &run));
   PetscFunctionReturn(0);
 }

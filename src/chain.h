@@ -43,7 +43,7 @@ typedef struct {
 /* Reads the options of every analysis. Collective */
 PETSC_INTERN PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain);
 /* Shows the rows of all rooms, in their order. Collective */
-PETSC_INTERN PetscErrorCode ChainVisit(MPI_Comm comm, Chain *chain, const QuantityVisitor *visitor);
+PETSC_INTERN PetscErrorCode ChainVisit(void *chain, const QuantityVisitor *visitor);
 /* Raises an error for what stands on the command line and has no effect in this analysis. Collective */
 PETSC_INTERN PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain);
 /* Model, contact and terms; what rooms need of each other; matrices for a file where asked for */
@@ -65,7 +65,8 @@ PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);
 PETSC_INTERN PetscErrorCode ChainSayUnits(Chain *chain);
 /* Shows an object on stdout where wanted, and where its option says */
 PETSC_INTERN PetscErrorCode ChainShow(Chain *chain, Shown what, PetscBool wanted);
-/* The rows of all rooms as JSON, -help_json; ctx is not used */
-PETSC_INTERN PetscErrorCode ChainWriteRows(MPI_Comm comm, void *ctx);
+/* With -help or -help_json, prints the rows of all rooms, with -help_all what PETSc and SLEPc print of theirs, too;
+   without a scene, of one with a name in each list. Whether it was asked for */
+PETSC_INTERN PetscErrorCode ChainHelp(MPI_Comm comm, PetscBool *asked);
 /* Shows what there is before the analysis */
 PETSC_INTERN PetscErrorCode ChainView(Chain *chain);

@@ -1,5 +1,6 @@
 /* Views of the objects of a run: -model_view and its like, and -squeal_view for all; its units */
 #include "chain.h"
+#include "base/options/help.h"
 
 /* Whether the analysis has something to show there */
 static PetscBool ChainShows(const Chain *chain, Shown what)
@@ -84,17 +85,44 @@ PetscErrorCode ChainSayUnits(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChainWriteRows(MPI_Comm comm, void *ctx)
+/* The rows, as a page or as JSON */
+static PetscErrorCode ChainPrintRows(MPI_Comm comm, Chain *chain, HelpKind kind, PetscBool example)
 {
-  QuantityJson json  = {.comm = comm};
-  Chain        chain = {0};
+  QuantityJson json = {.comm = comm};
+  QuantityPage page = {.comm = comm, .example = example};
 
   PetscFunctionBeginUser;
-  (void)ctx;
+  if (kind == HELP_JSON) {
+    PetscCall(QuantitiesBeginJson(&json));
+    PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesWriteJson, &json}));
+    PetscCall(QuantitiesEndJson(&json));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscPrintf(comm, "squeal %s: friction-induced vibration of bodies in sliding contact\n", SQUEAL_VERSION));
+  PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesPrint, &page}));
+  PetscCall(PetscPrintf(comm,
+                        "PETSc's and SLEPc's own, such as -ts_max_time, -ts_dt, -eps_*, -pep_*, -st_*, -log_view, "
+                        "-options_file%s\n",
+                        kind == HELP_ALL ? ", as they print them:" : ": squeal -help_all"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChainHelp(MPI_Comm comm, PetscBool *asked)
+{
+  Chain     chain = {0}, again = {0};
+  HelpKind  kind;
+  PetscBool example;
+
+  PetscFunctionBeginUser;
+  PetscCall(HelpBegin(&kind, &example));
+  *asked = kind == HELP_NONE ? PETSC_FALSE : PETSC_TRUE;
+  if (!*asked) PetscFunctionReturn(0);
   PetscCall(ChainCreate(comm, &chain));
-  PetscCall(QuantitiesBeginJson(&json));
-  PetscCall(ChainVisit(comm, &chain, &(QuantityVisitor){QuantitiesWriteJson, &json}));
-  PetscCall(QuantitiesEndJson(&json));
+  PetscCall(ChainPrintRows(comm, &chain, kind, example));
   PetscCall(ChainDestroy(&chain));
+  if (kind != HELP_ALL) PetscFunctionReturn(0);
+  PetscCall(HelpShowLibraries(PETSC_TRUE));
+  PetscCall(ChainCreate(comm, &again));
+  PetscCall(ChainDestroy(&again));
   PetscFunctionReturn(0);
 }

@@ -1,18 +1,6 @@
 /* squeal: friction-induced vibration of bodies in sliding contact */
 #include "chain.h"
 
-/* Reads all options on a chain of its own, to list the valid names */
-static PetscErrorCode ReadAgain(MPI_Comm comm, void *ctx)
-{
-  Chain chain = {0};
-
-  PetscFunctionBeginUser;
-  (void)ctx;
-  PetscCall(ChainCreate(comm, &chain));
-  PetscCall(ChainDestroy(&chain));
-  PetscFunctionReturn(0);
-}
-
 /* From options to results; what is made is left in the chain where it fails */
 static PetscErrorCode RunChain(MPI_Comm comm, Chain *chain)
 {
@@ -21,11 +9,11 @@ static PetscErrorCode RunChain(MPI_Comm comm, Chain *chain)
   PetscFunctionBeginUser;
   PetscCall(ChainCreate(comm, chain));
   PetscCall(OptionsDropUnlisted(comm));
-  PetscCall(OptionsCheckUnknown(comm, ReadAgain, NULL));
+  PetscCall(QuantitiesCheckUnknown(comm, ChainVisit, chain));
   PetscCall(OptionsCheckValues(comm));
   PetscCall(ChainCheckOptions(comm, chain));
   if (chain->model) PetscCall(ModelCheckGiven(chain->model));
-  PetscCall(ResultsKeepScene(chain->results, ReadAgain, NULL));
+  PetscCall(ResultsKeepScene(chain->results, ChainVisit, chain));
   PetscCall(ResultsOpenDirectory(chain->results));
   PetscCall(ChainSetUp(chain, viewer));
   PetscCall(ChainView(chain));
@@ -55,7 +43,7 @@ static PetscErrorCode Answer(MPI_Comm comm, PetscBool no_arguments)
   PetscBool help;
 
   PetscFunctionBeginUser;
-  PetscCall(SquealViewOptions(comm, ReadAgain, ChainWriteRows, NULL, &help));
+  PetscCall(ChainHelp(comm, &help));
   if (help) PetscFunctionReturn(0);
   if (no_arguments) PetscCall(SquealViewUsage(comm));
   PetscCall(Run(comm));

@@ -52,7 +52,7 @@ LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPus
 ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
     ("src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
 # Options that are read without a row, and why
-UNROWED = dict.fromkeys("skip_petscrc help help_all help_json".split(), "asked by base/ before all else") | \
+UNROWED = dict.fromkeys("skip_petscrc help help_list help_all help_json".split(), "asked by base/ before all else") | \
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
                   "PETSc's own: looked at, read by PETSc") | \
     {"terms": "whether it is given"}

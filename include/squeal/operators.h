@@ -26,7 +26,8 @@ typedef struct {
   PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
   PetscBool state;   /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
   PetscReal fastest; /* of a spin: the largest size that it can have; 0: any */
-  PetscBool internal; /* no option of the scene: how far a group of pairs is closed, see SlidingState */
+  PetscBool of_matrices; /* a term of -terms names it, and its option with it */
+  PetscBool internal;    /* no option of the scene: how far a group of pairs is closed, see SlidingState */
 } OperatorsParameter;
 
 /* Values of a part */

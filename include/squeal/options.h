@@ -6,8 +6,8 @@
 
 #include <petscviewer.h>
 
-/* What PetscOptionsBegin() declares as PetscOptionsObject: a pointer to PetscOptionItems until 3.22, where the pointer
-   itself got that name in 3.23 */
+/* What PETSc hands to the setfromoptions of a type: a pointer to PetscOptionItems until 3.22, where the pointer itself
+   got that name in 3.23 */
 #if PETSC_VERSION_LT(3, 23, 0)
 typedef PetscOptionItems *OptionsItems;
 #else
@@ -19,8 +19,7 @@ typedef PetscOptionItems OptionsItems;
    share the prefixes: the table in options.c has them all, whichever room reads them. Collective.
 
    Input Parameters:
-+  option - e.g. "-parts"
--  help   - one line
+.  option - e.g. "-parts"
    Output Parameters:
 +  n      - number of names
 -  names  - array [n]; free it and each of them with PetscFree()
@@ -28,7 +27,7 @@ typedef PetscOptionItems OptionsItems;
    Errors: PETSC_ERR_USER_INPUT for a name that is no identifier, stands twice, also in two lists, or is the prefix of
    other options.
 @*/
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***names);
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], PetscInt *n, char ***names);
 
 /*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of
    its
@@ -54,11 +53,10 @@ PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[])
 PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]);
 
 /*@
-   OptionsGetReals - reads an array of exactly n numbers between PetscOptionsBegin() and PetscOptionsEnd(). Collective.
+   OptionsGetReals - reads an array of exactly n numbers. Collective.
 
    Input Parameters:
-+  option - e.g. "-stiffness", without the prefix
-.  help   - one line with the unit
++  option - e.g. "-hub_stiffness"
 -  n      - length of the array, at most 15
    Output Parameters:
 +  values - unchanged where the option is not given
@@ -66,8 +64,7 @@ PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]
 
    Errors: PETSC_ERR_USER_INPUT for more or fewer values.
 @*/
-PetscErrorCode OptionsGetReals(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                               PetscReal values[], PetscBool *set);
+PetscErrorCode OptionsGetReals(MPI_Comm comm, const char option[], PetscInt n, PetscReal values[], PetscBool *set);
 
 /* Room for a list of numbers: one of the two, the other is NULL */
 typedef struct {
@@ -77,25 +74,20 @@ typedef struct {
 } OptionsRoom;
 
 /*@ OptionsGetSome - reads a list of numbers; on return n of them, 0 where the option is not given, which changes none.
-   initial is the
-    default for the help. Collective. Errors: PETSC_ERR_USER_INPUT for more than there is room for. @*/
-PetscErrorCode OptionsGetSome(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                              const char initial[], const OptionsRoom *room, PetscInt *n);
+   Collective. Errors: PETSC_ERR_USER_INPUT for more than there is room for. @*/
+PetscErrorCode OptionsGetSome(MPI_Comm comm, const char option[], const OptionsRoom *room, PetscInt *n);
 
 /*@ OptionsGetInts - as OptionsGetReals(), integers. Collective. @*/
-PetscErrorCode OptionsGetInts(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt n,
-                              PetscInt values[], PetscBool *set);
+PetscErrorCode OptionsGetInts(MPI_Comm comm, const char option[], PetscInt n, PetscInt values[], PetscBool *set);
 
 /*@ OptionsGetWords - reads a list of words, 0 where the option is not given. Collective. The caller frees the array [n]
    and
     each of them. @*/
-PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***words);
+PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], PetscInt *n, char ***words);
 
-/*@ OptionsGetItems - reads at most n names between PetscOptionsBegin() and PetscOptionsEnd(), without the blanks around
-   them; where the
-    option is not given nothing changes but n. Collective. The caller frees them. @*/
-PetscErrorCode OptionsGetItems(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt *n,
-                               char *items[], PetscBool *set);
+/*@ OptionsGetItems - reads at most n names, without the blanks around them; where the option is not given nothing
+    changes but n. Not collective. The caller frees them. @*/
+PetscErrorCode OptionsGetItems(const char option[], PetscInt *n, char *items[], PetscBool *set);
 
 /*@ ValuesSplit - the items of a list such as "a,b" without the blanks around them. Not collective, same call on all
     ranks; comm is that of errors. The caller frees them with PetscStrToArrayDestroy(). Errors: as
@@ -114,21 +106,18 @@ PetscErrorCode ValuesParse(MPI_Comm comm, const char option[], const char text[]
                            PetscBool *is_log);
 
 /*@
-   OptionsGetPath - reads the path of something to be read, between PetscOptionsBegin() and PetscOptionsEnd().
-   Collective.
+   OptionsGetPath - reads the path of something to be read. Collective.
 
    A relative path in an options file begins at the folder of that file, and where there is nothing of that name, at the
    working folder, as one on the command line does. The option's value becomes the absolute path.
 
-   Input Parameters:
-+  option - e.g. "-model_mesh"
--  help   - one line
+   Input Parameter:
+.  option - e.g. "-model_mesh"
    Output Parameters:
 +  path - of PETSC_MAX_PATH_LEN characters, with its folder; unchanged where the option is not given
 -  set  - whether it is given, or NULL
 @*/
-PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option[], const char help[], char path[],
-                              PetscBool *set);
+PetscErrorCode OptionsGetPath(MPI_Comm comm, const char option[], char path[], PetscBool *set);
 
 /*@
    OptionsGetViewer - reads where something is to be shown, in PETSc's words: "-modes_view" is stdout,
@@ -139,7 +128,7 @@ PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option
 
    Errors: PETSC_ERR_USER_INPUT for a viewer that is no text.
 @*/
-PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], const char help[], PetscViewer *viewer);
+PetscErrorCode OptionsGetViewer(MPI_Comm comm, const char option[], PetscViewer *viewer);
 
 /*@
    OptionsWithValue - names the options that give a value, or a list that holds it, for messages. Not collective.
@@ -207,17 +196,6 @@ PetscErrorCode OptionsExplainValue(const char message[], char text[], size_t siz
 PetscErrorCode OptionsNextGiven(char **text, size_t size, char name[], const char **value, PetscBool *more);
 
 /*@
-   OptionsCheckUnknown - raises an error for an option that nobody has read, naming the nearest valid one; of those of
-   PETSc and SLEPc only where the command line gives it and nothing will read it. Collective; call when every room has
-   read its options.
-
-   Input Parameters:
-+  read_again - reads all options of all rooms on objects of its own, so that the valid names can be listed
--  ctx        - its context
-@*/
-PetscErrorCode OptionsCheckUnknown(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
-
-/*@
    OptionsCheckArguments - looks at the command line and at the options files that it names, before SlepcInitialize().
    Not collective: all ranks read alike.
 
@@ -242,26 +220,21 @@ PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
     PETSc makes of it, and for a value of more than one line. Not collective: all ranks have the same options. @*/
 PetscErrorCode OptionsCheckNumbers(void);
 
-/*@ OptionsCheckNumber - the same for one option between PetscOptionsBegin() and PetscOptionsEnd(). Not collective. @*/
-PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[]);
+/*@ OptionsCheckNumber - the same for one option. Not collective. @*/
+PetscErrorCode OptionsCheckNumber(const char option[]);
 
-/*@ OptionsGetReal, OptionsGetInt - reads a number between PetscOptionsBegin() and PetscOptionsEnd(), as
-   PetscOptionsReal() and
-    PetscOptionsInt() do. Collective. Errors: PETSC_ERR_USER_INPUT for words that PETSc takes for numbers, such as
-    default, and integers that PetscInt does not hold. @*/
-PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscReal now,
-                              PetscReal *value, PetscBool *set);
-PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt now,
-                             PetscInt *value, PetscBool *set);
+/*@ OptionsGetReal, OptionsGetInt - reads a number, unchanged where it is not given, as PetscOptionsGetReal() and
+    PetscOptionsGetInt() do. Not collective, same call on all ranks. Errors: PETSC_ERR_USER_INPUT for words that PETSc
+    takes for numbers, such as default, and integers that PetscInt does not hold. @*/
+PetscErrorCode OptionsGetReal(MPI_Comm comm, const char option[], PetscReal *value, PetscBool *set);
+PetscErrorCode OptionsGetInt(MPI_Comm comm, const char option[], PetscInt *value, PetscBool *set);
 
 /*@ OptionsCheckWords - raises these errors for one option, or for an item of its array, before it is read otherwise.
    Not collective. @*/
-PetscErrorCode OptionsCheckWords(OptionsItems PetscOptionsObject, const char option[], PetscBool integer);
+PetscErrorCode OptionsCheckWords(MPI_Comm comm, const char option[], PetscBool integer);
 
-/*@ OptionsGetBool - reads a logical option between PetscOptionsBegin() and PetscOptionsEnd(); without a value it is
-    true. Collective. @*/
-PetscErrorCode OptionsGetBool(OptionsItems PetscOptionsObject, const char option[], const char help[],
-                              PetscBool *value);
+/*@ OptionsGetBool - reads a logical option; without a value it is true. Not collective. @*/
+PetscErrorCode OptionsGetBool(const char option[], PetscBool *value, PetscBool *set);
 
 /*@ OptionsCheckValues - raises an error for an option of the program without a value, unless OptionsGetBool() or
     OptionsGetViewer() has read it, and for a list of numbers with an empty item. Collective; when every room has read

@@ -154,7 +154,7 @@ PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const Quantity
 
 /* A list of the scene, each name of which is the prefix of the options of a record */
 typedef struct {
-  const char          *option, *help; /* as of OptionsGetNames() */
+  const char          *option, *help; /* of the list itself */
   size_t               size;          /* of a record, which begins with char *name */
   const QuantityTable *table;
   PetscErrorCode (*check)(MPI_Comm comm, void *owner, void *record); /* what no row says; NULL for nothing */
@@ -206,6 +206,46 @@ PetscErrorCode QuantitiesBeginJson(QuantityJson *json);
 PetscErrorCode QuantitiesWriteJson(const QuantityTable *table, const char name[], void *owner, const char why[],
                                    void *json);
 PetscErrorCode QuantitiesEndJson(QuantityJson *json);
+
+/* What shows the rows of a run to a visitor; ctx is its own */
+typedef PetscErrorCode (*QuantityShow)(void *ctx, const QuantityVisitor *visitor);
+
+/* The page of -help, a visitor's context */
+typedef struct {
+  MPI_Comm  comm;
+  PetscBool example;    /* of an example scene: the defaults in place of values */
+  char      title[128]; /* of the last table */
+} QuantityPage;
+
+/*@ QuantitiesPrint - a visitor with a QuantityPage for its context: prints the rows, each with value, help, unit, words
+    and default. Collective. @*/
+PetscErrorCode QuantitiesPrint(const QuantityTable *table, const char name[], void *owner, const char why[],
+                               void *page);
+
+#define QUANTITY_SHOWN 128 /* characters of a name or value that are shown */
+
+/* Options with their values in force, a visitor's context; free `text` with PetscFree() */
+typedef struct {
+  char      name[QUANTITY_SHOWN]; /* without the dash */
+  char      value[QUANTITY_SHOWN];
+  PetscBool shows; /* it says where something is shown */
+} QuantityText;
+typedef struct {
+  PetscInt      n;
+  QuantityText *text;
+} QuantityTexts;
+
+/*@ QuantitiesAddTexts - a visitor with QuantityTexts for its context: adds the options of the tables. Not
+    collective. @*/
+PetscErrorCode QuantitiesAddTexts(const QuantityTable *table, const char name[], void *owner, const char why[],
+                                  void *texts);
+
+/*@
+   QuantitiesCheckUnknown - raises an error for an option that nobody has read, naming the nearest valid one; of those
+   of PETSc and SLEPc only where the command line gives it and nothing will read it. Collective; call when every room
+   has read its options.
+@*/
+PetscErrorCode QuantitiesCheckUnknown(MPI_Comm comm, QuantityShow show, void *ctx);
 
 /* A row that is looked for by its option, named without the dash, and whether a table has it */
 typedef struct {

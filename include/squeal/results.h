@@ -175,10 +175,10 @@ PetscErrorCode ResultsKeepFolder(Results results, const char folder[]);
    anything is written. From then on scene.yaml names each file before it has its final name.
 
    Input Parameters:
-+  read_again - reads all options of all rooms on objects of its own
--  ctx        - its context
++  show - shows the rows of all rooms, with their values
+-  ctx  - its context
 @*/
-PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx);
+PetscErrorCode ResultsKeepScene(Results results, QuantityShow show, void *ctx);
 
 /*@ ResultsBegin - writes scene.yaml, with `end: not yet`, where the folder has none, or in place of an earlier run's
    with

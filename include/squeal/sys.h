@@ -45,21 +45,6 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[]);
 PetscErrorCode SquealViewUsage(MPI_Comm comm);
 
 /*@
-   SquealViewOptions - with -help, prints all options of squeal by the room that reads them, with unit, value in force
-   and default; without a scene for one name in each list. With -help_all those of PETSc and SLEPc too, as PETSc does;
-   with -help_json the rows as JSON. Collective.
-
-   Input Parameters:
-+  read_again - reads all options of all rooms on objects of its own
-.  write      - writes the rows of all rooms as JSON
--  ctx        - context of both
-   Output Parameter:
-.  asked - whether there was one of them
-@*/
-PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *),
-                                 PetscErrorCode (*write)(MPI_Comm, void *), void *ctx, PetscBool *asked);
-
-/*@
    SquealSetFromOptions - what concerns every room. Collective.
 
    Options Database Keys:

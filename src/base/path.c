@@ -53,27 +53,23 @@ static PetscErrorCode PathResolve(MPI_Comm comm, const char name[], char path[],
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetPath(OptionsItems PetscOptionsObject, const char option[], const char help[], char path[],
-                              PetscBool *set)
+PetscErrorCode OptionsGetPath(MPI_Comm comm, const char option[], char path[], PetscBool *set)
 {
-  const MPI_Comm comm = PetscOptionsObject->comm;
-  PetscBool      given, on_command_line;
-  PetscMPIInt    rank;
-  char          *whole, name[256];
+  PetscBool   given, on_command_line;
+  PetscMPIInt rank;
+  char       *whole;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsString(option, help, "options.h", path, path, PETSC_MAX_PATH_LEN, &given));
+  PetscCall(PetscOptionsGetString(NULL, NULL, option, path, PETSC_MAX_PATH_LEN, &given));
   if (set) *set = given;
   if (!given || !path[0]) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "",
-                          option + 1));
-  PetscCall(OptionsCommandGives(name + 1, &on_command_line));
-  if (path[0] != '/' && !on_command_line) PetscCall(PathResolve(comm, name, path, PETSC_MAX_PATH_LEN));
+  PetscCall(OptionsCommandGives(option + 1, &on_command_line));
+  if (path[0] != '/' && !on_command_line) PetscCall(PathResolve(comm, option, path, PETSC_MAX_PATH_LEN));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Bcast(path, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm)); /* one rank decides what is there */
   whole = realpath(path, NULL);
-  if (whole) PetscCall(PetscOptionsSetValue(NULL, name, whole)); /* for scene.yaml, which lies elsewhere */
-  if (whole) PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+  if (whole) PetscCall(PetscOptionsSetValue(NULL, option, whole)); /* for scene.yaml, which lies elsewhere */
+  if (whole) PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
   free(whole);
   PetscFunctionReturn(0);
 }

@@ -107,7 +107,7 @@ PetscErrorCode SquealInitialize(int *argc, char ***argv, const char help[])
   WatchBegin();
   PetscCallMPI(MPI_Init(argc, argv));
   if (!help && HelpAnswer(*argc, *argv)) exit(MPI_Finalize());
-  if (!help) HelpHush(*argc, *argv);
+  if (!help) HelpRename(*argc, *argv);
   (void)H5dont_atexit(); /* all files are closed by then, but for one that cannot be written, which would crash it */
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   PetscCall(PetscPushErrorHandler(KeepError, error_message));

@@ -50,6 +50,7 @@ PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visito
 
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisitList(visitor, &operators_terms, operators->n_named, operators->named));
+  PetscCall(MatrixTermsVisitParameters(operators, visitor));
   PetscCall(QuantitiesVisit(visitor, &operators_matrices, NULL, operators, NULL));
   PetscCall(QuantitiesVisit(visitor, &operators_quantities, NULL, operators, NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));

@@ -35,12 +35,22 @@ static PetscBool QuantityIsOutside(const Quantity *row, PetscReal x)
   return row->most != 0 && (x > row->most || (row->open && x == row->most)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Where the numbers of a row lie */
+/* Where the values of a row lie */
 static const void *QuantityValues(const Quantity *row, const void *owner)
 {
-  const char *const at = (const char *)owner + row->at;
+  const char *const at   = (const char *)owner + row->at;
+  const PetscBool   kept = row->kind == QUANTITY_MANY || (row->kind == QUANTITY_NAMES && row->count);
 
-  return row->kind == QUANTITY_MANY ? *(const void *const *)(const void *)at : at;
+  return kept ? *(const void *const *)(const void *)at : at;
+}
+
+PetscInt QuantityCount(const Quantity *row, const void *owner)
+{
+  const PetscBool integer = row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
+
+  if (row->count) return owner ? *(const PetscInt *)((const char *)owner + row->count) : 0;
+  if (row->kind == QUANTITY_NAMES) return (PetscInt)(row->size / sizeof(char *));
+  return (PetscInt)(row->size / (integer ? sizeof(PetscInt) : sizeof(PetscReal)));
 }
 
 /* All numbers of a row, whose option is named in full */
@@ -48,12 +58,11 @@ static PetscErrorCode QuantityCheck(MPI_Comm comm, const char option[], const Qu
 {
   const void     *value   = QuantityValues(row, owner);
   const PetscBool integer = row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS ? PETSC_TRUE : PETSC_FALSE;
-  PetscInt        n       = (PetscInt)(row->size / (integer ? sizeof(PetscInt) : sizeof(PetscReal)));
+  const PetscInt  n       = QuantityCount(row, owner);
   char            limits[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
   if (!row->bounded) PetscFunctionReturn(0);
-  if (row->count) n = *(const PetscInt *)((const char *)owner + row->count);
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal x = integer ? (PetscReal)((const PetscInt *)value)[i] : ((const PetscReal *)value)[i];
 
@@ -147,15 +156,8 @@ const Quantity *QuantityFind(const QuantityTable *table, const char name[])
 
 PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner)
 {
-  char prefix[QUANTITY_HELP] = "", title[QUANTITY_HELP];
-
   PetscFunctionBeginUser;
-  if (name) PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s_", name));
-  PetscCall(PetscSNPrintf(title, sizeof(title), "%s%s%s", table->title, name ? " " : "", name ? name : ""));
-  PetscOptionsBegin(comm, name ? prefix : NULL, title, NULL);
-  for (PetscInt i = 0; i < table->n; i++)
-    PetscCall(QuantityRead(PetscOptionsObject, table->header, &table->row[i], owner));
-  PetscOptionsEnd();
+  for (PetscInt i = 0; i < table->n; i++) PetscCall(QuantityRead(comm, name, &table->row[i], owner));
   for (PetscInt i = 0; i < table->n; i++) PetscCall(QuantityJudge(comm, name, &table->row[i], owner));
   PetscFunctionReturn(0);
 }
@@ -166,7 +168,7 @@ PetscErrorCode QuantitiesReadList(MPI_Comm comm, const QuantityList *list, void 
   PetscInt count; /* *n, which stays 0 where the names are refused */
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetNames(comm, list->option, list->help, &count, &names));
+  PetscCall(OptionsGetNames(comm, list->option, &count, &names));
   PetscCall(PetscCalloc((size_t)count * list->size, &record));
   *(void **)records = record, *n = count;
   for (PetscInt i = 0; i < *n; i++) *(char **)(void *)(record + (size_t)i * list->size) = names[i];
@@ -187,10 +189,8 @@ PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *o
 }
 
 /* Names, how many there may be */
-static PetscErrorCode NamesAddChecksum(const Quantity *row, const void *value, PetscInt count, Checksum c)
+static PetscErrorCode NamesAddChecksum(char *const names[], PetscInt n, Checksum c)
 {
-  char *const *const names = row->count ? *(char *const *const *)value : value;
-  const PetscInt     n     = row->count ? count : (PetscInt)(row->size / sizeof(char *));
 
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddInts(c, 1, &n));
@@ -204,19 +204,17 @@ PetscErrorCode QuantitiesAddChecksum(const QuantityTable *table, const void *own
   for (PetscInt i = 0; i < table->n; i++) {
     const Quantity *row   = &table->row[i];
     const void     *value = QuantityValues(row, owner);
-    const PetscInt  count = row->count ? *(const PetscInt *)((const char *)owner + row->count) : 1;
+    const PetscInt  n     = QuantityCount(row, owner);
 
     if (!row->restart) continue;
-    if (row->kind == QUANTITY_INTS && !row->count)
-      PetscCall(ChecksumAddInts(c, (PetscInt)(row->size / sizeof(PetscInt)), value));
-    else if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS)
-      PetscCall(ChecksumAddInts(c, count, value));
-    else if (row->kind == QUANTITY_LIST || row->kind == QUANTITY_MANY)
-      PetscCall(ChecksumAddReals(c, count, value));
-    else if (row->kind == QUANTITY_REAL || row->kind == QUANTITY_REALS)
-      PetscCall(ChecksumAddReals(c, (PetscInt)(row->size / sizeof(PetscReal)), value));
-    else if (row->kind == QUANTITY_NAME || row->kind == QUANTITY_NAMES)
-      PetscCall(NamesAddChecksum(row, value, count, c));
+    if (row->kind == QUANTITY_INT || row->kind == QUANTITY_INTS)
+      PetscCall(ChecksumAddInts(c, n, value));
+    else if (row->kind <= QUANTITY_MANY)
+      PetscCall(ChecksumAddReals(c, n, value));
+    else if (row->kind == QUANTITY_NAMES)
+      PetscCall(NamesAddChecksum(value, n, c));
+    else if (row->kind == QUANTITY_NAME)
+      PetscCall(NamesAddChecksum(value, 1, c));
     else if (row->kind == QUANTITY_TEXT || row->kind == QUANTITY_PATH)
       PetscCall(ChecksumAddString(c, value));
     else {

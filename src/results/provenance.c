@@ -4,7 +4,6 @@
    known to be its.
 */
 #include "resultsimpl.h"
-#include "base/options/help.h"
 #include "base/process/interrupt.h"
 #include <squeal/options.h>
 #include <squeal/sys.h>
@@ -17,21 +16,19 @@
 static const char *const not_of_scene[] = {"options_file", "output_dir", "squeal_log",
                                            "log_file",     "help",       "dynamics_restart"};
 
-PetscErrorCode ResultsKeepScene(Results results, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx)
+PetscErrorCode ResultsKeepScene(Results results, QuantityShow show, void *ctx)
 {
-  HelpList *const list = &results->options;
-
   PetscFunctionBeginUser;
   results->begun = MPI_Wtime();
-  PetscCall(HelpCollect(results->comm, read_again, ctx, list));
+  PetscCall((*show)(ctx, &(QuantityVisitor){QuantitiesAddTexts, &results->options}));
   PetscFunctionReturn(0);
 }
 
 /* Option of squeal of that name, or NULL */
-static const HelpOption *OptionFind(const HelpList *list, const char name[])
+static const QuantityText *OptionFind(const QuantityTexts *list, const char name[])
 {
-  for (int i = 0; i < list->n; i++)
-    if (list->option[i].own && !strcasecmp(list->option[i].name, name)) return &list->option[i];
+  for (PetscInt i = 0; i < list->n; i++)
+    if (!strcasecmp(list->text[i].name, name)) return &list->text[i];
   return NULL;
 }
 
@@ -78,13 +75,11 @@ static PetscErrorCode ScenePrintKey(OutFile *file, const char name[], const char
 static PetscErrorCode ScenePrintOption(Results results, OutFile *file, PetscBool keys, const char name[],
                                        const char value[])
 {
-  const HelpOption *own  = OptionFind(&results->options, name);
-  const size_t      n    = strlen(name);
-  const PetscBool   view = n > 5 && !strcmp(name + n - 5, "_view") ? PETSC_TRUE : PETSC_FALSE;
+  const QuantityText *own = OptionFind(&results->options, name);
 
   PetscFunctionBeginUser;
   if (keys && (value[0] || own))
-    PetscCall(ScenePrintKey(file, name, value[0] ? value : view && own && !own->initial[0] ? "ascii" : "true"));
+    PetscCall(ScenePrintKey(file, name, value[0] ? value : own && own->shows ? "ascii" : "true"));
   if (!keys && !value[0] && !own) PetscCall(OutFilePrint(file, " -%s", name));
   PetscFunctionReturn(0);
 }
@@ -93,7 +88,7 @@ static PetscErrorCode ScenePrintOption(Results results, OutFile *file, PetscBool
 static PetscErrorCode ScenePrintGiven(Results results, OutFile *file, PetscBool keys)
 {
   char       *all, *rest;
-  char        name[HELP_MAX_NAME];
+  char        name[QUANTITY_SHOWN];
   const char *value;
   PetscBool   more = PETSC_TRUE;
 
@@ -109,18 +104,18 @@ static PetscErrorCode ScenePrintGiven(Results results, OutFile *file, PetscBool 
 }
 
 /* Defaults, as comments */
-static PetscErrorCode ScenePrintDefaults(const HelpList *list, OutFile *file)
+static PetscErrorCode ScenePrintDefaults(const QuantityTexts *list, OutFile *file)
 {
   PetscBool given;
-  char      dashed[HELP_MAX_NAME + 1];
+  char      dashed[QUANTITY_SHOWN + 1];
 
   PetscFunctionBeginUser;
   PetscCall(OutFilePrint(file, "\n# At their defaults:\n"));
-  for (int i = 0; i < list->n; i++) {
-    if (!list->option[i].own || !list->option[i].value[0] || OptionIsOfRun(list->option[i].name)) continue;
-    PetscCall(PetscSNPrintf(dashed, sizeof(dashed), "-%s", list->option[i].name));
+  for (PetscInt i = 0; i < list->n; i++) {
+    if (!list->text[i].value[0] || OptionIsOfRun(list->text[i].name)) continue;
+    PetscCall(PetscSNPrintf(dashed, sizeof(dashed), "-%s", list->text[i].name));
     PetscCall(PetscOptionsHasName(NULL, NULL, dashed, &given));
-    if (!given) PetscCall(OutFilePrint(file, "# %s: %s\n", list->option[i].name, list->option[i].value));
+    if (!given) PetscCall(OutFilePrint(file, "# %s: %s\n", list->text[i].name, list->text[i].value));
   }
   PetscFunctionReturn(0);
 }
@@ -286,6 +281,6 @@ PetscErrorCode ResultsForget(Results results)
   PetscCall(PetscFree(results->note));
   for (PetscInt i = 0; i < results->n_earlier; i++) PetscCall(PetscFree(results->earlier[i]));
   PetscCall(PetscFree(results->earlier));
-  free(results->options.option);
+  PetscCall(PetscFree(results->options.text));
   PetscFunctionReturn(0);
 }

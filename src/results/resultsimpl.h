@@ -11,7 +11,6 @@
 
 #include <squeal/checksum.h>
 #include <squeal/results.h>
-#include "base/options/help.h"
 #include <hdf5.h>
 #include <stdio.h>
 
@@ -23,20 +22,20 @@
 #define OUTFILE_NO_MEMORY 4097 /* in errno: there is no file in memory */
 
 struct _p_Results {
-  MPI_Comm  comm;
-  char      dir[PETSC_MAX_PATH_LEN];
-  PetscBool fields, overwrite;
-  PetscInt  n_kept, n_earlier, n_notes;
-  char    **kept;         /* names of files in the folder that belong to this run */
-  char    **earlier;      /* those that earlier runs wrote and this one does not keep, on the first rank */
-  char    **note;         /* lines of scene.yaml */
-  PetscBool keep_all;     /* nothing of earlier runs goes */
-  PetscBool has_earlier;  /* the folder had a scene.yaml of an earlier run, alike on all ranks */
-  PetscBool has_finished; /* and a result of it under its final name, likewise */
-  PetscInt  n_listed;     /* files that scene.yaml of this run names, 0 before it is there */
-  HelpList  options;      /* all, as the run found them */
-  double    begun;        /* MPI_Wtime() */
-  int       lock;         /* of the folder, on the first rank, else -1 */
+  MPI_Comm      comm;
+  char          dir[PETSC_MAX_PATH_LEN];
+  PetscBool     fields, overwrite;
+  PetscInt      n_kept, n_earlier, n_notes;
+  char        **kept;         /* names of files in the folder that belong to this run */
+  char        **earlier;      /* those that earlier runs wrote and this one does not keep, on the first rank */
+  char        **note;         /* lines of scene.yaml */
+  PetscBool     keep_all;     /* nothing of earlier runs goes */
+  PetscBool     has_earlier;  /* the folder had a scene.yaml of an earlier run, alike on all ranks */
+  PetscBool     has_finished; /* and a result of it under its final name, likewise */
+  PetscInt      n_listed;     /* files that scene.yaml of this run names, 0 before it is there */
+  QuantityTexts options;      /* all, as the run found them */
+  double        begun;        /* MPI_Wtime() */
+  int           lock;         /* of the folder, on the first rank, else -1 */
 };
 
 /* A file that is being written as `part`, to be renamed to `name` */

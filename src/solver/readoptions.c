@@ -162,14 +162,14 @@ static PetscErrorCode KspReadOptions(MPI_Comm comm, const char prefix[], KSPType
   PetscFunctionReturn(0);
 }
 
-/* Whether a name that nobody has read begins with one of the prefixes */
+/* Whether a name that nobody has read begins with one of the prefixes; with -help_all, which lists them, always */
 static PetscErrorCode PrefixIsLeft(size_t n_prefixes, const char *const prefix[], PetscBool *left)
 {
   char   **names, **values;
   PetscInt n;
 
   PetscFunctionBeginUser;
-  *left = PETSC_FALSE;
+  PetscCall(PetscOptionsHasHelp(NULL, left));
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++)
     for (size_t k = 0; k < n_prefixes; k++)

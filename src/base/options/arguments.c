@@ -150,18 +150,14 @@ static PetscErrorCode ValueCheckFinite(const char name[], const char value[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsCheckNumber(OptionsItems PetscOptionsObject, const char option[])
+PetscErrorCode OptionsCheckNumber(const char option[])
 {
-  const char *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
   const char *value;
-  char        name[MAX_WORD];
   PetscBool   set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsFindPair(PetscOptionsObject->options, prefix, option, &value, &set));
-  if (!set || !value) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", prefix, option + 1));
-  PetscCall(ValueCheckFinite(name, value));
+  PetscCall(PetscOptionsFindPair(NULL, NULL, option, &value, &set));
+  if (set && value) PetscCall(ValueCheckFinite(option, value));
   PetscFunctionReturn(0);
 }
 

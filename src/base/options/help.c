@@ -1,16 +1,12 @@
 /*
-   Help: the short one of -h, the list of all options of -help, the versions.
-
-   The options are those that PETSc's help printer is told of while all rooms read theirs: its lines are taken apart
-   into name, value in force, default and text. PETSc prints lists of types past the help printer, hence both are
-   replaced for that time.
+   Help: the short one of -h, the versions, and which help is asked for. The lists of options are made of the rows
+   (quantity/help.c).
 */
 #include "help.h"
 #include "base/algebra/blas.h"
 #include <squeal/sys.h>
 #include <slepcsys.h>
-#include <stdarg.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 #if __has_include(<dmumps_c.h>)
 #include <dmumps_c.h>
@@ -47,13 +43,6 @@ static const char names_of_all[] =
   "-circles circle -circle_radius 1 -circle_count 8 -impulses impulse -impulse_at 0,0,0 "
   "-impulse_impulse 0,0,1 -modes_changes change -change_at 0,0,0 -change_mass 1 -terms term -ties tie -tie_surfaces "
   "S,M";
-
-/* Where the printers below put what they are told. PETSc's printers are bare function pointers without context: hence
-   the one static record, alive only inside HelpCollect(). */
-static struct {
-  HelpList *list;
-  char      line[4096], group[96];
-} collecting;
 
 void SquealGetVersions(SquealVersions *versions)
 {
@@ -107,133 +96,15 @@ PetscErrorCode SquealViewUsage(MPI_Comm comm)
   PetscFunctionReturn(0);
 }
 
-/* Copies what stands between two places, without blanks at its ends */
-static void Cut(const char *begin, const char *end, char text[], size_t size)
+void HelpRename(int argc, char *argv[])
 {
-  while (begin < end && *begin == ' ') begin++;
-  while (begin < end && end[-1] == ' ') end--;
-  (void)snprintf(text, size, "%.*s", (int)(end - begin), begin);
-}
+  static char list[] = "-help_list";
 
-/* Writes 0 for PETSc's "0." */
-static void CutPoint(char text[])
-{
-  const size_t length = strlen(text);
-
-  if (length > 1 && text[length - 1] == '.' && strspn(text, "-0123456789") == length - 1) text[length - 1] = '\0';
-}
-
-/* Takes "<now 3 : formerly 2>" or "<3 : 2>" or "<3>" apart */
-static void ParseValues(const char *begin, const char *end, HelpOption *option)
-{
-  const char *middle = strstr(begin, " : ");
-  PetscBool   two; /* a default, which may be empty */
-
-  if (!strncmp(begin, "now ", 4)) begin += 4;
-  if (!middle || middle > end) middle = end;
-  two = middle < end ? PETSC_TRUE : PETSC_FALSE;
-  Cut(begin, strncmp(begin, "string1", 7) ? middle : begin, option->value, sizeof(option->value));
-  if (middle < end) middle += 3;
-  if (!strncmp(middle, "formerly ", 9)) middle += 9;
-  if (two)
-    Cut(middle, end, option->initial, sizeof(option->initial));
-  else
-    memcpy(option->initial, option->value, sizeof(option->initial));
-  CutPoint(option->value);
-  CutPoint(option->initial);
-}
-
-/* Takes "  -disc_young <2.1e+11 : 0.>: Young's modulus, Pa (model.h)" apart; false for other lines */
-static PetscBool ParseOption(const char line[], HelpOption *option)
-{
-  const char *begin = line + strspn(line, " "), *man = strrchr(line, '('), *end;
-  size_t      length;
-
-  if (*begin++ != '-') return PETSC_FALSE;
-  length = strspn(begin, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
-  if (!length || length >= HELP_MAX_NAME) return PETSC_FALSE;
-  Cut(begin, begin + length, option->name, sizeof(option->name));
-  begin += length;
-  begin += strspn(begin, ": ");
-  end = *begin == '<' ? strchr(begin, '>') : NULL;
-  if (end) ParseValues(begin + 1, end, option);
-  begin       = end ? end + 1 : begin;
-  option->own = man && !strcmp(man + strcspn(man, ".)"), ".h)") ? PETSC_TRUE : PETSC_FALSE;
-  if (!man) man = line + strlen(line);
-  Cut(begin + strspn(begin, ": "), man, option->text, sizeof(option->text));
-  return PETSC_TRUE;
-}
-
-/* Keeps the option of a whole line, or the title of those that follow */
-static PetscErrorCode CollectLine(const char line[])
-{
-  HelpList *const list   = collecting.list;
-  HelpOption      option = {0};
-  const size_t    length = strlen(line);
-
-  PetscFunctionBeginUser;
-  if (!ParseOption(line, &option)) {
-    if (length && line[0] != ' ' && line[length - 1] == ':' && strncmp(line, "Viewer (", 8))
-      Cut(line, line + length - 1, collecting.group, sizeof(collecting.group));
-    PetscFunctionReturn(0);
-  }
-  if (list->n == list->max) {
-    HelpOption *more = realloc(list->option, (size_t)(2 * list->max + 64) * sizeof(*more));
-
-    PetscCheck(more, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the list of options");
-    list->option = more;
-    list->max    = 2 * list->max + 64;
-  }
-  memcpy(option.group, collecting.group, sizeof(option.group));
-  list->option[list->n++] = option;
-  PetscFunctionReturn(0);
-}
-
-/* Stands in for PetscHelpPrintf, which may be told a line in pieces */
-static PetscErrorCode CollectHelp(MPI_Comm comm, const char format[], ...)
-{
-  const size_t used = strlen(collecting.line);
-  size_t       length;
-  char        *end;
-  va_list      args;
-
-  PetscFunctionBeginUser;
-  (void)comm;
-  va_start(args, format);
-  PetscCall(PetscVSNPrintf(collecting.line + used, sizeof(collecting.line) - used, format, &length, args));
-  va_end(args);
-  while ((end = strchr(collecting.line, '\n'))) {
-    *end = '\0';
-    PetscCall(CollectLine(collecting.line));
-    (void)memmove(collecting.line, end + 1, strlen(end + 1) + 1);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Stand in for the printers of help and of all else, and print nothing */
-static PetscErrorCode HushHelp(MPI_Comm comm, const char format[], ...)
-{
-  (void)comm;
-  (void)format;
-  return 0;
-}
-
-static PetscErrorCode HushAll(FILE *file, const char format[], va_list args)
-{
-  (void)file;
-  (void)format;
-  (void)args;
-  return 0;
-}
-
-void HelpHush(int argc, char *const argv[])
-{
   for (int i = 1; i < argc; i++)
-    if (!strcmp(argv[i], "-help")) PetscHelpPrintf = HushHelp;
+    if (!strcmp(argv[i], "-help")) argv[i] = list;
 }
 
-/* Whether whoever reads an option from now on tells the help printer of it, also of those read before */
-static PetscErrorCode HelpForce(PetscBool on)
+PetscErrorCode HelpShowLibraries(PetscBool on)
 {
   PetscFunctionBeginUser;
   if (on)
@@ -244,45 +115,15 @@ static PetscErrorCode HelpForce(PetscBool on)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx, HelpList *list)
+PetscErrorCode HelpIsAsked(HelpKind *kind)
 {
-  PetscErrorCode (*const printer)(MPI_Comm, const char[], ...)       = PetscHelpPrintf;
-  PetscErrorCode (*const all_printer)(FILE *, const char[], va_list) = PetscVFPrintf;
-  PetscErrorCode error;
-  PetscBool      asked;
+  PetscBool list, all, json;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasHelp(NULL, &asked));
-  PetscCall(HelpForce(PETSC_TRUE));
-  collecting.list    = list;
-  collecting.line[0] = '\0';
-  PetscHelpPrintf    = CollectHelp;
-  PetscVFPrintf      = HushAll;
-  error              = (*read_again)(comm, ctx);
-  PetscHelpPrintf    = printer;
-  PetscVFPrintf      = all_printer;
-  collecting.list    = NULL;
-  if (!asked) PetscCall(HelpForce(PETSC_FALSE));
-  PetscCall(error);
-  PetscFunctionReturn(0);
-}
-
-/* Prints one of squeal's options: name, value in force, text, and the default where it is another one. In an example
-   scene the value is the default */
-static PetscErrorCode HelpPrintOption(MPI_Comm comm, const HelpOption *option, PetscBool example)
-{
-  static const char choose[] = "(choose one of)";
-  const char       *choice   = strstr(option->text, choose);
-  const PetscBool   required = strstr(option->text, "(required)") ? PETSC_TRUE : PETSC_FALSE;
-  const char       *value    = example ? (required ? "" : option->initial) : option->value;
-  const PetscBool   changed  = strcmp(value, option->initial) && !required ? PETSC_TRUE : PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscPrintf(comm, "  -%-28s %-14s %.*s", option->name, value,
-                        (int)(choice ? choice - option->text : (ptrdiff_t)strlen(option->text)), option->text));
-  if (choice) PetscCall(PetscPrintf(comm, "(one of%s)", choice + strlen(choose)));
-  if (changed) PetscCall(PetscPrintf(comm, " [default %s]", option->initial[0] ? option->initial : "none"));
-  PetscCall(PetscPrintf(comm, "\n"));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_list", &list));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", &all));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_json", &json));
+  *kind = json ? HELP_JSON : all ? HELP_ALL : list ? HELP_LIST : HELP_NONE;
   PetscFunctionReturn(0);
 }
 
@@ -298,56 +139,15 @@ static PetscErrorCode SceneIsGiven(PetscBool *given)
   PetscFunctionReturn(0);
 }
 
-/* Prints the options of squeal among those of the list */
-static PetscErrorCode HelpPrint(MPI_Comm comm, const HelpList *list, PetscBool example)
+PetscErrorCode HelpBegin(HelpKind *kind, PetscBool *example)
 {
-  const char *group = "";
-
-  PetscFunctionBeginUser;
-  for (int i = 0; i < list->n; i++) {
-    if (!list->option[i].own) continue;
-    if (strcmp(group, list->option[i].group)) PetscCall(PetscPrintf(comm, "%s\n", list->option[i].group));
-    group = list->option[i].group;
-    PetscCall(HelpPrintOption(comm, &list->option[i], example));
-  }
-  PetscCall(PetscPrintf(comm,
-                        "PETSc's and SLEPc's own, such as -ts_max_time, -ts_dt, -eps_*, -pep_*, -st_*, -log_view, "
-                        "-options_file: squeal -help_all\n"));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode HelpIsAsked(HelpKind *kind)
-{
-  PetscBool list, all, json;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasHelp(NULL, &list));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_all", &all));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-help_json", &json));
-  *kind = json ? HELP_JSON : all ? HELP_ALL : list ? HELP_LIST : HELP_NONE;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SquealViewOptions(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *),
-                                 PetscErrorCode (*write)(MPI_Comm, void *), void *ctx, PetscBool *asked)
-{
-  HelpList  list = {0};
-  HelpKind  kind;
   PetscBool given;
 
   PetscFunctionBeginUser;
-  PetscCall(HelpIsAsked(&kind));
-  *asked = kind == HELP_NONE ? PETSC_FALSE : PETSC_TRUE;
-  if (!*asked) PetscFunctionReturn(0);
+  PetscCall(HelpIsAsked(kind));
+  if (*kind == HELP_NONE) PetscFunctionReturn(0); /* to look for an option would make it one that is read */
   PetscCall(SceneIsGiven(&given));
-  if (!given) PetscCall(PetscOptionsInsertString(NULL, names_of_all));
-  if (kind == HELP_ALL) PetscCall(HelpForce(PETSC_TRUE));
-  if (kind == HELP_ALL) PetscCall((*read_again)(comm, ctx));
-  if (kind == HELP_JSON) PetscCall((*write)(comm, ctx));
-  if (kind != HELP_LIST) PetscFunctionReturn(0);
-  PetscCall(HelpCollect(comm, read_again, ctx, &list));
-  PetscCall(PetscPrintf(comm, "squeal %s: friction-induced vibration of bodies in sliding contact\n", SQUEAL_VERSION));
-  PetscCall(HelpPrint(comm, &list, given ? PETSC_FALSE : PETSC_TRUE));
-  free(list.option);
+  *example = given ? PETSC_FALSE : PETSC_TRUE;
+  if (*example) PetscCall(PetscOptionsInsertString(NULL, names_of_all));
   PetscFunctionReturn(0);
 }

@@ -1,33 +1,28 @@
-/* For base/ and results/: what squeal says of itself and of its options */
+/* For base/ and what is above it: which help is asked for, and options of PETSc and SLEPc */
 #pragma once
 
 #include <petscsys.h>
 
 #define HELP_MAX_NAME 128
 
-/* An option as -help shows it */
-typedef struct {
-  char      name[HELP_MAX_NAME]; /* without the dash */
-  char      group[96];           /* title under which its owner reads it */
-  char      value[128], initial[128], text[512];
-  PetscBool own; /* of squeal, not of PETSc or SLEPc */
-} HelpOption;
-
-typedef struct {
-  int         n, max;
-  HelpOption *option;
-} HelpList;
-
 /* Answers -h, --help, -version and --version on rank 0; whether it did. MPI is up, PETSc need not be */
 PETSC_INTERN PetscBool HelpAnswer(int argc, char *const argv[]);
-/* Keeps PETSc from printing what it knows of -help at its start, which HelpPrint() does */
-PETSC_INTERN void HelpHush(int argc, char *const argv[]);
+/* Writes -help as -help_list, of which PETSc, which would print its own options, knows nothing */
+PETSC_INTERN void HelpRename(int argc, char *argv[]);
 /* What asks for the options: -help, -help_all, -help_json */
 typedef enum { HELP_NONE, HELP_LIST, HELP_ALL, HELP_JSON } HelpKind;
 /* Which of them is given, so that a scene need not be complete */
 PETSC_INTERN PetscErrorCode HelpIsAsked(HelpKind *kind);
-/* All options that read_again() reads, with values; n = 0 before, free list->option with free() */
-PETSC_INTERN PetscErrorCode HelpCollect(MPI_Comm comm, PetscErrorCode (*read_again)(MPI_Comm, void *), void *ctx,
-                                        HelpList *list);
-/* unknown.c - whether options of PETSc or SLEPc begin with the name and an underscore */
-PETSC_INTERN PetscBool UnknownIsLibrarysPrefix(const char name[]);
+/* The same; where no scene is given, options of one with a name in each list */
+PETSC_INTERN PetscErrorCode HelpBegin(HelpKind *kind, PetscBool *example);
+/* Whether objects of PETSc and SLEPc that read their options from now on print them */
+PETSC_INTERN PetscErrorCode HelpShowLibraries(PetscBool on);
+
+/* libraries.c - whether options of PETSc or SLEPc begin with the name and an underscore */
+PETSC_INTERN PetscBool LibraryHasPrefix(const char name[]);
+/* Whether an option is one of their solvers', read when the rooms read theirs */
+PETSC_INTERN PetscBool LibraryIsSolvers(const char name[]);
+/* Whether they may still read an option */
+PETSC_INTERN PetscBool LibraryReadsLater(const char name[]);
+/* Options of theirs for the nearest name to one, NULL behind the last */
+PETSC_INTERN const char *LibraryName(size_t i);

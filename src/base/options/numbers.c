@@ -1,5 +1,5 @@
 /*
-   Numbers between PetscOptionsBegin() and PetscOptionsEnd(). PETSc reads `default`, `decide` and `mouse` as -2 and -1,
+   Numbers. PETSc reads `default`, `decide` and `mouse` as -2 and -1,
    which are codes of its own functions and no numbers of a scene, and an integer that its type does not hold as another
    one: both are refused.
 */
@@ -37,40 +37,37 @@ static PetscErrorCode WordCheck(MPI_Comm comm, const char name[], const char wor
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsCheckWords(OptionsItems PetscOptionsObject, const char option[], PetscBool integer)
+PetscErrorCode OptionsCheckWords(MPI_Comm comm, const char option[], PetscBool integer)
 {
-  const char *value, *prefix = PetscOptionsObject->prefix ? PetscOptionsObject->prefix : "";
-  char        name[MAX_NUMBER], word[MAX_NUMBER];
+  const char *value;
+  char        word[MAX_NUMBER];
   PetscBool   set;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsFindPair(PetscOptionsObject->options, prefix, option, &value, &set));
+  PetscCall(PetscOptionsFindPair(NULL, NULL, option, &value, &set));
   if (!set || !value) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s%s", prefix, option + 1));
   for (const char *c = value; *c; c += strspn(c, ", ")) {
     const size_t length = strcspn(c, ", ");
 
     PetscCall(PetscStrncpy(word, c, PetscMin(length + 1, sizeof(word))));
-    PetscCall(WordCheck(PetscOptionsObject->comm, name, word, integer));
+    PetscCall(WordCheck(comm, option, word, integer));
     c += length;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetReal(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscReal now,
-                              PetscReal *value, PetscBool *set)
+PetscErrorCode OptionsGetReal(MPI_Comm comm, const char option[], PetscReal *value, PetscBool *set)
 {
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_FALSE));
-  PetscCall(PetscOptionsReal(option, help, "options.h", now, value, set));
+  PetscCall(OptionsCheckWords(comm, option, PETSC_FALSE));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, option, value, set));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetInt(OptionsItems PetscOptionsObject, const char option[], const char help[], PetscInt now,
-                             PetscInt *value, PetscBool *set)
+PetscErrorCode OptionsGetInt(MPI_Comm comm, const char option[], PetscInt *value, PetscBool *set)
 {
   PetscFunctionBeginUser;
-  PetscCall(OptionsCheckWords(PetscOptionsObject, option, PETSC_TRUE));
-  PetscCall(PetscOptionsInt(option, help, "options.h", now, value, set));
+  PetscCall(OptionsCheckWords(comm, option, PETSC_TRUE));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, option, value, set));
   PetscFunctionReturn(0);
 }

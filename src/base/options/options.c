@@ -84,7 +84,7 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own) && !taken; i++)
     PetscCall(PetscStrcasecmp(name, own[i], &taken));
-  if (!taken) taken = UnknownIsLibrarysPrefix(name);
+  if (!taken) taken = LibraryHasPrefix(name);
   PetscCheck(!taken, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no name: other options begin with -%s_; choose another",
              option, name, name);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
@@ -96,13 +96,13 @@ static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const ch
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], const char help[], PetscInt *n, char ***names)
+PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], PetscInt *n, char ***names)
 {
   PetscBool same;
   char    **name;
 
   PetscFunctionBeginUser;
-  PetscCall(OptionsGetWords(comm, option, help, n, &name));
+  PetscCall(OptionsGetWords(comm, option, n, &name));
   for (PetscInt i = 0; i < *n; i++) {
     PetscCheck(NameIsIdentifier(name[i]), comm, PETSC_ERR_USER_INPUT,
                "%s '%s' is no name: use letters, digits and underscores, a letter first%s", option, name[i],

@@ -38,6 +38,8 @@ PETSC_INTERN PetscErrorCode MatrixTermsDestroy(Operators operators);
 
 /* matrixtermoptions.c - the list and the options of each name; then the parameters that they name */
 PETSC_INTERN PetscErrorCode MatrixTermsSetFromOptions(Operators operators);
+/* Shows the rows of the parameters that terms name */
+PETSC_INTERN PetscErrorCode MatrixTermsVisitParameters(Operators operators, const QuantityVisitor *visitor);
 PETSC_INTERN PetscErrorCode MatrixTermsAddParameters(Operators operators);
 
 /* matrixfile.c - a matrix from a list of all its entries, or from a file, that `option` gives */

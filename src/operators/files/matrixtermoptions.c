@@ -62,27 +62,59 @@ static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
   PetscFunctionReturn(0);
 }
 
+typedef struct {
+  PetscReal value;
+  PetscBool given;
+} ParameterValue;
+
+/* Shows the row of a parameter: its option has the name that terms give it */
+static PetscErrorCode MatrixParameterVisit(const QuantityVisitor *visitor, const char name[], const char why[],
+                                           ParameterValue *value)
+{
+  char           option[256];
+  const Quantity row = {option,
+                        "value of the parameter of this name",
+                        NULL,
+                        QUANTITY_REAL,
+                        QUANTITY_AT(ParameterValue, value),
+                        .given    = offsetof(ParameterValue, given),
+                        .required = PETSC_TRUE,
+                        .why      = why,
+                        .varies   = VARIES_LINEAR};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){"Parameters of matrices", "operators.h", 1, &row, .in = 0}, NULL,
+                            value, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MatrixTermsVisitParameters(Operators o, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < o->parameters.n; i++)
+    if (o->parameters.list[i].of_matrices)
+      PetscCall(MatrixParameterVisit(visitor, o->parameters.list[i].name, NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
 /* The value of the parameter that factor i of a term names, and the limit that the power sets */
 static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term, PetscInt i)
 {
-  char                option[256];
+  char                why[256];
   const char         *name  = term->parameter[i];
   PetscInt            index = ParametersFind(&o->parameters, name);
-  PetscReal           value = o->loaded_mu;
-  PetscBool           set   = PETSC_TRUE;
+  const PetscBool     read  = strcmp(name, "contact_mu") ? PETSC_TRUE : PETSC_FALSE; /* else it is read beside H */
+  ParameterValue      given = {.value = o->loaded_mu};
   OperatorsParameter *q;
 
   PetscFunctionBeginUser;
   if (index < 0) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
-    PetscOptionsBegin(o->comm, NULL, "Parameters of matrices", NULL);
-    if (strcmp(name, "contact_mu")) /* which is read beside H */
-      PetscCall(OptionsGetReal(PetscOptionsObject, option, "value of the parameter of this name", 0, &value, &set));
-    PetscOptionsEnd();
-    PetscCheck(set, o->comm, PETSC_ERR_USER_INPUT, "%s is missing: the value of the parameter of -%s_parameter", option,
-               term->name);
-    PetscCall(
-      ParametersAdd(&o->parameters, NULL, name, &(OperatorsParameter){.value = value, .lower = -INFINITY}, &index));
+    PetscCall(PetscSNPrintf(why, sizeof(why), "the value of the parameter of -%s_parameter", term->name));
+    if (read) PetscCall(MatrixParameterVisit(&(QuantityVisitor){QuantitiesReadVisited, &o->comm}, name, why, &given));
+    PetscCall(ParametersAdd(&o->parameters, NULL, name,
+                            &(OperatorsParameter){.value = given.value, .lower = -INFINITY, .of_matrices = read},
+                            &index));
   }
   q = &o->parameters.list[index];
   if (term->power[i] < 0) q->lower = 0;

@@ -106,15 +106,16 @@ static PetscErrorCode EPSBackTransform_BlockKrylov(EPS eps)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode EPSSetFromOptions_BlockKrylov(EPS eps, PetscOptionItems *PetscOptionsObject)
+static PetscErrorCode EPSSetFromOptions_BlockKrylov(EPS eps, OptionsItems PetscOptionsObject)
 {
   EPS_BlockKrylov *ctx = eps->data;
 
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "EPS block Krylov-Schur options");
-  PetscCall(OptionsGetInt(PetscOptionsObject, BLOCKKRYLOV_SIZE,
-                          "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)",
-                          ctx->size, &ctx->size, NULL));
+  PetscCall(OptionsCheckWords(PetscObjectComm((PetscObject)eps), BLOCKKRYLOV_SIZE, PETSC_TRUE));
+  PetscCall(PetscOptionsInt(BLOCKKRYLOV_SIZE,
+                            "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)",
+                            "options.h", ctx->size, &ctx->size, NULL));
   PetscOptionsHeadEnd();
   PetscCheck(ctx->size >= 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
              BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must not be negative", ctx->size);
