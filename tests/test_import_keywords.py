@@ -276,7 +276,7 @@ def page():
 def names():
     """Names of parts and contacts that squeal refuses, since its own or its libraries' options begin with them."""
     source = Path(__file__).resolve().parents[1] / "src/base/options"
-    library = re.search(r"library_prefixes\[\] = \{(.*?)NULL", (source / "unknown.c").read_text(), re.S)[1]
+    library = re.search(r"library_prefixes\[\] = \{(.*?)NULL", (source / "libraries.c").read_text(), re.S)[1]
     own = re.search(r"own\[\] = \{(.*?)\};", (source / "options.c").read_text(), re.S)[1]
     refused = {*re.findall(r'"(\w+)_"', library), *re.findall(r'"(\w+)"', own)}
     check("an import gives no name that is refused", len(refused) > 20 and refused <= RESERVED, refused - RESERVED)
