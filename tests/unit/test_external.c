@@ -79,7 +79,7 @@ static PetscErrorCode SceneCreate(const Nodes *nodes, External *external)
   PetscCall(ExternalCreate(PETSC_COMM_SELF, NULL, external));
   e          = *external;
   e->layout  = &nodes->layout;
-  e->n_loads = e->n_motions = e->n_impulses = 1;
+  e->n_loads = e->n_motions = e->n_acting = 1;
   PetscCall(PetscCalloc1(1, &e->loads));
   PetscCall(PetscCalloc1(1, &e->motions));
   PetscCall(PetscCalloc1(1, &e->impulses));
