@@ -2,7 +2,8 @@
    Where on a part a mass, a spring or a dashpot lowers the growth of a mode most, and along which direction.
 
    At a node the rate of growth along the unit vector d is d'S d, S = Re(factor (y x' + x y') / 2): the least is the
-   lowest eigenvalue of S, its vector the direction. |S| <= |factor| |x| |y|, so that most nodes need no eigenvalues.
+   lowest eigenvalue of S, its vector the direction. It is m - 2 p at least, with m the mean of the three eigenvalues,
+   3 m = tr S, and 6 p^2 = |S - m I|^2, and |S| <= |factor| |x| |y|, so that most nodes need no eigenvalues.
    Of nodes that are alike within rounding, as in a scene with symmetry, the first in the order of places is named, so
    that the answer is the same on any number of ranks.
 
@@ -17,8 +18,25 @@
 #define DIRECTION_ZERO 1e-12 /* components of a direction below it are rounding */
 #define PAIR_TURNS     8     /* of the ends; two or three are the rule */
 
-/* Lowest rate of growth at a node, and where along */
-static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt node, EffectBest *here)
+/* One part, or all others */
+typedef struct {
+  PetscInt  part;
+  PetscBool within;
+} EffectParts;
+
+/* What no eigenvalue of a symmetric S [3][3] is below, but for rounding */
+static PetscReal LowestBound(const PetscReal S[9])
+{
+  const PetscReal mean   = (S[0] + S[4] + S[8]) / 3;
+  PetscReal       square = 0;
+
+  for (int i = 0; i < 9; i++) square += PetscSqr(S[i] - (i % 4 ? 0 : mean));
+  return mean - 2 * PetscSqrtReal(square / 6);
+}
+
+/* Lowest rate of growth at a node, and where along; 0 where it cannot be below `least` */
+static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt node, PetscReal least,
+                                 EffectBest *here)
 {
   PetscComplex form[3][3];
   PetscReal    S[9], w[3];
@@ -36,6 +54,7 @@ static PetscErrorCode NodeLowest(const ModeEffects *e, EffectKind kind, PetscInt
     PetscFunctionReturn(0);
   }
   for (int i = 0; i < 9; i++) S[i] = creal(form[i / 3][i % 3]);
+  if (LowestBound(S) > least * (1 - 2 * e->rounding)) PetscFunctionReturn(0);
   PetscCall(DenseSymmetricEigen(3, S, NULL, w, &definite));
   for (int a = 0; a < 3; a++) here->direction[a] = PetscAbsReal(S[a]) < DIRECTION_ZERO ? 0 : S[a];
   for (int a = 0; a < 3; a++)
@@ -65,7 +84,7 @@ static PetscErrorCode BestTry(const ModeEffects *e, EffectKind kind, PetscInt no
 
   PetscFunctionBeginUser;
   if (NodeBound(e, kind, node) < -least * (1 - e->rounding)) PetscFunctionReturn(0);
-  PetscCall(NodeLowest(e, kind, node, &here));
+  PetscCall(NodeLowest(e, kind, node, least, &here));
   if (!(creal(here.rate) < 0) || creal(here.rate) > least * (1 - e->rounding)) PetscFunctionReturn(0);
   here.found = PETSC_TRUE;
   if (creal(here.rate) < least * (1 + e->rounding) || Vec3ComparePlaces(here.at, best->at) < 0) *best = here;
@@ -92,25 +111,33 @@ static void BestTurn(EffectBest *best)
   for (int a = 0; a < 3; a++) best->direction[a] = best->direction[a] == 0 ? 0 : -best->direction[a];
 }
 
-/* The same of this rank's nodes of each part; seen [local nodes] is the last part that a node was tried for */
-static PetscErrorCode BestOfParts(const ModeEffects *e, EffectKind kind, PetscInt seen[], EffectBest best[])
+/* The same of this rank's nodes of each part, or of that or those asked for; seen [local nodes] is the last part that a
+   node was tried for */
+static PetscErrorCode BestOfParts(const ModeEffects *e, EffectKind kind, const EffectParts *of, PetscInt seen[],
+                                  EffectBest best[])
 {
   const Mesh *mesh = e->mesh;
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < mesh->n_nodes; node++) seen[node] = -1;
   PetscCall(PetscMemzero(best, (size_t)mesh->n_parts * sizeof(*best)));
-  for (PetscInt c = 0; c < mesh->n_cells; c++)
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt part = mesh->cell_part[c];
+
+    if (of && (part == of->part) != of->within) continue;
     for (PetscInt k = mesh->cell_first[c]; k < mesh->cell_first[c + 1]; k++) {
-      const PetscInt node = mesh->cell_node[k], part = mesh->cell_part[c];
+      const PetscInt node = mesh->cell_node[k];
 
       if (seen[node] != part) PetscCall(BestTry(e, kind, node, &best[part]));
       seen[node] = part;
     }
+  }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[])
+/* EffectsFindBest(), of all parts, or where `of` is given of that or those asked for */
+static PetscErrorCode PartsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, const EffectParts *of,
+                                    EffectBest best[])
 {
   const PetscInt n_parts = e->mesh->n_parts;
   PetscMPIInt    size, bytes = (PetscMPIInt)((size_t)n_parts * sizeof(EffectBest));
@@ -120,7 +147,7 @@ PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind k
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscMalloc2(e->mesh->n_nodes, &seen, (PetscInt)size * n_parts, &all));
-  PetscCall(BestOfParts(e, kind, seen, best));
+  PetscCall(BestOfParts(e, kind, of, seen, best));
   PetscCallMPI(MPI_Allgather(best, bytes, MPI_BYTE, all, bytes, MPI_BYTE, comm));
   for (PetscInt k = 0; k < n_parts; k++) {
     best[k] = all[k];
@@ -131,14 +158,20 @@ PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind k
   PetscFunctionReturn(0);
 }
 
-/* The part with the best node, the one of `part` or of all others; -1 where none lowers the growth */
-static PetscInt PairChoose(const EffectBest best[], PetscInt n_parts, PetscInt part, PetscBool within,
-                           PetscReal rounding)
+PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PartsFindBest(comm, e, kind, NULL, best));
+  PetscFunctionReturn(0);
+}
+
+/* The part with the best node; -1 where none lowers the growth */
+static PetscInt PairChoose(const EffectBest best[], PetscInt n_parts, PetscReal rounding)
 {
   PetscInt chosen = -1;
 
   for (PetscInt k = 0; k < n_parts; k++) {
-    if ((k == part) != within || !best[k].found) continue;
+    if (!best[k].found) continue;
     if (chosen < 0 || creal(best[k].rate) < creal(best[chosen].rate) * (1 + rounding)) chosen = k;
   }
   return chosen;
@@ -153,16 +186,16 @@ PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, P
   PetscFunctionBeginUser;
   *pair = (EffectPair){.part = {part, -1}};
   PetscCall(PetscMalloc1(n_parts, &best));
-  PetscCall(EffectsFindBest(comm, e, kind, best));
+  PetscCall(PartsFindBest(comm, e, kind, &(EffectParts){part, PETSC_TRUE}, best));
   pair->end[0] = best[part];
   for (int turn = 0; turn < PAIR_TURNS && pair->end[0].found; turn++) {
-    const int       moves = turn % 2 ? 0 : 1; /* this end, the other one is held */
-    const PetscBool own   = moves == 0 || within ? PETSC_TRUE : PETSC_FALSE;
-    PetscInt        k;
+    const int         moves = turn % 2 ? 0 : 1; /* this end, the other one is held */
+    const EffectParts of    = {part, moves == 0 || within ? PETSC_TRUE : PETSC_FALSE};
+    PetscInt          k;
 
     PetscCall(PetscMemcpy(e->end, pair->end[1 - moves].vector, sizeof(e->end)));
-    PetscCall(EffectsFindBest(comm, e, kind, best));
-    k = PairChoose(best, n_parts, part, own, e->rounding);
+    PetscCall(PartsFindBest(comm, e, kind, &of, best));
+    k = PairChoose(best, n_parts, e->rounding);
     if (k < 0) break;
     if (turn > 0 && Vec3ComparePlaces(best[k].at, pair->end[moves].at) == 0 && k == pair->part[moves]) break;
     pair->end[moves]  = best[k];
