@@ -20,7 +20,7 @@ typedef struct {
   const Quantity *row; /* of its option, NULL for what has none; said by it: */
   const char     *unit;
   PetscReal       value;        /* of the scene; of an internal one 1 */
-  PetscReal       lower, upper; /* lower < value < upper; -infinity, infinity where there is no limit */
+  PetscReal       lower, upper; /* lower < value <= upper; -infinity, infinity where there is no limit */
   PetscBool       closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
   PetscBool       body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */

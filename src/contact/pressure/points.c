@@ -1,7 +1,7 @@
 /*
    The points of a pressure law that is a table, from its option or from a file: closing (m) and pressure (Pa) in each
-   line, with a comma between; a first line without numbers is a heading, empty lines and those that begin with # are
-   none. Read on one rank, checked on all.
+   line, with a comma between; a first line that begins with no number is a heading, empty lines and those that begin
+   with # are none. Read on one rank, checked on all.
 */
 #include "kind.h"
 #include "base/file.h"
@@ -30,6 +30,15 @@ static PetscBool PointsParse(const char line[], PetscReal number[2])
   return end != line && !end[strspn(end, " \t\r\n")] ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Whether a line is a heading: no number begins it, so that a first point with a slip of the pen is none */
+static PetscBool PointsIsHeading(const char line[])
+{
+  char *end = NULL;
+
+  (void)strtod(line, &end);
+  return end == line ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* All lines, on the rank that calls */
 static void PointsRead(const char file[], Points *points)
 {
@@ -47,7 +56,7 @@ static void PointsRead(const char file[], Points *points)
       (void)snprintf(points->fault, sizeof(points->fault), "it has more than %d points", PRESSURE_ROOM / 2);
     else if (PointsParse(text, &points->number[points->n]))
       points->n += 2;
-    else if (points->line > 1)
+    else if (points->line > 1 || !PointsIsHeading(text))
       (void)snprintf(points->fault, sizeof(points->fault), "line %d is no closing,pressure", (int)points->line);
   }
   (void)fclose(stream);

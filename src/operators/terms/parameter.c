@@ -1,6 +1,6 @@
 /*
    Parameters: the numbers of the scene that matrices depend on, in the order of the scene, with their limits: lower <
-   p (<= where closed) and p < upper; `upper` 0 stands for none. Names are <owner>_<what>, those of the options
+   p (<= where closed) and p <= upper; `upper` 0 stands for none. Names are <owner>_<what>, those of the options
    without the dash, units SI until the scene's units are put in for views.
 */
 #include "terms.h"
@@ -40,10 +40,10 @@ PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *q, PetscR
   const char *space = q->unit[0] ? " " : "";
 
   PetscFunctionBeginUser;
-  PetscCheck(!q->internal || value <= q->upper, comm, PETSC_ERR_USER_INPUT, "%s %.6g must be at most %.6g", q->name,
-             (double)value, (double)q->upper);
-  PetscCheck((q->internal || value < q->upper) && !PetscIsNanReal(value), comm, PETSC_ERR_USER_INPUT,
+  PetscCheck((q->internal || !PetscIsInfReal(value)) && !PetscIsNanReal(value), comm, PETSC_ERR_USER_INPUT,
              "%s %.6g%s%s must be a finite number", q->name, (double)value, space, q->unit);
+  PetscCheck(value <= q->upper, comm, PETSC_ERR_USER_INPUT, "%s %.6g%s%s must be at most %.6g", q->name, (double)value,
+             space, q->unit, (double)q->upper);
   PetscCheck(
     q->fastest == 0 || PetscAbsReal(value) <= q->fastest, comm, PETSC_ERR_USER_INPUT,
     "%s %.6g rad/s must be at most %.6g rad/s: beyond, the part moves faster than waves in it, and centrifugal "
