@@ -21,6 +21,8 @@
 
 /* of the area of a node in its surface: a node with less has no pair */
 #define MEAN_BARE 1e-6
+/* of the faces around a node, over the master: a pair of less holds what lies beyond the border */
+#define MEAN_PART 0.5
 /* a weight that is rounding of integrals */
 #define MEAN_ROUNDING 1e-15
 
@@ -38,6 +40,7 @@ typedef struct {
   PetscInt     n_pairs, *of; /* [slave nodes] their pairs, -1 for none on this rank */
   PetscInt    *around;       /* [n_pairs] 9 times a facet of the slave around the node, and its place there */
   PetscReal   *whole;        /* [n_pairs] area of the node in its surface, m^2 */
+  PetscReal (*part)[2];      /* [n_pairs] faces around the node, as far as they lie over the master, and their number */
   PetscReal (*off)[3];       /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
   PetscInt     n, room;
   MortarEntry *entry;
@@ -58,7 +61,8 @@ static PetscErrorCode MeansFind(MortarPairs *m)
   const ContactSurface *slave = m->mortar.slave;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(slave->n_nodes, &m->of, m->n_pairs, &m->around, m->n_pairs, &m->whole, m->n_pairs, &m->off));
+  PetscCall(PetscCalloc5(slave->n_nodes, &m->of, m->n_pairs, &m->around, m->n_pairs, &m->whole, m->n_pairs, &m->off,
+                         m->n_pairs, &m->part));
   for (PetscInt i = 0; i < slave->n_nodes; i++) m->of[i] = -1;
   for (PetscInt p = 0; p < m->n_pairs; p++) {
     PetscInt at;
@@ -94,6 +98,15 @@ static PetscErrorCode NodeTake(MortarPairs *m, int n, int j, PetscInt p)
   PetscFunctionReturn(0);
 }
 
+/* How much of a facet lies over the master */
+static PetscReal FacetPart(const MortarPairs *m, const ContactFacet *s)
+{
+  PetscReal area = 0;
+
+  for (int j = 0; j < s->n && m->facet.n; j++) area += m->facet.sums.d[j];
+  return PetscMin(1, area / PetscSqr(s->size));
+}
+
 /* Adds what the facets of the slave have for the pairs of this rank */
 static PetscErrorCode FacetsTake(MortarPairs *m)
 {
@@ -114,6 +127,8 @@ static PetscErrorCode FacetsTake(MortarPairs *m)
 
       if (p < 0) continue;
       m->around[p] = FACET_NODES * f + j;
+      m->part[p][0] += FacetPart(m, s);
+      m->part[p][1] += 1;
       PetscCall(NodeTake(m, s->n, j, p));
     }
   }
@@ -225,6 +240,25 @@ static PetscErrorCode MeansSet(MortarPairs *m, ContactPairNode **sides)
   PetscFunctionReturn(0);
 }
 
+/* Says how many pairs stand for faces that lie mostly beyond the border of the master. The mean of such a pair is that
+   of a strip of its faces, by functions that are large beyond it: a stiff contact holds the whole faces by it. */
+static PetscErrorCode PartsWarn(Contact contact, const ContactInterface *c, const MortarPairs *m)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->n_pairs; p++)
+    if (m->pair[p].area > 0 && m->part[p][0] < MEAN_PART * m->part[p][1]) n++;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, contact->comm));
+  if (n)
+    PetscCall(PetscFPrintf(contact->comm, stderr,
+                           "squeal: warning: contact %s: %" PetscInt_FMT " pairs of mortar contact have less than half "
+                           "of their faces over %s: they hold faces that lie beyond its border, and frequencies come "
+                           "out too high; give -%s_discretization node, or faces of %s that end there\n",
+                           c->name, n, c->master, c->name, c->slave));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first)
 {
   const ContactInterface *c     = &contact->interfaces[interface];
@@ -245,7 +279,8 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
              "contact %s: faces of %s or %s are so distorted that no point over them can be found in them; mesh them "
              "anew, or give -%s_discretization node",
              c->name, c->slave, c->master, c->name);
-  PetscCall(PetscFree4(m.of, m.around, m.whole, m.off));
+  PetscCall(PartsWarn(contact, c, &m));
+  PetscCall(PetscFree5(m.of, m.around, m.whole, m.off, m.part));
   PetscCall(PetscFree(m.entry));
   PetscCall(PetscFree(m.facet.block));
   PetscCall(MortarDestroy(&m.mortar));
