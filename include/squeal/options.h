@@ -248,6 +248,11 @@ PetscErrorCode OptionsRefuse(MPI_Comm comm, const char options[], const char why
 /*@ OptionsRefuseOf - the same of the options of one owner: "contact", "kn law". Collective. @*/
 PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char names[], const char why[]);
 
+/*@ OptionsRefuseBeside - refuses -owner_name on the command line, which -owner_choice with the word `chosen` does not
+    read; where a file gives it, it is taken out with a warning. Collective. @*/
+PetscErrorCode OptionsRefuseBeside(MPI_Comm comm, const char owner[], const char name[], const char choice[],
+                                   const char chosen[]);
+
 /*@ OptionsRefusePrefix - the same of all options that begin so, such as "-pep_ -eps_". Collective. @*/
 PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const char why[]);
 

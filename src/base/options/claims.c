@@ -84,6 +84,20 @@ PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char nam
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsRefuseBeside(MPI_Comm comm, const char owner[], const char name[], const char choice[],
+                                   const char chosen[])
+{
+  char why[256], option[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_%s %s", owner, choice, chosen));
+  PetscCall(OptionsRefuseOf(comm, owner, name, why));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "-%s_%s is %s", owner, choice, chosen));
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", owner, name));
+  PetscCall(OptionsDrop(comm, option, why));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const char why[])
 {
   PetscFunctionBeginUser;

@@ -60,13 +60,11 @@ static const char *const read_first[] = {"eps_blockkrylovschur_size",
                                          "eps_mpd",
                                          "eps_ncv",
                                          "eps_tol",
-
                                          "pep_max_it",
                                          "pep_monitor",
                                          "pep_mpd",
                                          "pep_ncv",
                                          "pep_tol",
-
                                          "st_ksp_max_it",
                                          "st_ksp_rtol",
                                          "st_mat_mumps_icntl_14",

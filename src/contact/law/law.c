@@ -166,19 +166,13 @@ PetscErrorCode FrictionVisit(const FrictionLaw *law, const char name[], const Qu
 /* Refuses parameters of laws that were not chosen; those of files are taken out, with a warning */
 static PetscErrorCode KindsRefuse(MPI_Comm comm, const char name[], const FrictionLaw *chosen)
 {
-  char why[256], instead[256], option[256];
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_friction_law %s", name, KindOf(chosen)->name));
-  PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_friction_law is %s", name, KindOf(chosen)->name));
   for (PetscInt k = 0; k < N_KINDS; k++)
     for (PetscInt j = 0; j < kinds[k]->n; j++) {
-      const char *const own = kinds[k]->parameter[j].row.name + 1;
+      const char *const own = kinds[k]->parameter[j].row.name;
 
-      if (KindHas(KindOf(chosen), own - 1)) continue;
-      PetscCall(OptionsRefuseOf(comm, name, own, why));
-      PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, own));
-      PetscCall(OptionsDrop(comm, option, instead));
+      if (KindHas(KindOf(chosen), own)) continue;
+      PetscCall(OptionsRefuseBeside(comm, name, own + 1, "friction_law", KindOf(chosen)->name));
     }
   PetscFunctionReturn(0);
 }

@@ -259,6 +259,21 @@ static PetscErrorCode PartsWarn(Contact contact, const ContactInterface *c, cons
   PetscFunctionReturn(0);
 }
 
+/* Raises an error where faces of eight and of nine nodes may share a side, on which their N~ differ; all ranks have all
+   facets */
+static PetscErrorCode SlaveCheck(MPI_Comm comm, const ContactInterface *c, const ContactSurface *slave)
+{
+  PetscBool has[FACET_NODES + 1] = {PETSC_FALSE};
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < slave->n_facets; f++) has[slave->facet[f].n] = PETSC_TRUE;
+  PetscCheck(!has[8] || !has[9], comm, PETSC_ERR_SUP,
+             "contact %s: %s has faces of eight and of nine nodes, which mortar contact does not join; give "
+             "-%s_discretization node, or the other surface as slave",
+             c->name, c->slave, c->name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first)
 {
   const ContactInterface *c     = &contact->interfaces[interface];
@@ -270,6 +285,7 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &master));
   PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
+  PetscCall(SlaveCheck(contact->comm, c, &slave));
   PetscCall(MortarCreate(&slave, master, c->tolerance, &m.mortar));
   PetscCall(MeansFind(&m));
   PetscCall(FacetsTake(&m));

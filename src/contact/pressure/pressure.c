@@ -104,19 +104,11 @@ PetscErrorCode PressureVisit(const PressureLaw *law, const char name[], const Qu
 /* Refuses parameters of laws that were not chosen; those of files are taken out, with a warning */
 static PetscErrorCode PressuresRefuse(MPI_Comm comm, const char name[], const PressureLaw *chosen)
 {
-  char why[256], instead[256], option[256];
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_pressure_law %s", name, PressureKindOf(chosen)->name));
-  PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_pressure_law is %s", name, PressureKindOf(chosen)->name));
   for (PetscInt k = 0; k < N_PRESSURES; k++)
-    for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++) {
-      const char *const own = pressures[k]->row[j].name + 1;
-
-      PetscCall(OptionsRefuseOf(comm, name, own, why));
-      PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", name, own));
-      PetscCall(OptionsDrop(comm, option, instead));
-    }
+    for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++)
+      PetscCall(
+        OptionsRefuseBeside(comm, name, pressures[k]->row[j].name + 1, "pressure_law", PressureKindOf(chosen)->name));
   PetscFunctionReturn(0);
 }
 

@@ -6,10 +6,10 @@
 
       eps sum_ij |y_i K_ij x_j| / |y' Q' x|,
 
-   on massi2005 5e-9 of the friction's share, of which it has 3e-11. The shares have no such rounding: x^H A x of a
-   symmetric A has no imaginary part, so that what is large, K and M, is not in them; those of massi2005 are the same
-   within 1e-16 with 64 bits of mantissa. Hence the growth of a mode is the sum of its shares where the two agree within
-   the error of the eigenvalue. Where they do not, or its error is not known, the rest is what the vector leaves.
+   on massi2005 5e-9 of the friction's share. The two differ by 3e-11 of it there, and both by 9e-10 from the eigenvalue
+   of the saved matrices in extended precision: neither is the better number. Therefore the growth of a mode is defined
+   as the sum of its shares where the two agree within the error of the eigenvalue. Where they do not, or its error is
+   not known, it stays that of the eigensolver, and the rest is what the vector leaves.
 
    Error of a share, an estimate of first order: the vector is off by about d / g, d the error of the eigenvalue and g
    the distance of the next one, so that the share is off by d + 2 s d / g, s the largest share of the mode, and by what
