@@ -45,19 +45,10 @@ static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
    with a warning */
 static PetscErrorCode StiffnessDrop(MPI_Comm comm, ContactInterface *c)
 {
-  const char *const names[] = {"kn", "kn_per_area"};
-  char              option[256], instead[256], why[256];
-
   PetscFunctionBeginUser;
   if (PressureIsLinear(&c->pressure)) PetscFunctionReturn(0);
-  PetscCall(
-    PetscSNPrintf(why, sizeof(why), "not used with -%s_pressure_law %s", c->name, PressureGetName(&c->pressure)));
-  PetscCall(PetscSNPrintf(instead, sizeof(instead), "-%s_pressure_law is %s", c->name, PressureGetName(&c->pressure)));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names); i++) {
-    PetscCall(OptionsRefuseOf(comm, c->name, names[i], why));
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", c->name, names[i]));
-    PetscCall(OptionsDrop(comm, option, instead));
-  }
+  PetscCall(OptionsRefuseBeside(comm, c->name, "kn", "pressure_law", PressureGetName(&c->pressure)));
+  PetscCall(OptionsRefuseBeside(comm, c->name, "kn_per_area", "pressure_law", PressureGetName(&c->pressure)));
   c->kn     = 0;
   c->has_kn = c->per_area = c->identify = PETSC_FALSE;
   PetscFunctionReturn(0);
@@ -252,7 +243,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
     PetscCall(ModelAddSetChecksum(contact->model, f->master, PETSC_TRUE, c));
-    PetscCall(ChecksumAddInts(c, f->discretization == CONTACT_NODE ? 4 : 5, flags)); /* as before there were two */
+    PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(flags), flags));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
     PetscCall(FrictionAddChecksum(&f->friction, c));
     PetscCall(PressureAddChecksum(&f->pressure, c));
