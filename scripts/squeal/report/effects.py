@@ -57,9 +57,8 @@ def effects(modes, folder):
                Column("place, mm", place, left=True),
                Column("other end", other_end, left=True),
                Column("direction", direction, left=True),
-               Column("growth by it, 1/s", lambda row: EASY[row["unit"]][0] * row["growth_rad_s_per_unit"],
+               Column("growth per unit, 1/s", lambda row: EASY[row["unit"]][0] * row["growth_rad_s_per_unit"],
                       lambda value: signed(value, 3)),
-               Column("per", lambda row: f"1 {EASY[row['unit']][1]}", left=True),
                Column("that would stop it", lambda row: row["first_order_units_to_zero"] / EASY[row["unit"]][0],
                       lambda value: figures(value, 3), hint="to first order"),
                Column("unit", lambda row: EASY[row["unit"]][1], left=True)]
