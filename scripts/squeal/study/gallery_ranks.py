@@ -79,7 +79,7 @@ class Gallery:
 
     def __init__(self, args):
         self.program, self.folder, self.seconds, self.quick = args.program, args.output.resolve(), args.seconds, args.quick
-        self.before = args.before
+        self.before, self.changed = args.before, frozenset(args.changed)
         self.ranks = [int(word) for word in args.ranks.split(",")]
         self.preload = ["-x", f"LD_PRELOAD={args.collective.resolve()}"] if args.collective else []
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -165,7 +165,7 @@ class Gallery:
             print(f"{name:24} {one}; before: {other}", flush=True)
             return False
         added = added_columns(one, other)
-        found = difference(one, other, BUILDS, added)
+        found = difference(one, other, BUILDS, added | self.changed)
         passed = found.value <= BUILDS
         print(f"{name:24} {found.value:.1e} {'same' if passed else f'DIFFERS ({found.where})'} ({seconds:.1f} s)"
               f"{'; added: ' * bool(added)}{' '.join(sorted(added))}", flush=True)

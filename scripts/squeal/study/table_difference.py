@@ -81,13 +81,13 @@ def apart(name, one, other, scale):
     return abs(a - b) / scale
 
 
-def of_rows(name, one, other):
-    """For each row of two tables the worst entry."""
+def of_rows(name, one, other, apart_from=frozenset()):
+    """For each row of two tables the worst entry, but of columns that are not compared."""
     scale, twins = scales(name, one + other), paired(one)
     for i, (a, b) in enumerate(zip(one, other)):
         worst = Difference()
         for column in a:
-            if column not in b or IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
+            if column not in b or column in apart_from or IGNORED.search(column) or (twins[i] and SHAPE.search(column)):
                 continue
             value = apart(column, a[column], b[column], scale.get(family(name, column), 1.0))
             if value > worst.value:
@@ -96,12 +96,12 @@ def of_rows(name, one, other):
 
 
 def of_table(name, one, other, limit, added=frozenset()):
-    """Of two tables; columns that only the first one has are `added` ones."""
+    """Of two tables, but for `added` columns, which the first one alone may have."""
     if len(one) != len(other):
         return Difference(math.inf, f"{name}: {len(one)} and {len(other)} rows")
     if one and one[0].keys() - other[0].keys() - added:
         return Difference(math.inf, f"{name}: only one has {' '.join(sorted(one[0].keys() - other[0].keys() - added))}")
-    found = list(of_rows(name, one, other))
+    found = list(of_rows(name, one, other, added))
     since = next((row.since for row in found if row.value > limit and not math.isnan(row.since)), math.nan)
     return max(found, key=lambda row: row.value, default=Difference())._replace(since=since)
 
