@@ -2,11 +2,9 @@
 
 # Files that break one rule each: rule, words of what it says, files
 MANY = "static void Many(int a, int b, int c, int d,\n  int e, int f, int (*g)(int, int))\n{\n}\n"
-BEGIN = "PetscOptionsBegin(comm, %s, title, NULL);\n  "
-MU = "static void A(void)\n{\n  " + BEGIN % "NULL" + 'PetscOptionsReal("-ts_dt", "m", "a.h", m, &m, NULL);\n}\n'
+MU = 'static void A(void)\n{\n  PetscOptionsReal("-ts_dt", "m", "a.h", m, &m, NULL);\n}\n'
 MU_TOO = 'static void B(void)\n{\n  PetscOptionsGetReal(NULL, NULL, "-ts_dt", &m, NULL);\n}\n'
-LAW = ('static void Law%s(void)\n{\n  PetscSNPrintf(title, sizeof(title), "Contact %%s", n);\n  ' + BEGIN % "prefix" +
-       'OptionsGetReals(PetscOptionsObject, "-eps_type", 1);\n}\n')
+LAW = 'static void Law%s(void)\n{\n  OptionsGetReals(comm, "-eps_type", 1);\n}\n'
 LOOP = "void %s(void)\n{\n  %s();\n}\n"
 
 
@@ -51,6 +49,7 @@ PLANTED = (
     ("options", "-ts_dt is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),
     ("options", "-eps_type is read", {f"src/model/{k}.c": LAW % k for k in "ab"}),
     ("rows", "-mu is read without", {"src/model/a.c": MU.replace("ts_dt", "mu")}),
+    ("rows", "-mu is read without", {"src/model/a.c": '#define MU "-mu"\n' + MU.replace('"-ts_dt"', "MU")}),
     ("rows", "-mu has no help", {"src/model/a.c": 'static const Quantity rows[] = {\n  {"-mu", "", NULL, QUANTITY_REAL},\n};\n'}),
     ("rows", "-force has no unit", {"src/model/a.c": 'static const Quantity rows[] = {\n  {"-force", "a", NULL, QUANTITY_REAL},\n};\n'}),
     ("rows", "-force is read by nobody", {"src/model/a.c": 'typedef struct {\n  double f;\n} Force;\nstatic const Quantity rows[] = {\n'

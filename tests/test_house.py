@@ -74,6 +74,7 @@ class House:
         self.c = [Source(path) for top in ("src", "include") for path in sorted((root / top).rglob("*.[ch]"))]
         programs = {path: first_line(path) for path in self.files("src", "include", "scripts", "tests")}
         self.code = [path for path, first in programs.items() if path.suffix in (".c", ".h", ".py") or first[:2] == b"#!"]
+        self.option_macros = {m[1]: m[2] for c in self.c for m in re.finditer(r'#define (\w+)\s+"-(\w+)"\n', c.text)}
         self.python = [Script(path) for path in self.code if path.suffix == ".py" or programs[path].endswith(b"python3")]
 
     def say(self, path, line, text):
@@ -218,38 +219,22 @@ def readmes(house):
             yield house.say(folder, 1, "no README.md, here or above, that says what it holds")
 
 
-def owner(source, f, at):
-    """Whose options are read at a place of a function: those of all (""), or the kind of thing that is the prefix."""
-    text = source.text[f.begin:f.end]
-    begun = re.search(r"PetscOptionsBegin\([^,]+(?:\([^)]*\))?, (\w+|\"\w+\"),", text[:at])
-    if begun and begun[1] != "NULL":
-        title = re.search(r'title, sizeof\(title\), "(\w+)', text)
-        return title[1] if title else f.name
-    head = source.text[max(source.text.rfind("\n\n", 0, f.begin), 0):f.begin]
-    if begun or "OptionsItems PetscOptionsObject" not in head:
-        return ""
-    for caller in source.functions:
-        call = source.code.find(f"{f.name}(", caller.begin, caller.end)
-        if call >= 0:
-            return owner(source, caller, call - caller.begin)
-    return f.name  # called from other files
-
-
-def read_options(source):
-    """Option, its owner, function and line for each literal name that is handed to a function that reads it."""
+def read_options(house, source):
+    """Option, its owner, function and line for each name, a text or a macro, that is handed to a function that reads it."""
     first = r'(?:[\w>.-]+(?:\([^)]*\))?, (NULL, |"\w+", )?)?'
-    reader = re.compile(rf'\b(?!OptionsRefuse|OptionsDrop)(\w*Option\w*)\(\s*{first}"-(\w+)"')
+    reader = re.compile(rf'\b(?!OptionsRefuse|OptionsDrop)(\w*Option\w*)\(\s*{first}(?:"-(\w+)"|([A-Z]\w+)\b)')
     for f in source.functions:
         for found in reader.finditer(source.text, f.begin, f.end):
-            whose = found[2].strip('", ') if found[2] else owner(source, f, found.start() - f.begin)
-            yield found[3], "" if whose == "NULL" else whose, f.name, source.line(found.start(3))
+            whose, name = (found[2] or "").strip('", '), found[3] or house.option_macros.get(found[4])
+            if name:
+                yield name, "" if whose == "NULL" else whose, f.name, source.line(found.end())
 
 
 def options(house):
     """Options that two places read."""
     seen = {}
     for source in house.c:
-        for name, whose, function, line in read_options(source):
+        for name, whose, function, line in read_options(house, source):
             here = function, house.say(source.path, line, "")
             before = seen.setdefault((name, whose), here)
             if before[0] != function:
@@ -275,7 +260,7 @@ def rows(house):
     read = {}
     words = sum((collections.Counter(re.findall(r"\w+", source.code)) for source in house.c), collections.Counter())
     for source in house.c:
-        for name, _, _, line in read_options(source):
+        for name, _, _, line in read_options(house, source):
             read[name] = house.say(source.path, line, f"-{name} is read without a row")
         for row in ROW.finditer(source.text):
             yield from (house.say(source.path, source.line(row.start()), f"-{row[1]} {fault}") for fault in row_faults(row, words))

@@ -47,11 +47,5 @@ static const Quantity rows[] = {
   OPTIONS("-st_", RUN_FACTORS),
   OPTIONS("-mat_mumps_", RUN_FACTORS),
 };
-static const QuantityTable librarys = {"PETSc and SLEPc", "petscsys.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
-
-PetscErrorCode SolverVisit(const QuantityVisitor *visitor)
-{
-  PetscFunctionBeginUser;
-  PetscCall(QuantitiesVisit(visitor, &librarys, NULL, NULL, NULL));
-  PetscFunctionReturn(0);
-}
+const QuantityTable solver_quantities = {"PETSc and SLEPc", "petscsys.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
+                                         .in = 0};

@@ -84,27 +84,45 @@ static PetscErrorCode SolverRefuse(MPI_Comm comm, const char prefix[], size_t n,
   PetscFunctionReturn(0);
 }
 
+/* Whether -eps_type asks for the solver */
+static PetscErrorCode EpsTypeIs(const char type[], PetscBool *is)
+{
+  char value[64] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-eps_type", value, sizeof(value), NULL));
+  PetscCall(PetscStrcmp(value, type, is));
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for a type of eigensolver that makes no statement about which modes it finds first */
 static PetscErrorCode SolverCheckTypes(MPI_Comm comm)
 {
-  static const char *const pep[] = {"type"};
+  static const char *const type[] = {"type"}, *const valid[] = {EPSBLOCKKRYLOVSCHUR, EPSKRYLOVSCHUR};
   static const char other[] = "not offered, other modes would be found; choose them by -modes_band or -modes_target";
-  char              value[64];
-  PetscBool         set, block, single;
+  static const char offered[] =
+    "not offered, other modes would be found; valid are " EPSBLOCKKRYLOVSCHUR " and " EPSKRYLOVSCHUR;
+  PetscBool is, any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(SolverRefuse(comm, "pep_", 1, pep, other));
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-eps_type", value, sizeof(value), &set));
-  if (!set) PetscFunctionReturn(0);
-  PetscCall(PetscStrcmp(value, EPSBLOCKKRYLOVSCHUR, &block));
-  PetscCall(PetscStrcmp(value, EPSKRYLOVSCHUR, &single));
-  PetscCheck(block || single, comm, PETSC_ERR_USER_INPUT,
-             "-eps_type %s: not offered, other modes would be found; valid are " EPSBLOCKKRYLOVSCHUR
-             " and " EPSKRYLOVSCHUR,
-             value);
-  if (single)
-    PetscCall(OptionsRefuse(comm, BLOCKKRYLOV_SIZE,
-                            "not used by -eps_type " EPSKRYLOVSCHUR ", which has no blocks; leave one out"));
+  PetscCall(SolverRefuse(comm, "pep_", 1, type, other));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(valid); i++) {
+    PetscCall(EpsTypeIs(valid[i], &is));
+    if (is) any = PETSC_TRUE;
+  }
+  if (!any) PetscCall(SolverRefuse(comm, "eps_", 1, type, offered));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SolverVisit(const QuantityVisitor *visitor)
+{
+  PetscBool single;
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &solver_quantities, NULL, NULL, NULL));
+  PetscCall(EpsTypeIs(EPSKRYLOVSCHUR, &single));
+  PetscCall(BlockKrylovVisit(
+    visitor, single ? "not used by -eps_type " EPSKRYLOVSCHUR ", which has no blocks; leave one out" : NULL));
   PetscFunctionReturn(0);
 }
 
@@ -114,6 +132,7 @@ static PetscErrorCode EpsReadOptions(MPI_Comm comm)
 
   PetscFunctionBeginUser;
   PetscCall(BlockKrylovRegister());
+  PetscCall(BlockKrylovReadOptions(comm));
   PetscCall(EPSCreate(comm, &eps));
   PetscCall(EPSSetType(eps, EPSBLOCKKRYLOVSCHUR));
   PetscCall(EPSSetFromOptions(eps));

@@ -54,8 +54,7 @@ static const char *const read_later[] = {"citations",
                                          "vecstash_initial_size"};
 
 /* Others, for the nearest name: what is read at the start, and by solvers that take it */
-static const char *const read_first[] = {"eps_blockkrylovschur_size",
-                                         "eps_max_it",
+static const char *const read_first[] = {"eps_max_it",
                                          "eps_monitor",
                                          "eps_mpd",
                                          "eps_ncv",

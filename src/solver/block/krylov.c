@@ -106,19 +106,33 @@ static PetscErrorCode EPSBackTransform_BlockKrylov(EPS eps)
   PetscFunctionReturn(0);
 }
 
+static const Quantity rows[] = {
+  {BLOCKKRYLOV_SIZE, "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)", NULL,
+   QUANTITY_INT, QUANTITY_AT(EPS_BlockKrylov, size), QUANTITY_NOT_NEGATIVE},
+};
+static const QuantityTable block_quantities = {"Eigensolver", "modes.h", 1, rows, .in = RUN_LINEAR | RUN_REDUCED};
+
+PetscErrorCode BlockKrylovVisit(const QuantityVisitor *visitor, const char why[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &block_quantities, NULL, NULL, why));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlockKrylovReadOptions(MPI_Comm comm)
+{
+  EPS_BlockKrylov asked = {.size = 0};
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesRead(comm, &block_quantities, &asked));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode EPSSetFromOptions_BlockKrylov(EPS eps, OptionsItems PetscOptionsObject)
 {
-  EPS_BlockKrylov *ctx = eps->data;
-
   PetscFunctionBegin;
-  PetscOptionsHeadBegin(PetscOptionsObject, "EPS block Krylov-Schur options");
-  PetscCall(OptionsCheckWords(PetscObjectComm((PetscObject)eps), BLOCKKRYLOV_SIZE, PETSC_TRUE));
-  PetscCall(PetscOptionsInt(BLOCKKRYLOV_SIZE,
-                            "vectors in a block (0: 8, 4 of each of two problems at once, or what there is room for)",
-                            "options.h", ctx->size, &ctx->size, NULL));
-  PetscOptionsHeadEnd();
-  PetscCheck(ctx->size >= 0, PetscObjectComm((PetscObject)eps), PETSC_ERR_USER_INPUT,
-             BLOCKKRYLOV_SIZE " %" PetscInt_FMT " must not be negative", ctx->size);
+  (void)PetscOptionsObject;
+  PetscCall(QuantitiesRead(PetscObjectComm((PetscObject)eps), &block_quantities, eps->data));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 /* Private to solver/ and modes/: an eigensolver of SLEPc's that applies its operator to blocks of vectors */
 #pragma once
 
+#include <squeal/quantity.h>
 #include <slepceps.h>
 
 #define EPSBLOCKKRYLOVSCHUR "blockkrylovschur"
@@ -21,6 +22,11 @@
    at once, less in a smaller space or problem); all of EPS but balancing, regions, two-sided, true residuals, and
    orders other than by magnitude. */
 PETSC_INTERN PetscErrorCode BlockKrylovRegister(void);
+
+/* Reads and checks its options, also where the run has another type. Collective. */
+PETSC_INTERN PetscErrorCode BlockKrylovReadOptions(MPI_Comm comm);
+/* Shows its rows; `why` the run has another type, or NULL. Collective. */
+PETSC_INTERN PetscErrorCode BlockKrylovVisit(const QuantityVisitor *visitor, const char why[]);
 
 /* Vectors in a block of a solver that is set up, 1 for another type */
 PETSC_INTERN PetscErrorCode BlockKrylovGetBlock(EPS eps, PetscInt *block);

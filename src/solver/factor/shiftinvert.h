@@ -148,7 +148,8 @@ PETSC_INTERN PetscErrorCode SolverReadEigenOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadFactorOptions(MPI_Comm comm);
 PETSC_INTERN PetscErrorCode SolverReadIterativeOptions(MPI_Comm comm);
 
-/* quantities.c - shows which runs read options of PETSc and SLEPc. Collective */
+/* Shows which runs read options of PETSc and SLEPc. Collective */
+extern const QuantityTable  solver_quantities; /* quantities.c - of PETSc and SLEPc, by prefix */
 PETSC_INTERN PetscErrorCode SolverVisit(const QuantityVisitor *visitor);
 /* Whether an option that begins so, as "pep_", is given */
 PETSC_INTERN PetscErrorCode SolverOptionsGiven(const char prefix[], PetscBool *given);
