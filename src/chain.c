@@ -3,7 +3,6 @@
 #include "base/algebra/vec3.h"
 #include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
-#include <string.h>
 
 static const Quantity rows[] = {
   {"-analysis", "what to compute", NULL, QUANTITY_WORD, QUANTITY_AT(Chain, analysis), .words = AnalysisNames},
@@ -34,9 +33,7 @@ const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FI
 /* Whether the analysis is a run in time, or is made of such runs */
 static PetscBool ChainIsInTime(const Chain *chain)
 {
-  const Analysis a = chain->analysis;
-
-  return a == ANALYSIS_TRANSIENT || a == ANALYSIS_MAP || a == ANALYSIS_CYCLE ? PETSC_TRUE : PETSC_FALSE;
+  return 1U << chain->analysis & RUN_IN_TIME ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* What every analysis needs */
@@ -144,18 +141,22 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscFunctionReturn(0);
 }
 
-Scope ChainGetScope(const Chain *chain)
+PetscErrorCode ChainGetScope(Chain *chain, Scope *scope)
 {
-  return (Scope){.analysis  = chain->analysis,
-                 .does      = 1U << chain->analysis,
-                 .model     = chain->model,
-                 .contact   = chain->contact,
-                 .linear    = chain->modes,
-                 .operators = chain->operators,
-                 .varied    = chain->sweep,
-                 .dynamics  = chain->dynamics,
-                 .reduced   = chain->reduced,
-                 .cycle     = chain->cycle};
+  const AnalysisRow *row = &chain_analyses[chain->analysis];
+
+  PetscFunctionBeginUser;
+  *scope = (Scope){.analysis  = chain->analysis,
+                   .does      = 1U << chain->analysis | row->does,
+                   .uses      = row->uses,
+                   .model     = chain->model,
+                   .contact   = chain->contact,
+                   .linear    = chain->modes,
+                   .operators = chain->operators,
+                   .dynamics  = chain->dynamics,
+                   .reduced   = chain->reduced};
+  if (row->add) PetscCall(row->add(chain, &scope->does));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
@@ -182,43 +183,16 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
-/* Whether a sweep varies what makes damping. A component ends in _x, _y or _z: damper_viscosity_x */
-static PetscErrorCode ChainVariesDamping(Chain *chain, PetscBool *damps)
-{
-  const char *swept;
-  char      **name;
-  int         n;
-  PetscBool   real;
-
-  PetscFunctionBeginUser;
-  *damps = PETSC_FALSE;
-  PetscCall(SweepGetAsked(chain->sweep, &swept, &real));
-  PetscCall(PetscStrToArray(swept, ',', &n, &name));
-  for (int i = 0; i < n; i++) {
-    const size_t   length = strlen(name[i]);
-    QuantitySearch search = {.option = name[i] + strspn(name[i], " ")};
-
-    for (int pass = 0; pass < 2 && !search.found; pass++) {
-      if (pass && length > 2 && name[i][length - 2] == '_') name[i][length - 2] = '\0';
-      PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesSearch, &search}));
-    }
-    if (search.found && search.row.varies & VARIES_DAMPING) *damps = PETSC_TRUE;
-  }
-  PetscCall(PetscStrToArrayDestroy(n, name));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
 {
-  Scope       scope = ChainGetScope(chain);
+  Scope       scope;
   QuantityRun run;
 
   PetscFunctionBeginUser;
-  PetscCall(ChainVariesDamping(chain, &scope.damps));
-  if (chain->analysis == ANALYSIS_CHECK) PetscFunctionReturn(0); /* which reads what any analysis would */
+  PetscCall(ChainGetScope(chain, &scope));
+  if (scope.uses == USES_ALL) PetscFunctionReturn(0); /* it reads what any analysis would */
   PetscCall(ScopeGetRun(comm, &scope, &run));
   PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
-  PetscCall(ScopeCheck(&scope, &run));
   PetscFunctionReturn(0);
 }
 

@@ -40,6 +40,20 @@ typedef struct {
   PetscViewer viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
 } Chain;
 
+/* An analysis: NULL for what it has not */
+typedef struct {
+  SquealStage stage;
+  Shown       shown; /* N_SHOWN: nothing */
+  PetscErrorCode (*prepare)(Chain *chain);
+  PetscErrorCode (*solve)(Chain *chain);
+  PetscErrorCode (*write)(Chain *chain);
+  PetscErrorCode (*judge)(Chain *chain);               /* raises an error where results that are written do not hold */
+  PetscErrorCode (*add)(Chain *chain, unsigned *does); /* RunBits that hang on its own options */
+  unsigned does;                                       /* RunBits of every such run, beside its own */
+  unsigned uses; /* SceneUses; USES_ALL takes the options of every analysis, too */
+} AnalysisRow;
+extern const AnalysisRow chain_analyses[N_ANALYSES];
+
 /* Reads the options of every analysis. Collective */
 PETSC_INTERN PetscErrorCode ChainCreate(MPI_Comm comm, Chain *chain);
 /* Shows the rows of all rooms, in their order. Collective */
@@ -56,7 +70,7 @@ PETSC_INTERN PetscErrorCode ChainLinearise(Chain *chain);
 extern const QuantityTable chain_views;
 
 /* The run as scope.h sees it */
-PETSC_INTERN Scope ChainGetScope(const Chain *chain);
+PETSC_INTERN PetscErrorCode ChainGetScope(Chain *chain, Scope *scope);
 
 /* chainrun.c - computes, shows and writes what the analysis is for */
 PETSC_INTERN PetscErrorCode ChainRun(Chain *chain);

@@ -1,5 +1,7 @@
-/* What each analysis makes of the chain, in one row: what it needs, solution, view, tables */
+/* What each analysis makes of the chain, in one row: what it needs, solution, view, tables, what it does
+   and what it uses of the scene */
 #include "chain.h"
+#include <string.h>
 
 /* The pencil about one point, of modes and frequency responses */
 static PetscErrorCode ChainGivePencil(Chain *chain)
@@ -74,6 +76,44 @@ static PetscErrorCode ChainWriteScene(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* A sweep may vary what makes damping, of which one point may have none, and real modes have none. A component ends in
+   _x, _y or _z: damper_viscosity_x */
+static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
+{
+  const char *swept;
+  char      **name;
+  int         n;
+  PetscBool   real;
+
+  PetscFunctionBeginUser;
+  PetscCall(SweepGetAsked(chain->sweep, &swept, &real));
+  if (real) *does |= RUN_UNDAMPED;
+  PetscCall(PetscStrToArray(swept, ',', &n, &name));
+  for (int i = 0; i < n; i++) {
+    const size_t   length = strlen(name[i]);
+    QuantitySearch search = {.option = name[i] + strspn(name[i], " ")};
+
+    for (int pass = 0; pass < 2 && !search.found; pass++) {
+      if (pass && length > 2 && name[i][length - 2] == '_') name[i][length - 2] = '\0';
+      PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesSearch, &search}));
+    }
+    if (search.found && search.row.varies & VARIES_DAMPING) *does |= RUN_DAMPED | RUN_UNDAMPED;
+  }
+  PetscCall(PetscStrToArrayDestroy(n, name));
+  PetscFunctionReturn(0);
+}
+
+/* A cycle is looked for at the end of a transient, or near the mode that becomes unstable */
+static PetscErrorCode ChainAddCycle(Chain *chain, unsigned *does)
+{
+  PetscBool follows;
+
+  PetscFunctionBeginUser;
+  PetscCall(CycleFollowsTransient(chain->cycle, &follows));
+  if (follows) *does |= RUN_HISTORY;
+  PetscFunctionReturn(0);
+}
+
 /* A step of an analysis that is one call */
 #define STEP(name, call)                                                                                               \
   static PetscErrorCode name(Chain *chain)                                                                             \
@@ -95,41 +135,42 @@ STEP(ChainSolveMap, MapSolve(chain->map, chain->results))
 STEP(ChainJudgeMap, MapJudge(chain->map))
 STEP(ChainSolveCycle, CycleSolve(chain->cycle, chain->results))
 
-/* NULL for what an analysis has not. Those in time write as they go, and look for checkpoints before they begin */
-static const struct {
-  SquealStage stage;
-  Shown       shown;
-  PetscErrorCode (*prepare)(Chain *chain);
-  PetscErrorCode (*solve)(Chain *chain);
-  PetscErrorCode (*write)(Chain *chain);
-  PetscErrorCode (*judge)(Chain *chain); /* raises an error where results that are written do not hold */
-} runs[N_ANALYSES] = {
-  [ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, NULL},
-  [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep, NULL},
-  [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics, NULL},
-  [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainJudgeReduced},
-  [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, NULL},
-  [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap},
-  [ANALYSIS_CYCLE]     = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, NULL},
-  [ANALYSIS_CHECK]     = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, NULL},
+/* The bits of `does` hold in every such run; what hangs on options add() and scope.c add. Those in time write as they
+   go, and look for checkpoints before they begin */
+#define LINEAR (USES_DAMPING | USES_SPIN)
+const AnalysisRow chain_analyses[N_ANALYSES] = {
+  [ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, .uses = LINEAR},
+  [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep,
+                          .add = ChainAddSweep, .uses = LINEAR},
+  [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics,
+                          .does = RUN_EQUILIBRIUM, .uses = USES_LOADS},
+  [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainJudgeReduced,
+                          .does = RUN_HISTORY, .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
+  [ANALYSIS_FRF]   = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, .does = RUN_EPS | RUN_PEP,
+                      .uses = LINEAR | USES_PLACES},
+  [ANALYSIS_MAP]   = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap,
+                      .uses = USES_LOADS | USES_DAMPING},
+  [ANALYSIS_CYCLE] = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, .add = ChainAddCycle,
+                      .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
+  [ANALYSIS_CHECK] = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)
 {
-  const Analysis a = chain->analysis;
+  const AnalysisRow *row = &chain_analyses[chain->analysis];
 
   PetscFunctionBeginUser;
-  if (runs[a].write) PetscCall(ResultsBegin(chain->results, PETSC_FALSE));
-  if (runs[a].prepare) PetscCall(runs[a].prepare(chain));
-  PetscCall(SquealStageBegin(runs[a].stage));
-  PetscCall(runs[a].solve(chain));
-  PetscCall(SquealStageEnd(runs[a].stage));
-  if (runs[a].shown < N_SHOWN) PetscCall(ChainShow(chain, runs[a].shown, PETSC_TRUE));
-  if (runs[a].write) {
+  if (row->write) PetscCall(ResultsBegin(chain->results, PETSC_FALSE));
+  if (row->prepare) PetscCall(row->prepare(chain));
+  PetscCall(SquealStageBegin(row->stage));
+  PetscCall(row->solve(chain));
+  PetscCall(SquealStageEnd(row->stage));
+  if (row->shown < N_SHOWN) PetscCall(ChainShow(chain, row->shown, PETSC_TRUE));
+  if (row->write) {
     PetscCall(SquealStageBegin(SQUEAL_RESULTS));
-    PetscCall(runs[a].write(chain));
+    PetscCall(row->write(chain));
     PetscCall(SquealStageEnd(SQUEAL_RESULTS));
   }
-  if (runs[a].judge) PetscCall(runs[a].judge(chain));
+  if (row->judge) PetscCall(row->judge(chain));
   PetscFunctionReturn(0);
 }

@@ -27,9 +27,10 @@ static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
 
 static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
 {
-  const Scope scope = ChainGetScope(chain);
+  Scope scope;
 
   PetscFunctionBeginUser;
+  PetscCall(ChainGetScope(chain, &scope));
   if (what == SHOWN_MODEL) PetscCall(ModelView(chain->model, viewer));
   if (what == SHOWN_MODEL) PetscCall(ScopeView(&scope, viewer));
   if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));

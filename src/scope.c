@@ -1,4 +1,4 @@
-/* What a run does, as rows ask; what hangs on damping and routes, as no row knows */
+/* What a run does, as rows ask; what of the scene it does not use */
 #include "scope.h"
 #include "base/algebra/vec3.h"
 
@@ -21,45 +21,23 @@ static PetscErrorCode ScopeAddContacts(Contact contact, QuantityRun *run)
 /* How it runs in time */
 static PetscErrorCode ScopeAddTime(const Scope *s, QuantityRun *run)
 {
-  PetscBool pairs, reduced, follows;
+  PetscBool pairs, reduced;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsNeedsPairs(s->dynamics, &pairs));
   PetscCall(ReducedIsAsked(s->reduced, &reduced));
-  PetscCall(CycleFollowsTransient(s->cycle, &follows));
   if (pairs || reduced) run->does |= RUN_EQUILIBRIUM;
   run->does |= reduced ? RUN_REDUCED | RUN_FACTORS : RUN_MESH;
-  if (run->does & RUN_TRANSIENT || (run->does & RUN_CYCLE && follows)) run->does |= RUN_HISTORY;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
-{
-  const ModelScene *scene;
-  PetscBool         sliding;
-
-  PetscFunctionBeginUser;
-  *run = (QuantityRun){comm, s->analysis, s->does};
-  PetscCall(ModesGetContact(s->linear, &sliding));
-  if (s->does & RUN_STATIC) run->does |= RUN_EQUILIBRIUM;
-  if (s->does & RUN_LINEAR) run->does |= sliding ? RUN_FACTORS | RUN_EQUILIBRIUM | RUN_SLIDING : RUN_FACTORS;
-  if (s->does & RUN_IN_TIME) PetscCall(ScopeAddTime(s, run));
-  if (s->contact) PetscCall(ScopeAddContacts(s->contact, run));
-  if (run->does & RUN_EQUILIBRIUM) run->does |= RUN_FACTORS;
-  if (!s->model) PetscFunctionReturn(0);
-  PetscCall(ModelGetScene(s->model, &scene));
-  if (Vec3Dot(scene->gravity, scene->gravity) > 0) run->does |= RUN_WEIGHT;
-  PetscFunctionReturn(0);
-}
-
-/* Whether the eigenvalue problems may have damping, and whether they may have none */
-static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBool *undamped)
+/* Whether the eigenvalue problems may have damping, and whether they may have none, as far as options tell */
+static PetscErrorCode ScopeAddDamping(const Scope *s, QuantityRun *run)
 {
   const ModelScene       *scene;
   const ContactInterface *interfaces = NULL;
   PetscInt                n          = 0;
-  const char             *swept;
-  PetscBool               sure, real;
+  PetscBool               sure;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsHaveDamping(s->operators, &sure));
@@ -74,41 +52,45 @@ static PetscErrorCode ScopeGetDamping(const Scope *s, PetscBool *damped, PetscBo
     for (int d = 0; d < 6; d++)
       if (joint->viscosity[d] > 0) sure = PETSC_TRUE;
   }
-  PetscCall(SweepGetAsked(s->varied, &swept, &real));
-  *undamped = !sure || (s->does & RUN_SWEEP && (s->damps || real)) ? PETSC_TRUE : PETSC_FALSE;
-  *damped   = sure || (s->does & RUN_SWEEP && s->damps) ? PETSC_TRUE : PETSC_FALSE;
+  run->does |= sure ? RUN_DAMPED : RUN_UNDAMPED;
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
-    if (interfaces[i].damping) *damped = PETSC_TRUE;
+    if (interfaces[i].damping) run->does |= RUN_DAMPED;
   PetscFunctionReturn(0);
 }
 
-/* Options of the eigensolver that is not needed */
-static PetscErrorCode ScopeCheckEigensolver(MPI_Comm comm, const Scope *s)
+/* Which of SLEPc's solvers are needed. Without a band the undamped modes tell how far to look. */
+static PetscErrorCode ScopeAddSolvers(const Scope *s, QuantityRun *run)
 {
-  static const char pep_alone[] = "not used by -modes_damping pep in a band, which -pep_* solves";
-  static const char unsolved[]  = "not used by -modes_damping pep in a band, which LU solves";
-  PetscBool         damped, undamped, has_band, may_project, may_pep;
+  PetscBool has_band, may_project, may_pep;
 
   PetscFunctionBeginUser;
-  PetscCall(ScopeGetDamping(s, &damped, &undamped));
-  PetscCall(ModesHaveBand(s->linear, &has_band)); /* without a band the undamped modes tell how far to look */
+  PetscCall(ModesHaveBand(s->linear, &has_band));
   PetscCall(ModesGetRoutes(s->linear, &may_project, &may_pep));
-  if (!undamped && has_band && !may_project) {
-    PetscCall(OptionsRefusePrefix(comm, "-eps_", pep_alone));
-    PetscCall(OptionsRefuse(comm, "-operators_factors", unsolved));
-  }
-  if (!damped) PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by modes without damping, which -eps_* solves"));
-  if (!undamped && !may_pep)
-    PetscCall(OptionsRefusePrefix(comm, "-pep_", "not used by -modes_damping project, which -eps_* solves"));
+  if (run->does & RUN_UNDAMPED || !has_band || may_project) run->does |= RUN_EPS;
+  if (run->does & RUN_DAMPED && (may_pep || run->does & RUN_UNDAMPED)) run->does |= RUN_PEP;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ScopeCheck(const Scope *s, const QuantityRun *run)
+PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
 {
+  const ModelScene *scene;
+  PetscBool         sliding;
+
   PetscFunctionBeginUser;
-  if (s->does & RUN_LINEAR && !(s->does & RUN_FRF)) /* which takes both */
-    PetscCall(ScopeCheckEigensolver(run->comm, s));
+  *run = (QuantityRun){comm, s->analysis, s->does};
+  PetscCall(ModesGetContact(s->linear, &sliding));
+  if (s->does & RUN_LINEAR) {
+    run->does |= sliding ? RUN_FACTORS | RUN_EQUILIBRIUM | RUN_SLIDING : RUN_FACTORS;
+    PetscCall(ScopeAddDamping(s, run));
+    PetscCall(ScopeAddSolvers(s, run));
+  }
+  if (s->does & RUN_IN_TIME) PetscCall(ScopeAddTime(s, run));
+  if (s->contact) PetscCall(ScopeAddContacts(s->contact, run));
+  if (run->does & RUN_EQUILIBRIUM) run->does |= RUN_FACTORS;
+  if (!s->model) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(s->model, &scene));
+  if (Vec3Dot(scene->gravity, scene->gravity) > 0) run->does |= RUN_WEIGHT;
   PetscFunctionReturn(0);
 }
 
@@ -130,13 +112,12 @@ PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
   char              text[1024] = "";
 
   PetscFunctionBeginUser;
-  if (s->does & RUN_CHECK) PetscFunctionReturn(0); /* it uses nothing and shows all */
   PetscCall(ScopeGetRun(PETSC_COMM_SELF, s, &run));
   PetscCall(ModelGetScene(s->model, &scene));
-  loads   = run.does & (RUN_IN_TIME | RUN_EQUILIBRIUM) ? PETSC_FALSE : PETSC_TRUE;
-  places  = run.does & (RUN_TRANSIENT | RUN_CYCLE | RUN_FRF) ? PETSC_FALSE : PETSC_TRUE;
-  damping = run.does & RUN_MOVES ? PETSC_FALSE : PETSC_TRUE;
-  spin    = run.does & RUN_LINEAR ? PETSC_FALSE : PETSC_TRUE;
+  loads   = s->uses & USES_LOADS || run.does & RUN_EQUILIBRIUM ? PETSC_FALSE : PETSC_TRUE;
+  places  = s->uses & USES_PLACES ? PETSC_FALSE : PETSC_TRUE;
+  damping = s->uses & USES_DAMPING ? PETSC_FALSE : PETSC_TRUE;
+  spin    = s->uses & USES_SPIN ? PETSC_FALSE : PETSC_TRUE;
   if (loads && Vec3Dot(scene->gravity, scene->gravity) > 0) PetscCall(IdleAdd("gravity", "", sizeof(text), text));
   for (PetscInt i = 0; i < scene->n_loads && loads; i++)
     PetscCall(IdleAdd("load ", scene->loads[i].name, sizeof(text), text));

@@ -44,6 +44,8 @@ PLANTED = (
     ("columns", "141 columns", {"scripts/a": "#!/bin/sh\n" + 141 * "#" + "\n"}),
     ("strata", "DMPlexGetDepthStratum", {"src/modes/a.c": "static void A(void)\n{\n  DMPlexGetDepthStratum(dm, 0);\n}\n"}),
     ("strata", "MatIsSymmetric outside", {"src/model/a.c": "static void A(void)\n{\n  MatIsSymmetric(A, 0, &same);\n}\n"}),
+    ("strata", "ANALYSIS_MAP outside", {"src/modes/a.c": "static int A(void)\n{\n  return ANALYSIS_MAP;\n}\n"}),
+    ("strata", "RUN_CHECK outside", {"src/scope.c": "static int A(void)\n{\n  return RUN_CHECK;\n}\n"}),
     ("readmes", "no README.md", {"src/solver/a.c": ""}),
     ("readmes", "longer than", {"src/model/README.md": 26 * "\n"}),
     ("options", "-ts_dt is read", {"src/model/a.c": MU, "src/modes/b.c": MU_TOO}),

@@ -9,7 +9,8 @@
   folders    no folder of src has more than 15 files
   circles    at most 6 circles of files that call each other, none across rooms
   columns    no line of C beyond 120 columns but for texts, none of Python or the shell beyond 140
-  strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry
+  strata     only src/model knows how a DMPlex numbers its points, only MatrixIsSymmetric() asks for a matrix's symmetry,
+             only the chain names an analysis: what it does and uses, its row in chainrun.c says
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
   rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help, a unit and a reader
@@ -49,8 +50,10 @@ ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kern
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
              "DampedStop": "PEPSetStoppingTestFunction()", "UndampedStop": "EPSSetStoppingTestFunction()"}
-ONLY = ("src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
-    ("src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\("))
+ONLY = (r"src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|Point)Numbering|DMGetStratum\w+|DM\w*Label\w*)\s*\(")), \
+    (r"src/operators/files/matrixterm.c", re.compile(r"\b(MatIs(?:Symmetric|Hermitian|StructurallySymmetric))\s*\(")), \
+    (r"include/squeal/quantity.h|src/chain", re.compile(r"\b(ANALYSIS_[A-Z]+)\b")), \
+    (r"(?!src/scope)", re.compile(r"\b(RUN_(?:MODES|SWEEP|STATIC|TRANSIENT|FRF|MAP|CYCLE|CHECK))\b"))
 # Options that are read without a row, and why
 UNROWED = dict.fromkeys("skip_petscrc help help_list help_all help_json".split(), "asked by base/ before all else") | \
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
@@ -200,10 +203,11 @@ def columns(house):
 
 
 def strata(house):
-    """What one place alone may ask PETSc: how a DMPlex numbers its points; whether a matrix is symmetric, which each rank hears apart."""
+    """What one place alone knows: how a DMPlex numbers its points; whether a matrix is symmetric, which each rank hears
+    apart; which analyses there are."""
     for source in house.c:
         for place, pattern in ONLY:
-            for found in () if str(source.path.relative_to(house.root)).startswith(place) else pattern.finditer(source.code):
+            for found in () if re.match(place, str(source.path.relative_to(house.root))) else pattern.finditer(source.code):
                 yield house.say(source.path, source.line(found.start()), f"{found[1]} outside of {place}")
 
 
@@ -247,7 +251,7 @@ ROW = re.compile(r'\{\s*"-(?P<name>\w+)",\s*(?P<help>(?:"[^"]*"\s*)+|NULL|\w+),\
 
 def row_faults(row, words):
     """What a row lacks: a help, a unit, somebody who reads its member."""
-    if row["help"].strip() in ('""', "NULL"):
+    if row["help"].strip() in ('""', "NULL") and row["kind"] != "QUANTITY_PREFIX":
         yield "has no help"
     if row["unit"] == "NULL" and row["kind"] in REALS and row["name"] not in UNITLESS:
         yield "has no unit"

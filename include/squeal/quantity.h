@@ -38,15 +38,19 @@ typedef enum {
   RUN_IN_TIME   = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
   RUN_MOVES     = RUN_LINEAR | RUN_IN_TIME,
   /* and what it does within them */
-  RUN_EQUILIBRIUM = 1 << N_ANALYSES,      /* it finds an equilibrium */
-  RUN_SLIDING     = RUN_EQUILIBRIUM << 1, /* modes and their like about the sliding state */
-  RUN_IDENTIFY    = RUN_EQUILIBRIUM << 2, /* it presses contacts to find their stiffness */
-  RUN_HOLDS       = RUN_EQUILIBRIUM << 3, /* an equilibrium with pairs that can stick */
-  RUN_WEIGHT      = RUN_EQUILIBRIUM << 4, /* gravity acts */
-  RUN_FACTORS     = RUN_EQUILIBRIUM << 5, /* it factorises matrices */
-  RUN_HISTORY     = RUN_EQUILIBRIUM << 6, /* a transient from its beginning to its end */
-  RUN_MESH        = RUN_EQUILIBRIUM << 7, /* of the mesh */
-  RUN_REDUCED     = RUN_EQUILIBRIUM << 8, /* or of a reduced model */
+  RUN_EQUILIBRIUM = 1 << N_ANALYSES,       /* it finds an equilibrium */
+  RUN_SLIDING     = RUN_EQUILIBRIUM << 1,  /* modes and their like about the sliding state */
+  RUN_IDENTIFY    = RUN_EQUILIBRIUM << 2,  /* it presses contacts to find their stiffness */
+  RUN_HOLDS       = RUN_EQUILIBRIUM << 3,  /* an equilibrium with pairs that can stick */
+  RUN_WEIGHT      = RUN_EQUILIBRIUM << 4,  /* gravity acts */
+  RUN_FACTORS     = RUN_EQUILIBRIUM << 5,  /* it factorises matrices */
+  RUN_HISTORY     = RUN_EQUILIBRIUM << 6,  /* a transient from its beginning to its end */
+  RUN_MESH        = RUN_EQUILIBRIUM << 7,  /* of the mesh */
+  RUN_REDUCED     = RUN_EQUILIBRIUM << 8,  /* or of a reduced model */
+  RUN_DAMPED      = RUN_EQUILIBRIUM << 9,  /* its eigenvalue problems may have damping, as far as options tell */
+  RUN_UNDAMPED    = RUN_EQUILIBRIUM << 10, /* they may have none */
+  RUN_EPS         = RUN_EQUILIBRIUM << 11, /* SLEPc's EPS solves them, or tells how far to look */
+  RUN_PEP         = RUN_EQUILIBRIUM << 12, /* its PEP does */
 } RunBit;
 
 typedef struct {

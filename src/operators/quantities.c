@@ -13,7 +13,7 @@ static const char *OperatorsIdleFactors(const void *operators, const QuantityRun
   const ContactInterface    *c = NULL;
   PetscInt                   n = 0;
 
-  (void)run;
+  if (run->does & RUN_PEP && !(run->does & RUN_EPS)) return "not used by -modes_damping pep in a band, which LU solves";
   if (o->contact && ContactGetInterfaces(o->contact, &n, &c)) return NULL;
   for (PetscInt i = 0; i < n; i++)
     if (c[i].law == CONTACT_CONSTRAINT) return "not used with contacts of -..._law constraint, which need LU";

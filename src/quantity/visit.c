@@ -22,6 +22,10 @@ static const struct {
   {RUN_HISTORY, "transients from their beginning to their end (-analysis transient, and cycle from one)"},
   {RUN_MESH, "transients of the mesh (-analysis transient, -dynamics_model full)"},
   {RUN_REDUCED, "-dynamics_model reduced"},
+  {RUN_DAMPED, "modes with damping"},
+  {RUN_UNDAMPED, "modes without damping"},
+  {RUN_EPS, "eigenvalue problems that -eps_* solves"},
+  {RUN_PEP, "eigenvalue problems that -pep_* solves"},
 };
 
 const char *RunBitWords(unsigned i)

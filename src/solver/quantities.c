@@ -9,10 +9,31 @@ static const char *SolverIdleSteps(const void *owner, const QuantityRun *run)
   return "not used, runs in time take explicit steps of one length";
 }
 
+/* Which of SLEPc's solvers modes have: EPS without damping, or where modes without it tell the shape or the reach of
+   those with it */
+static const char *SolverIdleEps(const void *owner, const QuantityRun *run)
+{
+  (void)owner;
+  if (!(run->does & RUN_LINEAR) || run->does & RUN_EPS) return NULL;
+  return "not used by -modes_damping pep in a band, which -pep_* solves";
+}
+
+static const char *SolverIdlePep(const void *owner, const QuantityRun *run)
+{
+  (void)owner;
+  if (!(run->does & RUN_LINEAR) || run->does & RUN_PEP) return NULL;
+  return run->does & RUN_DAMPED ? "not used by -modes_damping project, which -eps_* solves"
+                                : "not used by modes without damping, which -eps_* solves";
+}
+
 /* What runs in time leave out is of integrators that are implicit or choose their steps */
 #define OPTIONS(prefix, bits)                                                                                          \
   {                                                                                                                    \
     prefix, NULL, NULL, QUANTITY_PREFIX, .in = (bits)                                                                  \
+  }
+#define EIGENVALUES(prefix, why)                                                                                       \
+  {                                                                                                                    \
+    prefix, NULL, NULL, QUANTITY_PREFIX, .in = RUN_LINEAR | RUN_REDUCED, .idle = (why)                                 \
   }
 #define UNUSED(prefix)                                                                                                 \
   {                                                                                                                    \
@@ -39,11 +60,11 @@ static const Quantity rows[] = {
   UNUSED("-ts_use_splitrhs"),
   UNUSED("-ts_time_span"),
   UNUSED("-ts_rhs_jacobian_"),
-  OPTIONS("-eps_", RUN_LINEAR | RUN_REDUCED),
-  OPTIONS("-pep_", RUN_LINEAR | RUN_REDUCED),
-  OPTIONS("-bv_", RUN_LINEAR | RUN_REDUCED),
-  OPTIONS("-ds_", RUN_LINEAR | RUN_REDUCED),
-  OPTIONS("-rg_", RUN_LINEAR | RUN_REDUCED),
+  EIGENVALUES("-eps_", SolverIdleEps),
+  EIGENVALUES("-pep_", SolverIdlePep),
+  EIGENVALUES("-bv_", NULL),
+  EIGENVALUES("-ds_", NULL),
+  EIGENVALUES("-rg_", NULL),
   OPTIONS("-st_", RUN_FACTORS),
   OPTIONS("-mat_mumps_", RUN_FACTORS),
 };

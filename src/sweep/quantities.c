@@ -19,6 +19,14 @@ static const char *SweepIdleFull(const void *sweep, const QuantityRun *run)
   return ((const struct _p_Sweep *)sweep)->method == SWEEP_FULL ? "not used by -sweep_method full" : NULL;
 }
 
+static const char *SweepIdleSolver(const void *sweep, const QuantityRun *run)
+{
+  const struct _p_Sweep *s = sweep;
+
+  if (!(run->does & RUN_SWEEP) || s->method != SWEEP_REAL || s->n_verify) return NULL;
+  return "not used by -sweep_method real without -sweep_verify";
+}
+
 static const Quantity rows[] = {
   {"-sweep_parameter", "one or two options of the scene to vary, e.g. pad_young,contact_mu", NULL, QUANTITY_TEXT,
    SWEEP_AT(parameter)},
@@ -54,6 +62,8 @@ static const Quantity rows[] = {
    SWEEP_AT(n_groups), QUANTITY_NOT_NEGATIVE},
   {"-sweep_restart", "go on where a sweep of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
    SWEEP_AT(restart), .initial = PETSC_TRUE},
+  {"-eps_", NULL, NULL, QUANTITY_PREFIX, .in = RUN_LINEAR | RUN_REDUCED, .idle = SweepIdleSolver},
+  {"-pep_", NULL, NULL, QUANTITY_PREFIX, .in = RUN_LINEAR | RUN_REDUCED, .idle = SweepIdleSolver},
 };
 
 const QuantityTable sweep_quantities = {"Sweep", "sweep.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = RUN_SWEEP};

@@ -59,8 +59,6 @@ static PetscErrorCode SweepCheckMethod(Sweep sweep)
              sweep->uncertain);
   PetscCheck(sweep->method != SWEEP_REAL || !sweep->onsets, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_onsets true: -sweep_method real follows no branches, and finds no onsets");
-  if (sweep->method == SWEEP_REAL && !sweep->n_verify)
-    PetscCall(OptionsRefusePrefix(sweep->comm, "-eps_ -pep_", "not used by -sweep_method real without -sweep_verify"));
   PetscCheck(sweep->method == SWEEP_REDUCED || (!sweep->uncertain[0] && !sweep->sensitivities), sweep->comm,
              PETSC_ERR_USER_INPUT, "-sweep_uncertain and -sweep_sensitivities need -sweep_method reduced");
   PetscCheck(sweep->method != SWEEP_FULL || !sweep->n_verify, sweep->comm, PETSC_ERR_USER_INPUT,
