@@ -59,14 +59,25 @@ typedef struct {
   PetscInt               vertex;            /* global number of the slave node that it belongs to */
   PetscInt               n_slave, n_master; /* nodes of its sides */
   const ContactPairNode *slave, *master;    /* borrowed, on the pair's rank alone; slave[0] is that of vertex */
-  PetscReal              x[3];              /* position of the slave, m */
-  PetscReal              n[3], t[3], b[3];  /* unit vectors */
-  PetscReal              area;              /* positive share of the slave node in its surface, m^2 */
-  PetscReal              gap;               /* n . (x_s - x_m) of the mesh as it is, m, positive open */
+  /* u_s = (1 - sum_k g_k) u~ + sum_k g_k u~_k: u~ a mean of nodes, own[0] that of vertex, u~_k those that belong to
+     nodes k without pairs at the border of the master, of which `taken` has the weights g_k (ContactMean) */
+  PetscInt               n_own, n_taken;
+  const ContactPairNode *own, *taken;
+  PetscReal              x[3];             /* position of the slave, m */
+  PetscReal              n[3], t[3], b[3]; /* unit vectors */
+  PetscReal              area;             /* positive share of the slave node in its surface, m^2 */
+  PetscReal              gap;              /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal              force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscBool              mean;  /* lambda_n over area is a mean of the pressure, on faces of second order too */
   PetscReal              speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
+
+/* u~ = sum_i v_i u_i of a node without a pair, that pairs take in; node[0] is that node. It lives on the rank that owns
+   the node. u~ of a node that is not listed is its u. */
+typedef struct {
+  PetscInt               interface, n;
+  const ContactPairNode *node; /* borrowed */
+} ContactMean;
 
 /* State of one pair. Friction is given as the force on the master; in slip it has the direction of the slave's velocity
    relative to the master, lambda_t = mu lambda_n */
@@ -223,6 +234,9 @@ PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactI
 
 /*@ ContactGetPairs - pairs of this rank, and their number over all ranks (borrowed). Not collective. @*/
 PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_global, const ContactPair **pairs);
+
+/*@ ContactGetMeans - means of nodes of this rank without pairs (borrowed). Not collective. @*/
+PetscErrorCode ContactGetMeans(Contact contact, PetscInt *n, const ContactMean **means);
 
 /*@
    ContactCreatePairOperators - N, T and B of chosen local pairs as sparse matrices of shape [pairs][unknowns]: row i of

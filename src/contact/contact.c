@@ -214,6 +214,14 @@ PetscErrorCode ContactGetPairs(Contact contact, PetscInt *n_local, PetscInt *n_g
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactGetMeans(Contact contact, PetscInt *n, const ContactMean **means)
+{
+  PetscFunctionBeginUser;
+  *n     = contact->n_means;
+  *means = contact->means;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactGetCentre(Contact contact, PetscReal centre[3], PetscBool *found)
 {
   PetscFunctionBeginUser;
@@ -270,6 +278,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree((*contact)->interfaces));
   PetscCall(PetscFree((*contact)->pairs));
   PetscCall(PetscFree((*contact)->feet));
+  PetscCall(PetscFree((*contact)->means));
   PetscCall(ContactTiesDestroy(*contact));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);

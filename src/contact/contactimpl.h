@@ -28,6 +28,8 @@ struct _p_Contact {
   ContactPair      *pairs;                /* ordered by interface */
   ContactPairFoot  *feet;                 /* of the pairs */
   ContactPairNode  *sides[CONTACT_MAX];   /* nodes of the pairs of each interface */
+  PetscInt          n_means;
+  ContactMean      *means;                /* of nodes without pairs */
   ContactSurface    surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
   PetscInt          n_ties, n_links;      /* links of this rank */
   ContactTie       *ties;

@@ -113,10 +113,10 @@ static void PairSetSides(const ContactSurface *surface, const ContactPairFoot *f
   const ContactFacet *facet = &surface->facet[foot->facet];
   ContactPairNode    *side  = *node;
 
-  pair->n_slave = 1;
-  pair->slave   = side;
-  *side++       = (ContactPairNode){pair->vertex, {unknown[0], unknown[1], unknown[2]}, 1};
-  pair->master  = side;
+  pair->n_slave = pair->n_own = 1;
+  pair->slave = pair->own = side;
+  *side++                 = (ContactPairNode){pair->vertex, {unknown[0], unknown[1], unknown[2]}, 1};
+  pair->master            = side;
   for (int i = 0; i < facet->n; i++) {
     const PetscInt *u = facet->unknowns[i];
 
@@ -287,9 +287,10 @@ static PetscErrorCode OffWarn(Contact contact, const ContactInterface *c, PetscR
   PetscCall(
     PetscFPrintf(comm, stderr,
                  "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
-                 " nodes of %s have no master under them, and carry nothing; the farthest is %.3g %s beyond the "
-                 "border of %s",
-                 c->name, c->n_off, c->n_slaves, c->slave, (double)c->off, metre, c->master));
+                 " nodes of %s have %s, and %s; the farthest is %.3g %s beyond the border of %s",
+                 c->name, c->n_off, c->n_slaves, c->slave,
+                 c->discretization == CONTACT_MORTAR ? "no or little of the master under them" : "no master under them",
+                 c->discretization == CONTACT_MORTAR ? "no pair" : "carry nothing", (double)c->off, metre, c->master));
   if (lost > 0)
     PetscCall(PetscFPrintf(comm, stderr,
                            "; %.3g %s over it carry nothing either, on faces none of whose nodes has a pair",

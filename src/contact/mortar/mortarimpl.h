@@ -36,3 +36,70 @@ PETSC_INTERN PetscErrorCode MortarCreate(const ContactSurface *slave, const Cont
 PETSC_INTERN PetscErrorCode MortarDestroy(Mortar *mortar);
 /* facets.c - integrals of facet f of the slave and its dual functions; n 0 where no master lies under it */
 PETSC_INTERN PetscErrorCode MortarIntegrate(Mortar *mortar, PetscInt f, MortarFacet *facet);
+
+/* How a facet of the slave lies to the master */
+typedef enum { MORTAR_BESIDE, MORTAR_PARTLY, MORTAR_OVER } MortarCover;
+
+#define MORTAR_COVERED 0.999 /* of the area of a facet that counts as all over the master */
+
+/* Nodes of the slave with and without pairs (border.c) */
+typedef struct {
+  const ContactSurface *slave;
+  PetscReal            *part;           /* [nodes] r */
+  PetscInt             *cover;          /* [facets] MortarCover */
+  PetscBool            *kept;           /* [nodes] */
+  PetscInt             *first, *around; /* [nodes + 1]; FACET_NODES times a facet around each, and its place there */
+  PetscInt             *mark;           /* [nodes] 0 between calls */
+  ContactFacetList      takes;          /* nodes that take phi of a facet */
+} MortarBorder;
+
+static inline const PetscReal *MortarBorderPlace(const MortarBorder *border, PetscInt node)
+{
+  const PetscInt at = border->around[border->first[node]];
+
+  return border->slave->facet[at / FACET_NODES].x[at % FACET_NODES];
+}
+
+PETSC_INTERN PetscErrorCode MortarBorderCreate(const ContactSurface *slave, MortarBorder *border);
+PETSC_INTERN PetscErrorCode MortarBorderDestroy(MortarBorder *border);
+/* border.c - adds what facet f has over the master, d = D */
+PETSC_INTERN void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const double d[]);
+/* border.c - which nodes keep their pairs, from what all ranks have added. Collective. */
+PETSC_INTERN PetscErrorCode MortarBorderDecide(MPI_Comm comm, MortarBorder *border);
+/* border.c - nodes that take phi of a facet (borrowed, until the next call); 0 for none */
+PETSC_INTERN PetscErrorCode MortarBorderTakers(MortarBorder *border, PetscInt f, PetscInt *n, const PetscInt **node);
+/* border.c - c of a node for each of n that take; 1 for itself */
+PETSC_INTERN void MortarBorderShares(const MortarBorder *border, PetscInt v, PetscInt n, const PetscInt node[],
+                                     PetscReal share[]);
+
+/* What one facet adds to the weight of a node in a pair, m^2 */
+typedef struct {
+  PetscInt        pair, order;
+  ContactPairNode node;
+} MortarEntry;
+
+typedef struct {
+  PetscInt     n, room;
+  MortarEntry *entry;
+} MortarEntries;
+
+/* The pairs of an interface as they are made */
+typedef struct {
+  Mortar       mortar;
+  MortarFacet  facet;
+  MortarBorder border;
+  ContactPair *pair;    /* [n_pairs] */
+  PetscInt     n_pairs; /* of all slave nodes of this rank */
+  PetscInt    *of;      /* [slave nodes] their pairs, -1 for none on this rank */
+  PetscInt    *node;    /* [n_pairs] their slave nodes */
+  PetscReal   *own;     /* [n_pairs] D of the node itself, m^2 */
+  PetscReal (*off)[3];  /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
+  MortarEntries under;  /* int phi_p N_l dA at the nodes of the master */
+  MortarEntries taken;  /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
+} MortarPairs;
+
+/* sides.c - appends an entry */
+PETSC_INTERN PetscErrorCode MortarEntryAdd(MortarEntries *list, PetscInt pair, PetscInt number,
+                                           const PetscInt unknown[3], PetscReal weight);
+/* sides.c - sides and gaps of the pairs */
+PETSC_INTERN PetscErrorCode MortarSetSides(Contact contact, PetscInt interface, MortarPairs *m);

@@ -70,6 +70,23 @@ static inline void SegmentTransform(int n, double alpha, double w[])
   if (n == 9) w[8] /= 4;
 }
 
+/* int N~_j dA over a whole facet, to the accuracy of the rule of its shape, m^2 */
+static inline void SegmentWhole(int n, const double x[][3], double alpha, double whole[])
+{
+  const FacetShape *shape = FacetShapeOf(n);
+
+  for (int j = 0; j < n; j++) whole[j] = 0;
+  for (int q = 0; q < shape->n_points; q++) {
+    const double *at = shape->point[q];
+    double        N[FACET_NODES], normal[3];
+
+    FacetWeights(n, at, N);
+    FacetNormal(n, x, at, normal);
+    SegmentTransform(n, alpha, N);
+    for (int j = 0; j < n; j++) whole[j] += at[2] * N[j] * Vec3Length(normal);
+  }
+}
+
 /* u~ of node i as a sum of the values at the nodes, v[n] */
 static inline void SegmentValue(int n, double alpha, int i, double v[])
 {

@@ -21,18 +21,23 @@
 */
 #include "operators/pencilimpl.h"
 
-/* Raises the error for a slave that follows others, of pairs of this rank */
+/* Raises the error for a slave that follows others, of pairs of this rank or of means beside them (means.c) */
 static PetscErrorCode ConstraintCheckFollowers(Pencil pencil, PetscInt n, const ContactPair **list)
 {
-  const Operators o = pencil->operators;
-  PetscInt        first, follows = 0;
+  const Operators    o = pencil->operators;
+  const ContactMean *means;
+  PetscInt           n_means, first, follows = 0;
 
   PetscFunctionBeginUser;
   if (!o->Z) PetscFunctionReturn(0);
+  PetscCall(ContactGetMeans(o->contact, &n_means, &means));
   PetscCall(MatGetOwnershipRange(o->E, &first, NULL));
-  for (PetscInt p = 0; p < n; p++)
-    for (int d = 0; d < 3; d++)
-      if (o->follows[list[p]->slave[0].unknown[d] - first]) follows = 1;
+  for (PetscInt i = 0; i < 3 * (n + n_means); i++) {
+    const ContactPairNode *node = i < 3 * n ? list[i / 3]->slave : means[i / 3 - n].node;
+    const PetscInt         row  = node->unknown[i % 3];
+
+    if (row >= 0 && o->follows[row - first]) follows = 1;
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &follows, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(
     !follows, pencil->comm, PETSC_ERR_SUP,
@@ -42,15 +47,26 @@ static PetscErrorCode ConstraintCheckFollowers(Pencil pencil, PetscInt n, const 
   PetscFunctionReturn(0);
 }
 
+/* Whether a mean of several nodes, that pairs take in, belongs to a node that a support holds, and others are not held
+   there: it cannot be an unknown in place of that node's then */
+static PetscBool MeanIsHeld(const ContactMean *mean)
+{
+  for (PetscInt i = 3; i < 3 * mean->n; i++)
+    if (mean->node->unknown[i % 3] < 0 && mean->node[i / 3].unknown[i % 3] >= 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Eliminated pairs of this rank: closed, by their interface's law; checks that elimination is possible. The list is
    the caller's to free, its pairs the contact's. Faults of any rank are raised on all. */
 static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const ContactPair ***list,
                                        const ContactInterface **interfaces)
 {
   const ContactPair *pairs;
-  PetscInt           n_pairs, n_all, n_interfaces, held = 0;
+  const ContactMean *means;
+  PetscInt           n_pairs, n_all, n_means, n_interfaces, held = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(ContactGetMeans(pencil->operators->contact, &n_means, &means));
   PetscCall(ContactGetPairs(pencil->operators->contact, &n_pairs, &n_all, &pairs));
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, interfaces));
   PetscCall(PetscMalloc1(n_pairs, list));
@@ -61,6 +77,8 @@ static PetscErrorCode ConstrainedPairs(Pencil pencil, PetscInt *n, const Contact
     for (int d = 0; d < 3; d++)
       if (pairs[p].slave[0].unknown[d] < 0) held = 1;
   }
+  for (PetscInt i = 0; i < n_means; i++)
+    if ((*interfaces)[means[i].interface].law == CONTACT_CONSTRAINT && MeanIsHeld(&means[i])) held = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &held, 1, MPIU_INT, MPI_MAX, pencil->comm));
   PetscCheck(!held, pencil->comm, PETSC_ERR_SUP,
              "the contact constraint cannot eliminate a slave node that a support holds: swap -contact_surfaces or use "

@@ -1,0 +1,201 @@
+/* The sides of mortar pairs, of the sums over facets (mortar.c) */
+#include "mortarimpl.h"
+#include <stdlib.h>
+
+/* a weight that is rounding of integrals */
+#define SIDES_ROUNDING 1e-15
+
+PetscErrorCode MortarEntryAdd(MortarEntries *list, PetscInt pair, PetscInt number, const PetscInt unknown[3],
+                              PetscReal weight)
+{
+  PetscFunctionBeginUser;
+  if (list->n == list->room) {
+    list->room = 2 * list->room + 256;
+    PetscCall(PetscRealloc(sizeof(MortarEntry) * (size_t)list->room, &list->entry));
+  }
+  list->entry[list->n] = (MortarEntry){pair, list->n, {number, {unknown[0], unknown[1], unknown[2]}, weight}};
+  list->n++;
+  PetscFunctionReturn(0);
+}
+
+static int EntryCompare(const void *left, const void *right)
+{
+  const MortarEntry *a = (const MortarEntry *)left, *b = (const MortarEntry *)right;
+
+  if (a->pair != b->pair) return a->pair < b->pair ? -1 : 1;
+  if (a->node.number != b->node.number) return a->node.number < b->node.number ? -1 : 1;
+  return (a->order > b->order) - (a->order < b->order);
+}
+
+/* Entries of one pair and node become one, in place; first[p] is where those of pair p begin, [n_pairs + 1] */
+static void EntriesMerge(MortarEntries *list, PetscInt n_pairs, PetscInt first[])
+{
+  PetscInt n = 0, p = 0;
+
+  if (list->n) qsort(list->entry, (size_t)list->n, sizeof(MortarEntry), EntryCompare);
+  for (PetscInt i = 0; i < list->n; i++) {
+    const MortarEntry *e = &list->entry[i];
+
+    if (n && list->entry[n - 1].pair == e->pair && list->entry[n - 1].node.number == e->node.number) {
+      list->entry[n - 1].node.weight += e->node.weight;
+      continue;
+    }
+    while (p <= e->pair) first[p++] = n;
+    list->entry[n++] = *e;
+  }
+  while (p <= n_pairs) first[p++] = n;
+  list->n = n;
+}
+
+/* u~ of a node of the slave as a sum over nodes, itself first; their number */
+static int NodeMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES])
+{
+  const PetscInt      at = m->border.around[m->border.first[node]];
+  const ContactFacet *s  = &m->mortar.slave->facet[at / FACET_NODES];
+  const int           j  = (int)(at % FACET_NODES);
+  PetscReal           v[FACET_NODES];
+  int                 n = 0;
+
+  SegmentValue(s->n, m->mortar.alpha, j, v);
+  for (int i = 0; i < s->n; i++) { /* the node itself, then the others */
+    const int       k = i == 0 ? j : i <= j ? i - 1 : i;
+    const PetscInt *u = s->unknowns[k];
+
+    if (v[k] != 0) mean[n++] = (ContactPairNode){m->mortar.slave->vertex[s->node[k]], {u[0], u[1], u[2]}, v[k]};
+  }
+  return n;
+}
+
+/* Adds c times a mean to the n nodes of a side; their number then */
+static PetscInt SideAdd(PetscReal c, int n_mean, const ContactPairNode mean[], PetscInt n, ContactPairNode side[])
+{
+  for (int i = 0; i < n_mean; i++) {
+    PetscInt k = 0;
+
+    while (k < n && side[k].number != mean[i].number) k++;
+    if (k == n) {
+      side[n]          = mean[i];
+      side[n++].weight = 0;
+    }
+    side[k].weight += c * mean[i].weight;
+  }
+  return n;
+}
+
+/* The slave's side of pair p, of its own mean and of those that it takes, entry[n]; returns its end */
+static ContactPairNode *SlaveSet(MortarPairs *m, PetscInt p, PetscInt n, const MortarEntry entry[],
+                                 ContactPairNode *side)
+{
+  ContactPair    *pair  = &m->pair[p];
+  PetscReal       whole = m->own[p];
+  ContactPairNode mean[FACET_NODES];
+
+  for (PetscInt i = 0; i < n; i++) whole += entry[i].node.weight;
+  pair->n_own = NodeMean(m, m->node[p], side);
+  pair->own = pair->slave = side;
+  side += pair->n_own;
+  pair->n_slave = pair->n_own;
+  pair->n_taken = n;
+  pair->taken   = side;
+  if (!n) return side;
+  for (PetscInt i = 0; i < n; i++) {
+    *side            = entry[i].node;
+    side->number     = m->mortar.slave->vertex[entry[i].node.number];
+    (side++)->weight = entry[i].node.weight / whole;
+  }
+  pair->slave   = side;
+  pair->n_slave = SideAdd(m->own[p] / whole, (int)pair->n_own, pair->own, 0, side);
+  for (PetscInt i = 0; i < n; i++) {
+    const int n_mean = NodeMean(m, entry[i].node.number, mean);
+
+    pair->n_slave = SideAdd(pair->taken[i].weight, n_mean, mean, pair->n_slave, side);
+  }
+  return side + pair->n_slave;
+}
+
+/* The master's side of pair p; returns its end */
+static ContactPairNode *MasterSet(MortarPairs *m, PetscInt p, PetscInt n, const MortarEntry entry[],
+                                  ContactPairNode *side)
+{
+  ContactPair *pair = &m->pair[p];
+  PetscReal    sum  = 0; /* D_p to rounding; weights over it add up to 1, whatever rounding there was */
+
+  for (PetscInt i = 0; i < n; i++) sum += entry[i].node.weight;
+  pair->master = side;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal w = entry[i].node.weight / sum;
+
+    if (PetscAbsReal(w) < SIDES_ROUNDING) continue;
+    *side            = entry[i].node;
+    (side++)->weight = w;
+  }
+  pair->n_master = (PetscInt)(side - pair->master);
+  return side;
+}
+
+/* n . (sum_k v_k x_k - sum_l w_l x_l), m, differences from the slave's node first; what is 1e-9 of the facet's size is
+   rounding of the coordinates, and 0 */
+static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
+{
+  const ContactSurface *slave = m->mortar.slave;
+  ContactPair          *pair  = &m->pair[p];
+  const PetscReal       size  = slave->facet[m->border.around[m->border.first[m->node[p]]] / FACET_NODES].size;
+
+  PetscFunctionBeginUser;
+  pair->gap = 0;
+  for (int d = 0; d < 3; d++) pair->gap -= pair->n[d] * m->off[p][d] / pair->area;
+  for (PetscInt k = 1; k < pair->n_slave; k++) {
+    const PetscReal *x;
+    PetscInt         at;
+
+    PetscCall(PetscFindInt(pair->slave[k].number, slave->n_nodes, slave->vertex, &at));
+    x = MortarBorderPlace(&m->border, at);
+    for (int d = 0; d < 3; d++) pair->gap += pair->n[d] * pair->slave[k].weight * (x[d] - pair->x[d]);
+  }
+  if (PetscAbsReal(pair->gap) < 1e-9 * size) pair->gap = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Means of the nodes of this rank whose phi others take, where they are of several nodes */
+static PetscErrorCode MeansAlone(Contact contact, PetscInt interface, const MortarPairs *m, ContactPairNode *side)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->n_pairs; p++) {
+    const PetscInt node = m->node[p];
+    const int      n    = NodeMean(m, node, side);
+
+    if (m->border.kept[node] || m->border.part[node] <= 0 || n == 1) continue;
+    PetscCall(PetscRealloc(sizeof(ContactMean) * (size_t)(contact->n_means + 1), &contact->means));
+    contact->means[contact->n_means++] = (ContactMean){interface, n, side};
+    side += n;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The others keep an area of 0 and no sides */
+PetscErrorCode MortarSetSides(Contact contact, PetscInt interface, MortarPairs *m)
+{
+  PetscInt        *first, *taken;
+  ContactPairNode *side;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m->n_pairs + 1, &first, m->n_pairs + 1, &taken));
+  EntriesMerge(&m->under, m->n_pairs, first);
+  EntriesMerge(&m->taken, m->n_pairs, taken);
+  PetscCall(PetscMalloc1(m->under.n + (1 + FACET_NODES) * m->taken.n + 3 * FACET_NODES * m->n_pairs + FACET_NODES,
+                         &contact->sides[interface]));
+  side = contact->sides[interface];
+  for (PetscInt p = 0; p < m->n_pairs; p++) {
+    if (!m->border.kept[m->node[p]]) {
+      m->pair[p].area = 0;
+      continue;
+    }
+    side = SlaveSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]], side);
+    side = MasterSet(m, p, first[p + 1] - first[p], &m->under.entry[first[p]], side);
+    PetscCall(GapSet(m, p));
+    m->pair[p].mean = PETSC_TRUE; /* N~ is nowhere negative */
+  }
+  PetscCall(MeansAlone(contact, interface, m, side));
+  PetscCall(PetscFree2(first, taken));
+  PetscFunctionReturn(0);
+}
