@@ -114,9 +114,10 @@ typedef struct {
   PetscBool   per_area; /* which of the two: that of a pair is then kn times the area of its slave */
   /* stiffness along the surface of a pair that sticks, N/m, or per area, N/m^3; 0: none is given */
   PetscReal kt;
-  PetscBool kt_per_area; /* which of the two */
-  PetscBool identify;    /* kn is to be identified by pressing; until then it is 1 */
-  PetscReal tolerance;   /* largest distance of a pair along the normal, m */
+  PetscBool kt_per_area;  /* which of the two */
+  PetscBool identify;     /* kn is to be identified by pressing; until then it is 1 */
+  PetscReal interference; /* statics: gaps are less by it, m */
+  PetscReal tolerance;    /* largest distance of a pair along the normal, m */
   /* along the surface: slaves farther beyond the master's border have no pair, m; 0: 1 % of a facet */
   PetscReal overhang;
   PetscInt  n_slaves;    /* nodes of the slave, over all ranks */
@@ -179,6 +180,7 @@ stiffness
 .  -contact_speed <m/s>           - sliding speed where only the direction is given
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu' N0 along it
+.  -contact_interference <m>      - in statics: by how much the surfaces overlap before the bodies yield, off every gap
 .  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
 .  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave
 node has a

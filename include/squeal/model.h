@@ -299,6 +299,10 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
 /*@ ModelGetDisplaced - the same, with the displacements that motions prescribe where they are held. Collective. @*/
 PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
 
+/*@ ModelGetMotions - the displacements that held motions prescribe at the local nodes, shape [nodes][3], m, of motion i
+    a share[i] (NULL: all of each); the mesh has some (Mesh.prescribed is not NULL). Collective. @*/
+PetscErrorCode ModelGetMotions(Model model, const PetscReal share[], PetscReal nodal[]);
+
 /*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a node; every one of them gets the
     sum. Collective. @*/
 PetscErrorCode ModelSumShared(Model model, Vec local);

@@ -166,19 +166,19 @@ PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
    support they are its reaction. Springs and contact are no part of it. Collective. @*/
 PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[], Vec u, Vec local);
 
-/*@ OperatorsPrescribedForces - internal forces of the displacements that motions prescribe, all others held, as those
-   of
-    OperatorsInternalForces(): with u = 0 on the unknowns, K_fd d there. Zero without motions. Collective. @*/
-PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local);
+/*@ OperatorsPrescribedForces - internal forces of displacements d that motions prescribe [nodes][3], m, all others
+   held, as those of OperatorsInternalForces(): with u = 0 on the unknowns, K_fd d there. Zero for NULL. Collective. @*/
+PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], const PetscReal prescribed[],
+                                         Vec local);
 
 /*@ OperatorsAddWeight - adds the weight of all parts under -model_gravity, f_i = sum_j m_ij g at the densities of p, to
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);
 
-/*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N; size is a bound of the sum
-   of
-    |force| over the unknowns. Collective. @*/
-PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], Vec local, PetscReal *size);
+/*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N, of load i a share[i] (NULL:
+   all of each); size is a bound of the sum of |force| over the unknowns. Collective. @*/
+PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], const PetscReal share[], Vec local,
+                                 PetscReal *size);
 
 /*@ OperatorsTakeNodal - moves such a vector, complete at every node, to the unknowns. Collective. @*/
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);

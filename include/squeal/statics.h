@@ -11,6 +11,12 @@
    slides (-contact_slip or -contact_rotation), lambda_t = mu lambda_n, lambda_b = 0 at every closed pair; else
    Coulomb's law, |(lambda_t, lambda_b)| <= mu lambda_n, with slip of the slave along the friction on the master.
 
+   Friction depends on the order of loading. With -stages the loads, motions, the sliding and the interference of
+   contacts act one after the other (statics/stages/stage.c): a stage goes from the equilibrium of the one before it to
+   its own, in -static_load_steps equal steps, and slip counts from where the pairs were at the last of them. So a pair
+   that sticks keeps its friction, one that closes begins with none, and one that has slipped holds what is left when
+   loads cease. What acts stays, unless a later stage ends it; contacts that do not slide yet hold by Coulomb's law.
+
    Motions (-motions) hold u = d: these displacements are no unknowns, f has -K_fd d more, and gaps and slip count d. In
    modes about the state they are held. Their reactions are rows of reactions.csv.
 
@@ -63,6 +69,11 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
    Options Database Keys:
 +  -static_max_it <50>       - most iterations of the active set at one load
 .  -static_load_steps <1>    - equal steps of the loads; slip is counted from the step before (Coulomb's law)
+.  -stages <names>           - stages of the loading in their order, each the prefix of the following, shown for one
+named `press`
+.  -press_loads, -press_motions, -press_sliding, -press_interferences <names> - loads, motions, contacts that begin to
+act in it, to slide, to overlap by their -contact_interference; each must be named in a stage
+.  -press_ends <names>       - loads that cease in it
 .  -static_dense <2000>      - most rows of the contact problem for a dense one; beyond, GMRES on the factorisation
 .  -static_rows <0>          - for modes: rows of pairs more (> 0) or less (< 0) than the sliding state closes
 .  -static_geometric <false> - for modes: geometric stiffness of the preload
@@ -79,6 +90,8 @@ PetscErrorCode StaticsVisit(Statics s, const QuantityVisitor *visitor);
 /*@
    StaticsSolve - the equilibrium at a point p of the operators' parameters, NULL for the values of the scene. Starts
    from the status of the solution before, else with all pairs closed. Collective.
+
+   With stages it is that of the last one, from all pairs closed at the first.
 
    Errors: PETSC_ERR_USER_INPUT without loads or for a load that nothing resists; PETSC_ERR_NOT_CONVERGED where there is
    no equilibrium ("no equilibrium": proven by a rigid motion, which the message names, along which the loads push and
@@ -139,7 +152,11 @@ PetscErrorCode StaticsAddChecksum(Statics statics, Checksum checksum);
 /*@ StaticsView - status, forces, residuals in words. Collective. @*/
 PetscErrorCode StaticsView(Statics statics, PetscViewer viewer);
 
-/*@ StaticsWrite - static.csv, reactions.csv, and the displacements and pressure as fields. Collective. @*/
+/*@ StaticsViewStages - what begins in each of the -stages, a line each; nothing without. Collective. @*/
+PetscErrorCode StaticsViewStages(Statics statics, PetscViewer viewer);
+
+/*@ StaticsWrite - static.csv, reactions.csv, stages.csv where there are some, and the displacements and pressure as
+    fields. Collective. @*/
 PetscErrorCode StaticsWrite(Statics statics, Results results);
 
 /*@ StaticsDestroy - frees the solver. Collective. @*/

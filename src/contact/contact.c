@@ -255,6 +255,7 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
     PetscCall(FrictionAddChecksum(&f->friction, c));
     PetscCall(PressureAddChecksum(&f->pressure, c));
+    if (f->interference > 0) PetscCall(ChecksumAddReals(c, 1, &f->interference));
     PetscCall(ChecksumAddReals(c, 3, f->slip));
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
     PetscCall(ChecksumAddReals(c, 3, f->centre));

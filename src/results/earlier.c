@@ -26,6 +26,7 @@ static const struct {
   {"static.h5", NULL},
   {"static.xmf", NULL},
   {"reactions.csv", NULL},
+  {"stages.csv", NULL},
   {"sweep.csv", NULL},
   {"onsets.csv", NULL},
   {"verify.csv", NULL},

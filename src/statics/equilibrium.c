@@ -175,8 +175,8 @@ static PetscErrorCode EquilibriumStep(Active *a)
   PetscFunctionReturn(0);
 }
 
-/* Loads and prescribed motions grow by equal parts; each step begins from the forces of the last. Only the whole
-   load is refined. */
+/* Loads and prescribed motions go to their end by equal parts; each step begins from the forces of the last. Only the
+   end is refined. */
 PetscErrorCode EquilibriumSolve(Statics s, Active *a)
 {
   PairRows *rows  = a->rows;
@@ -188,16 +188,18 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
   a->max_it    = s->max_it;
   PetscCall(StaticsPlace(s, a->place, sizeof(a->place)));
   PetscCall(PetscCalloc2(rows->n, &a->free, rows->n, &a->w));
+  if (a->w0) PetscCall(PetscArraycpy(a->w, a->w0, rows->n));
   PetscCall(VecDuplicate(whole, &a->f));
   for (PetscInt step = 1; step <= a->load_steps; step++) {
     const PetscReal part = (PetscReal)step / (PetscReal)a->load_steps;
 
-    PairRowsMove(rows, part, part - 1 / (PetscReal)a->load_steps, step > 1 ? a->w : NULL);
+    PairRowsMove(rows, part, part - 1 / (PetscReal)a->load_steps, step > 1 || a->w0 ? a->w : NULL);
     PetscCall(VecCopy(whole, a->f));
     PetscCall(VecScale(a->f, part));
+    if (a->f0) PetscCall(VecAXPY(a->f, 1 - part, a->f0));
     PetscCall(EquilibriumStep(a));
   }
-  s->n_it = a->n_it;
+  s->n_it += a->n_it;
   s->n_factored += a->n_factored;
   PetscCall(TippingCheck(a));
   PetscCall(EquilibriumRefine(a));

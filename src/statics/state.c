@@ -81,8 +81,9 @@ static PetscErrorCode StaticsSetResultants(Statics s)
   PetscFunctionReturn(0);
 }
 
-/* |f + contact forces - K u| over the larger of |f| and |contact forces|, 2-norms of nodal forces, N; much of it is
-   left where next to nothing resists the loads, and displacements are so large that forces drown in their rounding.
+/* |f + contact forces - K u| over the larger of |f| and |contact forces| up to this stage, 2-norms of nodal forces, N;
+   much of it is left where next to nothing resists the loads, and displacements are so large that forces drown in
+   their rounding.
    Forces by which followers are held to what they follow are none of the residual. */
 static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscReal l[])
 {
@@ -100,7 +101,8 @@ static PetscErrorCode StaticsMeasureEquilibrium(Statics s, Vec f, const PetscRea
   PetscCall(ComplianceDropConstraint(&s->compliance, r));
   PetscCall(VecNorm(r, NORM_2, &norm));
   PetscCall(VecNorm(f, NORM_2, &load));
-  s->equilibrium = norm > 0 ? norm / PetscMax(load, contact) : 0;
+  s->peak        = PetscMax(s->peak, PetscMax(load, contact));
+  s->equilibrium = norm > 0 ? norm / s->peak : 0;
   PetscCall(VecDestroy(&r));
   PetscCheck(
     s->equilibrium <= STATICS_LOOSE, s->comm, PETSC_ERR_NOT_CONVERGED,
@@ -166,7 +168,7 @@ PetscErrorCode StaticsSetState(Statics s, Vec f, const PetscReal l[])
   PetscCall(PetscFree(w));
   PetscCall(StaticsSetResultants(s));
   PetscCall(StaticsMeasureEquilibrium(s, f, l));
-  PetscCall(StaticsMeasureKKT(s));
+  if (s->stage == StagesCount(s) - 1) PetscCall(StaticsMeasureKKT(s)); /* in which all slides that is told to */
   PetscFunctionReturn(0);
 }
 
@@ -179,6 +181,8 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
 
   PetscFunctionBeginUser;
   text[0] = 0;
+  if (StagesGet(s, s->stage)->name)
+    PetscCall(PetscSNPrintf(text, size, " in -stages %s", StagesGet(s, s->stage)->name));
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (PetscInt i = 0; i < s->n_parameters; i++) {
     if (s->p[i] == parameters[i].value) continue;

@@ -1,7 +1,9 @@
 /*
-   Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states. One object solves at many points
-   p of the parameters, one after the other: the statuses of the last solution begin the next, and the factorisation
-   of K_a is kept as long as no parameter of the bodies changes (friction, contact stiffness and loads are not in it).
+   Statics: life cycle, options, and the flow loads -> compliance -> pairs -> states, once a stage. One object solves at
+   many points p of the parameters, one after the other: the statuses of the last solution begin the next, and the
+   factorisation of K_a is kept as long as no parameter of the bodies changes (friction, contact stiffness and loads are
+   not in it), and no stage lets other contacts slide. With -stages each point begins with all pairs closed: what they
+   did at another point is no part of its history.
 */
 #include "staticsimpl.h"
 #include "base/events.h"
@@ -21,6 +23,7 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators)
   PetscFunctionBeginUser;
   statics->operators = operators;
   PetscCall(OperatorsGetModel(operators, &statics->model, &statics->contact));
+  if (statics->model) PetscCall(StagesSetUp(statics));
   PetscFunctionReturn(0);
 }
 
@@ -28,6 +31,7 @@ PetscErrorCode StaticsSetFromOptions(Statics s)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesRead(s->comm, &statics_quantities, s));
+  PetscCall(QuantitiesReadList(s->comm, &stages_list, s, &s->n_stages, &s->stages));
   PetscFunctionReturn(0);
 }
 
@@ -35,6 +39,7 @@ PetscErrorCode StaticsVisit(Statics s, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisit(visitor, &statics_quantities, NULL, s, NULL));
+  PetscCall(QuantitiesVisitList(visitor, &stages_list, s->n_stages, s->stages));
   PetscFunctionReturn(0);
 }
 
@@ -44,6 +49,10 @@ PetscErrorCode StaticsAddChecksum(Statics s, Checksum c)
   if (s->model) PetscCall(ModelAddLoadsChecksum(s->model, c));
   PetscCall(ChecksumSetPart(c, "options of statics"));
   PetscCall(QuantitiesAddChecksum(&statics_quantities, s, c));
+  for (PetscInt k = 0; k < s->n_stages; k++) {
+    PetscCall(ChecksumSetPart(c, "stage %s", s->stages[k].name));
+    PetscCall(QuantitiesAddChecksum(stages_list.table, &s->stages[k], c));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -76,7 +85,13 @@ static PetscErrorCode StaticsCheckRigid(Statics s)
   PetscFunctionReturn(0);
 }
 
-/* Pairs, rows and room for the results; all pairs closed, those of Coulomb's law without slip */
+/* All pairs closed, those of Coulomb's law without slip */
+static void StaticsCloseAll(Statics s)
+{
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
+}
+
+/* Pairs, rows and room for the results */
 static PetscErrorCode StaticsCreateRows(Statics s)
 {
   const OperatorsParameter *parameters;
@@ -85,13 +100,13 @@ static PetscErrorCode StaticsCreateRows(Statics s)
   PetscCheck(s->model, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need a mesh and contact, "
              "not loaded matrices");
-  PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, &s->rows));
+  PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, StagesGet(s, 0), &s->rows));
   PetscCheck(s->rows.n_pairs_all, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need -contacts");
   PetscCall(StaticsCheckRigid(s));
   PetscCall(OperatorsGetParameters(s->operators, &s->n_parameters, &parameters));
   PetscCall(PetscMalloc3(s->rows.n_pairs, &s->status, s->rows.n_pairs, &s->state, s->rows.n_interfaces, &s->resultant));
-  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
+  StaticsCloseAll(s);
   PetscCall(OperatorsCreateVec(s->operators, &s->u));
   PetscCall(OperatorsCreatePoint(s->operators, NULL, &s->p));
   PetscFunctionReturn(0);
@@ -142,8 +157,8 @@ static PetscErrorCode StaticsFactor(Statics s)
     if (same && parameters[i].body && s->p[i] != s->factored[i]) same = PETSC_FALSE;
     s->factored[i] = s->p[i];
   }
-  s->n_factored = same ? 0 : 1;
   if (!same) {
+    s->n_factored++;
     PetscCall(ComplianceDestroy(&s->compliance));
     PetscCall(ComplianceCreate(s->operators, s->p, &s->rows, s->dense, &s->progress, &s->compliance));
   }
@@ -160,31 +175,93 @@ PetscErrorCode StaticsRelease(Statics statics)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
+/* Rows of the contacts that slide in a stage. Others than before need a factorisation of their own; the statuses of
+   the pairs stay, as far as the new rows have them. */
+static PetscErrorCode StaticsSetLayout(Statics s, const Stage *stage)
 {
-  PetscReal *l, size;
-  Vec        f;
+  PetscBool same = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(EventBegin(EVENT_STATICS));
-  PetscCall(StaticsSetUp(s, p));
-  PetscCall(StaticsCreateLoad(s->operators, s->p, &f, &size));
-  PetscCall(StaticsCheckLoad(s, f));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    if (stage->slides[i] != s->rows.slides[i]) same = PETSC_FALSE;
+  if (same) PetscFunctionReturn(0);
+  PetscCall(ComplianceDestroy(&s->compliance));
+  PetscCall(PetscFree(s->factored));
+  PetscCall(PairRowsDestroy(&s->rows));
+  PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, stage, &s->rows));
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++)
+    if (s->rows.law[p].d == 1 && s->status[p] == CONTACT_STICK) s->status[p] = CONTACT_SLIP;
+  PetscFunctionReturn(0);
+}
+
+/* Forces l (m) and displacements w (m) of the rows as the stage before left them */
+static PetscErrorCode StaticsTakeUp(Statics s, PetscReal l[], PetscReal **w)
+{
+  const PairRows *rows = &s->rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rows->n, w));
+  PetscCall(ComplianceGetRows(&s->compliance, s->u, *w));
+  for (PetscInt p = 0; p < rows->n_pairs; p++) {
+    l[rows->first[p]] = s->state[p].lambda_n / s->compliance.kappa;
+    for (PetscInt i = 1; i < rows->law[p].d; i++)
+      l[rows->first[p] + i] = -s->state[p].lambda_t[i - 1] / s->compliance.kappa;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Stage k from the loads f0 of the one before it (NULL at first), which become its own; size is that of the largest
+   loads until now, N */
+static PetscErrorCode StaticsSolveStage(Statics s, PetscInt k, Vec *f0, PetscReal *size)
+{
+  const Stage *stage = StagesGet(s, k);
+  PetscReal   *l, *w0 = NULL, end;
+  Vec          f;
+
+  PetscFunctionBeginUser;
+  s->stage = k;
+  PetscCall(StaticsSetLayout(s, stage));
+  if (!k && s->n_stages) StaticsCloseAll(s);
+  PetscCall(PairRowsSetMoved(s->model, StagesGet(s, k - 1), stage, &s->rows));
+  PetscCall(StaticsCreateLoad(s->operators, s->p, stage, &f, &end));
+  *size = PetscMax(*size, end);
+  if (!k) PetscCall(StaticsCheckLoad(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
-  PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, size));
+  if (k) PetscCall(StaticsTakeUp(s, l, &w0));
+  PetscCall(HoldCheck(s->operators, &s->compliance.hold, "the loads", f, *size));
   PetscCall(EquilibriumSolve(s, &(Active){.rows       = &s->rows,
                                           .compliance = &s->compliance,
                                           .f          = f,
-                                          .size       = size,
+                                          .f0         = *f0,
+                                          .w0         = w0,
+                                          .size       = *size,
                                           .load_steps = s->load_steps,
                                           .status     = s->status,
                                           .l          = l,
                                           .u          = s->u}));
   s->n_free = s->compliance.hold.n;
   PetscCall(StaticsSetState(s, f, l));
-  s->solved = PETSC_TRUE;
+  if (s->n_stages) PetscCall(StaticsFindReactions(s));
   PetscCall(PetscFree(l));
+  PetscCall(PetscFree(w0));
+  PetscCall(VecDestroy(f0));
+  *f0 = f;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
+{
+  PetscReal size = 0;
+  Vec       f    = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_STATICS));
+  PetscCall(StaticsSetUp(s, p));
+  s->n_it = s->n_factored = s->n_reactions = 0;
+  s->peak                                  = 0;
+  for (PetscInt k = 0; k < StagesCount(s); k++) PetscCall(StaticsSolveStage(s, k, &f, &size));
+  s->solved = PETSC_TRUE;
   PetscCall(VecDestroy(&f));
   PetscCall(EventEnd(EVENT_STATICS));
   PetscFunctionReturn(0);
@@ -215,6 +292,8 @@ PetscErrorCode StaticsDestroy(Statics *statics)
   if (!s) PetscFunctionReturn(0);
   PetscCall(StaticsRelease(s));
   PetscCall(PairRowsDestroy(&s->rows));
+  PetscCall(StagesDestroy(s));
+  PetscCall(PetscFree(s->reaction));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
   PetscCall(PetscFree(s->p));
   PetscCall(VecDestroy(&s->u));

@@ -6,6 +6,24 @@
 #include "kernels/contact/coulomb.h"
 #include "solver/factor/shiftinvert.h"
 
+/* A stage of the loading: what begins in it, by name, and what acts at its end */
+typedef struct {
+  char      *name; /* NULL of the one in which all acts */
+  PetscInt   n_loads, n_motions, n_sliding, n_interferences, n_ends;
+  char     **loads, **motions, **sliding, **interferences, **ends;
+  PetscReal *load, *motion; /* [scene] 0 or 1 */
+  PetscReal *interference;  /* [interfaces] m */
+  PetscBool *slides;        /* [interfaces] */
+} Stage;
+
+/* Who carries how much at the end of a stage */
+typedef struct {
+  PetscInt    stage;
+  const char *name, *kind;         /* borrowed */
+  PetscReal   force[3];            /* N */
+  PetscInt    n[CONTACT_N_STATUS]; /* pairs of a contact */
+} Reaction;
+
 /* Rows of the contact problem: the normal one of a pair that slides or has no friction, else normal, t and b */
 typedef struct {
   MPI_Comm                comm;
@@ -18,9 +36,12 @@ typedef struct {
   PetscReal              *closing;         /* [n_pairs] at which a law that is not linear has its tangent, m */
   PetscInt                n, n_all, begin; /* rows of this rank, of all, first of this rank */
   PetscInt               *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
-  PetscReal              *moved;           /* [rows] contact displacements by motions, m; NULL without */
-  Mat                     G;               /* [rows][unknowns] n, t, b */
-  Mat                     S;               /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
+  PetscBool              *slides;          /* [n_interfaces] whether it slides now */
+  /* [rows] contact displacements by motions and interference at the end of the stage and at its beginning, m; NULL
+     without */
+  PetscReal *moved, *moved0;
+  Mat        G; /* [rows][unknowns] n, t, b */
+  Mat        S; /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
 } PairRows;
 
 /* Whether the pressure of some interface is not linear; alike on all ranks */
@@ -109,6 +130,8 @@ typedef struct {
   PairRows         *rows;
   const Compliance *compliance;
   Vec               f, u; /* forces on the bodies, N, and displacements of all unknowns */
+  Vec               f0;   /* forces from which f is reached, N; NULL for none */
+  const PetscReal  *w0;   /* [rows] w there, m; NULL for none */
   PetscReal         size; /* of all forces, N */
   PetscInt          load_steps, max_it, n_it, n_factored;
   char              place[256]; /* the point in words, for messages */
@@ -149,6 +172,9 @@ struct _p_Statics {
   /* set by options */
   PetscInt  max_it, load_steps, dense, rows_more, identify_steps;
   PetscBool geometric, follower, view_kkt;
+  Stage    *stages; /* [n_stages], or 0 and all at once: */
+  Stage     whole;
+  PetscInt  n_stages;
   /* the contact problem and the factorisation */
   PairRows   rows;
   Compliance compliance;
@@ -160,6 +186,10 @@ struct _p_Statics {
   ContactState     *state;                          /* [n_pairs] gap, forces, status */
   Vec               u;                              /* displacements, m; length: all unknowns */
   ContactKKT        kkt;
+  PetscInt          stage;    /* of the state */
+  Reaction         *reaction; /* [n_reactions] of all stages; without -stages when they are written */
+  PetscInt          n_reactions;
+  PetscReal         peak;        /* 2-norm of the largest forces up to it, N */
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */
   StaticsResultant *resultant;   /* [interfaces] */
@@ -171,14 +201,24 @@ extern const QuantityTable statics_quantities;
 PETSC_INTERN PetscErrorCode StaticsSetUp(Statics statics, const PetscReal p[]);
 /* state.c - " at contact_mu 0.7, pad_young 1e+10": parameters that differ from those of the scene, for messages */
 PETSC_INTERN PetscErrorCode StaticsPlace(Statics statics, char text[], size_t size);
-/* rows.c - pairs and rows, normal ones only for pressing without friction; friction coefficients and stiffnesses of the
-   interfaces at p */
-PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows);
+/* stage.c - -stages of the options; checked, and what acts in each; how many there are, 1 without the option; the k-th,
+   NULL before the first; displacements that its motions prescribe [nodes][3], m, NULL without motions, the caller frees
+   them (stage NULL: all of them) */
+extern const QuantityList   stages_list;
+PETSC_INTERN PetscErrorCode StagesSetUp(Statics statics);
+PETSC_INTERN PetscInt       StagesCount(Statics statics);
+PETSC_INTERN const Stage   *StagesGet(Statics statics, PetscInt k);
+PETSC_INTERN PetscErrorCode StageGetMotions(Model model, const Stage *stage, PetscReal **nodal);
+PETSC_INTERN PetscErrorCode StagesDestroy(Statics statics);
+/* rows.c - pairs and rows, normal ones only for pressing without friction, with the interfaces that slide in a stage
+   (NULL: as they are told); friction coefficients and stiffnesses of the interfaces at p */
+PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Stage *stage, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
 PETSC_INTERN void           PairRowsSetClosing(PairRows *rows, PetscInt pair, PetscReal kappa, PetscReal closing);
-/* moved.c - contact displacements by motions; gaps at a part of them, and slip that counts from w [rows] and the part
-   before, NULL and 0 at the first load step */
-PETSC_INTERN PetscErrorCode PairRowsSetMoved(Model model, PairRows *rows);
+/* moved.c - contact displacements by motions and interference at the end of a stage and of the one before it, NULL for
+   none; gaps at a part of the way, and slip that counts from w [rows] and the part before, NULL and 0 at the first load
+   step */
+PETSC_INTERN PetscErrorCode PairRowsSetMoved(Model model, const Stage *before, const Stage *stage, PairRows *rows);
 PETSC_INTERN void           PairRowsMove(PairRows *rows, PetscReal part, PetscReal before, const PetscReal w[]);
 PETSC_INTERN PetscErrorCode PairRowsDestroy(PairRows *rows);
 
@@ -278,10 +318,16 @@ PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscR
 /* state.c - dP/dc times the area of a local pair, N/m: infinite of exact contact, 0 where it is open */
 PETSC_INTERN PetscReal StaticsPairStiffness(Statics statics, PetscInt pair);
 
-/* loadvector.c - f of the loads and the weight at p, unknowns only, and its size by all of them, N */
-PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], Vec *f, PetscReal *size);
+/* loadvector.c - f of a stage's loads and of the weight at p, unknowns only, and its size by all of them, N */
+PETSC_INTERN PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], const Stage *stage, Vec *f,
+                                              PetscReal *size);
 
-/* reaction.c - reactions.csv; u at all local nodes, zero where held */
+/* table.c - stages.csv, with -stages; lines of what the stages before the last end with */
+PETSC_INTERN PetscErrorCode StagesWrite(Statics statics, Results results);
+PETSC_INTERN PetscErrorCode StagesViewEnds(Statics statics, PetscViewer viewer);
+
+/* reaction.c - adds those of the state; reactions.csv; u at all local nodes, zero where held */
+PETSC_INTERN PetscErrorCode StaticsFindReactions(Statics statics);
 PETSC_INTERN PetscErrorCode StaticsWriteReactions(Statics statics, Results results);
 PETSC_INTERN PetscErrorCode StaticsCreateDisplacements(Statics statics, Vec *local);
 

@@ -94,6 +94,25 @@ static PetscErrorCode MotionFlag(Model model, const PrescribedMotion *motion, Pe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelGetMotions(Model model, const PetscReal share[], PetscReal nodal[])
+{
+  const Mesh *mesh = &model->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(nodal, mesh->prescribed, 3 * mesh->n_nodes));
+  for (PetscInt i = 0; i < model->scene.n_motions && share; i++) {
+    const PrescribedMotion *motion = &model->scene.motions[i];
+    PetscInt                n, *vertex;
+
+    if (share[i] == 1) continue;
+    PetscCall(ModelGetSetNodes(model, motion->set, &n, &vertex));
+    for (PetscInt k = 0; k < 3 * n; k++)
+      if (motion->direction[k % 3]) nodal[3 * vertex[k / 3] + k % 3] *= share[i];
+    PetscCall(PetscFree(vertex));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MotionsFlag(Model model, PetscBool fixed[][3])
 {
   PetscReal *prescribed;

@@ -74,14 +74,12 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
 }
 
 /* K times the displacements that supports prescribe, N: what they add to the right-hand side with the other sign. */
-PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], Vec local)
+PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], const PetscReal prescribed[],
+                                         Vec local)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(operators->model, &mesh));
-  if (mesh->prescribed)
-    PetscCall(OperatorsForcesOf(operators, p, mesh->prescribed, local));
+  if (prescribed)
+    PetscCall(OperatorsForcesOf(operators, p, prescribed, local));
   else
     PetscCall(VecSet(local, 0));
   PetscFunctionReturn(0);

@@ -50,7 +50,7 @@ static PetscReal SizeFactor(Operators o, const PetscReal p[], PetscInt parameter
   return parameter < 0 ? 1 : OperatorsPoint(o, p)[parameter] / o->parameters.p[parameter];
 }
 
-PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], Vec local, PetscReal *size)
+PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], const PetscReal share[], Vec local, PetscReal *size)
 {
   const ModelScene *scene;
 
@@ -59,7 +59,8 @@ PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], Vec local, Pe
   PetscCall(ModelGetScene(o->model, &scene));
   for (PetscInt i = 0; i < scene->n_loads; i++) {
     const LoadParameters *q         = &o->load_size[i];
-    const PetscReal       factor[2] = {SizeFactor(o, p, q->force), SizeFactor(o, p, q->moment)};
+    const PetscReal       part      = share ? share[i] : 1;
+    const PetscReal       factor[2] = {part * SizeFactor(o, p, q->force), part * SizeFactor(o, p, q->moment)};
     const PetscReal       force = q->force < 0 ? 0 : PetscAbsReal(factor[0]), moment = q->moment < 0 ? 0 : factor[1];
 
     PetscCall(ModelAddLoad(o->model, i, factor, local));

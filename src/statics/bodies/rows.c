@@ -19,7 +19,7 @@ static PetscErrorCode PairRowsCount(PetscBool pressing, PairRows *rows)
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const ContactInterface *c = &rows->interface[rows->pair[p].interface];
 
-    rows->law[p].d     = pressing || c->slides || !FrictionExists(&c->friction) ? 1 : 3;
+    rows->law[p].d     = pressing || rows->slides[rows->pair[p].interface] || !FrictionExists(&c->friction) ? 1 : 3;
     rows->law[p].g0    = rows->pair[p].gap;
     rows->first[p + 1] = rows->first[p] + rows->law[p].d;
   }
@@ -46,9 +46,9 @@ static PetscErrorCode PairRowsCreateMatrices(Contact contact, PairRows *rows)
       pair[rows->first[p] + i] = p;
       PetscCall(PetscArraycpy(across[rows->first[p] + i], d[i], 3));
     }
-    if (rows->interface[q->interface].slides) PetscCall(PetscArraycpy(along[rows->first[p]], q->t, 3));
+    if (rows->slides[q->interface]) PetscCall(PetscArraycpy(along[rows->first[p]], q->t, 3));
   }
-  for (PetscInt i = 0; i < rows->n_interfaces; i++) any = (PetscBool)(any || rows->interface[i].slides);
+  for (PetscInt i = 0; i < rows->n_interfaces; i++) any = (PetscBool)(any || rows->slides[i]);
   PetscCall(ContactCreateRows(contact, rows->n, pair, (const PetscReal(*)[3])across, &rows->G));
   if (any) PetscCall(ContactCreateRows(contact, rows->n, pair, (const PetscReal(*)[3])along, &rows->S));
   PetscCall(MatGetOwnershipRange(rows->G, &rows->begin, NULL));
@@ -57,7 +57,7 @@ static PetscErrorCode PairRowsCreateMatrices(Contact contact, PairRows *rows)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows *rows)
+PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Stage *stage, PairRows *rows)
 {
   Contact contact;
   Model   model;
@@ -67,9 +67,11 @@ PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, PairRows 
   PetscCall(ModelGetComm(model, &rows->comm));
   PetscCall(ContactGetInterfaces(contact, &rows->n_interfaces, &rows->interface));
   PetscCall(ContactGetPairs(contact, &rows->n_pairs, &rows->n_pairs_all, &rows->pair));
+  PetscCall(PetscMalloc1(rows->n_interfaces, &rows->slides));
+  for (PetscInt i = 0; i < rows->n_interfaces; i++)
+    rows->slides[i] = stage ? stage->slides[i] : rows->interface[i].slides;
   PetscCall(PairRowsCount(pressing, rows));
   PetscCall(PairRowsCreateMatrices(contact, rows));
-  PetscCall(PairRowsSetMoved(model, rows));
   PetscFunctionReturn(0);
 }
 
@@ -104,7 +106,7 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
     PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k], &mu));
     PairRowsSetClosing(rows, k, kappa, PressureOnset(&rows->pressure[rows->pair[k].interface]));
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
-    rows->slide[k]  = rows->interface[rows->pair[k].interface].slides ? mu : 0;
+    rows->slide[k]  = rows->slides[rows->pair[k].interface] ? mu : 0;
   }
   PetscFunctionReturn(0);
 }
@@ -119,6 +121,8 @@ PetscErrorCode PairRowsDestroy(PairRows *rows)
   PetscCall(PetscFree(rows->slide));
   PetscCall(PetscFree(rows->closing));
   PetscCall(PetscFree(rows->pressure));
+  PetscCall(PetscFree(rows->slides));
   PetscCall(PetscFree(rows->moved));
+  PetscCall(PetscFree(rows->moved0));
   PetscFunctionReturn(0);
 }

@@ -87,9 +87,9 @@ static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, Identif
   PetscCall(ModelGetMesh(s->model, &mesh));
   PetscCheck(!mesh->prescribed, s->comm, PETSC_ERR_USER_INPUT,
              "-contact_kn identify presses with the -loads alone: leave -motions out, and give the stiffness found");
-  PetscCall(StaticsCreateLoad(s->operators, s->p, &whole.f, &whole.size));
+  PetscCall(StaticsCreateLoad(s->operators, s->p, StagesGet(s, StagesCount(s) - 1), &whole.f, &whole.size));
   PetscCheck(whole.size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
-  PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, &rows));
+  PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, NULL, &rows));
   PetscCall(PetscMalloc1(rows.n_pairs, &whole.status));
   PetscCall(PetscCalloc1(rows.n, &whole.l));
   PetscCall(ComplianceCreate(s->operators, s->p, &rows, s->dense, &s->progress, &compliance));

@@ -16,19 +16,22 @@
    forces. */
 static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
 {
-  PetscReal weight[3], size;
-  Vec       part;
+  const Stage *stage = StagesGet(s, s->stage);
+  PetscReal    weight[3], size, *prescribed;
+  Vec          part;
 
   PetscFunctionBeginUser;
+  PetscCall(StageGetMotions(s->model, stage, &prescribed));
   PetscCall(ModelCreateNodal(s->model, local));
   PetscCall(ModelCreateNodal(s->model, &part));
   PetscCall(OperatorsInternalForces(s->operators, s->p, s->u, *local));
-  PetscCall(OperatorsPrescribedForces(s->operators, s->p, part));
+  PetscCall(OperatorsPrescribedForces(s->operators, s->p, prescribed, part));
+  PetscCall(PetscFree(prescribed));
   PetscCall(VecAXPY(*local, 1, part));
   PetscCall(ContactNodalForces(s->contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
-  PetscCall(OperatorsAddLoads(s->operators, s->p, part, &size));
+  PetscCall(OperatorsAddLoads(s->operators, s->p, stage->load, part, &size));
   PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
@@ -62,23 +65,36 @@ static PetscErrorCode ReactionSum(Model model, const char set[], const PetscBool
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReactionRow(ResultsTable table, const char name[], const char kind[], const PetscReal force[3])
+/* Adds one to those of the state; NULL for what is no contact */
+static PetscErrorCode ReactionAdd(Statics s, const char name[], const char kind[], const PetscReal force[3],
+                                  const PetscInt n[CONTACT_N_STATUS])
 {
+  Reaction *r;
+
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g", name, kind, (double)force[0], (double)force[1],
-                            (double)force[2]));
+  PetscCall(PetscRealloc((size_t)(s->n_reactions + 1) * sizeof(*s->reaction), &s->reaction));
+  r  = &s->reaction[s->n_reactions++];
+  *r = (Reaction){.stage = s->stage, .name = name, .kind = kind};
+  PetscCall(PetscArraycpy(r->force, force, 3));
+  if (n) PetscCall(PetscArraycpy(r->n, n, CONTACT_N_STATUS));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
 {
   PetscScalar *nodal;
+  PetscReal   *prescribed;
+  PetscInt     n;
 
   PetscFunctionBeginUser;
+  PetscCall(StageGetMotions(s->model, StagesGet(s, s->stage), &prescribed));
   PetscCall(ModelCreateNodal(s->model, local));
+  PetscCall(VecGetLocalSize(*local, &n));
   PetscCall(VecGetArray(*local, &nodal));
-  PetscCall(ModelGetDisplaced(s->model, s->u, nodal));
+  PetscCall(ModelGetNodal(s->model, s->u, nodal));
+  for (PetscInt i = 0; i < n && prescribed; i++) nodal[i] += prescribed[i];
   PetscCall(VecRestoreArray(*local, &nodal));
+  PetscCall(PetscFree(prescribed));
   PetscFunctionReturn(0);
 }
 
@@ -124,7 +140,7 @@ static PetscErrorCode ReactionCreateSpring(Statics s, const Grounded *g, Vec dis
 }
 
 /* Rows of bushings to the ground and points with stiffness, and of bushings between two sets: -k q, on a of the two */
-static PetscErrorCode ReactionsWriteJoints(Statics s, Vec displacement, ResultsTable table)
+static PetscErrorCode ReactionsFindJoints(Statics s, Vec displacement)
 {
   const ModelScene *scene;
   const PetscReal  *u;
@@ -140,18 +156,18 @@ static PetscErrorCode ReactionsWriteJoints(Statics s, Vec displacement, ResultsT
     if (k[0] + k[1] + k[2] + k[3] + k[4] + k[5] == 0) continue;
     PetscCall(ModelGetMeanMotion(s->model, &joint->mean, u, q));
     for (int d = 0; d < 3; d++) q[d] *= -k[d];
-    PetscCall(ReactionRow(table, joint->name,
+    PetscCall(ReactionAdd(s, joint->name,
                           joint->is_point    ? "point"
                           : joint->set[1][0] ? "bushing on a"
                                              : "bushing",
-                          q));
+                          q, NULL));
   }
   PetscCall(VecRestoreArrayRead(displacement, &u));
   PetscFunctionReturn(0);
 }
 
 /* Rows of supports, motions and springs */
-static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
+static PetscErrorCode ReactionsFindHolders(Statics s)
 {
   const PetscBool   all[3] = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
   const ModelScene *scene;
@@ -169,26 +185,26 @@ static PetscErrorCode ReactionsWriteHolders(Statics s, ResultsTable table)
   }
   for (PetscInt i = 0; i < scene->n_supports; i++) {
     PetscCall(ReactionSum(s->model, scene->supports[i].set, scene->supports[i].fix, unbalance, force));
-    PetscCall(ReactionRow(table, scene->supports[i].name, "support", force));
+    PetscCall(ReactionAdd(s, scene->supports[i].name, "support", force, NULL));
   }
   for (PetscInt i = 0; i < scene->n_motions; i++) {
     PetscCall(ReactionSum(s->model, scene->motions[i].set, scene->motions[i].direction, unbalance, force));
-    PetscCall(ReactionRow(table, scene->motions[i].name, "motion", force));
+    PetscCall(ReactionAdd(s, scene->motions[i].name, "motion", force, NULL));
   }
   for (PetscInt i = 0; i < scene->n_springs; i++) {
     PetscCall(ReactionCreateSpring(s, &scene->springs[i], u, &spring));
     PetscCall(VecScale(spring, -1));
     PetscCall(ReactionSum(s->model, scene->springs[i].set, all, spring, force));
     PetscCall(VecDestroy(&spring));
-    PetscCall(ReactionRow(table, scene->springs[i].name, "spring", force));
+    PetscCall(ReactionAdd(s, scene->springs[i].name, "spring", force, NULL));
   }
-  PetscCall(ReactionsWriteJoints(s, u, table));
+  PetscCall(ReactionsFindJoints(s, u));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReactionWriteWeight(Statics s, ResultsTable table)
+static PetscErrorCode ReactionFindWeight(Statics s)
 {
   PetscReal weight[3];
   Vec       nodal;
@@ -197,24 +213,44 @@ static PetscErrorCode ReactionWriteWeight(Statics s, ResultsTable table)
   PetscCall(ModelCreateNodal(s->model, &nodal));
   PetscCall(OperatorsAddWeight(s->operators, s->p, nodal, weight));
   PetscCall(VecDestroy(&nodal));
-  PetscCall(ReactionRow(table, "gravity", "weight", weight));
+  PetscCall(ReactionAdd(s, "gravity", "weight", weight, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsFindReactions(Statics s)
+{
+  const Stage      *stage   = StagesGet(s, s->stage);
+  const PetscReal   none[3] = {0, 0, 0};
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ReactionsFindHolders(s));
+  for (PetscInt i = 0; i < scene->n_loads; i++) {
+    const PetscReal *force = stage->load[i] > 0 ? scene->loads[i].force : none;
+
+    PetscCall(ReactionAdd(s, scene->loads[i].name, "load", force, NULL));
+  }
+  if (ModelHasGravity(s->model)) PetscCall(ReactionFindWeight(s));
+  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
+    PetscCall(ReactionAdd(s, s->rows.interface[i].name, "contact on master", s->resultant[i].force, s->resultant[i].n));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode StaticsWriteReactions(Statics s, Results results)
 {
-  const ModelScene *scene;
-  ResultsTable      table;
+  ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(s->model, &scene));
+  if (!s->n_reactions) PetscCall(StaticsFindReactions(s));
   PetscCall(ResultsTableOpen(results, "reactions", "name,kind,force_x_n,force_y_n,force_z_n", &table));
-  PetscCall(ReactionsWriteHolders(s, table));
-  for (PetscInt i = 0; i < scene->n_loads; i++)
-    PetscCall(ReactionRow(table, scene->loads[i].name, "load", scene->loads[i].force));
-  if (ModelHasGravity(s->model)) PetscCall(ReactionWriteWeight(s, table));
-  for (PetscInt i = 0; i < s->rows.n_interfaces; i++)
-    PetscCall(ReactionRow(table, s->rows.interface[i].name, "contact on master", s->resultant[i].force));
+  for (PetscInt i = 0; i < s->n_reactions; i++) {
+    const Reaction *r = &s->reaction[i];
+
+    if (r->stage == s->stage)
+      PetscCall(ResultsTableRow(table, "%s,%s,%.15g,%.15g,%.15g", r->name, r->kind, (double)r->force[0],
+                                (double)r->force[1], (double)r->force[2]));
+  }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }

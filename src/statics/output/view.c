@@ -61,6 +61,7 @@ static PetscErrorCode PressureRangeView(Statics s, PetscInt interface, PetscView
 PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
+  PetscCall(StagesViewEnds(s, viewer));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++) {
     PetscCall(InterfaceView(s->model, &s->rows.interface[i], &s->resultant[i], viewer));
     PetscCall(PressureRangeView(s, i, viewer));

@@ -126,6 +126,7 @@ PetscErrorCode StaticsWrite(Statics s, Results results)
   PetscCall(StaticsNote(s, results));
   PetscCall(StaticsWritePairs(s, results));
   PetscCall(StaticsWriteReactions(s, results));
+  PetscCall(StagesWrite(s, results));
   PetscCall(StaticsWriteFields(s, results));
   PetscFunctionReturn(0);
 }
