@@ -258,9 +258,10 @@ PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, Petsc
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
 
-/* small.c - l and w [rows] of the small system; reversed = whether the determinant is negative, dense ones only */
-PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
-                                       PetscBool *reversed);
+/* small.c - z [rows], from a guess that GMRES begins with, l and w of the small system; reversed = whether the
+   determinant is negative, dense ones only */
+PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal z[], PetscReal l[], PetscReal w[],
+                                       SmallOutcome *outcome, PetscBool *reversed);
 /* determinant.c - reversed for any: its sign by a sparse factorisation of bodies and pairs, counted in n_factored */
 PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscInt *n_factored, PetscBool *reversed);
 

@@ -29,10 +29,17 @@ import numpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 
 
+def cell(text):
+    """A number, or a word as it stands."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def rows(path):
     with Path(path).open(newline="") as table:
-        return [{key: float(cell) if key not in ("label", "unstable") else cell for key, cell in row.items()}
-                for row in csv.DictReader(table)]
+        return [{key: cell(text) for key, text in row.items()} for row in csv.DictReader(table)]
 
 
 def judge(measured, allowed):
@@ -61,7 +68,7 @@ def eigenvalues(results, exact, top):
 def matrices(results, saved):
     import scipy.linalg
     from squeal.modes.exact import Pencil
-    pencil, table = Pencil(saved, 0), rows(Path(results) / "modes.csv")
+    pencil, table = Pencil(Path(saved), 0), rows(Path(results) / "modes.csv")
     count = numpy.sqrt(abs(scipy.linalg.eigh(pencil.k.toarray(), pencil.m.toarray(), eigvals_only=True))) / (2 * math.pi)
     found = numpy.array([row["freq_hz"] for row in table])
     count = (count > found.min() / 2) & (count < found.max() * (1 + 1e-6))

@@ -14,7 +14,7 @@
 #define SLIPPING 1e-12
 #define EXACT    1e-13 /* of GMRES */
 /* of GMRES while statuses still change: they need no more, and the last iterations are solved to EXACT */
-#define ROUGH 1e-6
+#define ROUGH 1e-3
 /* of GMRES for corrections, which are small beside what they correct */
 #define CORRECT 1e-8
 /* least part of a step */
@@ -94,17 +94,24 @@ static void LawsSet(const Active *a, LawRow law[])
   }
 }
 
-/* Makes the laws those of what is added to the present l and w, which need not obey them exactly: p0 + P z - l in the
-   place of p0, with the z of l and w where they do (tangential blocks of P and Q have the sum I) */
+/* z [d] of l and w of a pair, which need not obey the laws: where they do, l = P z + p0 and w = Q z + q0 (tangential
+   blocks of P and Q have the sum I) */
+static void LawInvert(const LawRow row[], PetscInt d, const PetscReal l[], const PetscReal w[], PetscReal z[])
+{
+  z[0] = row->P[0] >= row->Q[0] ? l[0] : w[0];
+  for (PetscInt i = 1; i < d; i++) z[i] = l[i] - row[i].p0 - row[i].P[0] * z[0] + w[i] - row[i].q0;
+}
+
+/* Makes the laws those of what is added to the present l and w: p0 + P z - l in the place of p0 */
 static void LawsShift(const Active *a, LawRow law[])
 {
   for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
     const PetscInt   first = a->rows->first[p], d = a->rows->law[p].d;
     const PetscReal *l = &a->l[first], *w = &a->w[first];
-    LawRow          *row  = &law[first];
-    PetscReal        z[3] = {row->P[0] >= row->Q[0] ? l[0] : w[0]};
+    LawRow          *row = &law[first];
+    PetscReal        z[3];
 
-    for (PetscInt i = 1; i < d; i++) z[i] = l[i] - row[i].p0 - row[i].P[0] * z[0] + w[i] - row[i].q0;
+    LawInvert(row, d, l, w, z);
     for (PetscInt i = 0; i < d; i++) {
       row[i].p0 -= l[i];
       row[i].q0 -= w[i];
@@ -116,17 +123,33 @@ static void LawsShift(const Active *a, LawRow law[])
   }
 }
 
+/* z [rows] nearest to the present l and w */
+static void LawsGuess(const Active *a, const LawRow law[], PetscReal z[])
+{
+  for (PetscInt p = 0; p < a->rows->n_pairs; p++) {
+    const PetscInt first = a->rows->first[p];
+
+    LawInvert(&law[first], a->rows->law[p].d, &a->l[first], &a->w[first], &z[first]);
+  }
+}
+
 PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], PetscReal l[], PetscReal w[],
                             SmallOutcome *outcome)
 {
-  LawRow *law;
+  LawRow    *law;
+  PetscReal *z;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(a->rows->n, &law));
+  PetscCall(PetscCalloc1(a->rows->n, &z));
   LawsSet(a, law);
-  if (added) LawsShift(a, law);
-  PetscCall(SmallSolve(&(SmallSystem){a->compliance, a->friction, law, rhs, a->rtol}, l, w, outcome, &a->reversed));
+  if (added)
+    LawsShift(a, law);
+  else
+    LawsGuess(a, law, z);
+  PetscCall(SmallSolve(&(SmallSystem){a->compliance, a->friction, law, rhs, a->rtol}, z, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
+  PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }
 

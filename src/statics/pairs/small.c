@@ -175,6 +175,7 @@ static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *o
   PetscCall(KSPSetTolerances(ksp, s->system->rtol, PETSC_DEFAULT, PETSC_DEFAULT, GMRES_STEPS));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetInitialGuessNonzero(ksp, PETSC_TRUE));
   PetscCall(KSPSetFromOptions(ksp));
   PetscCall(KSPSolve(ksp, b, z));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
@@ -186,7 +187,7 @@ static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *o
   PetscFunctionReturn(0);
 }
 
-/* z of this rank's rows [rows] */
+/* z of this rank's rows [rows], from a guess of it */
 static PetscErrorCode SmallSolveGMRES(const SmallSystem *system, PetscReal z[], SmallOutcome *outcome)
 {
   const Compliance *c = system->compliance;
@@ -208,6 +209,9 @@ static PetscErrorCode SmallSolveGMRES(const SmallSystem *system, PetscReal z[], 
   PetscCall(VecGetArray(b, &value));
   for (PetscInt i = 0; i < n; i++) value[i] = system->rhs[i] - y[i];
   PetscCall(VecRestoreArray(b, &value));
+  PetscCall(VecGetArray(x, &value));
+  PetscCall(PetscArraycpy(value, z, n));
+  PetscCall(VecRestoreArray(x, &value));
   PetscCall(SmallRunGMRES(&s, b, x, outcome));
   PetscCall(VecGetArray(x, &value));
   PetscCall(PetscArraycpy(z, value, n));
@@ -218,20 +222,17 @@ static PetscErrorCode SmallSolveGMRES(const SmallSystem *system, PetscReal z[], 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal l[], PetscReal w[], SmallOutcome *outcome,
+PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal z[], PetscReal l[], PetscReal w[], SmallOutcome *outcome,
                           PetscBool *reversed)
 {
   const PairRows *rows = system->compliance->rows;
-  PetscReal      *z;
 
   PetscFunctionBeginUser;
   *reversed = PETSC_FALSE;
-  PetscCall(PetscMalloc1(rows->n, &z));
   if (system->compliance->W)
     PetscCall(SmallSolveDense(system, z, outcome, reversed));
   else
     PetscCall(SmallSolveGMRES(system, z, outcome));
   SmallApplyLaws(rows, system->law, PETSC_TRUE, z, l, w);
-  PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
 }
