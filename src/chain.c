@@ -10,13 +10,28 @@ static const Quantity rows[] = {
 };
 static const QuantityTable chain_quantities = {"Analysis", "squeal.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};
 
+static const char *ViewIdle(const void *chain, const QuantityRun *run)
+{
+  (void)chain;
+  return run->does & RUN_BODIES ? NULL : "not used by matrices without a mesh; give -operators_view";
+}
+
 #define VIEW(shown, name, help, bits)                                                                                  \
   [shown] = {name, help, NULL, QUANTITY_VIEWER, QUANTITY_AT(Chain, viewer[shown]), .in = (bits), .unread = NOTHING}
+#define MESH_VIEW(shown, name, help, bits)                                                                             \
+  [shown] = {name,                                                                                                     \
+             help,                                                                                                     \
+             NULL,                                                                                                     \
+             QUANTITY_VIEWER,                                                                                          \
+             QUANTITY_AT(Chain, viewer[shown]),                                                                        \
+             .in     = (bits),                                                                                         \
+             .unread = NOTHING,                                                                                        \
+             .idle   = ViewIdle}
 #define NOTHING ": it has nothing to show there"
 
 static const Quantity views[N_SHOWN] = {
-  VIEW(SHOWN_MODEL, "-model_view", "show mesh, parts, supports, springs and loads", 0),
-  VIEW(SHOWN_CONTACT, "-contact_view", "show interfaces and their pairs", RUN_LINEAR | RUN_STATIC | RUN_CHECK),
+  MESH_VIEW(SHOWN_MODEL, "-model_view", "show mesh, parts, supports, springs and loads", 0),
+  MESH_VIEW(SHOWN_CONTACT, "-contact_view", "show interfaces and their pairs", RUN_LINEAR | RUN_STATIC | RUN_CHECK),
   VIEW(SHOWN_OPERATORS, "-operators_view", "show the pencil of modes and sweeps, and its parameters",
        RUN_LINEAR | RUN_CHECK),
   VIEW(SHOWN_STATICS, "-static_view", "show the equilibrium", RUN_STATIC),
@@ -154,7 +169,8 @@ PetscErrorCode ChainGetScope(Chain *chain, Scope *scope)
                    .linear    = chain->modes,
                    .operators = chain->operators,
                    .dynamics  = chain->dynamics,
-                   .reduced   = chain->reduced};
+                   .reduced   = chain->reduced,
+                   .results   = chain->results};
   if (row->add) PetscCall(row->add(chain, &scope->does));
   PetscFunctionReturn(0);
 }

@@ -11,6 +11,7 @@ static PetscErrorCode ScopeAddContacts(Contact contact, QuantityRun *run)
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetInterfaces(contact, &n, &c));
+  if (n) run->does |= RUN_CONTACTS;
   for (PetscInt i = 0; i < n; i++)
     if (c[i].identify) run->does |= RUN_IDENTIFY | RUN_EQUILIBRIUM;
   for (PetscInt i = 0; i < n && run->does & RUN_EQUILIBRIUM; i++)
@@ -75,7 +76,7 @@ static PetscErrorCode ScopeAddSolvers(const Scope *s, QuantityRun *run)
 PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
 {
   const ModelScene *scene;
-  PetscBool         sliding;
+  PetscBool         sliding, fields;
 
   PetscFunctionBeginUser;
   *run = (QuantityRun){comm, s->analysis, s->does};
@@ -88,7 +89,10 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
   if (s->does & RUN_IN_TIME) PetscCall(ScopeAddTime(s, run));
   if (s->contact) PetscCall(ScopeAddContacts(s->contact, run));
   if (run->does & RUN_EQUILIBRIUM) run->does |= RUN_FACTORS;
+  PetscCall(ResultsWantFields(s->results, &fields));
+  if (fields) run->does |= RUN_FIELDS;
   if (!s->model) PetscFunctionReturn(0);
+  run->does |= RUN_BODIES;
   PetscCall(ModelGetScene(s->model, &scene));
   if (Vec3Dot(scene->gravity, scene->gravity) > 0) run->does |= RUN_WEIGHT;
   PetscFunctionReturn(0);

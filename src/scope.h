@@ -24,6 +24,7 @@ typedef struct {
   Modes      linear;
   Dynamics   dynamics;
   ReducedRun reduced;
+  Results    results;
 } Scope;
 
 /* All that the run does. Collective. */

@@ -14,6 +14,7 @@
   readmes    each folder of src has a README.md of at most 25 lines, or one above it that names the folder
   options    no option is read by two functions
   rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help, a unit and a reader
+  refusals   what a run does not read is refused by its row's condition, but for REFUSED, which says why not
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
@@ -59,6 +60,15 @@ UNROWED = dict.fromkeys("skip_petscrc help help_list help_all help_json".split()
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
                   "PETSc's own: looked at, read by PETSc") | \
     {"terms": "whether it is given"}
+# Functions that refuse an option of the command line outside its row (OptionsRefuse*()), and what no row's condition can know
+REFUSED = {"QuantitiesRefuse": "the rows themselves",
+           "OptionsDropOf": "names of a list that is not there: they have no rows",
+           "OptionsWarnUnused": "what PETSc has not read by the end of the run",
+           "SolverReadFactorOptions": "PETSc's own that no solver here reads, before they are unknown",
+           "SolverReadIterativeOptions": "PETSc's own, which only an iterative solver knows by name",
+           "HistoryRound": "the end of the run in whole steps: the step is known with the mesh",
+           "LateCheck": "the same; a restart may go on until it comes",
+           "FindAll": "whether there is damping: the matrices tell"}
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
 UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
@@ -273,6 +283,18 @@ def rows(house):
         yield from (f"tests/test_house.py: -{name} of UNROWED is not read" for name in UNROWED if name not in read)
 
 
+def refusals(house):
+    """Options that are refused outside their rows, entries of the list that nobody needs."""
+    found = {}
+    for source in house.c:
+        for f in source.functions:
+            for call in re.finditer(r"\bOptionsRefuse\w*\(", source.code[f.begin:f.end]):
+                found[f.name] = house.say(source.path, source.line(f.begin + call.start()), f"{f.name} refuses outside of rows")
+    yield from (text for name, text in found.items() if name not in REFUSED)
+    if len(found) > 2:
+        yield from (f"tests/test_house.py: {name} of REFUSED refuses nothing" for name in REFUSED if name not in found)
+
+
 def unused(house):
     """Python that nothing uses. What begins with handle_ the standard library calls."""
     named = collections.Counter(word for script in house.python for word in set(re.findall(r"\w+", script.text)))
@@ -316,7 +338,8 @@ def words(house):
                 yield house.say(path, n, f"'{OWN.search(line)[0]}' is nobody's business here")
 
 
-RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, rows, unused, dead, words)
+RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, rows, refusals,
+         unused, dead, words)
 
 
 def plant(files):

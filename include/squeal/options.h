@@ -48,8 +48,8 @@ PetscErrorCode OptionsDropUnlisted(MPI_Comm comm);
 PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[]);
 
 /*@ OptionsDrop - takes out those of the options, "-modes_target -modes_count", that options files give and another
-   option makes
-    useless, each with a warning that ends in `why`. Collective. @*/
+    option makes useless, each with a warning that ends in `why`. None where the command line gives one of them, which
+    the condition of its row refuses. Collective. @*/
 PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[]);
 
 /*@
@@ -248,10 +248,10 @@ PetscErrorCode OptionsRefuse(MPI_Comm comm, const char options[], const char why
 /*@ OptionsRefuseOf - the same of the options of one owner: "contact", "kn law". Collective. @*/
 PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char names[], const char why[]);
 
-/*@ OptionsRefuseBeside - refuses -owner_name on the command line, which -owner_choice with the word `chosen` does not
-    read; where a file gives it, it is taken out with a warning. Collective. @*/
-PetscErrorCode OptionsRefuseBeside(MPI_Comm comm, const char owner[], const char name[], const char choice[],
-                                   const char chosen[]);
+/*@ OptionsDropBeside - OptionsDrop() of options of one owner, "kn kn_per_area", which -owner_choice with the word
+    `chosen` does not read. Collective. @*/
+PetscErrorCode OptionsDropBeside(MPI_Comm comm, const char owner[], const char names[], const char choice[],
+                                 const char chosen[]);
 
 /*@ OptionsRefusePrefix - the same of all options that begin so, such as "-pep_ -eps_". Collective. @*/
 PetscErrorCode OptionsRefusePrefix(MPI_Comm comm, const char prefixes[], const char why[]);

@@ -47,10 +47,13 @@ typedef enum {
   RUN_HISTORY     = RUN_EQUILIBRIUM << 6,  /* a transient from its beginning to its end */
   RUN_MESH        = RUN_EQUILIBRIUM << 7,  /* of the mesh */
   RUN_REDUCED     = RUN_EQUILIBRIUM << 8,  /* or of a reduced model */
-  RUN_DAMPED      = RUN_EQUILIBRIUM << 9,  /* its eigenvalue problems may have damping, as far as options tell */
-  RUN_UNDAMPED    = RUN_EQUILIBRIUM << 10, /* they may have none */
-  RUN_EPS         = RUN_EQUILIBRIUM << 11, /* SLEPc's EPS solves them, or tells how far to look */
-  RUN_PEP         = RUN_EQUILIBRIUM << 12, /* its PEP does */
+  RUN_BODIES      = RUN_EQUILIBRIUM << 9,  /* of a scene with a mesh, not of matrices */
+  RUN_CONTACTS    = RUN_EQUILIBRIUM << 10, /* which has contacts */
+  RUN_FIELDS      = RUN_EQUILIBRIUM << 11, /* it may write fields */
+  RUN_DAMPED      = RUN_EQUILIBRIUM << 12, /* its eigenvalue problems may have damping, as far as options tell */
+  RUN_UNDAMPED    = RUN_EQUILIBRIUM << 13, /* they may have none */
+  RUN_EPS         = RUN_EQUILIBRIUM << 14, /* SLEPc's EPS solves them, or tells how far to look */
+  RUN_PEP         = RUN_EQUILIBRIUM << 15, /* its PEP does */
 } RunBit;
 
 typedef struct {

@@ -41,14 +41,13 @@ static PetscErrorCode StiffnessParse(MPI_Comm comm, ContactInterface *c)
   PetscFunctionReturn(0);
 }
 
-/* A stiffness that is given beside a law that is not linear: refused on the command line, of a file it is taken out,
-   with a warning */
+/* A stiffness that is given beside a law that is not linear: its row refuses it on the command line, of a file it is
+   taken out, with a warning */
 static PetscErrorCode StiffnessDrop(MPI_Comm comm, ContactInterface *c)
 {
   PetscFunctionBeginUser;
   if (PressureIsLinear(&c->pressure)) PetscFunctionReturn(0);
-  PetscCall(OptionsRefuseBeside(comm, c->name, "kn", "pressure_law", PressureGetName(&c->pressure)));
-  PetscCall(OptionsRefuseBeside(comm, c->name, "kn_per_area", "pressure_law", PressureGetName(&c->pressure)));
+  PetscCall(OptionsDropBeside(comm, c->name, "kn kn_per_area", "pressure_law", PressureGetName(&c->pressure)));
   c->kn     = 0;
   c->has_kn = c->per_area = c->identify = PETSC_FALSE;
   PetscFunctionReturn(0);

@@ -40,10 +40,11 @@ static const char *ContactIdleLaw(const void *contact, const QuantityRun *run)
 
 static const char *ContactIdleArea(const void *contact, const QuantityRun *run)
 {
+  const ContactInterface *c = contact;
+
   (void)run;
-  return ((const ContactInterface *)contact)->law == CONTACT_CONSTRAINT
-           ? "not used with -@law constraint, which is as stiff as can be"
-           : NULL;
+  if (!PressureIsLinear(&c->pressure)) return "not used with a -@pressure_law, which tells the stiffness of each pair";
+  return c->law == CONTACT_CONSTRAINT ? "not used with -@law constraint, which is as stiff as can be" : NULL;
 }
 
 static const char *ContactIdleStiffness(const void *contact, const QuantityRun *run)

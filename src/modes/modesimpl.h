@@ -74,14 +74,15 @@ struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
   /* set by options */
-  PetscReal    band[2], target; /* Hz */
-  PetscReal    growth;          /* rad/s; 0: a tenth of the highest angular frequency */
-  PetscReal    free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
-  PetscReal    unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
-  PetscInt     most;            /* modes that a band may hold; 0: any number */
-  PetscBool    has_most;        /* given */
-  PetscReal    max_time;        /* s, of one solution; 0: any */
-  PetscBool    has_band, has_target, has_count, has_nearest, has_route, has_disc, left, keep, filters, sensitivities;
+  PetscReal band[2], target; /* Hz */
+  PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscReal free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
+  PetscReal unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
+  PetscInt  most;            /* modes that a band may hold; 0: any number */
+  PetscBool has_most;        /* given */
+  PetscReal max_time;        /* s, of one solution; 0: any */
+  PetscBool has_band, has_target, has_count, has_both, has_nearest, has_route, has_disc, left, keep, filters,
+    sensitivities;
   PetscInt     count;
   ModesAbout   about;    /* which pairs are closed */
   PetscBool    loaded;   /* the scene has loads and contacts */

@@ -9,9 +9,27 @@ static const char *const contacts[] = {[ABOUT_AUTO] = "auto", [ABOUT_ALL] = "all
 static const char *const routes[]   = {
     [DAMPING_AUTO] = "auto", [DAMPING_PROJECT] = "project", [DAMPING_PEP] = "pep", NULL};
 
+static const char *ModesIdleBand(const void *modes, const QuantityRun *run)
+{
+  (void)run;
+  return ((const struct _p_Modes *)modes)->has_both ? "not used beside -modes_target or -modes_count; give one" : NULL;
+}
+
+static const char *ModesIdleContact(const void *modes, const QuantityRun *run)
+{
+  (void)modes;
+  return run->does & RUN_CONTACTS ? NULL : "not used without -contacts";
+}
+
+static const char *ModesIdleDisc(const void *modes, const QuantityRun *run)
+{
+  (void)modes;
+  return run->does & RUN_BODIES ? NULL : "not used by matrices without a mesh, which have no parts";
+}
+
 static const Quantity rows[] = {
   {"-modes_band", "all modes with frequency in f1,f2", "Hz", QUANTITY_REALS, MODES_AT(band), MODES_GIVEN(has_band),
-   QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE},
+   QUANTITY_WITHIN(0, MODES_LARGEST), .restart = PETSC_TRUE, .idle = ModesIdleBand},
   {"-modes_target", "instead of a band: the modes nearest to this frequency", "Hz", QUANTITY_REAL, MODES_AT(target),
    MODES_GIVEN(has_target), QUANTITY_WITHIN(0, MODES_LARGEST), .in = RUN_LINEAR},
   {"-modes_count", "how many of them", NULL, QUANTITY_INT, MODES_AT(count), .initial = 20, MODES_GIVEN(has_count),
@@ -41,11 +59,11 @@ static const Quantity rows[] = {
    "frequency (0: none; 1.5 is enough for most)",
    NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100), .in = RUN_MODES},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
-   .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE},
+   .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE, .idle = ModesIdleDisc},
   {"-modes_contact",
    "pairs that are closed: every one (all), those of the sliding state (static), or these where there are loads and no "
    "-..._force (auto)",
-   NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE},
+   NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE, .idle = ModesIdleContact},
   {MODES_DAMPING,
    "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
    NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),

@@ -29,8 +29,7 @@ static PetscErrorCode ModesChooseRange(Modes modes)
   PetscCall(OptionsCommandGives("modes_band", &band));
   PetscCall(OptionsCommandGives("modes_target", &target));
   PetscCall(OptionsCommandGives("modes_count", &count));
-  if (band && (target || count))
-    PetscCall(OptionsRefuse(modes->comm, "-modes_band", "not used beside -modes_target or -modes_count; give one"));
+  modes->has_both = band && (target || count) ? PETSC_TRUE : PETSC_FALSE; /* the row of the band refuses it */
   if (band)
     PetscCall(OptionsDrop(modes->comm, "-modes_target -modes_count", "the command line gives -modes_band"));
   else

@@ -20,9 +20,15 @@ static const char *OperatorsIdleFactors(const void *operators, const QuantityRun
   return NULL;
 }
 
+static const char *OperatorsIdleMass(const void *operators, const QuantityRun *run)
+{
+  (void)operators;
+  return run->does & RUN_BODIES ? NULL : "not used by matrices without a mesh, whose mass is as it is";
+}
+
 static const Quantity rows[] = {
   {"-operators_mass", "mass matrix of the bodies; lumped: row sums, or of tet10, wedge15, hex20 the scaled diagonal",
-   NULL, QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses, .in = RUN_LINEAR},
+   NULL, QUANTITY_WORD, OPERATORS_OPTION(lump), .words = masses, .in = RUN_LINEAR, .idle = OperatorsIdleMass},
   {"-operators_factors",
    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak "
    "for",

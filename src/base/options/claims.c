@@ -84,17 +84,18 @@ PetscErrorCode OptionsRefuseOf(MPI_Comm comm, const char owner[], const char nam
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OptionsRefuseBeside(MPI_Comm comm, const char owner[], const char name[], const char choice[],
-                                   const char chosen[])
+PetscErrorCode OptionsDropBeside(MPI_Comm comm, const char owner[], const char names[], const char choice[],
+                                 const char chosen[])
 {
-  char why[256], option[256];
+  char why[256], options[2048] = "", option[256];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -%s_%s %s", owner, choice, chosen));
-  PetscCall(OptionsRefuseOf(comm, owner, name, why));
+  for (const char *word = names; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%.*s ", owner, (int)strcspn(word, " "), word));
+    PetscCall(PetscStrlcat(options, option, sizeof(options)));
+  }
   PetscCall(PetscSNPrintf(why, sizeof(why), "-%s_%s is %s", owner, choice, chosen));
-  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%s", owner, name));
-  PetscCall(OptionsDrop(comm, option, why));
+  PetscCall(OptionsDrop(comm, options, why));
   PetscFunctionReturn(0);
 }
 

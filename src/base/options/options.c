@@ -185,14 +185,27 @@ PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[])
   PetscFunctionReturn(0);
 }
 
+/* The first of some words as an option; what comes after it */
+static const char *WordTake(const char *words, char option[MAX_NAME])
+{
+  const size_t length = strcspn(words, " ");
+
+  (void)snprintf(option, MAX_NAME, "%.*s", (int)length, words);
+  return words + length + strspn(words + length, " ");
+}
+
 PetscErrorCode OptionsDrop(MPI_Comm comm, const char options[], const char why[])
 {
   char      option[MAX_NAME];
-  PetscBool given;
+  PetscBool given, command = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (const char *word = options; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
-    PetscCall(PetscSNPrintf(option, sizeof(option), "%.*s", (int)strcspn(word, " "), word));
+  for (const char *word = options; *word && !command;) {
+    word = WordTake(word, option);
+    PetscCall(OptionsCommandGives(option + 1, &command));
+  }
+  for (const char *word = options; *word && !command;) {
+    word = WordTake(word, option);
     PetscCall(PetscOptionsHasName(NULL, NULL, option, &given));
     if (!given) continue;
     PetscCall(PetscOptionsClearValue(NULL, option));

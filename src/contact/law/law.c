@@ -106,14 +106,14 @@ static PetscBool KindHas(const FrictionKind *kind, const char name[])
 }
 
 /* Shows the rows of one law, a law of that kind their owner; of laws that were not chosen those that no other has
-   shown */
+   shown, with the reason why nobody reads them */
 static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, FrictionLaw *law,
                                 const QuantityVisitor *visitor)
 {
   const FrictionKind *kind = KindOf(law);
   Quantity            row[FRICTION_PARAMETERS];
   PetscInt            n_rows = 0;
-  char                title[160];
+  char                title[160], why[160];
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < kind->n; j++) {
@@ -124,7 +124,9 @@ static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, F
     if (!shown) row[n_rows++] = kind->parameter[j].row;
   }
   PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
-  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name, law, NULL));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -@friction_law %s", chosen->name));
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name, law,
+                            kind == chosen ? NULL : why));
   PetscFunctionReturn(0);
 }
 
@@ -163,17 +165,21 @@ PetscErrorCode FrictionVisit(const FrictionLaw *law, const char name[], const Qu
   PetscFunctionReturn(0);
 }
 
-/* Refuses parameters of laws that were not chosen; those of files are taken out, with a warning */
-static PetscErrorCode KindsRefuse(MPI_Comm comm, const char name[], const FrictionLaw *chosen)
+/* Takes out what files say of laws that were not chosen, with a warning */
+static PetscErrorCode KindsDrop(MPI_Comm comm, const char name[], const FrictionLaw *chosen)
 {
+  char names[1024] = "";
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_KINDS; k++)
     for (PetscInt j = 0; j < kinds[k]->n; j++) {
       const char *const own = kinds[k]->parameter[j].row.name;
 
       if (KindHas(KindOf(chosen), own)) continue;
-      PetscCall(OptionsRefuseBeside(comm, name, own + 1, "friction_law", KindOf(chosen)->name));
+      PetscCall(PetscStrlcat(names, own + 1, sizeof(names)));
+      PetscCall(PetscStrlcat(names, " ", sizeof(names)));
     }
+  PetscCall(OptionsDropBeside(comm, name, names, "friction_law", KindOf(chosen)->name));
   PetscFunctionReturn(0);
 }
 
@@ -200,7 +206,7 @@ PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], Friction
   PetscFunctionBeginUser;
   *law = (FrictionLaw){.kind = 0};
   PetscCall(KindsVisit(name, law, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
-  PetscCall(KindsRefuse(comm, name, law));
+  PetscCall(KindsDrop(comm, name, law));
   PetscCall(LawCheck(comm, name, law));
   PetscFunctionReturn(0);
 }

@@ -59,8 +59,8 @@ const char *PressureGetName(const PressureLaw *law)
   return PressureKindOf(law)->name;
 }
 
-/* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind. What is read for
-   another law is refused afterwards. */
+/* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind; those of others with
+   the reason why nobody reads them */
 static PetscErrorCode PressuresVisit(const char name[], PressureOptions *read, const QuantityVisitor *visitor)
 {
   const char    *word[N_PRESSURES + 1] = {NULL};
@@ -73,12 +73,13 @@ static PetscErrorCode PressuresVisit(const char name[], PressureOptions *read, c
                                           .words  = word,
                                           .in     = RUN_LINEAR | RUN_STATIC,
                                           .unread = PRESSURE_EXACT};
-  char           title[160];
+  char           title[160], why[160];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_PRESSURES; k++) word[k] = pressures[k]->name;
   PetscCall(QuantitiesVisit(visitor, &(QuantityTable){"Pressure of contact", "pressurelaw.h", 1, &row, .in = 0}, name,
                             &chosen, NULL));
+  PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -@pressure_law %s", pressures[chosen]->name));
   for (PetscInt k = 0; k < N_PRESSURES; k++) {
     const QuantityTable table = {title, "pressurelaw.h", pressures[k]->n_rows, pressures[k]->row, .in = 0};
     PressureOptions     other = {.law = {.kind = k}};
@@ -86,7 +87,8 @@ static PetscErrorCode PressuresVisit(const char name[], PressureOptions *read, c
     PetscCall(PetscSNPrintf(title, sizeof(title), "Pressure by the law %s of contact", pressures[k]->name));
     PetscCall(QuantitiesInit(&table, &other));
     if (k == chosen && read->law.kind != chosen) *read = other;
-    if (pressures[k]->n_rows) PetscCall(QuantitiesVisit(visitor, &table, name, k == chosen ? read : &other, NULL));
+    if (pressures[k]->n_rows)
+      PetscCall(QuantitiesVisit(visitor, &table, name, k == chosen ? read : &other, k == chosen ? NULL : why));
     if (k != chosen) PetscCall(PressureDestroy(&other.law));
   }
   PetscFunctionReturn(0);
@@ -101,14 +103,18 @@ PetscErrorCode PressureVisit(const PressureLaw *law, const char name[], const Qu
   PetscFunctionReturn(0);
 }
 
-/* Refuses parameters of laws that were not chosen; those of files are taken out, with a warning */
-static PetscErrorCode PressuresRefuse(MPI_Comm comm, const char name[], const PressureLaw *chosen)
+/* Takes out what files say of laws that were not chosen, with a warning */
+static PetscErrorCode PressuresDrop(MPI_Comm comm, const char name[], const PressureLaw *chosen)
 {
+  char names[1024] = "";
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_PRESSURES; k++)
-    for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++)
-      PetscCall(
-        OptionsRefuseBeside(comm, name, pressures[k]->row[j].name + 1, "pressure_law", PressureKindOf(chosen)->name));
+    for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++) {
+      PetscCall(PetscStrlcat(names, pressures[k]->row[j].name + 1, sizeof(names)));
+      PetscCall(PetscStrlcat(names, " ", sizeof(names)));
+    }
+  PetscCall(OptionsDropBeside(comm, name, names, "pressure_law", PressureKindOf(chosen)->name));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +125,7 @@ PetscErrorCode PressureSetFromOptions(MPI_Comm comm, const char name[], Pressure
   PetscFunctionBeginUser;
   PetscCall(PressuresVisit(name, &read, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
   *law = read.law;
-  PetscCall(PressuresRefuse(comm, name, law));
+  PetscCall(PressuresDrop(comm, name, law));
   if (PressureKindOf(law) == &table_pressure) PetscCall(PressurePointsSet(comm, name, read.file, law));
   for (PetscInt j = 0; j < PressureKindOf(law)->n; j++) {
     const Quantity *row = &PressureKindOf(law)->row[j];

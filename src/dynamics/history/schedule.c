@@ -63,10 +63,6 @@ static PetscErrorCode HistoryOmit(History h)
 
   PetscFunctionBeginUser;
   PetscCall(ResultsWantFields(h->source.results, &fields));
-  if (!fields && h->frames.interval > 0)
-    PetscCall(OptionsRefuse(h->comm, "-dynamics_snapshot_interval", "not used with -output_fields false"));
-  if (!h->source.projector && h->pairs.interval > 0)
-    PetscCall(OptionsRefuse(h->comm, "-dynamics_pairs_interval", "not used without -contacts"));
   if (!fields) h->frames.interval = 0;
   if (!h->source.projector) h->pairs.interval = 0;
   PetscFunctionReturn(0);
