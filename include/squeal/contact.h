@@ -18,7 +18,8 @@
    Mortar: the sides are means over both surfaces, from integrals over the exact overlap of their facets with functions
    phi_p of the slave nodes (contact/mortar/mortar.c): area = int phi_p dA over the master, w_i = int phi_p N_i dA /
    area. A uniform pressure passes exactly between any meshes of flat surfaces, and the area is exact at borders, holes
-   and slots. lambda_n over the area is a mean of the pressure around the node, on faces of second order too.
+   and slots. lambda_n over the area is the pressure at the node, on faces of second order too, of which it is that of
+   a linear pressure at corners, and with nine nodes everywhere (kernels/contact/segment.h).
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    where the pressure is no multiple of the closing, p = P(c) (pressurelaw.h), k_n is that of small motions about the
@@ -68,7 +69,7 @@ typedef struct {
   PetscReal              area;             /* positive share of the slave node in its surface, m^2 */
   PetscReal              gap;              /* n . (x_s - x_m) of the mesh as it is, m, positive open */
   PetscReal              force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
-  PetscBool              mean;  /* lambda_n over area is a mean of the pressure, on faces of second order too */
+  PetscBool              mean;  /* lambda_n over area is the pressure, on faces of second order too */
   PetscReal              speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
 

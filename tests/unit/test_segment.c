@@ -1,6 +1,6 @@
 /* Segments of mortar contact: integrals over facets of any shape under tiles of others against closed forms. Whole facets: D_j of the
-   transformed shape functions. Facets of which tiles cover a part: the area, D_j > 0, and int N~_j (x^m - x) dA = 0, since both facets
-   hold the places of their points. Breaks when a piece or a corner is lost, a map or a transform is wrong, or the rule is too coarse */
+   transformed shape functions, and int N~_j (x - x_j) dA = 0 at corners of second order and all of nine nodes. Facets of which tiles
+   cover a part: the area, and int N~_j (x^m - x) dA = 0, since both facets hold the places of their points. Breaks when a piece or a corner is lost, a map or a transform is wrong, or the rule is too coarse */
 #include "check.h"
 #include "kernels/contact/segment.h"
 
@@ -67,19 +67,26 @@ static const int kinds[] = {3, 4, 6, 8, 9};
 /* D_j of whole facets, over the area */
 static int Whole(void)
 {
-  static const double share[][3] = {
-    {1 / 3.0}, {0.25}, {1 / 6.0, 1 / 6.0}, {1 / 6.0, 1 / 12.0}, {1 / 9.0, 1 / 9.0, 1 / 9.0}};
-  int fails = 0;
+  static const double share[][3] = {{1 / 3.0}, {0.25}, {1 / 18.0, 5 / 18.0}, {0.05, 0.2}, {1 / 36.0, 1 / 9.0, 4 / 9.0}};
+  int                 fails      = 0;
 
   for (int i = 0; i < 5; i++) {
     const int    n = kinds[i], m = FacetShapeOf(n)->n_corners;
-    const double alpha = n == 8 ? SEGMENT_ALPHA8 : SEGMENT_ALPHA;
+    const double alpha = SegmentAlpha(n == 6, n == 8);
     double       x[FACET_NODES][3], area[2] = {0, 0};
     SegmentSums  sums = {.d = {0}};
 
     Place(n, 0.3, 0.1, 0.2, 0, x);
     fails += Add(n, (const double(*)[3])x, n, (const double(*)[3])x, alpha, &sums, area);
-    for (int j = 0; j < n; j++) fails += CheckClose("D of a whole facet", sums.d[j], share[i][j / m] * area[1], 1e-14);
+    for (int j = 0; j < n; j++) {
+      fails += CheckClose("D of a whole facet", sums.d[j], share[i][j / m] * area[1], 1e-14);
+      for (int d = 0; d < 3 && n > m && (j < m || n == 9); d++) {
+        double place = 0;
+
+        for (int l = 0; l < n; l++) place += sums.cross[j][l] * x[l][d];
+        fails += CheckClose("the place that D is at", place, sums.d[j] * x[j][d], 1e-14);
+      }
+    }
   }
   return fails;
 }
@@ -87,7 +94,7 @@ static int Whole(void)
 /* Under three tiles of any shape that cover a part of it */
 static int Tiles(int n, int m, double warp)
 {
-  const double alpha   = n == 8 ? SEGMENT_ALPHA8 : SEGMENT_ALPHA;
+  const double alpha   = SegmentAlpha(n == 6, n == 8);
   const int    corners = FacetShapeOf(m)->n_corners;
   double       x[FACET_NODES][3], y[3][FACET_NODES][3], area[2] = {0, 0}, sum = 0;
   double       cross[FACET_NODES][3] = {{0}};
@@ -104,7 +111,7 @@ static int Tiles(int n, int m, double warp)
   }
   for (int j = 0; j < n; j++) {
     sum += sums.d[j];
-    fails += CheckTrue("D is positive", sums.d[j] > 0, sums.d[j]);
+    if (n == FacetShapeOf(n)->n_corners) fails += CheckTrue("D is positive", sums.d[j] > 0, sums.d[j]);
     for (int d = 0; d < 3; d++) {
       double own = 0;
 

@@ -6,7 +6,8 @@
       phi_q + sum_k c_kq phi_k,   sum_q c_kq = 1,   c_kq ~ |x_k - x_q|^-8,
 
    so that all phi still sum up to 1 over the master: a uniform pressure passes exactly, whatever the overhang. With
-   r_k the largest part of int N~_k dA over one face that lies over the master, node k keeps its pair where
+   r_k the largest part of int N~_k dA over one face that lies over the master, or over that of one face what D_k has of
+   all where that is less, node k keeps its pair where
 
       r_k >= BORDER_PART min(1, R_k),   R_k the largest r of the nodes of the faces around it.
 
@@ -27,6 +28,7 @@ PetscErrorCode MortarBorderCreate(const ContactSurface *slave, MortarBorder *bor
 
   PetscFunctionBeginUser;
   border->slave = slave;
+  PetscCall(PetscCalloc2(slave->n_nodes, &border->sum, slave->n_nodes, &border->whole));
   PetscCall(PetscCalloc6(slave->n_nodes, &border->part, slave->n_facets, &border->cover, slave->n_nodes, &border->kept,
                          slave->n_nodes + 1, &border->first, FACET_NODES * slave->n_facets, &border->around,
                          slave->n_nodes, &border->mark));
@@ -44,35 +46,38 @@ PetscErrorCode MortarBorderCreate(const ContactSurface *slave, MortarBorder *bor
 PetscErrorCode MortarBorderDestroy(MortarBorder *border)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree2(border->sum, border->whole));
   PetscCall(PetscFree6(border->part, border->cover, border->kept, border->first, border->around, border->mark));
   PetscCall(PetscFree(border->takes.facet));
   PetscFunctionReturn(0);
 }
 
-void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const double d[])
+void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const SegmentSums *sums)
 {
   const ContactFacet *s = &border->slave->facet[f];
   double              whole[FACET_NODES];
-  PetscReal           area = 0, all = 0;
+  PetscReal           all = 0;
 
   SegmentWhole(s->n, (const double(*)[3])s->x, alpha, whole);
+  for (int j = 0; j < s->n; j++) all += whole[j];
+  border->cover[f] = sums->area > MORTAR_COVERED * all ? MORTAR_OVER : sums->area > 0 ? MORTAR_PARTLY : MORTAR_BESIDE;
   for (int j = 0; j < s->n; j++) {
-    area += d[j];
-    all += whole[j];
-  }
-  border->cover[f] = area > MORTAR_COVERED * all ? MORTAR_OVER : area > 0 ? MORTAR_PARTLY : MORTAR_BESIDE;
-  for (int j = 0; j < s->n; j++) {
-    const PetscReal part = border->cover[f] == MORTAR_OVER ? 1 : PetscMin(1, d[j] / whole[j]);
+    const PetscInt  v    = s->node[j];
+    const PetscReal part = border->cover[f] == MORTAR_OVER ? 1 : PetscMin(1, sums->d[j] / whole[j]);
 
-    border->part[s->node[j]] = PetscMax(border->part[s->node[j]], part);
+    border->part[v]  = PetscMax(border->part[v], part);
+    border->whole[v] = PetscMax(border->whole[v], whole[j]);
+    border->sum[v] += border->cover[f] == MORTAR_OVER ? whole[j] : sums->d[j];
   }
 }
 
-PetscErrorCode MortarBorderDecide(MPI_Comm comm, MortarBorder *border)
+PetscErrorCode MortarBorderDecide(MPI_Comm comm, const PetscInt of[], MortarBorder *border)
 {
   const ContactSurface *slave = border->slave;
 
   PetscFunctionBeginUser;
+  for (PetscInt v = 0; v < slave->n_nodes; v++)
+    border->part[v] = of[v] >= 0 ? PetscMax(0, PetscMin(border->part[v], border->sum[v] / border->whole[v])) : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, border->part, (PetscMPIInt)slave->n_nodes, MPIU_REAL, MPI_MAX, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, border->cover, (PetscMPIInt)slave->n_facets, MPIU_INT, MPI_MAX, comm));
   for (PetscInt v = 0; v < slave->n_nodes; v++) {

@@ -4,12 +4,12 @@
       int phi_j N~_k dA = delta_jk D_j,   A = D M^-1,   D_j = int N~_j dA,   M_jk = int N~_j N~_k dA,
 
    all integrals over the part of the facet that lies over the master. sum_j phi_j = 1 since M 1 = D. Where that part is
-   a sliver M may be singular. With R = D^-1/2 M D^-1/2 = Q L Q', whose eigenvalues lie in [0, 1],
+   a sliver M may be singular. With R = S M S, S_j = M_jj^-1/2, = Q L Q', whose eigenvalues sum up to the nodes' number,
 
-      A = D^1/2 Q F Q' D^-1/2,   F = L^3 (1 + c^4) / (L^4 + c^4),   c = 1e-7,
+      A = D S Q F Q' S,   F = L^3 / (L^4 + c^4),   c = 1e-7,
 
-   which is M^-1 to c^4 / L^4 (whole facets have L >= 0.01) and goes to 0 with L, smoothly; F(1) = 1 keeps sum_j phi_j =
-   1.
+   which is M^-1 to c^4 / L^4 (whole facets have L >= 0.001) and goes to 0 with L, smoothly. What sum_j phi_j then lacks
+   of 1 is added to the phi_j of the largest D_j.
 */
 #include "mortarimpl.h"
 #include "base/algebra/dense.h"
@@ -23,10 +23,12 @@
 PetscErrorCode MortarCreate(const ContactSurface *slave, const ContactSurface *master, PetscReal tolerance,
                             Mortar *mortar)
 {
+  PetscBool has[FACET_NODES + 1] = {PETSC_FALSE};
+
   PetscFunctionBeginUser;
-  *mortar = (Mortar){.slave = slave, .master = master, .tolerance = tolerance, .alpha = SEGMENT_ALPHA};
-  for (PetscInt f = 0; f < slave->n_facets; f++)
-    if (slave->facet[f].n == 8) mortar->alpha = SEGMENT_ALPHA8;
+  *mortar = (Mortar){.slave = slave, .master = master, .tolerance = tolerance};
+  for (PetscInt f = 0; f < slave->n_facets; f++) has[slave->facet[f].n] = PETSC_TRUE;
+  mortar->alpha = SegmentAlpha(has[6], has[8]);
   for (int n = 2; n <= MORTAR_RULES; n++) {
     PetscQuadrature  q;
     const PetscReal *x, *w;
@@ -53,30 +55,45 @@ PetscErrorCode MortarDestroy(Mortar *mortar)
   PetscFunctionReturn(0);
 }
 
+/* Adds to the row of A of the largest D_j what its columns lack of a sum of 1 */
+static void DualComplete(int n, MortarFacet *facet)
+{
+  int most = 0;
+
+  for (int j = 1; j < n; j++)
+    if (facet->sums.d[j] > facet->sums.d[most] * (1 + 1e-6)) most = j;
+  for (int k = 0; k < n; k++) {
+    PetscReal sum = 1;
+
+    for (int j = 0; j < n; j++) sum -= facet->dual[j][k];
+    facet->dual[most][k] += sum;
+  }
+}
+
 /* A, from D and M */
 static PetscErrorCode DualMake(int n, MortarFacet *facet)
 {
-  PetscReal R[FACET_NODES * FACET_NODES], eigenvalue[FACET_NODES], root[FACET_NODES], most = 0;
+  PetscReal R[FACET_NODES * FACET_NODES], eigenvalue[FACET_NODES], scale[FACET_NODES], most = 0;
 
   PetscFunctionBeginUser;
-  for (int j = 0; j < n; j++) most = PetscMax(most, facet->sums.d[j]);
+  for (int j = 0; j < n; j++) most = PetscMax(most, facet->sums.mass[j][j]);
   /* a node whose function is rounding there takes no part */
-  for (int j = 0; j < n; j++) root[j] = facet->sums.d[j] > 1e-30 * most ? PetscSqrtReal(facet->sums.d[j]) : 0;
+  for (int j = 0; j < n; j++)
+    scale[j] = facet->sums.mass[j][j] > 1e-30 * most ? 1 / PetscSqrtReal(facet->sums.mass[j][j]) : 0;
   for (int k = 0; k < n * n; k++) {
-    const PetscReal scale = root[k / n] * root[k % n];
-
-    R[k] = scale > 0 ? facet->sums.mass[k / n][k % n] / scale : k / n == k % n;
+    R[k] = facet->sums.mass[k / n][k % n] * scale[k / n] * scale[k % n];
+    if (R[k] == 0) R[k] = k / n == k % n;
+    facet->dual[k / n][k % n] = 0;
   }
   PetscCall(DenseSymmetricEigen(n, R, NULL, eigenvalue, NULL));
-  for (int k = 0; k < n * n; k++) facet->dual[k / n][k % n] = 0;
   for (int i = 0; i < n; i++) {
-    const PetscReal L = PetscMax(0, eigenvalue[i]), c4 = PetscSqr(FILTER * FILTER);
-    const PetscReal F = L * L * L * (1 + c4) / (PetscSqr(L * L) + c4);
+    const PetscReal L = PetscMax(0, eigenvalue[i]), F = L * L * L / (PetscSqr(L * L) + PetscSqr(FILTER * FILTER));
 
     for (int j = 0; j < n; j++)
-      for (int k = 0; k < n && root[j] > 0; k++)
-        if (root[k] > 0) facet->dual[j][k] += root[j] * R[i * n + j] * F * R[i * n + k] / root[k];
+      for (int k = 0; k < n; k++)
+        facet->dual[j][k] += facet->sums.d[j] * scale[j] * R[i * n + j] * F * R[i * n + k] * scale[k];
   }
+  DualComplete(n, facet);
   PetscFunctionReturn(0);
 }
 
@@ -86,7 +103,7 @@ static PetscErrorCode BlockAdd(Mortar *mortar, const SegmentFacet *s, const doub
 {
   const int        degree = SegmentDegree(s->nodes) + PetscMax(SegmentDegree(s->nodes), SegmentDegree(m->nodes));
   const int        points = SegmentIsAffine(s) && SegmentIsAffine(m) ? degree / 2 + 1 : MORTAR_CURVED;
-  const PetscReal  before = facet->sums.mass[0][0] + facet->sums.d[0] + facet->sums.d[1] + facet->sums.d[2];
+  const PetscReal  before = facet->sums.area;
   MortarBlock     *block;
   const SegmentCut cut = {s, m, normal, mortar->alpha, &mortar->rule[points]};
 
@@ -95,7 +112,7 @@ static PetscErrorCode BlockAdd(Mortar *mortar, const SegmentFacet *s, const doub
   for (int i = 0; i < s->n; i++)
     for (int j = 0; j < m->n; j++)
       if (!SegmentAddPieces(&cut, i, j, &facet->sums)) mortar->n_failed++;
-  if (facet->sums.mass[0][0] + facet->sums.d[0] + facet->sums.d[1] + facet->sums.d[2] == before) PetscFunctionReturn(0);
+  if (facet->sums.area == before) PetscFunctionReturn(0);
   if (facet->n == facet->room) {
     facet->room = 2 * facet->room + 16;
     PetscCall(PetscRealloc(sizeof(MortarBlock) * (size_t)facet->room, &facet->block));

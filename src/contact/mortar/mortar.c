@@ -76,7 +76,7 @@ static PetscErrorCode FacetsTake(MortarPairs *m)
     for (int j = 0; j < s->n; j++) here += m->of[s->node[j]] >= 0;
     if (!here) continue;
     PetscCall(MortarIntegrate(&m->mortar, f, &m->facet));
-    MortarBorderAdd(&m->border, f, m->mortar.alpha, m->facet.sums.d);
+    MortarBorderAdd(&m->border, f, m->mortar.alpha, &m->facet.sums);
     for (int j = 0; j < s->n && m->border.cover[f] == MORTAR_OVER; j++)
       if (m->of[s->node[j]] >= 0) PetscCall(NodeTake(m, s, j, m->of[s->node[j]], 1));
   }
@@ -110,18 +110,21 @@ static PetscErrorCode PartsTake(MortarPairs *m)
   PetscFunctionReturn(0);
 }
 
-/* Raises an error where faces of eight and of nine nodes may share a side, on which their N~ differ; all ranks have all
-   facets */
-static PetscErrorCode SlaveCheck(MPI_Comm comm, const ContactInterface *c, const ContactSurface *slave)
+/* Raises the error for faces over which no point can be found, and for sums that no contact has */
+static PetscErrorCode PairsCheck(MPI_Comm comm, const ContactInterface *c, const MortarPairs *m)
 {
-  PetscBool has[FACET_NODES + 1] = {PETSC_FALSE};
+  PetscInt failed[2] = {m->mortar.n_failed, m->n_bare};
 
   PetscFunctionBeginUser;
-  for (PetscInt f = 0; f < slave->n_facets; f++) has[slave->facet[f].n] = PETSC_TRUE;
-  PetscCheck(!has[8] || !has[9], comm, PETSC_ERR_SUP,
-             "contact %s: %s has faces of eight and of nine nodes, which mortar contact does not join; give "
-             "-%s_discretization node, or the other surface as slave",
-             c->name, c->slave, c->name);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, failed, 2, MPIU_INT, MPI_SUM, comm));
+  PetscCheck(!failed[0], comm, PETSC_ERR_USER_INPUT,
+             "contact %s: faces of %s or %s are so distorted that no point over them can be found in them; mesh them "
+             "anew, or give -%s_discretization node",
+             c->name, c->slave, c->master, c->name);
+  PetscCheck(!failed[1], comm, PETSC_ERR_SUP,
+             "contact %s: functions of %" PetscInt_FMT " nodes of %s have no area over %s; give -%s_discretization "
+             "node, or finer faces of %s",
+             c->name, failed[1], c->slave, c->master, c->name, c->slave);
   PetscFunctionReturn(0);
 }
 
@@ -131,24 +134,18 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
   ContactSurface          slave = {0};
   const ContactSurface   *master;
   MortarPairs             m = {.pair = &contact->pairs[first], .n_pairs = contact->n_pairs - first};
-  PetscInt                failed;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &master));
   PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
-  PetscCall(SlaveCheck(contact->comm, c, &slave));
   PetscCall(MortarCreate(&slave, master, c->tolerance, &m.mortar));
   PetscCall(MortarBorderCreate(&slave, &m.border));
   PetscCall(MeansFind(&m));
   PetscCall(FacetsTake(&m));
-  PetscCall(MortarBorderDecide(contact->comm, &m.border));
+  PetscCall(MortarBorderDecide(contact->comm, m.of, &m.border));
   PetscCall(PartsTake(&m));
   PetscCall(MortarSetSides(contact, interface, &m));
-  PetscCallMPI(MPI_Allreduce(&m.mortar.n_failed, &failed, 1, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCheck(!failed, contact->comm, PETSC_ERR_USER_INPUT,
-             "contact %s: faces of %s or %s are so distorted that no point over them can be found in them; mesh them "
-             "anew, or give -%s_discretization node",
-             c->name, c->slave, c->master, c->name);
+  PetscCall(PairsCheck(contact->comm, c, &m));
   PetscCall(PetscFree(m.of));
   PetscCall(PetscFree3(m.node, m.off, m.own));
   PetscCall(PetscFree(m.under.entry));

@@ -46,6 +46,7 @@ typedef enum { MORTAR_BESIDE, MORTAR_PARTLY, MORTAR_OVER } MortarCover;
 typedef struct {
   const ContactSurface *slave;
   PetscReal            *part;           /* [nodes] r */
+  PetscReal            *sum, *whole;    /* [nodes] sum_f D_k, and the largest int N~_k dA over one face, m^2 */
   PetscInt             *cover;          /* [facets] MortarCover */
   PetscBool            *kept;           /* [nodes] */
   PetscInt             *first, *around; /* [nodes + 1]; FACET_NODES times a facet around each, and its place there */
@@ -62,10 +63,11 @@ static inline const PetscReal *MortarBorderPlace(const MortarBorder *border, Pet
 
 PETSC_INTERN PetscErrorCode MortarBorderCreate(const ContactSurface *slave, MortarBorder *border);
 PETSC_INTERN PetscErrorCode MortarBorderDestroy(MortarBorder *border);
-/* border.c - adds what facet f has over the master, d = D */
-PETSC_INTERN void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const double d[]);
-/* border.c - which nodes keep their pairs, from what all ranks have added. Collective. */
-PETSC_INTERN PetscErrorCode MortarBorderDecide(MPI_Comm comm, MortarBorder *border);
+/* border.c - adds what facet f has over the master */
+PETSC_INTERN void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const SegmentSums *sums);
+/* border.c - which nodes keep their pairs, from what all ranks have added; of[v] >= 0 tells that this rank has added all
+   faces around v. Collective. */
+PETSC_INTERN PetscErrorCode MortarBorderDecide(MPI_Comm comm, const PetscInt of[], MortarBorder *border);
 /* border.c - nodes that take phi of a facet (borrowed, until the next call); 0 for none */
 PETSC_INTERN PetscErrorCode MortarBorderTakers(MortarBorder *border, PetscInt f, PetscInt *n, const PetscInt **node);
 /* border.c - c of a node for each of n that take; 1 for itself */
@@ -94,6 +96,7 @@ typedef struct {
   PetscInt    *node;    /* [n_pairs] their slave nodes */
   PetscReal   *own;     /* [n_pairs] D of the node itself, m^2 */
   PetscReal (*off)[3];  /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
+  PetscInt      n_bare; /* pairs with D_p <= 0 */
   MortarEntries under;  /* int phi_p N_l dA at the nodes of the master */
   MortarEntries taken;  /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
 } MortarPairs;

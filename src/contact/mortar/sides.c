@@ -156,6 +156,15 @@ static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
   PetscFunctionReturn(0);
 }
 
+/* Whether faces around a node are over the master, and others take its phi */
+static PetscBool NodeGives(const MortarBorder *border, PetscInt node)
+{
+  if (border->kept[node]) return PETSC_FALSE;
+  for (PetscInt i = border->first[node]; i < border->first[node + 1]; i++)
+    if (border->cover[border->around[i] / FACET_NODES] != MORTAR_BESIDE) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Means of the nodes of this rank whose phi others take, where they are of several nodes */
 static PetscErrorCode MeansAlone(Contact contact, PetscInt interface, const MortarPairs *m, ContactPairNode *side)
 {
@@ -164,7 +173,7 @@ static PetscErrorCode MeansAlone(Contact contact, PetscInt interface, const Mort
     const PetscInt node = m->node[p];
     const int      n    = NodeMean(m, node, side);
 
-    if (m->border.kept[node] || m->border.part[node] <= 0 || n == 1) continue;
+    if (n == 1 || !NodeGives(&m->border, node)) continue;
     PetscCall(PetscRealloc(sizeof(ContactMean) * (size_t)(contact->n_means + 1), &contact->means));
     contact->means[contact->n_means++] = (ContactMean){interface, n, side};
     side += n;
@@ -190,10 +199,11 @@ PetscErrorCode MortarSetSides(Contact contact, PetscInt interface, MortarPairs *
       m->pair[p].area = 0;
       continue;
     }
+    if (m->pair[p].area <= 0) m->n_bare++;
     side = SlaveSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]], side);
     side = MasterSet(m, p, first[p + 1] - first[p], &m->under.entry[first[p]], side);
     PetscCall(GapSet(m, p));
-    m->pair[p].mean = PETSC_TRUE; /* N~ is nowhere negative */
+    m->pair[p].mean = PETSC_TRUE; /* int N~_p p dA over D_p is a pressure; at no D_p = 0 */
   }
   PetscCall(MeansAlone(contact, interface, m, side));
   PetscCall(PetscFree2(first, taken));

@@ -8,10 +8,18 @@
 
       corners  N~_c = N_c + alpha sum of N_s of the two sides beside it,   sides  N~_s = (1 - 2 alpha) N_s,
 
-   and of nine nodes the products of ((1 - s)/2)^2, (1 - s^2)/2, ((1 + s)/2)^2, which are these with alpha = 1/4 on
-   sides. They sum up to 1 and are nowhere negative: alpha >= 1/4 for six nodes, 3/8 for eight. So D_j is positive on
-   any part of a facet, and int N~_j p dA is a mean of a pressure. The coefficients of u = sum_j N~_j u~_j are those of
-   the nodes at corners, u~_s = (u_s - alpha (u_c1 + u_c2)) / (1 - 2 alpha) at sides.
+   and of nine nodes the products of such functions along both axes. They sum up to 1. The coefficients of u = sum_j N~_j
+   u~_j are those of the nodes at corners, u~_s = (u_s - alpha (u_c1 + u_c2)) / (1 - 2 alpha) at sides.
+
+   The pressures that dual functions have, sum_j p_j phi_j, int phi_j N~_k dA = delta_jk D_j, are linear over flat faces
+   of affine maps where int N~_j x dA = D_j x_j, x_j the node: then p_j = p(x_j) makes int (sum_k p_k phi_k) N~_j dA =
+   D_j p(x_j) that of p. The error of modes by the interface is then of the order of the mesh's, else one below it. It
+   holds at corners with
+
+      alpha = 1/12 (six nodes),   1/5 (eight nodes),   0 (nine nodes, there at all of them).
+
+   At sides of six and eight nodes it cannot: N~_s vanishes on the other sides, hence is a multiple of N_s, and int N_s x
+   dA lies within the face. D_j > 0 on whole faces; on parts of one it may be negative (border.c).
 
    Points are mapped along that normal to both facets. Facets with straight sides are cut exactly, and integrals of flat
    ones whose map is affine are exact with rules of that degree. Those of curved sides are fans of triangles.
@@ -25,9 +33,11 @@
 
 #define SEGMENT_STRAIGHT 1e-10 /* of a side: a node between its ends is on the line, above rounding of places */
 
-/* alpha of a surface with faces of eight nodes, and of others */
-#define SEGMENT_ALPHA8 0.375
-#define SEGMENT_ALPHA  0.25
+/* alpha of a surface with faces of these numbers of nodes: that of eight where it has any, else that of six */
+static inline double SegmentAlpha(int has_six, int has_eight)
+{
+  return has_eight ? 1 / 5.0 : has_six ? 1 / 12.0 : 0;
+}
 
 /* A facet seen along the normal: places of its nodes in the plane, and convex pieces [n][corners], counter-clockwise */
 typedef struct {
@@ -46,6 +56,7 @@ typedef struct {
 
 /* Integrals over segments of one facet of the slave, and over those with one of the master */
 typedef struct {
+  double area;                                           /* int dA */
   double d[FACET_NODES], mass[FACET_NODES][FACET_NODES]; /* D, M */
   double cross[FACET_NODES][FACET_NODES];                /* C */
 } SegmentSums;
@@ -64,10 +75,9 @@ static inline void SegmentTransform(int n, double alpha, double w[])
   const int m = FacetShapeOf(n)->n_corners;
 
   if (n == m) return;
-  if (n == 9) alpha = SEGMENT_ALPHA;
-  for (int i = 0; i < m; i++) w[i] += alpha * (w[m + i] + w[m + (i + m - 1) % m]) + (n == 9 ? w[8] / 16 : 0);
-  for (int i = m; i < 2 * m; i++) w[i] = (1 - 2 * alpha) * w[i] + (n == 9 ? w[8] / 8 : 0);
-  if (n == 9) w[8] /= 4;
+  for (int i = 0; i < m; i++) w[i] += alpha * (w[m + i] + w[m + (i + m - 1) % m]) + (n == 9 ? alpha * alpha * w[8] : 0);
+  for (int i = m; i < 2 * m; i++) w[i] = (1 - 2 * alpha) * (w[i] + (n == 9 ? alpha * w[8] : 0));
+  if (n == 9) w[8] *= (1 - 2 * alpha) * (1 - 2 * alpha);
 }
 
 /* int N~_j dA over a whole facet, to the accuracy of the rule of its shape, m^2 */
@@ -90,18 +100,18 @@ static inline void SegmentWhole(int n, const double x[][3], double alpha, double
 /* u~ of node i as a sum of the values at the nodes, v[n] */
 static inline void SegmentValue(int n, double alpha, int i, double v[])
 {
-  const int m = FacetShapeOf(n)->n_corners;
+  const int    m     = FacetShapeOf(n)->n_corners;
+  const double scale = 1 / (1 - 2 * alpha);
 
-  if (n == 9) alpha = SEGMENT_ALPHA;
   for (int k = 0; k < n; k++) v[k] = k == i;
   if (i < m) return;
   if (i < 2 * m) {
-    v[i]               = 1 / (1 - 2 * alpha);
-    v[i - m]           = -alpha / (1 - 2 * alpha);
-    v[(i - m + 1) % m] = -alpha / (1 - 2 * alpha);
+    v[i]               = scale;
+    v[i - m]           = -alpha * scale;
+    v[(i - m + 1) % m] = -alpha * scale;
     return;
   }
-  for (int k = 0; k < n; k++) v[k] = k == i ? 4 : k < m ? 0.25 : -1;
+  for (int k = 0; k < n; k++) v[k] = scale * scale * (k == i ? 1 : k < m ? alpha * alpha : -alpha);
 }
 
 /* Whether the sides of a facet are straight in the plane and its corners turn one way */
@@ -200,6 +210,7 @@ static inline int SegmentAddPoint(const SegmentCut *cut, const double p[2], doub
   FacetWeights(s->nodes, here, N);
   SegmentTransform(s->nodes, cut->alpha, N);
   FacetWeights(m->nodes, there, w);
+  sums->area += dA;
   for (int j = 0; j < s->nodes; j++) {
     sums->d[j] += N[j] * dA;
     for (int k = 0; k < s->nodes; k++) sums->mass[j][k] += N[j] * N[k] * dA;
