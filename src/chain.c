@@ -305,6 +305,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetOperators(chain->statics, chain->operators));
+  PetscCall(StaticsSetWears(chain->statics, ChainIsInTime(chain) ? PETSC_FALSE : PETSC_TRUE));
   PetscCall(DynamicsSetOperators(chain->dynamics, chain->operators, chain->statics));
   PetscCall(ReducedSetRooms(chain->reduced, chain->dynamics, chain->modes));
   PetscCall(OperatorsCreatePoint(chain->operators, NULL, &chain->p));

@@ -127,7 +127,7 @@ STEP(ChainWriteModes, ModesWrite(chain->modes, chain->results))
 STEP(ChainForgetPencil, PencilDestroy(&chain->pencil)) /* A sweep makes pencils of its own */
 STEP(ChainSolveSweep, SweepSolve(chain->sweep, chain->results))
 STEP(ChainWriteSweep, SweepWrite(chain->sweep, chain->results))
-STEP(ChainSolveStatics, StaticsSolve(chain->statics, chain->p))
+STEP(ChainSolveStatics, StaticsSolveWorn(chain->statics, chain->p))
 STEP(ChainWriteStatics, StaticsWrite(chain->statics, chain->results))
 STEP(ChainJudgeReduced, ReducedJudgeVerified(chain->reduced))
 STEP(ChainSolveFrf, FrfSolve(chain->frf))

@@ -19,6 +19,10 @@ cylinders  a shoe on a shaft, both parts of rings about z: volumes "shaft", "sho
       (outward, 80 mm from the axis), "shoe_face", "shoe_top"; --elements along r, around and along z of the shaft. Its
       facets turn by 160 degrees / the second. The nodes of the faces do not match, and lie on the same cylinder.
 
+sector  a pad on a sector of a disc, r 60..120 mm, 40 degrees, 15 mm high from z = 0; the disc 20 mm thick reaches two elements farther
+      on each side. Nodes match: volumes "disc", "pad", surfaces "disc_bottom", "disc_face", "pad_face", "pad_top"; --elements of the
+      pad along r, around and along z
+
 --renumber draws new numbers of nodes and elements, a new order of both, and a new first node of each element.
 --move turns the mesh by MOVE_ROTATION, a quarter turn about (1, 2, 2), and shifts it; the direction y becomes
 (-4, 4, 7) / 9. --scale 1000 gives mm. --odd writes what Gmsh may write as well: each group in two parts, of a mesh that is
@@ -139,6 +143,20 @@ def cylinders(elements):
         "shoe": shoe.hexahedra(), "shoe_face": shoe.side(0, 0), "shoe_top": shoe.side(0, elements[0])}
 
 
+def sector(elements):
+    n = np.array(elements)
+    disc = Grid([*(n[:2] + 2 * BASE_MARGIN), max(1, n[2])])
+    pad = Grid(n, first=int(np.prod(disc.nodes)))
+    nodes = []
+    for grid, margin, z in ((disc, BASE_MARGIN, (-0.02, 0)), (pad, 0, (0, 0.015))):
+        steps = [np.arange(-margin, n[d] + margin + 1) / n[d] for d in range(2)]
+        nodes.append(polar(grid.places(grid.nodes), 0.06 + 0.06 * steps[0], np.radians(40) * (steps[1] - 0.5),
+                           np.linspace(*z, grid.cells[2] + 1)))
+    return np.concatenate(nodes), {
+        "disc": disc.hexahedra(), "disc_bottom": disc.side(2, 0), "disc_face": disc.side(2, disc.cells[2]),
+        "pad": pad.hexahedra(), "pad_face": pad.side(2, 0), "pad_top": pad.side(2, n[2])}
+
+
 def graded(n):
     """n + 1 numbers from 0 to 1 that grow from steps of about 0.1 / n to steps of GRADING / n of themselves."""
     return np.sinh(GRADING * np.arange(n + 1) / n) / np.sinh(GRADING)
@@ -229,7 +247,8 @@ SHAPES = {"beam": lambda elements, lift: beam(elements),
           "blocks": blocks,
           "bars": lambda elements, lift: bars(elements, lift[0]),
           "ball": lambda elements, lift: ball(elements[0], lift[0]),
-          "cylinders": lambda elements, lift: cylinders(elements)}
+          "cylinders": lambda elements, lift: cylinders(elements),
+          "sector": lambda elements, lift: sector(elements)}
 
 
 def command_line():

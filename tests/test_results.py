@@ -92,7 +92,7 @@ def check_stale(r):
     r.check(done.returncode != 0 and "modes.h5" in r.files(), "a run that fails removes nothing", done)
     done = r.scene("static")
     mine = ["mine.csv", "modes.csv.old", "notes.txt"]
-    r.check(r.files() == sorted(["reactions.csv", "scene.yaml", "static.csv", "static.h5", "static.xmf", *mine]),
+    r.check(r.files() == sorted(["gap.csv", "reactions.csv", "scene.yaml", "static.csv", "static.h5", "static.xmf", *mine]),
             "after statics only its files and those of the user", done)
     done = r.scene("modes", "-output_fields", "0")
     r.check(r.files() == sorted(["modes.csv", "modes_causes.csv", "scene.yaml", *mine]), "after modes without fields only tables", done)

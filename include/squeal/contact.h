@@ -67,7 +67,7 @@ typedef struct {
   PetscReal              x[3];             /* position of the slave, m */
   PetscReal              n[3], t[3], b[3]; /* unit vectors */
   PetscReal              area;             /* positive share of the slave node in its surface, m^2 */
-  PetscReal              gap;              /* n . (x_s - x_m) of the mesh as it is, m, positive open */
+  PetscReal              gap;              /* n . (x_s - x_m) of the mesh, or -contact_gap, m, positive open */
   PetscReal              force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscBool              mean;  /* lambda_n over area is the pressure, on faces of second order too */
   PetscReal              speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
@@ -101,6 +101,17 @@ typedef struct {
   PetscReal dissipation;     /* slip: |lambda_t - mu lambda_n s / |s||, relative; stick: |s| of the last step */
 } ContactKKT;
 
+/* A line of -contact_gap */
+typedef struct {
+  PetscReal x[3], gap; /* place of the slave node, and g0 there, m */
+} ContactGapLine;
+
+/* How long and how finely contacts wear, -wear_time and the like */
+typedef struct {
+  PetscReal time, depth, settled; /* s; m and a part of the largest pressure at which it ends, 0: not so */
+  PetscInt  steps;
+} ContactWear;
+
 /* Parameters of an interface; SI units */
 typedef struct {
   char                 *name, *slave, *master; /* surfaces */
@@ -131,7 +142,18 @@ typedef struct {
   PetscReal rotation[3]; /* angular velocity of the master relative to the slave, rad/s */
   PetscReal centre[3];   /* a point of its axis, m */
   PetscBool slides;      /* every pair has a slip direction; known after ContactSetUp() */
+  /* wear of slave and master, 1/Pa^a, and its exponent a (contact/topography/wear.c) */
+  PetscReal       wear_rate, wear_rate_master, wear_exponent;
+  char            gap_file[PETSC_MAX_PATH_LEN];
+  PetscInt        n_gaps;
+  ContactGapLine *gaps; /* [n_gaps] of that file */
 } ContactInterface;
+
+/* Whether an interface wears */
+static inline PetscBool ContactWears(const ContactInterface *c)
+{
+  return c->wear_rate > 0 || c->wear_rate_master > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* A tie: nodes of the slave follow points of the master, their feet (ContactLink) */
 typedef struct {
@@ -182,6 +204,10 @@ stiffness
 .  -contact_force <N>             - total normal force in the sliding state, shared by area
 .  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu' N0 along it
 .  -contact_interference <m>      - in statics: by how much the surfaces overlap before the bodies yield, off every gap
+.  -contact_gap <file>            - gaps of the unloaded surfaces in place of the mesh's, a table x_m,y_m,z_m,gap_m
+.  -contact_wear_rate <1/Pa>, -contact_wear_rate_master, -contact_wear_exponent <1> - depth over pressure and length of
+                                   sliding, of slave and master
+.  -wear_time <s>, -wear_steps <50>, -wear_depth <m>, -wear_settled - how long contacts wear before modes
 .  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
 .  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave
 node has a
@@ -231,6 +257,12 @@ PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms);
 
 /*@ ContactFindRow - the row of an option of interfaces, such as kn; NULL for none. Not collective. @*/
 const Quantity *ContactFindRow(const char name[]);
+
+/*@ ContactFindWearRow - the row of -wear_time and the like; NULL for none. Not collective. @*/
+const Quantity *ContactFindWearRow(const char name[]);
+
+/*@ ContactGetWear - how long contacts wear before modes (borrowed). Not collective. @*/
+PetscErrorCode ContactGetWear(Contact contact, const ContactWear **wear);
 
 /*@ ContactGetInterfaces - parameters (borrowed). Not collective. @*/
 PetscErrorCode ContactGetInterfaces(Contact contact, PetscInt *n, const ContactInterface **interfaces);

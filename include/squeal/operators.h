@@ -99,12 +99,13 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part
    that spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty) or, where the
-   pressure is not linear, the parameters of its law (pressurelaw.h), kt (N/m, holding by
-   friction), and with friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu
-   standing for the parameters of its friction law (frictionlaw.h), of which those that decide mu' alone are there with
-   friction damping; contact_mu for loaded or dense matrices with H, and what -terms name (borrowed). An interface of
-   which nothing says along what it slides has a mu only where it holds by friction. Then of each load force (N, the
-   length of the vector) or pressure (Pa), and moment (N m, likewise). Not collective.
+   pressure is not linear, the parameters of its law (pressurelaw.h), kt (N/m, holding by friction), and with
+   friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu standing for the
+   parameters of its friction law (frictionlaw.h), of which those that decide mu' alone are there with friction
+   damping; where it wears wear_rate and wear_rate_master (1/Pa^a); contact_mu for loaded or dense matrices with H,
+   and what -terms name (borrowed). An interface of which nothing says along what it slides has a mu only where it
+   holds by friction. Where a contact wears, wear_time (s). Then of each load force (N, the length of the vector) or
+   pressure (Pa), and moment (N m, likewise). Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
@@ -141,6 +142,18 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
 
 /*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed. Not collective. @*/
 PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu);
+
+/* How fast a pair wears: depth W = rate speed time p^exponent, m; share: part of it of the slave */
+typedef struct {
+  PetscReal rate, share, exponent, speed; /* of both sides, 1/Pa^exponent; m/s */
+} OperatorsWear;
+
+/*@ OperatorsGetPairWear - that of a pair at p; its rate is 0 where its interface does not wear. Not collective. @*/
+PetscErrorCode OperatorsGetPairWear(Operators operators, const PetscReal p[], const ContactPair *pair,
+                                    OperatorsWear *wear);
+
+/*@ OperatorsGetWearTime - how long contacts have worn at p, s; 0 where none wears. Not collective. @*/
+PetscErrorCode OperatorsGetWearTime(Operators operators, const PetscReal p[], PetscReal *time);
 
 /*@ OperatorsGetBodies - stiffness, mass and damping of parts, springs and dashpots alone, without contact, at p;
     symmetric (borrowed until the call for another p, which writes into the same matrices; C may be NULL without

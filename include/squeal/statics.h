@@ -101,6 +101,23 @@ PetscErrorCode StaticsVisit(Statics s, const QuantityVisitor *visitor);
 @*/
 PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
 
+/*@ StaticsSetWears - whether contacts wear as their options say before the state that StaticsSolveWorn() and
+    StaticsSolveSliding() find. Not collective. @*/
+PetscErrorCode StaticsSetWears(Statics statics, PetscBool wears);
+
+/*@
+   StaticsSolveWorn - the same after wear, the gaps of all pairs grown as (contact/topography/wear.c)
+
+      dg0/dt = (k_s + k_m) p^a v
+
+   up to wear_time, or less where -wear_depth or -wear_settled says so. Steps are implicit: p is that at the end of a
+   step, so that the wear of a step is one more compliance of the pair, and steps of any length are stable; their error
+   is of first order in the step. All steps use one factorisation. The state is the equilibrium at the worn gaps as if
+   they had always been so: pairs that stick have no history of the wear. With stages contacts wear in the last one,
+   and all stages are solved anew. Collective.
+@*/
+PetscErrorCode StaticsSolveWorn(Statics statics, const PetscReal p[]);
+
 /*@
    StaticsSolveSliding - the same, and the sliding state as a value: the closed pairs (rows closed or opened at their
    edge where -static_rows asks for it), the normal forces, the optional stiffness of the preload, and p. The caller

@@ -7,6 +7,7 @@
 */
 #include "contactimpl.h"
 #include "base/events.h"
+#include "contact/topography/topography.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, contact));
   (*contact)->model = model;
+  PetscCall(QuantitiesInit(&wear_quantities, *contact));
   PetscCall(ModelGetComm(model, &(*contact)->comm));
   PetscFunctionReturn(0);
 }
@@ -65,6 +67,7 @@ PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record)
   PetscCall(FrictionSetFromOptions(comm, c->name, &c->friction));
   PetscCall(PressureSetFromOptions(comm, c->name, &c->pressure));
   PetscCall(StiffnessDrop(comm, c));
+  PetscCall(ContactGapsRead(comm, c));
   c->friction.speed = c->speed;
   /* a law mu(s) that changes with the slip speed s has no value in modes without one; with neither slip nor rotation
      nothing slides as told, and s = 0 m/s holds */
@@ -127,6 +130,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCheck(contact->n_interfaces <= CONTACT_MAX, contact->comm, PETSC_ERR_USER_INPUT,
              "-contacts gives %" PetscInt_FMT " names, at most %d are valid: unite surfaces in the mesh",
              contact->n_interfaces, CONTACT_MAX);
+  PetscCall(QuantitiesRead(contact->comm, &wear_quantities, contact));
   PetscCall(QuantitiesReadList(contact->comm, &ties_list, contact, &contact->n_ties, &contact->ties));
   PetscFunctionReturn(0);
 }
@@ -139,6 +143,7 @@ PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor)
     PetscCall(FrictionVisit(&contact->interfaces[i].friction, contact->interfaces[i].name, visitor));
   for (PetscInt i = 0; i < contact->n_interfaces; i++)
     PetscCall(PressureVisit(&contact->interfaces[i].pressure, contact->interfaces[i].name, visitor));
+  PetscCall(QuantitiesVisit(visitor, &wear_quantities, NULL, contact, NULL));
   PetscCall(QuantitiesVisitList(visitor, &ties_list, contact->n_ties, contact->ties));
   PetscFunctionReturn(0);
 }
@@ -163,12 +168,16 @@ static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt c
    asked for under faces of second order: their sides and middles have no edge into the body (approach.c). */
 static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterface *c)
 {
-  PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0;
+  PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0, quadratic = 0;
 
   PetscFunctionBeginUser;
   PetscCall(FacesOfSizes(contact, c->slave, slave));
   PetscCall(FacesOfSizes(contact, c->master, master));
-  for (int n = 5; n <= CONTACT_MAX_MASTER; n++) second += slave[n] + master[n];
+  for (int n = 5; n <= CONTACT_MAX_MASTER; n++) {
+    second += slave[n] + master[n];
+    quadratic += slave[n];
+  }
+  PetscCall(ContactWearCheck(contact->comm, c, quadratic ? PETSC_TRUE : PETSC_FALSE));
   PetscCheck(!second || !c->identify, contact->comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify needs elements of first order at %s and %s; give -%s_kn_per_area (N/m^3)", c->name,
              c->slave, c->master, c->name);
@@ -189,6 +198,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
     PetscCall(InterfaceCheckFaces(contact, &contact->interfaces[i]));
+    PetscCall(ContactGapsSet(contact, i));
   }
   PetscCall(ContactSetUpTies(contact));
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
@@ -246,12 +256,15 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     const PetscReal         kn        = f->identify ? 0 : f->per_area ? -f->kn : f->kn;
     const PetscReal         kt        = f->kt_per_area ? -f->kt : f->kt;
     const PetscReal         numbers[] = {f->tolerance, f->overhang, f->speed, kn, kt, f->force};
+    const PetscReal         wear[]    = {f->wear_rate, f->wear_rate_master, f->wear_exponent};
 
     PetscCall(ChecksumSetPart(c, "contact %s", f->name));
     PetscCall(ModelAddSetChecksum(contact->model, f->slave, PETSC_TRUE, c));
     PetscCall(ModelAddSetChecksum(contact->model, f->master, PETSC_TRUE, c));
     PetscCall(ChecksumAddInts(c, PETSC_STATIC_ARRAY_LENGTH(flags), flags));
     PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
+    PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(wear), wear));
+    for (PetscInt k = 0; k < f->n_gaps; k++) PetscCall(ChecksumAddReals(c, 1, &f->gaps[k].gap));
     PetscCall(FrictionAddChecksum(&f->friction, c));
     PetscCall(PressureAddChecksum(&f->pressure, c));
     if (f->interference > 0) PetscCall(ChecksumAddReals(c, 1, &f->interference));
@@ -259,6 +272,8 @@ PetscErrorCode ContactAddChecksum(Contact contact, Checksum c)
     PetscCall(ChecksumAddReals(c, 3, f->rotation));
     PetscCall(ChecksumAddReals(c, 3, f->centre));
   }
+  PetscCall(ChecksumSetPart(c, "wear"));
+  PetscCall(QuantitiesAddChecksum(&wear_quantities, contact, c));
   PetscCall(ContactTiesAddChecksum(contact, c));
   PetscFunctionReturn(0);
 }
@@ -272,6 +287,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].slave));
     PetscCall(PetscFree((*contact)->interfaces[i].master));
     PetscCall(PressureDestroy(&(*contact)->interfaces[i].pressure));
+    PetscCall(PetscFree((*contact)->interfaces[i].gaps));
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
     PetscCall(PetscFree((*contact)->sides[i]));
   }

@@ -24,6 +24,7 @@ struct _p_Contact {
   Model             model;
   PetscInt          n_interfaces;
   ContactInterface *interfaces;
+  ContactWear       wear;
   PetscInt          n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair      *pairs;                /* ordered by interface */
   ContactPairFoot  *feet;                 /* of the pairs */

@@ -70,15 +70,28 @@ static const char *ContactIdleForce(const void *contact, const QuantityRun *run)
            : "not used by modes without -@friction_damping or a -@pressure_law";
 }
 
-/* Of a speed without a direction, and where neither friction nor its damping hangs on it */
+/* Of a speed without a direction, and where neither friction nor its damping nor wear hangs on it */
 static const char *ContactIdleSpeed(const void *contact, const QuantityRun *run)
 {
   const ContactInterface *c = contact;
 
   if (run->does & RUN_IN_TIME)
     return Vec3Dot(c->rotation, c->rotation) + Vec3Dot(c->slip, c->slip) > 0 || c->speed <= 0 ? NULL : CONTACT_STILL;
+  if (run->does & (RUN_STATIC | RUN_SLIDING) && ContactWears(c)) return NULL;
   if (run->does & RUN_STATIC) return FrictionNeedsSpeed(&c->friction) ? NULL : CONTACT_STEADY;
   return FrictionVaries(&c->friction) ? NULL : ContactIdleForce(contact, run);
+}
+
+static const char *ContactIdleGap(const void *contact, const QuantityRun *run)
+{
+  (void)contact;
+  return run->does & RUN_MESH ? "not used in time on the mesh, whose gaps are those of its nodes as they move" : NULL;
+}
+
+static const char *ContactIdleExponent(const void *contact, const QuantityRun *run)
+{
+  (void)run;
+  return ContactWears(contact) ? NULL : "not used without -@wear_rate";
 }
 
 static const Quantity interface[] = {
@@ -117,6 +130,14 @@ static const Quantity interface[] = {
   {"-rotation", "or: angular velocity of the master", "rad/s", QUANTITY_REALS, INTERFACE(rotation),
    .varies = VARIES_LINEAR},
   {"-centre", "a point of its axis", "m", QUANTITY_REALS, INTERFACE(centre), .idle = ContactIdleCentre},
+  {"-gap", "table x_m,y_m,z_m,gap_m: gaps of the unloaded surfaces at the slave's nodes, in place of the mesh's", NULL,
+   QUANTITY_PATH, INTERFACE(gap_file), .path = "file", .in = RUN_EQUILIBRIUM | RUN_REDUCED, .idle = ContactIdleGap},
+  {"-wear_rate", "depth of the slave over pressure and length of sliding; with an exponent a per Pa^a", "1/Pa",
+   QUANTITY_REAL, INTERFACE(wear_rate), QUANTITY_NOT_NEGATIVE, .in = RUN_STATIC | RUN_SLIDING, .varies = VARIES_LINEAR},
+  {"-wear_rate_master", "that of the master, as if it stayed under its slave", "1/Pa", QUANTITY_REAL,
+   INTERFACE(wear_rate_master), QUANTITY_NOT_NEGATIVE, .in = RUN_STATIC | RUN_SLIDING, .varies = VARIES_LINEAR},
+  {"-wear_exponent", "exponent of the pressure in wear", NULL, QUANTITY_REAL, INTERFACE(wear_exponent), .initial = 1,
+   QUANTITY_POSITIVE, .in = RUN_STATIC | RUN_SLIDING, .idle = ContactIdleExponent},
 };
 static const Quantity tie[] = {
   {"-surfaces", "slave,master: a set whose nodes follow, and a surface", NULL, QUANTITY_NAMES, SURFACES(ContactTie),

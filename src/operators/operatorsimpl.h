@@ -19,7 +19,7 @@ typedef enum { BODIES_K, BODIES_M, BODIES_C, N_BODIES_SUMS } BodiesSum;
 /* Indices of the parameters of an interface, -1 where there is none */
 typedef struct {
   PetscInt  law[FRICTION_PARAMETERS], pressure[PRESSURE_PARAMETERS];
-  PetscInt  kn, kt, force, speed;
+  PetscInt  kn, kt, force, speed, wear[2];
   PetscReal stated;   /* V of the scene: its speed, m/s, or rate of rotation, rad/s */
   PetscReal range[2]; /* least and most sliding speed of its pairs, of V */
   /* sliding speeds at which mu is a factor of terms, 0 where nothing says along what it slides */
@@ -58,6 +58,7 @@ struct _p_Operators {
   struct _p_Cloud      *cloud;                     /* their points, NULL without */
   /* built by OperatorsSetUp() */
   Parameters           parameters;     /* at the values of the scene */
+  PetscInt             wear_time;      /* parameter, -1 for none */
   PetscInt             mu;             /* parameter of loaded matrices that is a friction coefficient, -1 for none */
   InterfaceParameters *interface;      /* of each interface */
   LoadParameters      *load_size;      /* of each load */
@@ -142,6 +143,9 @@ PETSC_INTERN PetscErrorCode OperatorsAddLoadParameters(Operators operators);
 /* frictionfactor.c - parameters of the contact, and the speeds at which mu is a factor of terms; part of pairs that
    slide at `speed` (m/s) in the terms of node k; the end. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddContactParameters(Operators operators);
+/* wear.c - parameters of the wear of an interface, and of its time */
+PETSC_INTERN PetscErrorCode OperatorsAddWear(Operators operators, const ContactInterface *c, InterfaceParameters *q);
+PETSC_INTERN PetscErrorCode OperatorsAddWearTime(Operators operators);
 /* Raises the error for a point at which the speeds of the nodes do not give the friction between them. Same on all
    ranks. */
 PETSC_INTERN PetscErrorCode OperatorsCheckFriction(Operators operators, const PetscReal p[]);

@@ -27,6 +27,8 @@ static const struct {
   {"static.xmf", NULL},
   {"reactions.csv", NULL},
   {"stages.csv", NULL},
+  {"gap.csv", NULL},
+  {"wear.csv", NULL},
   {"sweep.csv", NULL},
   {"onsets.csv", NULL},
   {"verify.csv", NULL},

@@ -162,16 +162,40 @@ static PetscErrorCode TippingCheck(const Active *a)
           a->place, n, part);
 }
 
-/* One load step, from which u, l and w follow */
-static PetscErrorCode EquilibriumStep(Active *a)
+PetscErrorCode EquilibriumBegin(Statics s, Active *a)
+{
+  PetscFunctionBeginUser;
+  a->operators = s->operators;
+  a->p         = s->p;
+  a->max_it    = s->max_it;
+  PetscCall(StaticsPlace(s, a->place, sizeof(a->place)));
+  PetscCall(PetscCalloc2(a->rows->n, &a->free, a->rows->n, &a->w));
+  if (a->w0) PetscCall(PetscArraycpy(a->w, a->w0, a->rows->n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EquilibriumFree(Active *a)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceSolve(a->compliance, 0, a->f, NULL, NULL, a->u));
+  PetscCall(ComplianceGetRows(a->compliance, a->u, a->free));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EquilibriumFind(Active *a)
 {
   ActiveOutcome outcome;
 
   PetscFunctionBeginUser;
-  PetscCall(ComplianceSolve(a->compliance, 0, a->f, NULL, NULL, a->u));
-  PetscCall(ComplianceGetRows(a->compliance, a->u, a->free));
   PetscCall(PressuresSolve(a, &outcome));
   if (outcome != ACTIVE_CONVERGED) PetscCall(EquilibriumComplain(a, outcome));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EquilibriumEnd(Active *a)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(a->free, a->w));
   PetscFunctionReturn(0);
 }
 
@@ -183,12 +207,7 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
   const Vec whole = a->f;
 
   PetscFunctionBeginUser;
-  a->operators = s->operators;
-  a->p         = s->p;
-  a->max_it    = s->max_it;
-  PetscCall(StaticsPlace(s, a->place, sizeof(a->place)));
-  PetscCall(PetscCalloc2(rows->n, &a->free, rows->n, &a->w));
-  if (a->w0) PetscCall(PetscArraycpy(a->w, a->w0, rows->n));
+  PetscCall(EquilibriumBegin(s, a));
   PetscCall(VecDuplicate(whole, &a->f));
   for (PetscInt step = 1; step <= a->load_steps; step++) {
     const PetscReal part = (PetscReal)step / (PetscReal)a->load_steps;
@@ -197,7 +216,8 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
     PetscCall(VecCopy(whole, a->f));
     PetscCall(VecScale(a->f, part));
     if (a->f0) PetscCall(VecAXPY(a->f, 1 - part, a->f0));
-    PetscCall(EquilibriumStep(a));
+    PetscCall(EquilibriumFree(a));
+    PetscCall(EquilibriumFind(a));
   }
   s->n_it += a->n_it;
   s->n_factored += a->n_factored;
@@ -206,6 +226,6 @@ PetscErrorCode EquilibriumSolve(Statics s, Active *a)
   PetscCall(FrictionCheck(a));
   PetscCall(VecDestroy(&a->f));
   a->f = whole;
-  PetscCall(PetscFree2(a->free, a->w));
+  PetscCall(EquilibriumEnd(a));
   PetscFunctionReturn(0);
 }

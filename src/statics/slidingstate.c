@@ -49,7 +49,7 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
   PetscFunctionBeginUser;
   PetscCall(StaticsSetUp(s, p));
   PetscCall(StaticsCheckSliding(s));
-  PetscCall(StaticsSolve(s, p));
+  PetscCall(StaticsSolveWorn(s, p));
   PetscCall(PetscMalloc2(s->rows.n_pairs, &closed, s->rows.n_pairs, &group));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++) closed[i] = (PetscBool)(s->state[i].status != CONTACT_OPEN);
   if (s->rows_more) PetscCall(ContactGrow(s->contact, s->rows_more, closed));

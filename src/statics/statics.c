@@ -101,6 +101,8 @@ static PetscErrorCode StaticsCreateRows(Statics s)
              "-analysis static and -modes_contact static need a mesh and contact, "
              "not loaded matrices");
   PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, StagesGet(s, 0), &s->rows));
+  PetscCall(PetscCalloc1(s->rows.n_pairs, &s->worn));
+  s->rows.worn = s->worn;
   PetscCheck(s->rows.n_pairs_all, s->comm, PETSC_ERR_USER_INPUT,
              "-analysis static and -modes_contact static need -contacts");
   PetscCall(StaticsCheckRigid(s));
@@ -189,6 +191,7 @@ static PetscErrorCode StaticsSetLayout(Statics s, const Stage *stage)
   PetscCall(PetscFree(s->factored));
   PetscCall(PairRowsDestroy(&s->rows));
   PetscCall(PairRowsCreate(s->operators, PETSC_FALSE, stage, &s->rows));
+  s->rows.worn = s->worn;
   for (PetscInt p = 0; p < s->rows.n_pairs; p++)
     if (s->rows.law[p].d == 1 && s->status[p] == CONTACT_STICK) s->status[p] = CONTACT_SLIP;
   PetscFunctionReturn(0);
@@ -250,20 +253,54 @@ static PetscErrorCode StaticsSolveStage(Statics s, PetscInt k, Vec *f0, PetscRea
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
+/* All stages at the point that is set, with the gaps as they are worn */
+static PetscErrorCode StaticsSolveStages(Statics s)
 {
   PetscReal size = 0;
   Vec       f    = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(EventBegin(EVENT_STATICS));
-  PetscCall(StaticsSetUp(s, p));
   s->n_it = s->n_factored = s->n_reactions = 0;
   s->peak                                  = 0;
   for (PetscInt k = 0; k < StagesCount(s); k++) PetscCall(StaticsSolveStage(s, k, &f, &size));
   s->solved = PETSC_TRUE;
   PetscCall(VecDestroy(&f));
   PetscCall(EventEnd(EVENT_STATICS));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSolve(Statics s, const PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSetUp(s, p));
+  PetscCall(PetscArrayzero(s->worn, s->rows.n_pairs));
+  s->n_wear = 0;
+  PetscCall(StaticsSolveStages(s));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSetWears(Statics statics, PetscBool wears)
+{
+  PetscFunctionBeginUser;
+  statics->wears = wears;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsSolveWorn(Statics s, const PetscReal p[])
+{
+  PetscInt  n_it, n_factored;
+  PetscBool worn;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsSolve(s, p));
+  PetscCall(StaticsWear(s, &worn));
+  if (!worn) PetscFunctionReturn(0);
+  n_it       = s->n_it;
+  n_factored = s->n_factored;
+  PetscCall(StaticsSolveStages(s));
+  s->n_it += n_it;
+  s->n_factored += n_factored;
   PetscFunctionReturn(0);
 }
 
@@ -296,6 +333,8 @@ PetscErrorCode StaticsDestroy(Statics *statics)
   PetscCall(PetscFree(s->reaction));
   PetscCall(PetscFree3(s->status, s->state, s->resultant));
   PetscCall(PetscFree(s->p));
+  PetscCall(PetscFree(s->worn));
+  PetscCall(PetscFree(s->wear_row));
   PetscCall(VecDestroy(&s->u));
   PetscCall(PetscFree(*statics));
   PetscFunctionReturn(0);

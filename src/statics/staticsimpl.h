@@ -33,6 +33,9 @@ typedef struct {
   CoulombPair            *law;   /* [n_pairs] mu, k, gap and rows of each pair; mu is 0 in the law of a sliding pair */
   PetscReal              *slide; /* [n_pairs] friction coefficient of a sliding pair, else 0 */
   PressureLaw            *pressure;        /* [n_interfaces] at the point */
+  const PetscReal        *worn;            /* [n_pairs] by which gaps have grown, m (borrowed); NULL: by nothing */
+  PetscReal              *wear;            /* [n_pairs] W of a step of wear, m / Pa^a (wear/law.c) */
+  PetscBool               wearing;         /* whether one is made: wear is NULL on ranks without pairs */
   PetscReal              *closing;         /* [n_pairs] at which a law that is not linear has its tangent, m */
   PetscInt                n, n_all, begin; /* rows of this rank, of all, first of this rank */
   PetscInt               *first;           /* [n_pairs + 1] first row of each pair, counted on this rank */
@@ -44,11 +47,15 @@ typedef struct {
   Mat        S; /* t in the rows of sliding pairs, else empty; NULL where nothing slides */
 } PairRows;
 
-/* Whether the pressure of some interface is not linear; alike on all ranks */
+/* Whether the pressure of some interface is not linear, in a step of wear its wear; alike on all ranks */
 static inline PetscBool PairRowsCurved(const PairRows *rows)
 {
-  for (PetscInt i = 0; i < rows->n_interfaces; i++)
+  for (PetscInt i = 0; i < rows->n_interfaces; i++) {
+    const ContactInterface *c = &rows->interface[i];
+
     if (!PressureIsLinear(&rows->pressure[i])) return PETSC_TRUE;
+    if (rows->wearing && ContactWears(c) && c->wear_exponent != 1) return PETSC_TRUE;
+  }
   return PETSC_FALSE;
 }
 
@@ -163,6 +170,14 @@ typedef struct {
   PetscReal status[REPEAT_LONGEST], iterate[REPEAT_LONGEST];
 } Repeat;
 
+/* An interface after a step of wear; all from the beginning of the wear on but the last three */
+typedef struct {
+  PetscInt  step, interface;
+  PetscReal time, depth, volume, work; /* s; largest of a pair, m; sum of A dg0, m^3; of friction, J */
+  PetscReal force, pressure, change;   /* N; largest, Pa; largest change in the step, as a part of it */
+  PetscInt  n_closed;
+} WearRow;
+
 struct _p_Statics {
   MPI_Comm  comm;
   Operators operators;
@@ -193,6 +208,11 @@ struct _p_Statics {
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */
   StaticsResultant *resultant;   /* [interfaces] */
+  /* wear (wear/wear.c) */
+  PetscBool  wears;  /* asked for */
+  PetscReal *worn;   /* [n_pairs] by which gaps have grown, m */
+  PetscInt   n_wear; /* rows of the last solution */
+  WearRow   *wear_row;
 };
 
 /* quantities.c - what options set in struct _p_Statics */
@@ -215,6 +235,13 @@ PETSC_INTERN PetscErrorCode StagesDestroy(Statics statics);
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Stage *stage, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
 PETSC_INTERN void           PairRowsSetClosing(PairRows *rows, PetscInt pair, PetscReal kappa, PetscReal closing);
+/* wear/law.c - whether a pair's law is not linear; its closing (m) at a force (N), of which worn in the step, the slope
+   (N/m) where closing and force belong together, and the force at a closing, wear of a step included */
+PETSC_INTERN PetscBool PairIsCurved(const PairRows *rows, PetscInt pair);
+PETSC_INTERN PetscReal PairWorn(const PairRows *rows, PetscInt pair, PetscReal force);
+PETSC_INTERN PetscReal PairClosing(const PairRows *rows, PetscInt pair, PetscReal force);
+PETSC_INTERN PetscReal PairSlope(const PairRows *rows, PetscInt pair, PetscReal closing, PetscReal force);
+PETSC_INTERN PetscReal PairForce(const PairRows *rows, PetscInt pair, PetscReal closing);
 /* moved.c - contact displacements by motions and interference at the end of a stage and of the one before it, NULL for
    none; gaps at a part of the way, and slip that counts from w [rows] and the part before, NULL and 0 at the first load
    step */
@@ -298,8 +325,21 @@ PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 /* pressure.c - the same with pressure laws, at which Newton's method aims by tangents */
 PETSC_INTERN PetscErrorCode PressuresSolve(Active *active, ActiveOutcome *outcome);
 
+/* equilibrium.c - room and what messages need; displacements of the forces alone, and of the rows; pairs that obey all
+   laws, or the error that says why there are none; the end */
+PETSC_INTERN PetscErrorCode EquilibriumBegin(Statics statics, Active *active);
+PETSC_INTERN PetscErrorCode EquilibriumFree(Active *active);
+PETSC_INTERN PetscErrorCode EquilibriumFind(Active *active);
+PETSC_INTERN PetscErrorCode EquilibriumEnd(Active *active);
 /* equilibrium.c - the whole solution, from rows, compliance, f, u, size, load_steps, status and l (zeros) */
 PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Active *active);
+
+/* wear/wear.c - lets the gaps of the last solution grow, rows.worn, with its pairs beginning from the forces l [rows]
+   over kappa; none without wear. Collective. */
+PETSC_INTERN PetscErrorCode StaticsWear(Statics statics, PetscBool *worn);
+/* output/wear.c - wear.csv, where something wore; gap.csv; in words */
+PETSC_INTERN PetscErrorCode StaticsWriteWear(Statics statics, Results results);
+PETSC_INTERN PetscErrorCode StaticsViewWear(Statics statics, PetscViewer viewer);
 
 /* balance.c - what the pairs, with their friction times a factor, cannot balance of the loads, left [m]; worst is the
    largest work of a force of a pair along it, beside |left| and the largest force */

@@ -192,6 +192,18 @@ static PetscErrorCode StartContact(Dynamics d, const PetscReal u[])
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for gaps of a file, which the mesh does not have as it moves */
+static PetscErrorCode StartCheckGaps(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d->n_interfaces; i++)
+    PetscCheck(!d->interfaces[i].n_gaps, d->comm, PETSC_ERR_USER_INPUT,
+               "-%s_gap %s: -dynamics_start static on the mesh has no gaps but those of the mesh; leave it out, or "
+               "choose -dynamics_model reduced",
+               d->interfaces[i].name, d->interfaces[i].gap_file);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsStartState(Dynamics d)
 {
   PetscScalar *u, *v;
@@ -204,6 +216,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     Vec displacement;
 
     PetscCall(DynamicsCheckStatic(d));
+    PetscCall(StartCheckGaps(d));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
     PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));

@@ -225,6 +225,7 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
     what[i].like.row = ContactFindRow(what[i].name);
     PetscCall(ParametersAdd(&o->parameters, c->name, what[i].name, &what[i].like, what[i].index));
   }
+  PetscCall(OperatorsAddWear(o, c, q));
   PetscFunctionReturn(0);
 }
 
@@ -355,6 +356,7 @@ PetscErrorCode OperatorsAddContactParameters(Operators o)
     PetscCall(InterfaceAddParameters(o, &c[i], &o->interface[i]));
     PetscCall(InterfaceSetNodes(o, i, &c[i], &o->interface[i]));
   }
+  PetscCall(OperatorsAddWearTime(o));
   PetscFunctionReturn(0);
 }
 

@@ -101,15 +101,15 @@ static PetscReal MovedAt(const PairRows *rows, PetscReal part, PetscInt i)
   return rows->moved0 ? end + (1 - part) * rows->moved0[i] : end;
 }
 
-/* At a part of the way g0 = gap - m_n. Slip counts from w + m of the part before: in w, which has no m, from w less
-   what m has grown by. */
+/* At a part of the way g0 = gap + worn - m_n. Slip counts from w + m of the part before: in w, which has no m, from w
+   less what m has grown by. */
 void PairRowsMove(PairRows *rows, PetscReal part, PetscReal before, const PetscReal w[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p];
     CoulombPair   *law   = &rows->law[p];
 
-    law->g0 = rows->pair[p].gap - MovedAt(rows, part, first);
+    law->g0 = rows->pair[p].gap + (rows->worn ? rows->worn[p] : 0) - MovedAt(rows, part, first);
     for (PetscInt i = 1; i < 3; i++) law->slip0[i - 1] = 0;
     for (PetscInt i = 1; i < law->d; i++)
       law->slip0[i - 1] = (w ? w[first + i] : 0) - (MovedAt(rows, part, first + i) - MovedAt(rows, before, first + i));

@@ -76,21 +76,16 @@ PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Sta
 }
 
 /* k and shift of the tangent l = k (w - g0 - shift) to a law at the closing c, forces l = lambda_n / kappa:
-   k = A P'(c) / kappa, shift = c - P(c) / P'(c). At the onset, where P' may vanish, the pair is rigid: what it carries
-   then tells how far it closes. */
+   k = A P'(c) / kappa, shift = c - P(c) / P'(c), with the wear of a step (wear/law.c). At the onset, where P' may
+   vanish, the pair is rigid: what it carries then tells how far it closes. */
 void PairRowsSetClosing(PairRows *rows, PetscInt p, PetscReal kappa, PetscReal c)
 {
-  const ContactPair      *pair      = &rows->pair[p];
-  const ContactInterface *interface = &rows->interface[pair->interface];
-  const PressureLaw      *law       = &rows->pressure[pair->interface];
-  const PetscReal         slope = PressureSlope(law, c), pressure = PressureAt(law, c);
+  const PetscBool curved = PairIsCurved(rows, p);
+  const PetscReal force  = curved ? PairForce(rows, p, c) : 0;
 
   rows->closing[p]   = c;
-  rows->law[p].shift = 0;
-  rows->law[p].k     = ContactPairStiffness(interface, pair, law, 0) / kappa;
-  if (PressureIsLinear(law)) return;
-  rows->law[p].k     = pressure > 0 ? pair->area * slope / kappa : INFINITY;
-  rows->law[p].shift = pressure > 0 ? c - pressure / slope : c;
+  rows->law[p].shift = force > 0 ? c - force / PairSlope(rows, p, c, force) : curved ? c : 0;
+  rows->law[p].k     = force > 0 || !curved ? PairSlope(rows, p, c, force) / kappa : INFINITY;
 }
 
 PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows)

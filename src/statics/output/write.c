@@ -127,6 +127,7 @@ PetscErrorCode StaticsWrite(Statics s, Results results)
   PetscCall(StaticsWritePairs(s, results));
   PetscCall(StaticsWriteReactions(s, results));
   PetscCall(StagesWrite(s, results));
+  PetscCall(StaticsWriteWear(s, results));
   PetscCall(StaticsWriteFields(s, results));
   PetscFunctionReturn(0);
 }

@@ -34,12 +34,10 @@ static PairNow PairSee(const Active *a, PetscInt p)
   return (PairNow){a->w[first] - a->rows->law[p].g0, a->compliance->kappa * a->l[first]};
 }
 
-/* The law of a pair, NULL where it is linear */
-static const PressureLaw *PairLaw(const PairRows *rows, PetscInt p)
+/* The closing at which the law of a pair begins, m */
+static PetscReal PairOnset(const PairRows *rows, PetscInt p)
 {
-  const PressureLaw *law = &rows->pressure[rows->pair[p].interface];
-
-  return PressureIsLinear(law) ? NULL : law;
+  return PressureOnset(&rows->pressure[rows->pair[p].interface]);
 }
 
 /* The largest miss of all laws, as a force or as a closing, whichever is less */
@@ -51,22 +49,19 @@ static PetscErrorCode PressuresMeasure(const Active *a, PetscReal *residual)
   PetscFunctionBeginUser;
   *residual = 0;
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    const PressureLaw *law = PairLaw(rows, p);
-    const PairNow      now = PairSee(a, p);
+    const PairNow now = PairSee(a, p);
 
     size[0] = PetscMax(size[0], PetscAbsReal(now.force));
-    if (law) size[1] = PetscMax(size[1], PressureClosing(law, now.force / rows->pair[p].area) - PressureOnset(law));
+    if (PairIsCurved(rows, p)) size[1] = PetscMax(size[1], PairClosing(rows, p, now.force) - PairOnset(rows, p));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, size, 2, MPIU_REAL, MPI_MAX, rows->comm));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    const PressureLaw *law = PairLaw(rows, p);
-    const PetscReal    A   = rows->pair[p].area;
-    const PairNow      now = PairSee(a, p);
-    PetscReal          force, closing;
+    const PairNow now = PairSee(a, p);
+    PetscReal     force, closing;
 
-    if (!law) continue;
-    force   = PetscAbsReal(now.force - A * PressureAt(law, now.closing));
-    closing = PetscAbsReal(PetscMax(now.closing, PressureOnset(law)) - PressureClosing(law, now.force / A));
+    if (!PairIsCurved(rows, p)) continue;
+    force   = PetscAbsReal(now.force - PairForce(rows, p, now.closing));
+    closing = PetscAbsReal(PetscMax(now.closing, PairOnset(rows, p)) - PairClosing(rows, p, now.force));
     if (force == 0 || closing == 0) continue;
     *residual = PetscMax(*residual, PetscMin(force / size[0], closing / size[1]));
   }
@@ -75,11 +70,11 @@ static PetscErrorCode PressuresMeasure(const Active *a, PetscReal *residual)
 }
 
 /* Where the tangent of a pair is laid next, m */
-static PetscReal PairNext(const Active *a, PetscInt p, const PressureLaw *law)
+static PetscReal PairNext(const Active *a, PetscInt p)
 {
-  const PetscReal at = a->rows->closing[p], onset = PressureOnset(law);
+  const PetscReal at = a->rows->closing[p], onset = PairOnset(a->rows, p);
   const PairNow   now      = PairSee(a, p);
-  const PetscReal pressing = PressureClosing(law, now.force / a->rows->pair[p].area);
+  const PetscReal pressing = PairClosing(a->rows, p, now.force);
 
   if (a->status[p] == CONTACT_OPEN) return PetscMax(now.closing, onset);
   if (at <= onset) return pressing;
@@ -93,13 +88,11 @@ static void PressuresNext(Active *a, PetscBool softly)
   PairRows *rows = a->rows;
 
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
-    const PressureLaw *law = PairLaw(rows, p);
-
-    if (!law) continue;
+    if (!PairIsCurved(rows, p)) continue;
     if (softly)
       rows->law[p].k = 1;
     else
-      PairRowsSetClosing(rows, p, a->compliance->kappa, PairNext(a, p, law));
+      PairRowsSetClosing(rows, p, a->compliance->kappa, PairNext(a, p));
   }
 }
 
