@@ -76,7 +76,7 @@ static PetscErrorCode ScopeAddSolvers(const Scope *s, QuantityRun *run)
 PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
 {
   const ModelScene *scene;
-  PetscBool         sliding, fields;
+  PetscBool         sliding, fields, named;
 
   PetscFunctionBeginUser;
   *run = (QuantityRun){comm, s->analysis, s->does};
@@ -91,6 +91,8 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
   if (run->does & RUN_EQUILIBRIUM) run->does |= RUN_FACTORS;
   PetscCall(ResultsWantFields(s->results, &fields));
   if (fields) run->does |= RUN_FIELDS;
+  PetscCall(OperatorsHaveNodes(s->operators, &named));
+  if (named) run->does |= RUN_NAMED;
   if (!s->model) PetscFunctionReturn(0);
   run->does |= RUN_BODIES;
   PetscCall(ModelGetScene(s->model, &scene));

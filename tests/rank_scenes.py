@@ -76,6 +76,9 @@ def static(scene):
                               "-contact_pressure_p0", scene.power(3, 8)],
                              ["-contact_pressure_law", "power", "-contact_pressure_k", scene.power(16, 20)],
                              ["-contact_pressure_law", "table", "-contact_pressure_table", "-1e-6,0,0,1e4,1e-6,1e6,3e-6,1e8"]))
+    if scene.options.get("contact_slip") != "0,0,0" and scene.happens(0.3):
+        more += ["-contact_speed", "1", "-contact_wear_rate", scene.power(-15, -12), "-contact_wear_exponent",
+                 draw.choice(("1", "0.8", "1.1")), "-wear_time", "1000", "-wear_steps", "6"]
     return scene.words(without=without) + more
 
 

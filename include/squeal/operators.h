@@ -71,6 +71,9 @@ PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visito
     @*/
 PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 
+/*@ OperatorsHaveNodes - whether unknowns are those of nodes, of a model or of -operators_nodes. Not collective. @*/
+PetscErrorCode OperatorsHaveNodes(Operators operators, PetscBool *have);
+
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
 

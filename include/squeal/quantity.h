@@ -54,6 +54,7 @@ typedef enum {
   RUN_UNDAMPED    = RUN_EQUILIBRIUM << 13, /* they may have none */
   RUN_EPS         = RUN_EQUILIBRIUM << 14, /* SLEPc's EPS solves them, or tells how far to look */
   RUN_PEP         = RUN_EQUILIBRIUM << 15, /* its PEP does */
+  RUN_NAMED       = RUN_EQUILIBRIUM << 16, /* its unknowns are those of nodes of parts, of a mesh or -operators_nodes */
 } RunBit;
 
 typedef struct {

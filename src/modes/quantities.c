@@ -24,7 +24,7 @@ static const char *ModesIdleContact(const void *modes, const QuantityRun *run)
 static const char *ModesIdleDisc(const void *modes, const QuantityRun *run)
 {
   (void)modes;
-  return run->does & RUN_BODIES ? NULL : "not used by matrices without a mesh, which have no parts";
+  return run->does & RUN_NAMED ? NULL : "not used by matrices without a mesh or -operators_nodes, which have no parts";
 }
 
 static const Quantity rows[] = {

@@ -83,6 +83,13 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsHaveNodes(Operators operators, PetscBool *have)
+{
+  PetscFunctionBeginUser;
+  *have = operators->model || operators->nodes[0] ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
 {
   PetscFunctionBeginUser;

@@ -29,6 +29,7 @@ static const struct {
   {RUN_UNDAMPED, "modes without damping"},
   {RUN_EPS, "eigenvalue problems that -eps_* solves"},
   {RUN_PEP, "eigenvalue problems that -pep_* solves"},
+  {RUN_NAMED, "scenes with a mesh, and matrices with -operators_nodes"},
 };
 
 const char *RunBitWords(unsigned i)

@@ -152,6 +152,7 @@ typedef struct {
   PetscBool         hasty;     /* the iteration gives up soon, since other ways follow */
   ActiveOutcome     first;     /* of the iteration with the whole friction */
   PetscBool         pressed;   /* an equilibrium without friction was found */
+  PetscBool         passing;   /* the state is one on the way: whether bodies jam is asked at the end of it */
   PetscBool         tentative; /* laws are tangents of others: whether bodies jam is asked at the last ones alone */
   PetscBool         reversed;  /* the system of the last iteration has a determinant of the wrong sign */
 } Active;

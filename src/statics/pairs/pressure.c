@@ -121,13 +121,15 @@ static PetscErrorCode PressuresIterate(Active *a, ActiveOutcome *outcome)
 
 PetscErrorCode PressuresSolve(Active *a, ActiveOutcome *outcome)
 {
+  const PetscBool curved = PairRowsCurved(a->rows);
+
   PetscFunctionBeginUser;
-  a->tentative = PairRowsCurved(a->rows);
-  if (a->tentative)
+  a->tentative = curved || a->passing ? PETSC_TRUE : PETSC_FALSE;
+  if (curved)
     PetscCall(PressuresIterate(a, outcome));
   else
     PetscCall(ActiveSolve(a, outcome));
-  if (!a->tentative || a->compliance->W || *outcome != ACTIVE_CONVERGED) PetscFunctionReturn(0);
+  if (!a->tentative || a->passing || a->compliance->W || *outcome != ACTIVE_CONVERGED) PetscFunctionReturn(0);
   PetscCall(ActiveIsReversed(a, a->friction, &a->reversed));
   if (a->reversed) *outcome = ACTIVE_JAMMED;
   PetscFunctionReturn(0);

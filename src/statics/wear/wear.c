@@ -203,7 +203,7 @@ static PetscErrorCode WearBegin(Wearing *g)
 
 PetscErrorCode StaticsWear(Statics s, PetscBool *worn)
 {
-  Active    active = {.rows = &s->rows, .compliance = &s->compliance, .status = s->status, .load_steps = 1};
+  Active    active = {.rows = &s->rows, .compliance = &s->compliance, .status = s->status, .passing = PETSC_TRUE};
   Wearing   g      = {.s = s, .active = &active};
   PetscReal time   = 0;
 
