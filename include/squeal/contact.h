@@ -41,7 +41,8 @@ typedef struct _p_Contact *Contact;
 
 typedef enum { CONTACT_PENALTY, CONTACT_CONSTRAINT } ContactLaw;
 
-typedef enum { CONTACT_NODE, CONTACT_MORTAR } ContactDiscretization; /* node to surface, or integrals over surfaces */
+/* Node to surface, integrals over surfaces, or the first where meshes match and the second where not */
+typedef enum { CONTACT_NODE, CONTACT_MORTAR, CONTACT_AUTO } ContactDiscretization;
 
 extern const char *const ContactStatusNames[CONTACT_N_STATUS]; /* "open", "stick", "slip" */
 
@@ -188,8 +189,9 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 `contact`
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
-.  -contact_discretization <node|mortar> - pairs of slave nodes and points of the master, or means over both surfaces;
-                                   not in time on the mesh
+.  -contact_discretization <node|mortar|auto> - pairs of slave nodes and points of the master, or means over both
+                                   surfaces, not in time on the mesh; auto: node where meshes match and in time
+                                   on the mesh, mortar elsewhere
 .  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time
 .  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)

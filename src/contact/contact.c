@@ -166,9 +166,10 @@ static PetscErrorCode FacesOfSizes(Contact contact, const char set[], PetscInt c
 /* A warning for slaves with faces of eight nodes that can open: int N_i dA is negative at their corners, so that a
    uniform pressure asks the corners to pull, which the exact law refuses. An error where second rows of nodes are
    asked for under faces of second order: their sides and middles have no edge into the body (approach.c). */
-static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterface *c)
+static PetscErrorCode InterfaceCheckFaces(Contact contact, PetscInt interface)
 {
-  PetscInt slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0, quadratic = 0;
+  const ContactInterface *c = &contact->interfaces[interface];
+  PetscInt                slave[CONTACT_MAX_MASTER + 1], master[CONTACT_MAX_MASTER + 1], second = 0, quadratic = 0;
 
   PetscFunctionBeginUser;
   PetscCall(FacesOfSizes(contact, c->slave, slave));
@@ -177,11 +178,11 @@ static PetscErrorCode InterfaceCheckFaces(Contact contact, const ContactInterfac
     second += slave[n] + master[n];
     quadratic += slave[n];
   }
-  PetscCall(ContactWearCheck(contact->comm, c, quadratic ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(ContactWearCheck(contact->comm, c, quadratic && !contact->mortar[interface] ? PETSC_TRUE : PETSC_FALSE));
   PetscCheck(!second || !c->identify, contact->comm, PETSC_ERR_USER_INPUT,
              "-%s_kn identify needs elements of first order at %s and %s; give -%s_kn_per_area (N/m^3)", c->name,
              c->slave, c->master, c->name);
-  if (c->law == CONTACT_CONSTRAINT && slave[8] && c->discretization == CONTACT_NODE)
+  if (c->law == CONTACT_CONSTRAINT && slave[8] && !contact->mortar[interface])
     PetscCall(PetscFPrintf(contact->comm, stderr,
                            "squeal: warning: contact %s: %" PetscInt_FMT
                            " faces of %s have eight nodes (hex20, wedge15), whose corners open under a uniform "
@@ -197,7 +198,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
-    PetscCall(InterfaceCheckFaces(contact, &contact->interfaces[i]));
+    PetscCall(InterfaceCheckFaces(contact, i));
     PetscCall(ContactGapsSet(contact, i));
   }
   PetscCall(ContactSetUpTies(contact));

@@ -27,6 +27,7 @@ struct _p_Contact {
   ContactWear       wear;
   PetscInt          n_pairs, n_pairs_all; /* on this rank, on all ranks */
   ContactPair      *pairs;                /* ordered by interface */
+  PetscBool         mortar[CONTACT_MAX];  /* what -contact_discretization comes to, known with the pairs */
   ContactPairFoot  *feet;                 /* of the pairs */
   ContactPairNode  *sides[CONTACT_MAX];   /* nodes of the pairs of each interface */
   PetscInt          n_means;

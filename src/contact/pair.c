@@ -9,6 +9,9 @@
 */
 #include "contactimpl.h"
 
+/* a foot at a node has a weight of 1 but for this: of a facet, far above rounding of places */
+#define PAIR_MATCH 1e-6
+
 /* Weights, directions, speed (m/s) and gap (m). Along a rotation the speed is |w x (x - c)| in the tangent plane, which
    differs from pair to pair; a direction that is given has the speed of the options everywhere. across = |sum_i w_i
    a_i| (m^2, or without unit on facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9
@@ -169,7 +172,7 @@ static PetscErrorCode PairsChoose(Contact contact, PetscInt interface, PetscInt 
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &mesh));
-  if (c->discretization == CONTACT_MORTAR) {
+  if (contact->mortar[interface]) {
     PetscCall(ContactMortarPairs(contact, interface, first));
   } else {
     PetscCall(PetscMalloc1((1 + CONTACT_MAX_MASTER) * (contact->n_pairs - first), &node));
@@ -190,6 +193,28 @@ static PetscErrorCode PairsChoose(Contact contact, PetscInt interface, PetscInt 
     contact->pairs[kept++] = *pair;
   }
   contact->n_pairs = kept;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the pairs from the first on are means over both surfaces: as told, or where some node with a master under it
+   has its foot at no node of the master */
+static PetscErrorCode DiscretizationChoose(Contact contact, PetscInt interface, PetscInt first,
+                                           const ContactSurface *surface)
+{
+  const ContactDiscretization told   = contact->interfaces[interface].discretization;
+  PetscBool                   mortar = told == CONTACT_MORTAR ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = first; p < contact->n_pairs && told == CONTACT_AUTO; p++) {
+    const ContactPairFoot *foot = &contact->feet[p];
+    PetscReal              most = 0;
+
+    if (FootIsOff(surface, foot)) continue;
+    for (int i = 0; i < surface->facet[foot->facet].n; i++) most = PetscMax(most, foot->weight[i]);
+    if (most < 1 - PAIR_MATCH) mortar = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mortar, 1, MPIU_BOOL, MPI_LOR, contact->comm));
+  contact->mortar[interface] = mortar;
   PetscFunctionReturn(0);
 }
 
@@ -277,20 +302,20 @@ static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *
 /* Says how many slaves carry nothing */
 static PetscErrorCode OffWarn(Contact contact, const ContactInterface *c, PetscReal lost)
 {
-  const MPI_Comm comm = contact->comm;
-  const char    *metre, *area;
+  const MPI_Comm  comm   = contact->comm;
+  const PetscBool mortar = contact->mortar[c - contact->interfaces];
+  const char     *metre, *area;
 
   PetscFunctionBeginUser;
   if (!c->n_off) PetscFunctionReturn(0);
   PetscCall(ModelGetUnit(contact->model, "m", &metre));
   PetscCall(ModelGetUnit(contact->model, "m^2", &area));
-  PetscCall(
-    PetscFPrintf(comm, stderr,
-                 "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
-                 " nodes of %s have %s, and %s; the farthest is %.3g %s beyond the border of %s",
-                 c->name, c->n_off, c->n_slaves, c->slave,
-                 c->discretization == CONTACT_MORTAR ? "no or little of the master under them" : "no master under them",
-                 c->discretization == CONTACT_MORTAR ? "no pair" : "carry nothing", (double)c->off, metre, c->master));
+  PetscCall(PetscFPrintf(comm, stderr,
+                         "squeal: warning: contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
+                         " nodes of %s have %s, and %s; the farthest is %.3g %s beyond the border of %s",
+                         c->name, c->n_off, c->n_slaves, c->slave,
+                         mortar ? "no or little of the master under them" : "no master under them",
+                         mortar ? "no pair" : "carry nothing", (double)c->off, metre, c->master));
   if (lost > 0)
     PetscCall(PetscFPrintf(comm, stderr,
                            "; %.3g %s over it carry nothing either, on faces none of whose nodes has a pair",
@@ -341,9 +366,10 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscCall(ContactGetSurface(contact, interface, &surface));
   PetscCall(ModelGetUnit(contact->model, "m", &failure.metre));
   PetscCall(FootPairs(contact, interface, surface));
+  PetscCall(DiscretizationChoose(contact, interface, first, surface));
   PetscCall(PairsChoose(contact, interface, first, surface, &failure));
   PetscCall(PartnerCheck(contact->comm, c, &failure));
-  if (c->discretization == CONTACT_NODE) PetscCall(PairsCover(contact, interface, first, &lost));
+  if (!contact->mortar[interface]) PetscCall(PairsCover(contact, interface, first, &lost));
   PetscCall(OffWarn(contact, c, lost));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));

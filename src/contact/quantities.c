@@ -8,8 +8,9 @@
 #define SURFACES(type) .at = offsetof(type, slave), .size = 2 * sizeof(char *)
 
 static const char *const laws[]            = {[CONTACT_PENALTY] = "penalty", [CONTACT_CONSTRAINT] = "constraint", NULL};
-static const char *const discretizations[] = {[CONTACT_NODE] = "node", [CONTACT_MORTAR] = "mortar", NULL};
-static const char *const fars[]            = {[PETSC_FALSE] = "error", [PETSC_TRUE] = "free", NULL};
+static const char *const discretizations[] = {
+  [CONTACT_NODE] = "node", [CONTACT_MORTAR] = "mortar", [CONTACT_AUTO] = "auto", NULL};
+static const char *const fars[] = {[PETSC_FALSE] = "error", [PETSC_TRUE] = "free", NULL};
 
 static const char *ContactIdleCentre(const void *contact, const QuantityRun *run)
 {
@@ -99,8 +100,10 @@ static const Quantity interface[] = {
    .required = PETSC_TRUE, .why = "slave,master"},
   {"-law", "k_n per pair, or the exact constraint", NULL, QUANTITY_WORD, INTERFACE(law), .words = laws,
    .idle = ContactIdleLaw},
-  {"-discretization", "pairs of slave nodes and points of the master, or means over both surfaces (mortar)", NULL,
-   QUANTITY_WORD, INTERFACE(discretization), .words = discretizations},
+  {"-discretization",
+   "pairs of slave nodes and points of the master; means over both surfaces (mortar); or where not all meshes match "
+   "(auto)",
+   NULL, QUANTITY_WORD, INTERFACE(discretization), .words = discretizations},
   {"-kn_per_area", "instead: normal stiffness per area of the slave (penalty)", "N/m^3", QUANTITY_REAL, INTERFACE(kn),
    .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC, .unread = CONTACT_EXACT,
    .idle = ContactIdleArea, .varies = VARIES_LINEAR},

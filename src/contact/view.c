@@ -44,10 +44,12 @@ static PetscErrorCode PairsView(Contact contact, PetscInt interface, PetscViewer
   PetscCall(ModelGetUnit(contact->model, "m", &metre));
   PetscCall(ModelGetUnit(contact->model, "m^2", &area));
   if (e.n)
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  %" PetscInt_FMT " %spairs over %.4g %s, gaps of the mesh %.3g to %.3g %s\n",
-                                     e.n, c->discretization == CONTACT_MORTAR ? "mortar " : "", (double)e.area, area,
-                                     (double)e.least, (double)e.most, metre));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  %" PetscInt_FMT " %spairs over %.4g %s, gaps of the mesh %.3g to %.3g %s%s\n", e.n,
+      contact->mortar[interface] ? "mortar " : "", (double)e.area, area, (double)e.least, (double)e.most, metre,
+      c->discretization != CONTACT_AUTO ? ""
+      : contact->mortar[interface]      ? ", since meshes do not match"
+                                        : ", node to node, since meshes match"));
   if (c->n_off)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n",

@@ -1,6 +1,7 @@
 /* Segments of mortar contact: integrals over facets of any shape under tiles of others against closed forms. Whole facets: D_j of the
    transformed shape functions, and int N~_j (x - x_j) dA = 0 at corners of second order and all of nine nodes. Facets of which tiles
-   cover a part: the area, and int N~_j (x^m - x) dA = 0, since both facets hold the places of their points. Breaks when a piece or a corner is lost, a map or a transform is wrong, or the rule is too coarse */
+   cover a part: the area, and int N~_j (x^m - x) dA = 0, since both facets hold the places of their points. Breaks when a piece or a
+   corner is lost, a map or a transform is wrong, or the rule is too coarse */
 #include "check.h"
 #include "kernels/contact/segment.h"
 

@@ -111,7 +111,7 @@ static PetscErrorCode PartsTake(MortarPairs *m)
 }
 
 /* Raises the error for faces over which no point can be found, and for sums that no contact has */
-static PetscErrorCode PairsCheck(MPI_Comm comm, const ContactInterface *c, const MortarPairs *m)
+static PetscErrorCode SumsCheck(MPI_Comm comm, const ContactInterface *c, const MortarPairs *m)
 {
   PetscInt failed[2] = {m->mortar.n_failed, m->n_bare};
 
@@ -145,7 +145,7 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
   PetscCall(MortarBorderDecide(contact->comm, m.of, &m.border));
   PetscCall(PartsTake(&m));
   PetscCall(MortarSetSides(contact, interface, &m));
-  PetscCall(PairsCheck(contact->comm, c, &m));
+  PetscCall(SumsCheck(contact->comm, c, &m));
   PetscCall(PetscFree(m.of));
   PetscCall(PetscFree3(m.node, m.off, m.own));
   PetscCall(PetscFree(m.under.entry));

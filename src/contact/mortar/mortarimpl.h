@@ -65,8 +65,8 @@ PETSC_INTERN PetscErrorCode MortarBorderCreate(const ContactSurface *slave, Mort
 PETSC_INTERN PetscErrorCode MortarBorderDestroy(MortarBorder *border);
 /* border.c - adds what facet f has over the master */
 PETSC_INTERN void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const SegmentSums *sums);
-/* border.c - which nodes keep their pairs, from what all ranks have added; of[v] >= 0 tells that this rank has added all
-   faces around v. Collective. */
+/* border.c - which nodes keep their pairs, from what all ranks have added; of[v] >= 0 tells that this rank has added
+   all faces around v. Collective. */
 PETSC_INTERN PetscErrorCode MortarBorderDecide(MPI_Comm comm, const PetscInt of[], MortarBorder *border);
 /* border.c - nodes that take phi of a facet (borrowed, until the next call); 0 for none */
 PETSC_INTERN PetscErrorCode MortarBorderTakers(MortarBorder *border, PetscInt f, PetscInt *n, const PetscInt **node);

@@ -49,7 +49,7 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);
   PetscCheck(
-    c->discretization == CONTACT_NODE, comm, PETSC_ERR_SUP,
+    c->discretization != CONTACT_MORTAR, comm, PETSC_ERR_SUP,
     "-%s_discretization mortar is not supported in time on the mesh, where slave nodes follow the master: give "
     "-%s_discretization node, or -dynamics_model reduced",
     c->name, c->name);
@@ -246,7 +246,9 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
                                      "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, ",
                                      c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master));
     PetscCall(FrictionView(&c->friction, viewer));
-    PetscCall(PetscViewerASCIIPrintf(viewer, ", multipliers\n"));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, ", multipliers%s\n",
+      c->discretization == CONTACT_AUTO ? ", node to surface, since positions are followed" : ""));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));

@@ -59,7 +59,7 @@ PetscErrorCode ContactWearCheck(MPI_Comm comm, const ContactInterface *c, PetscB
              "-%s_%s needs to know how fast contact %s slides: give -%s_rotation, or -%s_slip and a positive "
              "-%s_speed (m/s)",
              c->name, what, c->name, c->name, c->name, c->name);
-  PetscCheck(!quadratic || c->discretization == CONTACT_MORTAR, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!quadratic, comm, PETSC_ERR_USER_INPUT,
              "-%s_%s: %s has faces of second order, whose nodal forces are no pressures; choose -%s_discretization "
              "mortar, or mesh with elements of first order there",
              c->name, what, c->slave, c->name);

@@ -8,8 +8,8 @@
 
       corners  N~_c = N_c + alpha sum of N_s of the two sides beside it,   sides  N~_s = (1 - 2 alpha) N_s,
 
-   and of nine nodes the products of such functions along both axes. They sum up to 1. The coefficients of u = sum_j N~_j
-   u~_j are those of the nodes at corners, u~_s = (u_s - alpha (u_c1 + u_c2)) / (1 - 2 alpha) at sides.
+   and of nine nodes the products of such functions along both axes. They sum up to 1. The coefficients of u = sum_j
+   N~_j u~_j are those of the nodes at corners, u~_s = (u_s - alpha (u_c1 + u_c2)) / (1 - 2 alpha) at sides.
 
    The pressures that dual functions have, sum_j p_j phi_j, int phi_j N~_k dA = delta_jk D_j, are linear over flat faces
    of affine maps where int N~_j x dA = D_j x_j, x_j the node: then p_j = p(x_j) makes int (sum_k p_k phi_k) N~_j dA =
@@ -18,8 +18,8 @@
 
       alpha = 1/12 (six nodes),   1/5 (eight nodes),   0 (nine nodes, there at all of them).
 
-   At sides of six and eight nodes it cannot: N~_s vanishes on the other sides, hence is a multiple of N_s, and int N_s x
-   dA lies within the face. D_j > 0 on whole faces; on parts of one it may be negative (border.c).
+   At sides of six and eight nodes it cannot: N~_s vanishes on the other sides, hence is a multiple of N_s, and int N_s
+   x dA lies within the face. D_j > 0 on whole faces; on parts of one it may be negative (border.c).
 
    Points are mapped along that normal to both facets. Facets with straight sides are cut exactly, and integrals of flat
    ones whose map is affine are exact with rules of that degree. Those of curved sides are fans of triangles.
