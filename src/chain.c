@@ -76,8 +76,8 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* Whether there are contacts, and loads, gravity or motions that close or open them; a given -contact_force is that of
-   all pairs closed */
+/* Whether there are contacts, and loads, gravity, motions or interferences that close or open them; a given
+   -contact_force is that of all pairs closed */
 static PetscErrorCode ChainIsLoaded(const Chain *chain, PetscBool *loaded)
 {
   const ContactInterface *interfaces;
@@ -91,8 +91,9 @@ static PetscErrorCode ChainIsLoaded(const Chain *chain, PetscBool *loaded)
   PetscCall(ContactGetInterfaces(chain->contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++)
     if (interfaces[i].force > 0) PetscFunctionReturn(0);
-  *loaded =
-    n && (scene->n_loads || scene->n_motions || Vec3Dot(scene->gravity, scene->gravity) > 0) ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 0; i < n; i++)
+    if (interfaces[i].interference > 0) *loaded = PETSC_TRUE;
+  if (n && (scene->n_loads || scene->n_motions || Vec3Dot(scene->gravity, scene->gravity) > 0)) *loaded = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -168,6 +169,7 @@ PetscErrorCode ChainGetScope(Chain *chain, Scope *scope)
                    .contact   = chain->contact,
                    .linear    = chain->modes,
                    .operators = chain->operators,
+                   .statics   = chain->statics,
                    .dynamics  = chain->dynamics,
                    .reduced   = chain->reduced,
                    .results   = chain->results};

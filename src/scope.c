@@ -2,20 +2,22 @@
 #include "scope.h"
 #include "base/algebra/vec3.h"
 
-/* What the contacts add: they may have to be pressed for their stiffness, and what is not told where to slide can
-   stick */
-static PetscErrorCode ScopeAddContacts(Contact contact, QuantityRun *run)
+/* What the contacts add: they may have to be pressed for their stiffness, and what is not told where to slide, or
+   slides in a later stage, can stick */
+static PetscErrorCode ScopeAddContacts(const Scope *s, QuantityRun *run)
 {
   const ContactInterface *c;
   PetscInt                n;
+  PetscBool               staged;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGetInterfaces(contact, &n, &c));
+  PetscCall(ContactGetInterfaces(s->contact, &n, &c));
+  PetscCall(StaticsHaveStages(s->statics, &staged));
   if (n) run->does |= RUN_CONTACTS;
   for (PetscInt i = 0; i < n; i++)
     if (c[i].identify) run->does |= RUN_IDENTIFY | RUN_EQUILIBRIUM;
   for (PetscInt i = 0; i < n && run->does & RUN_EQUILIBRIUM; i++)
-    if (Vec3Dot(c[i].slip, c[i].slip) + Vec3Dot(c[i].rotation, c[i].rotation) == 0) run->does |= RUN_HOLDS;
+    if (staged || Vec3Dot(c[i].slip, c[i].slip) + Vec3Dot(c[i].rotation, c[i].rotation) == 0) run->does |= RUN_HOLDS;
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +89,7 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
     PetscCall(ScopeAddSolvers(s, run));
   }
   if (s->does & RUN_IN_TIME) PetscCall(ScopeAddTime(s, run));
-  if (s->contact) PetscCall(ScopeAddContacts(s->contact, run));
+  if (s->contact) PetscCall(ScopeAddContacts(s, run));
   if (run->does & RUN_EQUILIBRIUM) run->does |= RUN_FACTORS;
   PetscCall(ResultsWantFields(s->results, &fields));
   if (fields) run->does |= RUN_FIELDS;

@@ -22,6 +22,7 @@ typedef struct {
   Contact    contact;
   Operators  operators;
   Modes      linear;
+  Statics    statics;
   Dynamics   dynamics;
   ReducedRun reduced;
   Results    results;

@@ -143,8 +143,10 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
                                      PressureLaw *law);
 
-/*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed. Not collective. @*/
-PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu);
+/*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed, or where it rests at none. Not
+    collective. @*/
+PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscBool rests,
+                                  PetscReal *mu);
 
 /* How fast a pair wears: depth W = rate speed time p^exponent, m; share: part of it of the slave */
 typedef struct {

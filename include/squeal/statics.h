@@ -132,6 +132,13 @@ PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], Sliding
     matrices of OperatorsGetBodies(). Collective. @*/
 PetscErrorCode StaticsRelease(Statics statics);
 
+/*@ StaticsHaveStages - whether the options name some. Not collective. @*/
+PetscErrorCode StaticsHaveStages(Statics statics, PetscBool *staged);
+
+/*@ StaticsCheckLasting - raises PETSC_ERR_USER_INPUT for a load that does not act in the last stage: the state is then
+    none that a run in time may start from. Not collective. @*/
+PetscErrorCode StaticsCheckLasting(Statics statics);
+
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/
 PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u);
 

@@ -50,6 +50,8 @@ static PetscErrorCode PairsView(Contact contact, PetscInt interface, PetscViewer
       c->discretization != CONTACT_AUTO ? ""
       : contact->mortar[interface]      ? ", since meshes do not match"
                                         : ", node to node, since meshes match"));
+  if (c->interference > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  interference %.6g %s in statics\n", (double)c->interference, metre));
   if (c->n_off)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no master under them\n",

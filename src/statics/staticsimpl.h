@@ -87,6 +87,13 @@ typedef struct {
   Vec             row;        /* work: rows */
 } Compliance;
 
+/* Rows and factorisation of a set of contacts that slide, and the point of the latter */
+typedef struct {
+  PairRows   rows;
+  Compliance compliance; /* of these rows where both stand in struct _p_Statics */
+  PetscReal *factored;   /* [n_parameters], or NULL */
+} StageRows;
+
 /* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
 typedef struct {
   PetscInt  first, d; /* rows of the pair, counted over all ranks */
@@ -194,6 +201,8 @@ struct _p_Statics {
   /* the contact problem and the factorisation */
   PairRows   rows;
   Compliance compliance;
+  StageRows *kept; /* [n_kept] of stages in which others slide */
+  PetscInt   n_kept;
   PetscReal *p, *factored; /* [n_parameters] the point of the solution, and that of the factorisation or NULL */
   /* the solution */
   PetscBool         solved;
@@ -231,6 +240,10 @@ PETSC_INTERN PetscInt       StagesCount(Statics statics);
 PETSC_INTERN const Stage   *StagesGet(Statics statics, PetscInt k);
 PETSC_INTERN PetscErrorCode StageGetMotions(Model model, const Stage *stage, PetscReal **nodal);
 PETSC_INTERN PetscErrorCode StagesDestroy(Statics statics);
+/* solve.c - all stages at the point that is set, with the gaps as they are worn */
+PETSC_INTERN PetscErrorCode StagesSolve(Statics statics);
+/* solve.c - all pairs closed, those of Coulomb's law without slip */
+PETSC_INTERN void StaticsCloseAll(Statics statics);
 /* rows.c - pairs and rows, normal ones only for pressing without friction, with the interfaces that slide in a stage
    (NULL: as they are told); friction coefficients and stiffnesses of the interfaces at p */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Stage *stage, PairRows *rows);

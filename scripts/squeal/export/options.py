@@ -7,7 +7,8 @@ SILENT = "output_", "squeal_", "log_", "options_"  # of a run, not of the scene
 SHOWN = "_view"
 REASONS = {"dashpots": "dashpots to the ground have no counterpart in CalculiX's *FREQUENCY",
            "joints": "bushings between mean motions have no counterpart", "points": "points that move as sets have no counterpart",
-           "probes": "a place that squeal records", "circles": "places that squeal records", "impulses": "a blow in time"}
+           "probes": "a place that squeal records", "circles": "places that squeal records", "impulses": "a blow in time",
+           "stages": "loads one after the other, which the deck has in one step"}
 
 
 class Options:

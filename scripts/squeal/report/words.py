@@ -140,6 +140,16 @@ def load_words(scene, name):
     return f"{name}: {vector(scene, f'{name}_force', 'N')}{turned} in total on {place}{grown}."
 
 
+STAGED = (("loads", "the load"), ("motions", "the motion"), ("sliding", "the sliding of"), ("interferences", "the interference of"),
+          ("ends", "without"))
+
+
+def stage_words(scene, name):
+    """What begins in a stage of the loading, and what ends."""
+    given = [(scene.value(f"{name}_{option}"), what) for option, what in STAGED]
+    return f"{name}: {', '.join(f'{what} {listed(names.split(chr(44)))}' for names, what in given if names)}."
+
+
 LISTS = (
     ("parts", part_words),
     ("supports", lambda s, n: f"{n}: {s.value(f'{n}_set')} is held in {listed(s.value(f'{n}_fix', 'xyz'))}."),
@@ -150,6 +160,7 @@ LISTS = (
     ("loads", load_words),
     ("motions", lambda s, n: f"{n}: {s.value(f'{n}_set')} is moved by {vector(s, f'{n}_displacement', 'm')}."),
     ("contacts", contact_words),
+    ("stages", stage_words),
     ("impulses", lambda s, n: f"{n}: a blow of {vector(s, f'{n}_impulse', 'N s')} at ({s.value(f'{n}_at')}) m "
                               f"after "
                               f"{figures(1e3 * s.number(f'{n}_time'), 4)} ms."),

@@ -37,6 +37,9 @@ PetscErrorCode SlidingVisit(const ContactInterface *c, ContactSliding *sliding, 
 PetscErrorCode SlidingCheck(MPI_Comm comm, const ContactInterface *c, const ContactSliding *sliding)
 {
   PetscFunctionBeginUser;
+  PetscCheck(c->interference == 0, comm, PETSC_ERR_SUP,
+             "-%s_interference %.6g: in time gaps are those of the mesh; leave it out", c->name,
+             (double)c->interference);
   PetscCheck(!sliding->slides || sliding->speed > 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_slip says where to, not how fast: give a positive -%s_speed (m/s), or leave it out where only the "
              "displacements slide",

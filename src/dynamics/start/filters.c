@@ -106,6 +106,7 @@ PetscErrorCode DynamicsSetFilters(Dynamics d)
   if (!d->filters_dir[0]) PetscFunctionReturn(0);
   PetscCall(FiltersCheckFrames(d));
   PetscCall(FiltersListModes(d));
+  PetscCall(StaticsCheckLasting(d->statics));
   PetscCall(StaticsSolve(d->statics, NULL));
   PetscCall(StaticsGetState(d->statics, NULL, &displacement));
   PetscCall(VecGetOwnershipRange(displacement, &range[0], &range[1]));

@@ -217,6 +217,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
 
     PetscCall(DynamicsCheckStatic(d));
     PetscCall(StartCheckGaps(d));
+    PetscCall(StaticsCheckLasting(d->statics));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
     PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));

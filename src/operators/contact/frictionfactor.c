@@ -136,7 +136,8 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
 }
 
 /* mu of a pair at p: its speed goes with that of the interface, v = V v_0 / V_0. */
-PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscReal *mu)
+PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscBool rests,
+                                  PetscReal *mu)
 {
   const PetscReal stated = operators->interface[pair->interface].stated;
   FrictionLaw     law;
@@ -144,7 +145,7 @@ PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], cons
   PetscFunctionBeginUser;
   PetscCall(InterfaceGetLaw(operators, p, pair->interface, &law));
   law.speed = stated > 0 ? law.speed * pair->speed / stated : 0;
-  *mu       = FrictionSteady(&law);
+  *mu       = rests ? FrictionMu(&law, 0) : FrictionSteady(&law);
   PetscFunctionReturn(0);
 }
 

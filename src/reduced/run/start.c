@@ -136,6 +136,7 @@ static PetscErrorCode StartSliding(ReducedRun r)
   Vec                 u;
 
   PetscFunctionBeginUser;
+  PetscCall(StaticsCheckLasting(r->run.statics));
   PetscCall(StaticsSolve(r->run.statics, NULL));
   PetscCall(StaticsGetState(r->run.statics, &local, &u));
   PetscCall(GatherRecords(r->comm, r->reduction.n_local, sizeof(*local), local, NULL, &all));

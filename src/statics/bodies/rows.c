@@ -96,9 +96,11 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
   for (PetscInt i = 0; i < rows->n_interfaces; i++)
     PetscCall(OperatorsGetInterface(operators, p, i, &unused, &rows->pressure[i]));
   for (PetscInt k = 0; k < rows->n_pairs; k++) {
-    PetscReal mu;
+    const PetscInt i = rows->pair[k].interface;
+    PetscReal      mu;
 
-    PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k], &mu));
+    PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k],
+                                 (PetscBool)(rows->interface[i].slides && !rows->slides[i]), &mu));
     PairRowsSetClosing(rows, k, kappa, PressureOnset(&rows->pressure[rows->pair[k].interface]));
     rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
     rows->slide[k]  = rows->slides[rows->pair[k].interface] ? mu : 0;

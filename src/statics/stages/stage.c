@@ -243,6 +243,29 @@ PetscErrorCode StageGetMotions(Model model, const Stage *stage, PetscReal **noda
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode StaticsHaveStages(Statics statics, PetscBool *staged)
+{
+  PetscFunctionBeginUser;
+  *staged = statics->n_stages ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* In time all loads act from the start on */
+PetscErrorCode StaticsCheckLasting(Statics s)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCheck(
+      StagesGet(s, StagesCount(s) - 1)->load[i] > 0, s->comm, PETSC_ERR_USER_INPUT,
+      "-loads %s has ended before the last of the -stages, and acts in time, which would begin out of balance: "
+      "leave -stages out, or let it act",
+      scene->loads[i].name);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NamesFree(PetscInt n, char ***names)
 {
   PetscFunctionBeginUser;
