@@ -12,6 +12,10 @@
 /* a foot at a node has a weight of 1 but for this: of a facet, far above rounding of places */
 #define PAIR_MATCH 1e-6
 
+#define PAIR_BARE                                                                                                      \
+  "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "    \
+  "-%s_surfaces that lie over each other"
+
 /* Weights, directions, speed (m/s) and gap (m). Along a rotation the speed is |w x (x - c)| in the tangent plane, which
    differs from pair to pair; a direction that is given has the speed of the options everywhere. across = |sum_i w_i
    a_i| (m^2, or without unit on facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9
@@ -231,11 +235,7 @@ static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt f
   all[1] = contact->n_pairs - first;
   all[0] = n - all[1];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCheck(
-    all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT,
-    "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "
-    "-%s_surfaces that lie over each other",
-    c->name, c->slave, c->master, c->name);
+  PetscCheck(all[1] || !all[0], contact->comm, PETSC_ERR_USER_INPUT, PAIR_BARE, c->name, c->slave, c->master, c->name);
   c->n_off += all[0];
   PetscFunctionReturn(0);
 }
@@ -290,6 +290,8 @@ static PetscErrorCode OffCheck(MPI_Comm comm, ContactInterface *c, PairFailure *
   PetscCallMPI(MPI_Allreduce(&failure->off, &c->off, 1, MPIU_REAL, MPI_MAX, comm));
   PetscCall(ContactShareWorst(comm, &(PetscReal){order}, x));
   PetscCall(ContactShareWorst(comm, &order, away));
+  PetscCheck(failure->n || away[1] > c->tolerance, comm, PETSC_ERR_USER_INPUT, PAIR_BARE, c->name, c->slave, c->master,
+             c->name);
   PetscCheck(
     failure->n, comm, PETSC_ERR_USER_INPUT,
     "contact %s: no node of %s finds a partner on %s; the nearest, at %.6g, %.6g, %.6g %s, is %.6g %s away, %.6g %s of "

@@ -116,9 +116,9 @@ static PetscErrorCode MarksPass(Operators o, Vec marks)
   PetscFunctionReturn(0);
 }
 
-/* Marks the unknowns of eliminated slaves (1 for each pair) and of their masters (1e6, once); an unknown that is
-   both, or slave of two pairs, is an error: slaves (1 + masters) is then 2 or more. G G = 0 and one E for all pairs
-   rest on it. */
+/* Marks the unknowns of eliminated slaves (1 for each pair) and of their masters, and of nodes whose share they take
+   (1e6, once); an unknown that is both, or slave of two pairs, is an error: slaves (1 + masters) is then 2 or more.
+   G G = 0 and one E for all pairs rest on it. */
 static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const ContactPair **list)
 {
   const PetscScalar one = 1, large = 1e6;
@@ -134,6 +134,8 @@ static PetscErrorCode ConstraintCheckChains(Pencil pencil, PetscInt n, const Con
     PetscCall(VecSetValues(slaves, 1, list[p]->slave[0].unknown, &one, ADD_VALUES));
     for (PetscInt i = 0; i < list[p]->n_master; i++)
       PetscCall(VecSetValues(masters, 1, list[p]->master[i].unknown, &large, INSERT_VALUES));
+    for (PetscInt i = 0; i < list[p]->n_taken; i++)
+      PetscCall(VecSetValues(masters, 1, list[p]->taken[i].unknown, &large, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(slaves));
   PetscCall(VecAssemblyEnd(slaves));
