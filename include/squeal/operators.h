@@ -20,8 +20,10 @@ typedef struct {
   const Quantity *row; /* of its option, NULL for what has none; said by it: */
   const char     *unit;
   PetscReal       value;        /* of the scene; of an internal one 1 */
-  PetscReal       lower, upper; /* lower < value <= upper; -infinity, infinity where there is no limit */
+  PetscReal       lower, upper; /* lower < value <= upper; -infinity, infinity where the row has no limit */
   PetscBool       closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
+  PetscBool       length;       /* it is the size of the row's vector, hence not negative */
+  PetscBool       divides;      /* something is divided by it: beyond the row's limits it is not 0 */
   PetscBool       body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
   PetscBool state;   /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */

@@ -105,12 +105,13 @@ typedef struct {
   PetscReal          least, most; /* of a number; most 0 where there is no upper limit */
   PetscBool          bounded;     /* least and most are limits */
   PetscBool          open;        /* the limits themselves are refused */
-  const char        *why;         /* of the limits, or what is to be given, for messages; or NULL */
-  PetscBool          required;    /* help says so; an error where it is not given, as far as its owner keeps that:
+  PetscBool          none;     /* 0, which open limits refuse, is read and stands for none: what varies it obeys them */
+  const char        *why;      /* of the limits, or what is to be given, for messages; or NULL */
+  PetscBool          required; /* help says so; an error where it is not given, as far as its owner keeps that:
                                      a name, a word that begins as none, .given */
-  unsigned           in;          /* RunBits, one of which a run that reads it does; 0: those of its table */
-  const char        *unread;      /* why other runs do not read it, e.g. ", where nothing moves"; or NULL */
-  PetscBool          always;      /* each scene says it: others refuse it only beside a file that does, too */
+  unsigned           in;       /* RunBits, one of which a run that reads it does; 0: those of its table */
+  const char        *unread;   /* why other runs do not read it, e.g. ", where nothing moves"; or NULL */
+  PetscBool          always;   /* each scene says it: others refuse it only beside a file that does, too */
   /* NULL where a run that does one of `in` reads it, else why not, the owner's name for @; NULL: always read */
   const char *(*idle)(const void *owner, const QuantityRun *run);
   PetscBool restart; /* another value is another run: a restart must not go on */
@@ -131,6 +132,7 @@ typedef struct {
 
 /* Limits */
 #define QUANTITY_POSITIVE     .bounded = PETSC_TRUE, .open = PETSC_TRUE
+#define QUANTITY_OR_NONE      .bounded = PETSC_TRUE, .open = PETSC_TRUE, .none = PETSC_TRUE
 #define QUANTITY_NOT_NEGATIVE .bounded = PETSC_TRUE
 #define QUANTITY_LEAST(a)     .bounded = PETSC_TRUE, .least = (a)
 #define QUANTITY_WITHIN(a, b) .bounded = PETSC_TRUE, .least = (a), .most = (b)

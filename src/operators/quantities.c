@@ -42,7 +42,8 @@ static const Quantity rows[] = {
    QUANTITY_PATH, OPERATORS_OPTION(nodes), .path = "file"},
 };
 static const Quantity loaded[] = {
-  {"-contact_mu", "friction coefficient of K + mu H", NULL, QUANTITY_REAL, OPERATORS_OPTION(loaded_mu)},
+  {"-contact_mu", "friction coefficient of K + mu H", NULL, QUANTITY_REAL, OPERATORS_OPTION(loaded_mu),
+   .varies = VARIES_LINEAR},
 };
 
 /* Of one matrix: the file, or all entries */

@@ -86,7 +86,6 @@ static PetscErrorCode StateTakePairs(Pencil pencil, const SlidingState *state)
 PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state)
 {
   const Parameters *scene = &pencil->operators->parameters;
-  PetscInt          index;
 
   PetscFunctionBeginUser;
   PetscCheck(!state || pencil->operators->model, pencil->comm, PETSC_ERR_ARG_WRONGSTATE,
@@ -95,15 +94,12 @@ PetscErrorCode PencilTakeState(Pencil pencil, const SlidingState *state)
   pencil->from_state = state ? PETSC_TRUE : PETSC_FALSE;
   pencil->has_forces = state && state->has_forces ? PETSC_TRUE : PETSC_FALSE;
   pencil->n_groups   = state ? state->n_groups : 0;
-  for (PetscInt i = 0; i < scene->n; i++)
-    PetscCall(ParametersAdd(&pencil->parameters, NULL, scene->list[i].name, &scene->list[i], &index));
+  PetscCall(ParametersTake(&pencil->parameters, scene));
   for (PetscInt g = 1; g <= pencil->n_groups; g++) {
-    char number[16];
+    char name[32];
 
-    PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, g));
-    PetscCall(ParametersAdd(&pencil->parameters, "closed", number,
-                            &(OperatorsParameter){.value = 1, .upper = 1, .closed = PETSC_TRUE, .internal = PETSC_TRUE},
-                            &index));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "closed_%" PetscInt_FMT, g));
+    PetscCall(ParametersAddShare(&pencil->parameters, name));
   }
   if (state && state->p) {
     PetscCheck(state->n_parameters == scene->n, pencil->comm, PETSC_ERR_ARG_SIZ, "state of other parameters");

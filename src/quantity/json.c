@@ -106,7 +106,7 @@ static PetscErrorCode JsonLimits(MPI_Comm comm, const Quantity *row)
     PetscCall(PetscPrintf(comm, "%.15g", (double)row->most));
   else
     PetscCall(PetscPrintf(comm, "null"));
-  PetscCall(JsonLogical(comm, "open", row->open));
+  PetscCall(JsonLogical(comm, "open", row->open && !row->none ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PetscPrintf(comm, ", \"choices\": %s", row->words ? "[" : "null"));
   for (PetscInt i = 0; row->words && row->words[i]; i++) {
     if (i) PetscCall(PetscPrintf(comm, ", "));

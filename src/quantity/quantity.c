@@ -19,7 +19,7 @@ static PetscErrorCode LimitsDescribe(const Quantity *row, PetscReal x, size_t si
   else if (row->least != 0)
     PetscCall(PetscSNPrintf(text, size, "must be at least %.6g", least));
   else
-    PetscCall(PetscStrncpy(text, row->open ? "must be positive" : "must not be negative", size));
+    PetscCall(PetscStrncpy(text, row->open && !row->none ? "must be positive" : "must not be negative", size));
   if (row->unit) PetscCall(PetscStrlcat(text, " (", size));
   if (row->unit) PetscCall(PetscStrlcat(text, row->unit, size));
   if (row->unit) PetscCall(PetscStrlcat(text, ")", size));
@@ -62,11 +62,11 @@ static PetscErrorCode QuantityCheck(MPI_Comm comm, const char option[], const Qu
   char            limits[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
-  if (!row->bounded) PetscFunctionReturn(0);
+  if (!row->bounded || row->kind > QUANTITY_MANY) PetscFunctionReturn(0); /* of a text its owner makes a number */
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal x = integer ? (PetscReal)((const PetscInt *)value)[i] : ((const PetscReal *)value)[i];
 
-    if (!QuantityIsOutside(row, x)) continue;
+    if (!QuantityIsOutside(row, x) || (row->none && x == 0)) continue;
     PetscCall(LimitsDescribe(row, x, sizeof(limits), limits));
     SETERRQ(comm, PETSC_ERR_USER_INPUT, "%s %.*g %s", option, integer ? 20 : 6, (double)x, limits);
   }

@@ -11,15 +11,21 @@ typedef struct {
   char              valid[2048];
 } ParameterSearch;
 
+/* Limits in time beside those of the row: friction never drives, and a load is moved by a factor from its own size */
+typedef enum { AS_ITS_ROW, NOT_NEGATIVE, POSITIVE } ParameterLimit;
+
 /* Takes candidate <owner>_<what> where it is the name looked for, and adds it to the valid ones */
 static PetscErrorCode ParameterTry(const char owner[], const char what[], const Quantity *row,
-                                   const ReducedParameter *candidate, ParameterSearch *search)
+                                   const ReducedParameter *candidate, ParameterLimit limit, ParameterSearch *search)
 {
   ReducedParameter p = *candidate;
   PetscBool        same;
 
   PetscFunctionBeginUser;
   if (!(row->varies & VARIES_IN_TIME)) PetscFunctionReturn(0);
+  p.least = row->bounded ? row->least : PETSC_NINFINITY;
+  p.open  = limit == POSITIVE ? PETSC_TRUE : row->open;
+  if (limit != AS_ITS_ROW) p.least = PetscMax(0, p.least);
   if (!p.unit) p.unit = row->unit ? row->unit : "-";
   PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
   PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
@@ -30,27 +36,21 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
   PetscFunctionReturn(0);
 }
 
-/* Friction and speed of a contact. Coefficients may be 0, speeds that slopes are measured by not (open); a slope
-   has any sign. */
+/* Friction and speed of a contact */
 static PetscErrorCode ParameterOfContact(const ContactInterface *c, PetscInt i, ParameterSearch *search)
 {
-  const ReducedParameter   speed = {.kind = REDUCED_SPEED, .index = i, .value = c->speed, .open = PETSC_TRUE};
+  const ReducedParameter   speed = {.kind = REDUCED_SPEED, .index = i, .value = c->speed};
   const FrictionParameter *law;
   const PetscInt           n = FrictionGetParameters(&c->friction, &law);
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
-    const PetscBool        limited = law[j].coefficient || law[j].row.bounded ? PETSC_TRUE : PETSC_FALSE;
-    const ReducedParameter p       = {.kind  = REDUCED_FRICTION,
-                                      .index = i,
-                                      .value = c->friction.parameter[j],
-                                      .law   = j,
-                                      .least = limited ? 0 : PETSC_NINFINITY,
-                                      .open  = law[j].coefficient ? PETSC_FALSE : limited};
+    const ReducedParameter p = {.kind = REDUCED_FRICTION, .index = i, .value = c->friction.parameter[j], .law = j};
 
-    PetscCall(ParameterTry(c->name, law[j].row.name + 1, &law[j].row, &p, search));
+    PetscCall(ParameterTry(c->name, law[j].row.name + 1, &law[j].row, &p,
+                           law[j].coefficient ? NOT_NEGATIVE : AS_ITS_ROW, search));
   }
-  if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", ContactFindRow("speed"), &speed, search));
+  if (c->speed > 0) PetscCall(ParameterTry(c->name, "speed", ContactFindRow("speed"), &speed, AS_ITS_ROW, search));
   PetscFunctionReturn(0);
 }
 
@@ -59,17 +59,17 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
 {
   const PetscReal force = load->is_pressure ? 0 : Vec3Length(load->force), moment = Vec3Length(load->moment);
 
-  const ReducedParameter press = {.kind = REDUCED_LOAD, .index = i, .value = load->pressure, .open = PETSC_TRUE};
-  const ReducedParameter push  = {.kind = REDUCED_LOAD, .index = i, .value = force, .open = PETSC_TRUE};
-  const ReducedParameter turn  = {.kind = REDUCED_LOAD, .index = i, .value = moment, .open = PETSC_TRUE};
+  const ReducedParameter press = {.kind = REDUCED_LOAD, .index = i, .value = load->pressure};
+  const ReducedParameter push  = {.kind = REDUCED_LOAD, .index = i, .value = force};
+  const ReducedParameter turn  = {.kind = REDUCED_LOAD, .index = i, .value = moment};
 
   PetscFunctionBeginUser;
   if (load->is_pressure)
-    PetscCall(ParameterTry(load->name, "pressure", ModelFindRow("-loads", "pressure"), &press, search));
+    PetscCall(ParameterTry(load->name, "pressure", ModelFindRow("-loads", "pressure"), &press, POSITIVE, search));
   if (force > 0 && moment == 0)
-    PetscCall(ParameterTry(load->name, "force", ModelFindRow("-loads", "force"), &push, search));
+    PetscCall(ParameterTry(load->name, "force", ModelFindRow("-loads", "force"), &push, POSITIVE, search));
   if (moment > 0 && force == 0)
-    PetscCall(ParameterTry(load->name, "moment", ModelFindRow("-loads", "moment"), &turn, search));
+    PetscCall(ParameterTry(load->name, "moment", ModelFindRow("-loads", "moment"), &turn, POSITIVE, search));
   PetscFunctionReturn(0);
 }
 
@@ -84,7 +84,7 @@ static PetscErrorCode ParameterOfBodies(Operators operators, const PetscReal val
   for (PetscInt i = 0; i < n; i++) {
     const ReducedParameter p = {.unit = list[i].unit, .kind = REDUCED_BODY, .index = i, .value = values[i]};
 
-    if (list[i].body) PetscCall(ParameterTry(list[i].name, "", list[i].row, &p, search));
+    if (list[i].body) PetscCall(ParameterTry(list[i].name, "", list[i].row, &p, AS_ITS_ROW, search));
   }
   PetscFunctionReturn(0);
 }

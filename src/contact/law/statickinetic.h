@@ -64,7 +64,7 @@ static const FrictionParameter static_kinetic_rows[] = {
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE},
   {{"-mu_decay_speed", "slip speed over which what static is above kinetic falls to 1/e", "m/s", QUANTITY_REAL,
-    FRICTION_AT(2), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
+    FRICTION_AT(2), QUANTITY_OR_NONE, .varies = VARIES_ALL},
    .steady = PETSC_TRUE},
 };
 

@@ -82,7 +82,7 @@ static const FrictionParameter stribeck_rows[] = {
    .coefficient = PETSC_TRUE,
    .steady      = PETSC_TRUE},
   {{"-mu_stribeck_speed", "slip speed at which what static is above kinetic has fallen to 1/e", "m/s", QUANTITY_REAL,
-    FRICTION_AT(STRIBECK_SPEED), QUANTITY_NOT_NEGATIVE, .varies = VARIES_ALL},
+    FRICTION_AT(STRIBECK_SPEED), QUANTITY_OR_NONE, .varies = VARIES_ALL},
    .steady = PETSC_TRUE},
 };
 

@@ -51,9 +51,9 @@ static PetscReal ExponentialClosing(const PressureLaw *law, PetscReal p)
 
 static const Quantity exponential_rows[] = {
   {"-pressure_c0", "clearance at which the pressure begins", "m", QUANTITY_REAL, PRESSURE_PARAMETER(EXPONENTIAL_C0),
-   QUANTITY_NOT_NEGATIVE, PRESSURE_READ},
+   QUANTITY_OR_NONE, PRESSURE_READ},
   {"-pressure_p0", "pressure at zero clearance", "Pa", QUANTITY_REAL, PRESSURE_PARAMETER(EXPONENTIAL_P0),
-   QUANTITY_NOT_NEGATIVE, PRESSURE_READ},
+   QUANTITY_OR_NONE, PRESSURE_READ},
 };
 
 static const PressureKind exponential_pressure = {.name     = "exponential",

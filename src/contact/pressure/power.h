@@ -36,7 +36,7 @@ static PetscReal PowerClosing(const PressureLaw *law, PetscReal p)
 
 static const Quantity power_rows[] = {
   {"-pressure_k", "pressure at a closing of 1 m", "Pa/m^m", QUANTITY_REAL, PRESSURE_PARAMETER(POWER_K),
-   QUANTITY_NOT_NEGATIVE, PRESSURE_READ},
+   QUANTITY_OR_NONE, PRESSURE_READ},
   {"-pressure_m", "power of the closing", NULL, QUANTITY_REAL, PRESSURE_PARAMETER(POWER_M), .initial = 2,
    QUANTITY_WITHIN(1, 20), PRESSURE_READ},
 };

@@ -73,8 +73,7 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
 
   PetscFunctionBeginUser;
   for (int k = 0; k < N_PART_PARAMETERS; k++) {
-    const OperatorsParameter q = {
-      .row = ModelFindRow("-parts", what[k].name), .value = what[k].value, .closed = (PetscBool)(k >= PART_ALPHA)};
+    const OperatorsParameter q = {.row = ModelFindRow("-parts", what[k].name), .value = what[k].value};
 
     PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &i[k]));
   }

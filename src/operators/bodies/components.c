@@ -12,8 +12,8 @@ static PetscErrorCode ComponentsAddTerm(Operators o, const Components *c, const 
   Mat      A;
 
   PetscFunctionBeginUser;
-  PetscCall(ParametersAdd(&o->parameters, c->owner, what,
-                          &(OperatorsParameter){.row = c->row, .value = value, .closed = PETSC_TRUE}, &parameter));
+  PetscCall(
+    ParametersAdd(&o->parameters, c->owner, what, &(OperatorsParameter){.row = c->row, .value = value}, &parameter));
   if (!o->omit) {
     PetscCall(c->create(o, c->of, mask, &A));
     PetscCall(TermsAdd(&o->terms, c->kind, A, PETSC_TRUE, 1, &parameter));

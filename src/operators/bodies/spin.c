@@ -28,7 +28,7 @@
 #define SHARE    1e-4 /* of f, which a stiffness may carry without being counted */
 
 /* fastest = sqrt(E / rho) / radius, rad/s: a rim as fast as the waves in it, beyond which the linear theory says
-   nothing. lower: either sense. */
+   nothing. */
 PetscErrorCode OperatorsAddSpinParameters(Operators o)
 {
   const ModelScene *scene;
@@ -41,7 +41,6 @@ PetscErrorCode OperatorsAddSpinParameters(Operators o)
     const PetscReal          wave = PetscSqrtReal(p->young / p->density); /* m/s, along a rod */
     const OperatorsParameter q    = {.row     = ModelFindRow("-parts", "spin"),
                                      .value   = p->spin.rate,
-                                     .lower   = -INFINITY,
                                      .fastest = p->spin.radius > 0 ? wave / p->spin.radius : 0};
 
     o->spin_of_part[part] = -1;

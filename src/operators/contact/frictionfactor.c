@@ -158,11 +158,8 @@ static PetscErrorCode LawAddParameters(Operators o, const ContactInterface *c, P
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
-    const OperatorsParameter like = {.row    = &law[j].row,
-                                     .value  = c->friction.parameter[j],
-                                     .lower  = law[j].row.bounded ? 0 : -INFINITY,
-                                     .closed = law[j].coefficient,
-                                     .state  = c->slides ? PETSC_FALSE : steady};
+    const OperatorsParameter like = {
+      .row = &law[j].row, .value = c->friction.parameter[j], .state = c->slides ? PETSC_FALSE : steady};
 
     if (law[j].steady != steady || (!c->slides && steady && !law[j].rest)) continue;
     PetscCall(ParametersAdd(&o->parameters, c->name, law[j].row.name + 1, &like, &q->law[j]));
@@ -178,12 +175,7 @@ static PetscErrorCode PressureAddParameters(Operators o, const ContactInterface 
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n; j++) {
-    const OperatorsParameter like = {.row    = &row[j],
-                                     .value  = c->pressure.parameter[j],
-                                     .lower  = row[j].least,
-                                     .upper  = row[j].most,
-                                     .closed = row[j].least > 0 ? PETSC_TRUE : PETSC_FALSE,
-                                     .state  = PETSC_TRUE};
+    const OperatorsParameter like = {.row = &row[j], .value = c->pressure.parameter[j], .state = PETSC_TRUE};
 
     PetscCall(ParametersAdd(&o->parameters, c->name, row[j].name + 1, &like, &q->pressure[j]));
   }
@@ -207,8 +199,8 @@ static PetscErrorCode InterfaceAddParameters(Operators o, const ContactInterface
      {.value = c->kn},
      &q->kn},
     {c->kt > 0, c->kt_per_area ? "kt_per_area" : "kt", {.value = c->kt}, &q->kt},
-    {c->damping, "force", {.value = c->force, .closed = PETSC_TRUE}, &q->force},
-    {moves && turning > 0, "rotation", {.value = turning}, &q->speed},
+    {c->damping, "force", {.value = c->force}, &q->force},
+    {moves && turning > 0, "rotation", {.value = turning, .length = PETSC_TRUE, .divides = PETSC_TRUE}, &q->speed},
     {moves && turning <= 0, "speed", {.value = c->speed}, &q->speed},
   };
 

@@ -11,8 +11,7 @@ PetscErrorCode OperatorsAddWear(Operators o, const ContactInterface *c, Interfac
 
   PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++) {
-    const OperatorsParameter like = {
-      .row = ContactFindRow(name[i]), .value = value[i], .closed = PETSC_TRUE, .state = PETSC_TRUE};
+    const OperatorsParameter like = {.row = ContactFindRow(name[i]), .value = value[i], .state = PETSC_TRUE};
 
     q->wear[i] = -1;
     if (value[i] > 0) PetscCall(ParametersAdd(&o->parameters, c->name, name[i], &like, &q->wear[i]));
@@ -26,7 +25,7 @@ PetscErrorCode OperatorsAddWearTime(Operators o)
   const ContactWear      *wear;
   PetscInt                n;
   PetscBool               wears = PETSC_FALSE;
-  OperatorsParameter      like  = {.closed = PETSC_TRUE, .state = PETSC_TRUE};
+  OperatorsParameter      like  = {.state = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   o->wear_time = -1;

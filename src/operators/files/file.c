@@ -76,7 +76,7 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
   mu = ParametersFind(&o->parameters, "contact_mu");
   if (mu < 0) {
     PetscCall(ParametersAdd(&o->parameters, "contact", "mu",
-                            &(OperatorsParameter){.value = o->loaded_mu, .lower = -INFINITY}, &mu));
+                            &(OperatorsParameter){.row = operators_loaded.row, .value = o->loaded_mu}, &mu));
     o->mu = mu;
   }
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, A[OPERATOR_H], PETSC_FALSE, 1, &mu));

@@ -113,8 +113,7 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
     PetscCall(PetscSNPrintf(why, sizeof(why), "the value of the parameter of -%s_parameter", term->name));
     if (read) PetscCall(MatrixParameterVisit(&(QuantityVisitor){QuantitiesReadVisited, &o->comm}, name, why, &given));
     PetscCall(ParametersAdd(&o->parameters, NULL, name,
-                            &(OperatorsParameter){.value = given.value, .lower = -INFINITY, .of_matrices = read},
-                            &index));
+                            &(OperatorsParameter){.value = given.value, .of_matrices = read}, &index));
   }
   q = &o->parameters.list[index];
   if (term->power[i] < 0) q->lower = 0;

@@ -151,10 +151,9 @@ static PetscErrorCode PointAddMass(Operators o, const Joint *joint, PetscInt *in
 
   PetscFunctionBeginUser;
   if (joint->mass > 0) {
-    PetscCall(ParametersAdd(
-      &o->parameters, joint->name, "mass",
-      &(OperatorsParameter){.row = ModelFindRow("-points", "mass"), .value = joint->mass, .closed = PETSC_TRUE},
-      index));
+    PetscCall(ParametersAdd(&o->parameters, joint->name, "mass",
+                            &(OperatorsParameter){.row = ModelFindRow("-points", "mass"), .value = joint->mass},
+                            index));
   }
   if (o->omit) PetscFunctionReturn(0);
   if (joint->mass > 0) {

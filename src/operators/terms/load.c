@@ -31,9 +31,9 @@ PetscErrorCode OperatorsAddLoadParameters(Operators o)
   PetscCall(PetscMalloc1(scene->n_loads, &o->load_size));
   for (PetscInt i = 0; i < scene->n_loads; i++) {
     const Load              *load  = &scene->loads[i];
-    const OperatorsParameter force = {.value = Vec3Length(load->force), .closed = PETSC_TRUE};
-    const OperatorsParameter press = {.value = load->pressure, .lower = -INFINITY};
-    const OperatorsParameter turn  = {.value = Vec3Length(load->moment), .closed = PETSC_TRUE};
+    const OperatorsParameter force = {.value = Vec3Length(load->force), .length = PETSC_TRUE};
+    const OperatorsParameter press = {.value = load->pressure};
+    const OperatorsParameter turn  = {.value = Vec3Length(load->moment), .length = PETSC_TRUE};
 
     if (load->is_pressure)
       PetscCall(SizeAdd(o, load, "pressure", press, &o->load_size[i].force));

@@ -74,10 +74,13 @@ typedef struct {
   PetscReal          *p; /* [n] */
 } Parameters;
 
-/* parameter.c - adds the parameter <owner>_<what> with the unit, value, limits and marks of `like`, upper INFINITY
-   where it is 0; raises the error for a value outside its limits */
+/* parameter.c - adds the parameter <owner>_<what> with value and marks of `like`, unit and limits of its row; all of
+   another list, as they are; how far a group of pairs is closed, 0 to 1; raises the error for a value outside its
+   limits */
 PETSC_INTERN PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const char what[],
                                           const OperatorsParameter *like, PetscInt *index);
+PETSC_INTERN PetscErrorCode ParametersTake(Parameters *parameters, const Parameters *from);
+PETSC_INTERN PetscErrorCode ParametersAddShare(Parameters *parameters, const char name[]);
 PETSC_INTERN PetscInt       ParametersFind(const Parameters *parameters, const char name[]); /* index, or -1 */
 PETSC_INTERN PetscErrorCode ParameterCheck(MPI_Comm comm, const OperatorsParameter *parameter, PetscReal value);
 PETSC_INTERN PetscErrorCode ParametersDestroy(Parameters *parameters);
