@@ -151,37 +151,59 @@ static PetscErrorCode SmallShellMult(Mat A, Vec z, Vec y)
   PetscFunctionReturn(0);
 }
 
-/* GMRES on the system */
+/* The system, and its solver without a preconditioner: residuals of rtol |b| are left, |b| = whole */
+static PetscErrorCode SmallCreateGMRES(SmallShell *s, Vec b, PetscReal *whole, Mat *A, KSP *ksp)
+{
+  const PetscReal rtol = s->system->rtol;
+  MPI_Comm        comm = s->system->compliance->rows->comm;
+  PetscInt        n;
+  PC              pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(b, &n));
+  PetscCall(VecNorm(b, NORM_2, whole));
+  PetscCall(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, A));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))SmallShellMult));
+  PetscCall(KSPCreate(comm, ksp));
+  PetscCall(KSPSetOptionsPrefix(*ksp, "st_pairs_"));
+  PetscCall(KSPSetOperators(*ksp, *A, *A));
+  PetscCall(KSPSetType(*ksp, KSPGMRES));
+  PetscCall(KSPGMRESSetRestart(*ksp, GMRES_RESTART));
+  PetscCall(KSPGMRESSetCGSRefinementType(*ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
+  PetscCall(KSPSetTolerances(*ksp, PETSC_SMALL * PETSC_SMALL, rtol * *whole, PETSC_DEFAULT, GMRES_STEPS));
+  PetscCall(KSPGetPC(*ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE));
+  PetscCall(KSPSetFromOptions(*ksp));
+  PetscFunctionReturn(0);
+}
+
+/* z = z + A^-1 (b - A z) by GMRES; from 0 where the guess z leaves more than that does */
 static PetscErrorCode SmallRunGMRES(SmallShell *s, Vec b, Vec z, SmallOutcome *outcome)
 {
   KSPConvergedReason reason;
   PetscReal          left, whole;
-  PetscInt           n;
-  MPI_Comm           comm = s->system->compliance->rows->comm;
   KSP                ksp;
   Mat                A;
-  PC                 pc;
+  Vec                r, dz;
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(b, &n));
-  PetscCall(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s, &A));
-  PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))SmallShellMult));
-  PetscCall(KSPCreate(comm, &ksp));
-  PetscCall(KSPSetOptionsPrefix(ksp, "st_pairs_"));
-  PetscCall(KSPSetOperators(ksp, A, A));
-  PetscCall(KSPSetType(ksp, KSPGMRES));
-  PetscCall(KSPGMRESSetRestart(ksp, GMRES_RESTART));
-  PetscCall(KSPGMRESSetCGSRefinementType(ksp, KSP_GMRES_CGS_REFINE_IFNEEDED));
-  PetscCall(KSPSetTolerances(ksp, s->system->rtol, PETSC_DEFAULT, PETSC_DEFAULT, GMRES_STEPS));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPSetInitialGuessNonzero(ksp, PETSC_TRUE));
-  PetscCall(KSPSetFromOptions(ksp));
-  PetscCall(KSPSolve(ksp, b, z));
+  PetscCall(SmallCreateGMRES(s, b, &whole, &A, &ksp));
+  PetscCall(VecDuplicate(b, &r));
+  PetscCall(VecDuplicate(b, &dz));
+  PetscCall(MatMult(A, z, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, &left));
+  if (!(left < whole)) {
+    PetscCall(VecSet(z, 0));
+    PetscCall(VecCopy(b, r));
+  }
+  PetscCall(KSPSolve(ksp, r, dz));
+  PetscCall(VecAXPY(z, 1, dz));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetResidualNorm(ksp, &left));
-  PetscCall(VecNorm(b, NORM_2, &whole));
   *outcome = reason > 0 || left <= GMRES_ENOUGH * whole ? SMALL_GOOD : SMALL_UNSOLVED;
+  PetscCall(VecDestroy(&r));
+  PetscCall(VecDestroy(&dz));
   PetscCall(KSPDestroy(&ksp));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(0);
