@@ -6,12 +6,13 @@
 /* The pencil about one point, of modes and frequency responses */
 static PetscErrorCode ChainGivePencil(Chain *chain)
 {
-  PetscBool terms;
+  PetscBool terms, components;
 
   PetscFunctionBeginUser;
   PetscCall(ChainLinearise(chain));
   PetscCall(ModesWantTerms(chain->modes, &terms));
-  if (chain->analysis == ANALYSIS_MODES && !terms) PetscCall(PencilReleaseTerms(chain->pencil));
+  PetscCall(ModesWantComponents(chain->modes, &components));
+  if (chain->analysis == ANALYSIS_MODES && !terms && !components) PetscCall(PencilReleaseTerms(chain->pencil));
   PetscCall(ModesSetPencil(chain->modes, chain->pencil));
   PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   PetscFunctionReturn(0);

@@ -41,7 +41,7 @@ def modes(scene):
     if "-modes_left" not in more and scene.happens(0.3):
         more += ["-modes_sensitivities"]
     if scene.happens(0.3):
-        more += ["-modes_components", draw.choice((0.8, 1.5))]
+        more += draw.choice((["-modes_components", 0.8], ["-modes_components", 1.5], ["-modes_components_found", "true"]))
     return scene.words() + more
 
 

@@ -143,7 +143,8 @@ PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted);
 PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted);
 
 /*@ ModesFindComponents - which free modes of the bodies make up each mode of the last solution, for ModesView() and
-    ModesWrite(); the terms of the operators must be there. Collective.
+    ModesWrite(), and names by them; with -modes_components_found of the unstable modes, by Ritz vectors. The terms of
+    the operators must be there. Collective.
     Errors: PETSC_ERR_USER_INPUT for loaded matrices. @*/
 PetscErrorCode ModesFindComponents(Modes modes);
 

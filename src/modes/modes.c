@@ -118,6 +118,7 @@ static PetscErrorCode ModesReset(Modes modes)
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
   PetscCall(PetscFree(modes->label_part));
+  PetscCall(LabelsForgetWeights(modes));
   PetscCall(ComponentsDestroy(&modes->components));
   PetscCall(ChangesReset(modes));
   PetscCall(EPSDestroy(&modes->left_solver));

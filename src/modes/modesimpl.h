@@ -66,6 +66,12 @@ enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 /* components/ - which free modes of the bodies make up each mode */
 typedef struct _p_ModesComponents *ModesComponents;
 
+/* Masses of nodes by which shapes are weighed, of what the cells of each part give (label/weigh.c) */
+typedef struct {
+  PetscInt    n;    /* parts */
+  PetscReal **mass; /* [parts][local nodes] kg */
+} ModesWeights;
+
 /* changes/ - masses, springs and dashpots to try on the modes found, and the modes that they make */
 typedef struct _p_ModesChange  *ModesChange;
 typedef struct _p_ModesChanged *ModesChanged;
@@ -77,6 +83,7 @@ struct _p_Modes {
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
   PetscReal free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
+  PetscBool free_found;      /* free modes from the modes found, where free_to is 0 */
   PetscReal unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
   PetscInt  most;            /* modes that a band may hold; 0: any number */
   PetscBool has_most;        /* given */
@@ -100,6 +107,7 @@ struct _p_Modes {
   double         *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
   PetscInt       *label_part;    /* the part that a mode is named after, -1 for none [n], NULL likewise */
+  ModesWeights   *weights;       /* NULL: not weighed yet */
   ModesComponents components;    /* NULL: not asked for */
   ModesChanged    changed;       /* [n_changes], NULL likewise */
   PetscBool       dense;         /* LAPACK found all eigenvalues */
@@ -314,8 +322,10 @@ PETSC_INTERN PetscErrorCode LeftBiorthogonalise(Modes modes, const PencilMatrice
 /* quality.c - measures the errors, expands the vectors to all unknowns and normalises them */
 PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pencil);
 
-/* weigh.c - masses of the nodes of each part, mass[parts][local nodes], kg; the caller frees each */
-PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[]);
+/* weigh.c - masses of the nodes of each part, mass[parts][local nodes], kg, borrowed: they are weighed once; frees
+   them */
+PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *const **mass);
+PETSC_INTERN PetscErrorCode LabelsForgetWeights(Modes modes);
 
 /* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);

@@ -2,10 +2,14 @@
 """Contributions of component modes, modes_components.csv, beside free modes by LAPACK, body by body, and inverse iteration:
 
     verify/components.py RESULTS OPEN MU
+    verify/components.py found RESULTS EXACT
 
 RESULTS has the tables of modes and the saved matrices K.bin, H.bin, M.bin; OPEN the K.bin of the same scene whose contact has next to
 no stiffness, and whose bodies are the connected parts of that matrix. Free modes of one frequency are summed, as in the table. Shares
-and energies of complex modes and of each third one agree within the errors that the rows state; those of a mode sum to 100."""
+and energies of complex modes and of each third one agree within the errors that the rows state; those of a mode sum to 100.
+
+The second way: free modes from the modes found, beside those of -modes_components 1.5. Labels of all modes are the same; frequencies
+agree within the errors that rows state, shares and energies within these and 1 % of the whole."""
 
 import csv
 import sys
@@ -20,6 +24,8 @@ from scipy.sparse.linalg import splu
 
 MOST = 120  # modes of a body, more than a table has
 ERROR = 1e-3  # per cent, the largest that a row states
+LINE = 1e-3  # Hz, rounding of frequencies
+SHARE, SMALL = 1, 0.1  # per cent of the whole: of any free mode; of those that have no row of exact ones
 CONTACT = 1e-9  # of the largest entry: what the open contact leaves is far below, what holds a body together above
 
 
@@ -56,7 +62,34 @@ def vectors_of(stiffness, mass, kappa):
     return found
 
 
+def compare(folder, exact):
+    """Free modes from the modes found beside exact ones."""
+    pairs = list(zip(read(folder, "modes.csv"), read(exact, "modes.csv"), strict=True))
+    failed = [f"mode {a['mode']}: {a['label']}, not {b['label']}" for a, b in pairs if a["label"] != b["label"]]
+    rows, others = [row for row in read(folder, "modes_components.csv") if row["component"]], read(exact, "modes_components.csv")
+    worst, off = 0, 0
+    for row in rows:
+        low, width = float(row["freq_hz"]), float(row["freq_error_hz"]) + LINE
+        same = [other for other in others if other["component"] and (other["mode"], other["body"]) == (row["mode"], row["body"])
+                and abs(float(other["freq_hz"]) - low) <= width]
+        if not same:
+            failed.append(f"no {row['body']} {row['name']} at {low} Hz")
+            continue
+        off = max(off, min(abs(float(other["freq_hz"]) - low) for other in same) / low if low else 0)
+        difference = max(abs(sum(float(other[key]) for other in same) - float(row[key])) for key in ("share_percent", "energy_percent"))
+        worst = max(worst, difference)
+        if difference > min(float(row["error_percent"]) + SMALL, SHARE):
+            failed.append(f"{row['body']} {row['name']}: {row['share_percent']} %, off by {difference}")
+    unstable = {a["mode"] for a, _ in pairs if a["unstable"] == "1"}
+    if {row["mode"] for row in rows} != unstable or not unstable:
+        failed.append(f"rows of modes {sorted({row['mode'] for row in rows})}, not {sorted(unstable)}")
+    print("; ".join(failed[:5]) or f"{len(rows)} rows: largest difference {worst:.1e} %, of frequencies {off:.1e}")
+    return 1 if failed else 0
+
+
 def main():
+    if sys.argv[1] == "found":
+        return compare(Path(sys.argv[2]), Path(sys.argv[3]))
     folder, opened, mu = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])
     mass, stiffness = matrix(folder / "M.bin"), matrix(folder / "K.bin") + mu * matrix(folder / "H.bin")
     blocks = list(bodies(matrix(opened / "K.bin"), mass))

@@ -73,7 +73,7 @@ def causes(modes, folder):
 
 
 def components(modes, folder):
-    """A bar for each free mode of each unstable mode; nothing without -modes_components."""
+    """A bar for each free mode of each unstable mode; nothing where no free modes were found."""
     path = folder.path / "modes_components.csv"
     if not path.exists() or not modes.unstable:
         return None

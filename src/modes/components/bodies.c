@@ -3,6 +3,7 @@
    part has K r, M r and Z r exactly zero at what is not connected with it.
 */
 #include "components.h"
+#include "solver/block/orthonormal.h"
 
 /* Random numbers from 1 to 2 that are the same on any ranks: multiples of the golden ratio */
 static PetscReal Scatter(PetscInt unknown)
@@ -65,35 +66,71 @@ static PetscErrorCode PartTake(Vec part, PetscInt which, Vec r)
   PetscFunctionReturn(0);
 }
 
+/* Marks in joined[p][] the parts at which column p of a matrix of n columns is not zero */
+static PetscErrorCode PartsMarkAll(Vec part, Mat moved, PetscInt n, PetscInt joined[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < n; p++) {
+    Vec column;
+
+    PetscCall(MatDenseGetColumnVecRead(moved, p, &column));
+    PetscCall(PartsMark(part, column, &joined[p * n]));
+    PetscCall(MatDenseRestoreColumnVecRead(moved, p, &column));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What K and M join: r of every part, all at once */
+static PetscErrorCode PartsJoinByMatrices(const PencilMatrices *matrices, PetscInt n, Vec own, PetscInt joined[])
+{
+  const Mat A[2] = {matrices->K, matrices->M};
+  PetscInt  n_own;
+  Mat       R, AR[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(own, &n_own));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)own), n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &R));
+  for (PetscInt p = 0; p < n; p++) {
+    Vec column;
+
+    PetscCall(MatDenseGetColumnVecWrite(R, p, &column));
+    PetscCall(PartTake(own, p, column));
+    PetscCall(MatDenseRestoreColumnVecWrite(R, p, &column));
+  }
+  for (int k = 0; k < 2; k++) PetscCall(MatDuplicate(R, MAT_DO_NOT_COPY_VALUES, &AR[k]));
+  PetscCall(BlockMultiplyEach(2, A, R, AR));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PartsMarkAll(own, AR[k], n, joined));
+    PetscCall(MatDestroy(&AR[k]));
+  }
+  PetscCall(MatDestroy(&R));
+  PetscFunctionReturn(0);
+}
+
 /* joined[p][q] of n parts: whether p is connected with q; with itself: whether it has unknowns */
 static PetscErrorCode PartsJoin(Pencil pencil, PetscInt n, Vec part, PetscInt joined[])
 {
   PencilMatrices matrices;
-  Vec            own, r, f, u;
-  MPI_Comm       comm;
+  Vec            own, r, u;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMatrices(pencil, &matrices));
-  PetscCall(PetscObjectGetComm((PetscObject)matrices.K, &comm));
-  PetscCall(MatCreateVecs(matrices.K, &r, &f));
+  PetscCall(MatCreateVecs(matrices.K, &r, NULL));
   PetscCall(VecDuplicate(r, &own));
   PetscCall(VecDuplicate(part, &u));
   PetscCall(PencilRestrict(pencil, part, own));
+  PetscCall(PartsJoinByMatrices(&matrices, n, own, joined));
   for (PetscInt p = 0; p < n; p++) {
     PetscCall(PartTake(own, p, r));
-    PetscCall(MatMult(matrices.K, r, f));
-    PetscCall(PartsMark(own, f, &joined[p * n]));
-    PetscCall(MatMult(matrices.M, r, f));
-    PetscCall(PartsMark(own, f, &joined[p * n]));
     PetscCall(PencilExpand(pencil, PETSC_FALSE, r, u));
     PetscCall(PartsMark(part, u, &joined[p * n]));
     PetscCall(PartTake(part, p, u));
     PetscCall(PartsMark(part, u, &joined[p * n]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, comm));
+  PetscCallMPI(
+    MPI_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)part)));
   PetscCall(VecDestroy(&own));
   PetscCall(VecDestroy(&r));
-  PetscCall(VecDestroy(&f));
   PetscCall(VecDestroy(&u));
   PetscFunctionReturn(0);
 }
@@ -198,6 +235,7 @@ PetscErrorCode ComponentsDestroy(ModesComponents *c)
   if (!*c) PetscFunctionReturn(0);
   PetscCall(FreeBodiesDestroy(&(*c)->bodies));
   PetscCall(PetscFree((*c)->level));
+  PetscCall(PetscFree((*c)->found_of));
   PetscCall(PetscFree((*c)->free));
   PetscCall(PetscFree((*c)->own));
   PetscCall(PetscFree3((*c)->share, (*c)->energy, (*c)->mixed));

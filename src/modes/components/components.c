@@ -28,12 +28,12 @@ enum { SUM_RE_RE, SUM_RE_IM, SUM_IM_RE, SUM_IM_IM, SUM_X_X_RE, SUM_X_X_IM, N_WHO
 PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted)
 {
   PetscFunctionBeginUser;
-  *wanted = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
+  *wanted = modes->free_to > 0 || modes->free_found ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
-/* Free modes below the multiple of the highest frequency */
-static PetscErrorCode FreeModesSolve(const Modes modes, Pencil bodies, Modes *free)
+/* Free modes below the multiple of the highest frequency by a solution, or from the modes found */
+static PetscErrorCode FreeModesFind(Modes modes, Pencil bodies, ModesComponents c, Modes *free)
 {
   const PetscReal highest = modes->mode[modes->n - 1].omega / (2 * PETSC_PI);
   const PetscReal band[2] = {0, modes->free_to * (modes->has_band ? modes->band[1] : highest)};
@@ -46,7 +46,11 @@ static PetscErrorCode FreeModesSolve(const Modes modes, Pencil bodies, Modes *fr
   (*free)->most     = modes->most;
   (*free)->max_time = modes->max_time;
   PetscCall(PetscStrncpy((*free)->disc, modes->disc, sizeof((*free)->disc)));
-  PetscCall(ModesSolve(*free));
+  c->found = modes->free_to > 0 ? PETSC_FALSE : PETSC_TRUE;
+  if (c->found)
+    PetscCall(FreeModesTake(modes, bodies, c, *free));
+  else
+    PetscCall(ModesSolve(*free));
   PetscFunctionReturn(0);
 }
 
@@ -56,24 +60,33 @@ static PetscReal ShapeOff(PetscReal residual, PetscReal gap)
   return gap > 0 ? PetscMin(1, residual / gap) : 1;
 }
 
-/* Sorts the free modes into levels */
+/* Distance in kappa of level l from the one before it, above any where there is none that it may be mixed with */
+static PetscReal LevelGap(const ModesComponents c, PetscInt l)
+{
+  if (l <= 0 || l >= c->n_levels || c->level[l - 1].body != c->level[l].body) return PETSC_MAX_REAL;
+  return PetscSqr(c->level[l].omega) - PetscSqr(c->level[l - 1].omega);
+}
+
+/* Sorts the free modes into levels: those whose errors overlap are one */
 static PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(free->n, &c->level));
   for (PetscInt k = 0; k < free->n; k++) {
-    const PetscReal omega = free->mode[k].rigid ? 0 : free->mode[k].omega;
-    FreeLevel      *last  = c->n_levels ? &c->level[c->n_levels - 1] : NULL;
-    const PetscReal gap   = last ? omega * omega - last->omega * last->omega : PETSC_MAX_REAL;
+    const Mode     *mode  = &free->mode[k];
+    const PetscReal omega = mode->rigid ? 0 : mode->omega, error = mode->rigid ? 0 : mode->error;
+    const PetscInt  body = c->found_of ? c->found_of[k] : -1;
+    FreeLevel      *last = c->n_levels ? &c->level[c->n_levels - 1] : NULL;
 
-    if (last && omega - last->omega <= LEVEL_EQUAL * omega) {
-      last->n++;
-      continue;
-    }
-    if (last) last->mixed = PetscMax(last->mixed, ShapeOff(free->residual[last->first], gap));
-    c->level[c->n_levels++] = (FreeLevel){
-      .first = k, .n = 1, .omega = omega, .rigid = free->mode[k].rigid, .mixed = ShapeOff(free->residual[k], gap)};
+    if (!last || last->body != body || omega - last->omega > LEVEL_EQUAL * omega + error + last->error)
+      c->level[c->n_levels++] = (FreeLevel){.first = k, .omega = omega, .rigid = mode->rigid, .body = body};
+    last = &c->level[c->n_levels - 1];
+    last->n++;
+    last->error    = PetscMax(last->error, error);
+    last->residual = PetscMax(last->residual, free->residual[k]);
   }
+  for (PetscInt l = 0; l < c->n_levels; l++)
+    c->level[l].mixed = ShapeOff(c->level[l].residual, PetscMin(LevelGap(c, l), LevelGap(c, l + 1)));
   PetscFunctionReturn(0);
 }
 
@@ -211,6 +224,7 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
   PetscCall(PetscMalloc1(n_sums, &sums));
   for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
   for (PetscInt i = 0; i < modes->n; i++) {
+    if (c->found && !ComponentsAsks(modes, i)) continue;
     PetscCall(PetscArrayzero(sums, n_sums));
     PetscCall(SharesSum(modes, free, i, c, product, sums));
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
@@ -222,15 +236,33 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
   PetscFunctionReturn(0);
 }
 
+/* From the free modes to names and shares; none: nothing */
+static PetscErrorCode ComponentsMake(Modes modes, const Modes free)
+{
+  const ModesComponents c = modes->components;
+  Mat                   M;
+
+  PetscFunctionBeginUser;
+  if (!free->n) {
+    PetscCall(ComponentsDestroy(&modes->components));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(FreeLevelsFind(free, c));
+  PetscCall(PencilGetMass(modes->pencil, &M));
+  PetscCall(FreeLevelsName(modes, free, M, c));
+  PetscCall(SharesFind(modes, free, c));
+  PetscCall(ComponentsLabel(modes));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesFindComponents(Modes modes)
 {
   const PetscReal *p;
-  ModesComponents  c;
+  PetscBool        asked = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
   Operators        operators;
   Pencil           pencil;
   Model            model;
   Modes            free;
-  Mat              M;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetOperators(modes->pencil, &operators));
@@ -238,17 +270,14 @@ PetscErrorCode ModesFindComponents(Modes modes)
   PetscCheck(model, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_components needs a mesh: loaded matrices have no bodies");
   PetscCall(ComponentsDestroy(&modes->components));
+  for (PetscInt i = 0; i < modes->n && !asked; i++) asked = ComponentsAsks(modes, i);
+  if (!asked) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(1, &modes->components));
-  c = modes->components;
   PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
   PetscCall(OperatorsLineariseBodies(operators, p, PETSC_TRUE, &pencil));
-  PetscCall(FreeBodiesFind(pencil, &c->bodies));
-  PetscCall(FreeModesSolve(modes, pencil, &free));
-  PetscCall(FreeLevelsFind(free, c));
-  PetscCall(PencilGetMass(modes->pencil, &M));
-  PetscCall(FreeLevelsName(modes, free, M, c));
-  PetscCall(SharesFind(modes, free, c));
-  PetscCall(ComponentsLabel(modes));
+  PetscCall(FreeBodiesFind(pencil, &modes->components->bodies));
+  PetscCall(FreeModesFind(modes, pencil, modes->components, &free));
+  PetscCall(ComponentsMake(modes, free));
   PetscCall(ModesDestroy(&free));
   PetscCall(PencilDestroy(&pencil));
   PetscFunctionReturn(0);

@@ -15,8 +15,11 @@ typedef struct {
 typedef struct {
   PetscInt  first, n; /* modes of the pencil of the bodies */
   PetscReal omega;    /* rad/s */
+  PetscReal error;    /* of omega, an estimate, rad/s */
+  PetscReal residual; /* as of Modes, (rad/s)^2 */
   PetscReal mixed;    /* what its shapes are off by, relative */
   PetscBool rigid;
+  PetscInt  body; /* -1: bodies of a solution, which knows none, may share it */
 } FreeLevel;
 
 /* A level of one body */
@@ -28,13 +31,49 @@ typedef struct {
 struct _p_ModesComponents {
   FreeBodies bodies;
   PetscInt   n_levels;
-  FreeLevel *level;  /* [levels] by frequency */
-  FreeMode  *free;   /* [levels][bodies] */
-  PetscReal *own;    /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
-  PetscReal *share;  /* [modes][levels + 1][bodies], the last one of the whole body: by left and right vector */
-  PetscReal *energy; /* likewise, of the right vector alone */
-  PetscReal *mixed;  /* [modes] what the shape is off by, as in FreeLevel */
+  FreeLevel *level;    /* [levels] by frequency */
+  FreeMode  *free;     /* [levels][bodies] */
+  PetscReal *own;      /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
+  PetscReal *share;    /* [modes][levels + 1][bodies], the last one of the whole body: by left and right vector */
+  PetscReal *energy;   /* likewise, of the right vector alone */
+  PetscReal *mixed;    /* [modes] what the shape is off by, as in FreeLevel */
+  PetscBool  found;    /* free modes from the modes found: unstable modes alone have rows */
+  PetscInt  *found_of; /* [free modes] their bodies; NULL of a solution */
 };
+
+/* names.c - whether mode i is unstable or named after a part. Not collective */
+PETSC_INTERN PetscBool ComponentsAsks(const Modes modes, PetscInt i);
+
+#define FREE_MOTIONS 6 /* rigid ones of a body in space */
+
+/* Vectors among which free modes are sought, body by body: what of each belongs to the body alone. The last are
+   FREE_MOTIONS */
+typedef struct {
+  PetscInt   n, n_bodies;
+  Mat        V;                 /* [n] columns in the unknowns of the pencil of the bodies */
+  PetscInt **row, *n_rows;      /* [bodies] the unknowns of this rank that are of each */
+  PetscReal *mass, *stiffness;  /* [bodies][n][n] V_b' M V_b, V_b' K V_b */
+  PetscInt  *n_rigid, *n_modes; /* [bodies] modes among them: rigid ones, the first; all */
+  PetscReal *kappa, *Z;         /* [bodies][n] (rad/s)^2, ascending; [bodies][n][n] vector k is V_b Z[b][k] */
+} FreeBasis;
+
+/* ritz.c - makes room for n columns, which the caller fills; measures and solves; columns first .. first + n - 1 of F
+   become the first n modes of body b, zero elsewhere. Collective, results alike on all ranks */
+PETSC_INTERN PetscErrorCode FreeBasisCreate(Pencil bodies, const FreeBodies *of, PetscInt n, FreeBasis *basis);
+PETSC_INTERN PetscErrorCode FreeBasisSolve(const PencilMatrices *bodies, FreeBasis *basis);
+PETSC_INTERN PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, PetscInt n, PetscInt first, Mat F);
+PETSC_INTERN PetscErrorCode FreeBasisDestroy(FreeBasis *basis);
+/* reduce.c - the modes of a body among its scaled vectors, of G and H [n][n]; G is overwritten. Not collective */
+typedef struct {
+  PetscReal *Z, *kappa; /* [n][n], [n] as of FreeBasis */
+  PetscInt  *n_rigid, *n_modes;
+} FreeBodyModes;
+
+PETSC_INTERN PetscErrorCode FreeBodySolve(PetscInt n, PetscReal G[], const PetscReal H[], const FreeBodyModes *modes);
+/* found.c - free modes from the modes found, without a solution: those below the highest that takes part in a mode that
+   is unstable or named after a part; `free` is empty before. They
+   follow body by body, c->found_of. Collective */
+PETSC_INTERN PetscErrorCode FreeModesTake(Modes modes, Pencil bodies, ModesComponents c, Modes free);
 
 /* bodies.c - bodies of the unknowns of a pencil whose pairs are open. Collective */
 PETSC_INTERN PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies);

@@ -25,45 +25,44 @@ typedef struct {
   Operators   operators;
   const Mesh *mesh;
   PetscReal  *nodal;  /* [local nodes][3] of one free mode */
-  PetscReal **mass;   /* [bodies][local nodes] kg */
+  PetscReal **mass;   /* [bodies][local nodes] kg, NULL as long as no name asks */
   SolidFrame *solid;  /* [bodies] */
   PetscReal  *energy; /* [levels][bodies][N_SOLID_KINDS] as of SolidAddEnergies() */
 } Names;
 
-static PetscErrorCode FreeModesLocate(const Modes free, Mat M, const FreeBodies *bodies, PetscReal own[])
+/* phi' M_b phi of the bodies: free modes from the modes found are each of one */
+static PetscErrorCode FreeModesLocate(const Modes free, Mat M, const ModesComponents c, PetscReal own[])
 {
-  Vec x, Mx;
+  const PetscInt n = c->bodies.n;
+  Vec            x, Mx;
 
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < free->n && c->found; k++) own[k * n + c->found_of[k]] = 1;
+  if (c->found) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(M, NULL, &Mx));
   for (PetscInt k = 0; k < free->n; k++) {
     PetscCall(ModesGetVectors(free, k, &x, NULL, NULL, NULL));
     PetscCall(MatMult(M, x, Mx));
-    PetscCall(FreeBodiesAddDot(bodies, x, Mx, &own[k * bodies->n]));
+    PetscCall(FreeBodiesAddDot(&c->bodies, x, Mx, &own[k * n]));
   }
   PetscCall(VecDestroy(&Mx));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, own, (PetscMPIInt)(free->n * bodies->n), MPIU_REAL, MPI_SUM, free->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, own, (PetscMPIInt)(free->n * n), MPIU_REAL, MPI_SUM, free->comm));
   PetscFunctionReturn(0);
 }
 
-/* Nodal masses of the bodies, and their frames */
-static PetscErrorCode NamesCreateSolids(Modes modes, const FreeBodies *bodies, Names *names)
+/* Nodal masses and frame of body b, once, where a name asks for them */
+static PetscErrorCode NamesNeedSolid(PetscInt b, const FreeBodies *bodies, PetscReal *const part_mass[], Names *names)
 {
   const Mesh *mesh = names->mesh;
-  PetscReal **mass;
+  PetscReal  *mass;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_parts, &mass));
-  PetscCall(LabelsWeigh(modes, mesh, mass));
-  PetscCall(PetscMalloc2(bodies->n, &names->mass, bodies->n, &names->solid));
-  for (PetscInt b = 0; b < bodies->n; b++) {
-    PetscCall(PetscCalloc1(mesh->n_nodes, &names->mass[b]));
-    for (PetscInt p = 0; p < mesh->n_parts; p++)
-      for (PetscInt v = 0; v < mesh->n_nodes && bodies->of_part[p] == b; v++) names->mass[b][v] += mass[p][v];
-    PetscCall(SolidCreate(modes->comm, mesh->n_nodes, mesh->x, names->mass[b], &names->solid[b]));
-  }
-  for (PetscInt p = 0; p < mesh->n_parts; p++) PetscCall(PetscFree(mass[p]));
-  PetscCall(PetscFree(mass));
+  if (names->mass[b]) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(mesh->n_nodes + 1, &mass));
+  for (PetscInt p = 0; p < mesh->n_parts; p++)
+    for (PetscInt v = 0; v < mesh->n_nodes && bodies->of_part[p] == b; v++) mass[v] += part_mass[p][v];
+  PetscCall(SolidCreate(names->free->comm, mesh->n_nodes, mesh->x, mass, &names->solid[b]));
+  names->mass[b] = mass;
   PetscFunctionReturn(0);
 }
 
@@ -87,14 +86,16 @@ static PetscErrorCode DiscNameFind(const ModesComponents c, const Names *names, 
 }
 
 /* Energies of the kinds of all levels, but those with the name of the disc */
-static PetscErrorCode NamesMeasure(const ModesComponents c, Names *names)
+static PetscErrorCode NamesMeasure(Modes modes, const ModesComponents c, Names *names)
 {
-  const PetscInt n = c->bodies.n;
-  char           disc[32];
+  const PetscInt    n = c->bodies.n;
+  PetscReal *const *mass;
+  char              disc[32];
 
   PetscFunctionBeginUser;
+  PetscCall(LabelsWeigh(modes, names->mesh, &mass));
   for (PetscInt l = 0; l < c->n_levels; l++)
-    for (PetscInt k = c->level[l].first; k < c->level[l].first + c->level[l].n; k++) {
+    for (PetscInt k = c->level[l].first; k < c->level[l].first + c->level[l].n && !c->level[l].rigid; k++) {
       Vec x;
 
       PetscCall(ModesGetVectors(names->free, k, &x, NULL, NULL, NULL));
@@ -103,6 +104,7 @@ static PetscErrorCode NamesMeasure(const ModesComponents c, Names *names)
         if (!(c->own[k * n + b] > LABEL_TIE)) continue; /* alike on all ranks */
         PetscCall(DiscNameFind(c, names, &c->level[l], b, disc));
         if (disc[0]) continue;
+        PetscCall(NamesNeedSolid(b, &c->bodies, mass, names));
         PetscCall(SolidAddEnergies(&names->solid[b], names->nodal, &names->energy[(l * n + b) * N_SOLID_KINDS]));
       }
     }
@@ -118,8 +120,8 @@ static PetscErrorCode NamesCreate(Modes modes, const Modes free, const ModesComp
   PetscCall(PencilGetOperators(modes->pencil, &names->operators));
   PetscCall(OperatorsGetMesh(names->operators, &names->mesh));
   PetscCall(PetscCalloc2(3 * names->mesh->n_nodes, &names->nodal, c->n_levels * n * N_SOLID_KINDS, &names->energy));
-  PetscCall(NamesCreateSolids(modes, &c->bodies, names));
-  PetscCall(NamesMeasure(c, names));
+  PetscCall(PetscCalloc2(n, &names->mass, n, &names->solid));
+  PetscCall(NamesMeasure(modes, c, names));
   PetscFunctionReturn(0);
 }
 
@@ -127,6 +129,7 @@ static PetscErrorCode NamesDestroy(PetscInt n_bodies, Names *names)
 {
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < n_bodies; b++) {
+    if (!names->mass[b]) continue;
     PetscCall(SolidDestroy(&names->solid[b]));
     PetscCall(PetscFree(names->mass[b]));
   }
@@ -167,7 +170,7 @@ PetscErrorCode FreeLevelsName(Modes modes, const Modes free, Mat M, ModesCompone
   PetscCall(PetscCalloc1(c->n_levels * n, &c->free));
   PetscCall(PetscCalloc2(n, &number, n, &counts));
   PetscCall(PetscCalloc1(free->n * n, &c->own));
-  PetscCall(FreeModesLocate(free, M, &c->bodies, c->own));
+  PetscCall(FreeModesLocate(free, M, c, c->own));
   PetscCall(NamesCreate(modes, free, c, &names));
   for (PetscInt i = 0; i < c->n_levels * n; i++) {
     const FreeLevel *level = &c->level[i / n];
@@ -210,6 +213,11 @@ static PetscErrorCode ModeLabel(Modes modes, PetscInt i, const char part[], Pets
     PetscSNPrintf(mode->label, sizeof(mode->label), "%.*s %s", (int)(sizeof(mode->label) - 2 - length), part, name));
   modes->label_percent[i] = 100 * (most / whole);
   PetscFunctionReturn(0);
+}
+
+PetscBool ComponentsAsks(const Modes modes, PetscInt i)
+{
+  return modes->mode[i].unstable || modes->label_part[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode ComponentsLabel(Modes modes)

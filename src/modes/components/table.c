@@ -60,28 +60,34 @@ static PetscErrorCode BodyWrite(const Modes modes, PetscInt i, PetscInt b, Resul
         (Contribution){others.share + part.share, others.energy + part.energy, PetscMax(others.error, part.error)};
       n += is->n;
     } else
-      PetscCall(ResultsTableRow(table, "%s,%d,\"%s\",%d,%.15g,%.15g,%.15g,%.3g", start, (int)is->first + 1, is->name,
-                                (int)is->n, (double)(c->level[l].omega / (2 * PETSC_PI)), (double)(100 * part.share),
-                                (double)(100 * part.energy), (double)(100 * part.error)));
+      PetscCall(ResultsTableRow(table, "%s,%d,\"%s\",%d,%.15g,%.15g,%.15g,%.3g,%.3g", start, (int)is->first + 1,
+                                is->name, (int)is->n, (double)(c->level[l].omega / (2 * PETSC_PI)),
+                                (double)(100 * part.share), (double)(100 * part.energy), (double)(100 * part.error),
+                                (double)(c->level[l].error / (2 * PETSC_PI))));
   }
-  PetscCall(ResultsTableRow(table, "%s,,others,%d,,%.15g,%.15g,%.3g", start, (int)n, (double)(100 * others.share),
+  PetscCall(ResultsTableRow(table, "%s,,others,%d,,%.15g,%.15g,%.3g,", start, (int)n, (double)(100 * others.share),
                             (double)(100 * others.energy), (double)(100 * others.error)));
-  PetscCall(ResultsTableRow(table, "%s,,rest,,,%.15g,%.15g,%.3g", start, (double)(100 * rest.share),
+  PetscCall(ResultsTableRow(table, "%s,,rest,,,%.15g,%.15g,%.3g,", start, (double)(100 * rest.share),
                             (double)(100 * rest.energy), (double)(100 * rest.error)));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ComponentsWrite(Modes modes, Results results)
 {
+  PetscInt     n_rows = 0;
   ResultsTable table;
 
   PetscFunctionBeginUser;
   if (!modes->components) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < modes->n; i++) n_rows += !modes->components->found || modes->mode[i].unstable;
+  if (!n_rows) PetscFunctionReturn(0);
   PetscCall(ResultsTableOpen(results, "modes_components",
-                             "mode,body,component,name,modes,freq_hz,share_percent,energy_percent,error_percent",
+                             "mode,body,component,name,modes,freq_hz,share_percent,energy_percent,error_percent,"
+                             "freq_error_hz",
                              &table));
   for (PetscInt i = 0; i < modes->n; i++)
-    for (PetscInt b = 0; b < modes->components->bodies.n; b++) PetscCall(BodyWrite(modes, i, b, table));
+    for (PetscInt b = 0; b < modes->components->bodies.n && (!modes->components->found || modes->mode[i].unstable); b++)
+      PetscCall(BodyWrite(modes, i, b, table));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }

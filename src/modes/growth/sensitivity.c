@@ -25,7 +25,7 @@ typedef struct {
 PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted)
 {
   PetscFunctionBeginUser;
-  *wanted = modes->free_to > 0 || modes->sensitivities ? PETSC_TRUE : PETSC_FALSE;
+  *wanted = modes->sensitivities;
   PetscFunctionReturn(0);
 }
 

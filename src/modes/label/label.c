@@ -30,13 +30,13 @@
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
-  PetscInt    n_parts, n_vertices, disc; /* disc = its part, or -1 */
-  PetscBool   by_unknown;                /* what is no disc is named after the unknown that moves most */
-  PetscReal **mass;                      /* [part][local node] */
-  PetscReal  *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
-  PetscReal  *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
-  PetscReal  *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
-  Disc        frame;
+  PetscInt          n_parts, n_vertices, disc; /* disc = its part, or -1 */
+  PetscBool         by_unknown;                /* what is no disc is named after the unknown that moves most */
+  PetscReal *const *mass;                      /* [part][local node] (borrowed) */
+  PetscReal        *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
+  PetscReal        *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
+  PetscReal        *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
+  Disc              frame;
 } Labels;
 
 /* sum_v m_v a_v . b_v */
@@ -45,14 +45,15 @@ static PetscReal WeightedDot(PetscInt n, const PetscReal m[], const PetscReal a[
   PetscReal sum = 0;
 
   for (PetscInt v = 0; v < n; v++)
-    sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
+    if (m[v] != 0) sum += m[v] * (a[3 * v] * b[3 * v] + a[3 * v + 1] * b[3 * v + 1] + a[3 * v + 2] * b[3 * v + 2]);
   return sum;
 }
 
 /* Adds participation and the disc's right-hand sides of mode i; without left vectors y = conj(x) */
 static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, Labels *l)
 {
-  Vec xr, xi, yr, yi;
+  PetscInt at;
+  Vec      xr, xi, yr, yi;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetVectors(modes, i, &xr, &xi, &yr, &yi));
@@ -66,10 +67,14 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
     const PetscReal *m     = l->mass[part];
     PetscReal       *share = &l->share[2 * (i * l->n_parts + part)];
 
-    share[0] = WeightedDot(n, m, l->y[0], l->x[0]) - WeightedDot(n, m, l->y[1], l->x[1]);
+    share[0] = WeightedDot(n, m, l->y[0], l->x[0]);
+    share[1] = 0;
+    if (!xi && !(yr ? yi : xi)) continue; /* real */
+    share[0] -= WeightedDot(n, m, l->y[1], l->x[1]);
     share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
   }
-  if (l->disc >= 0)
+  at = 2 * (i * l->n_parts + l->disc);
+  if (l->disc >= 0 && (l->share[at] != 0 || l->share[at + 1] != 0)) /* a free mode of another body does not move it */
     PetscCall(DiscProject(&l->frame, i, (PetscReal *[2]){l->x[0], xi ? l->x[1] : NULL}, &l->energy[2 * i]));
   PetscFunctionReturn(0);
 }
@@ -239,11 +244,10 @@ static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh 
   PetscCall(OperatorsGetModel(operators, &model, &contact));
   l->n_parts    = mesh->n_parts;
   l->n_vertices = mesh->n_nodes;
-  PetscCall(PetscMalloc1(l->n_parts, &l->mass));
   PetscCall(PetscCalloc2(2 * modes->n * l->n_parts, &l->share, 2 * modes->n, &l->energy));
   PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
                          3 * l->n_vertices, &l->y[1]));
-  PetscCall(LabelsWeigh(modes, mesh, l->mass));
+  PetscCall(LabelsWeigh(modes, mesh, &l->mass));
   PetscCall(LabelsFindDisc(modes, model, contact, mesh, l));
   PetscFunctionReturn(0);
 }
@@ -251,8 +255,6 @@ static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh 
 static PetscErrorCode LabelsDestroy(Labels *l)
 {
   PetscFunctionBeginUser;
-  for (PetscInt part = 0; part < l->n_parts; part++) PetscCall(PetscFree(l->mass[part]));
-  PetscCall(PetscFree(l->mass));
   PetscCall(PetscFree2(l->share, l->energy));
   PetscCall(PetscFree4(l->x[0], l->x[1], l->y[0], l->y[1]));
   PetscCall(DiscDestroy(&l->frame));
@@ -315,6 +317,7 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   shapes.n            = n;
   shapes.part_percent = shapes.label_percent = NULL;
   shapes.label_part                          = NULL;
+  shapes.weights                             = NULL; /* densities may have changed */
   PetscCall(SpectrumCreate(n, &shapes.right));
   PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
   PetscCall(PetscCalloc1(n, &shapes.mode));
@@ -332,6 +335,7 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
   PetscCall(VecDestroy(&work[1]));
   PetscCall(SpectrumDestroy(&shapes.right));
   PetscCall(SpectrumDestroy(&shapes.left_spectrum));
+  PetscCall(LabelsForgetWeights(&shapes));
   PetscCall(PetscFree(shapes.mode));
   PetscCall(PetscFree(shapes.part_percent));
   PetscCall(PetscFree(shapes.label_percent));

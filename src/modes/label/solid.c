@@ -125,13 +125,21 @@ static int FieldsRigid(const PetscReal q[3], const PetscReal half[3], PetscReal 
   return 6;
 }
 
-/* Fields of a kind at a node, row [SOLID_FIELDS][3] along the principal axes; how many there are */
+/* Fields of a kind at a node, row [SOLID_FIELDS][3] along the principal axes; how many there are: of those that there
+   may be the others stay as they are */
 static int SolidFields(const SolidFrame *s, SolidKind kind, const PetscReal q[3], PetscReal row[][3])
 {
+  static const int fields[N_SOLID_KINDS] = {[SOLID_RIGID]      = 6,
+                                            [SOLID_BENDING]    = SOLID_FIELDS,
+                                            [SOLID_IN_PLANE]   = SOLID_FIELDS / 2,
+                                            [SOLID_TORSION]    = SOLID_DEGREE + 1,
+                                            [SOLID_LENGTHWISE] = SOLID_DEGREE + 1,
+                                            [SOLID_ACROSS]     = SOLID_FIELDS / 2};
+
   PetscReal p[SOLID_DEGREE + 1];
   int       n = 0;
 
-  for (int k = 0; k < 3 * SOLID_FIELDS; k++) row[k / 3][k % 3] = 0;
+  for (int k = 0; k < fields[kind]; k++) row[k][0] = row[k][1] = row[k][2] = 0;
   if (kind == SOLID_RIGID) return FieldsRigid(q, s->half, row);
   if (!s->is_long) return 0;
   Legendre(q[0] / s->half[0], p);
@@ -161,8 +169,8 @@ static PetscErrorCode SolidPrepare(const SolidFrame *s, SolidKind kind, SolidFam
     if (s->mass[v] <= 0) continue;
     SolidPlace(s, v, q);
     SolidFields(s, kind, q, row);
-    for (int k = 0; k < family->n * family->n; k++)
-      family->gram[k] += s->mass[v] * Vec3Dot(row[k / family->n], row[k % family->n]);
+    for (int j = 0; j < family->n; j++)
+      for (int i = 0; i <= j; i++) family->gram[j * family->n + i] += s->mass[v] * Vec3Dot(row[i], row[j]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, family->gram, family->n * family->n, MPIU_REAL, MPI_SUM, s->comm));
   PetscCall(DenseSymmetricEigen(family->n, family->gram, NULL, family->value, NULL));

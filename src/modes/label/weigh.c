@@ -66,17 +66,23 @@ static PetscErrorCode PointMasses(Modes modes, Operators operators, const Mesh *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[])
+PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *const **mass)
 {
   const PetscReal *p;
   Operators        operators;
   Model            model;
 
   PetscFunctionBeginUser;
+  *mass = modes->weights ? modes->weights->mass : NULL;
+  if (*mass) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(1, &modes->weights));
+  modes->weights->n = mesh->n_parts;
+  PetscCall(PetscCalloc1(mesh->n_parts, &modes->weights->mass));
+  *mass = modes->weights->mass;
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   if (!model) {
-    PetscCall(PointMasses(modes, operators, mesh, mass));
+    PetscCall(PointMasses(modes, operators, mesh, modes->weights->mass));
     PetscFunctionReturn(0);
   }
   PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
@@ -84,7 +90,17 @@ PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *mass[])
     OperatorsMaterial material;
 
     PetscCall(OperatorsGetMaterial(operators, p, part, &material));
-    PetscCall(PartMasses(model, part, material.density, &mass[part]));
+    PetscCall(PartMasses(model, part, material.density, &modes->weights->mass[part]));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LabelsForgetWeights(Modes modes)
+{
+  PetscFunctionBeginUser;
+  if (!modes->weights) PetscFunctionReturn(0);
+  for (PetscInt part = 0; part < modes->weights->n; part++) PetscCall(PetscFree(modes->weights->mass[part]));
+  PetscCall(PetscFree(modes->weights->mass));
+  PetscCall(PetscFree(modes->weights));
   PetscFunctionReturn(0);
 }
