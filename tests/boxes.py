@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Writes boxes, each of one kind of element and without nodes in common, as one Gmsh file.
 
-    boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R] [--join NAME=SET,SET]
+    boxes.py FILE NAME:KIND:x0,y0,z0:x1,y1,z1:nx,ny,nz [...] [--cylinder R] [--join NAME=SET,SET] [--crown NAME,R]
 
 Places in m, numbers of cells. A box makes the sets NAME (volume), NAME_left, NAME_right (least and largest x),
 NAME_front, NAME_back (y), NAME_bottom and NAME_top (z), and NAME_inside, the faces between the first two layers of
 cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0 to the
 radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R. --lean L,COT leans planes of x >= L
 above z = 0 over to the left, by z COT, and those before in proportion to x, so that what ends at L is a wedge.
---join NAME=SET,SET makes a set of all faces of others.
+--join NAME=SET,SET makes a set of all faces of others. --crown NAME,R makes the bottom of a box a parabola, z higher by
+x^2 / (2 R), less above it and nothing at its top.
 """
 
 import argparse
@@ -53,11 +54,16 @@ def main():
     parser.add_argument("boxes", nargs="+")
     parser.add_argument("--cylinder", type=float, metavar="R")
     parser.add_argument("--lean", default="0,0", metavar="L,COT")
+    parser.add_argument("--crown", default=",1", metavar="NAME,R")
     parser.add_argument("--join", action="append", default=[], metavar="NAME=SET,SET")
     args = parser.parse_args()
     groups, x = [], {}
     for i, text in enumerate(args.boxes):
         more, places = box(text, 100000 * i)
+        crown, radius = args.crown.split(",")
+        if text.split(":")[0] == crown:
+            low, high = (float(corner.split(",")[2]) for corner in text.split(":")[2:4])
+            places = {p: v + np.array([0, 0, v[0]**2 / (2 * float(radius)) * (high - v[2]) / (high - low)]) for p, v in places.items()}
         groups += more
         x.update(places)
     for name, sets in (text.split("=") for text in args.join):
