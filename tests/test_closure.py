@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""The balance of growth of every mode of the scenes of options/ that have modes, coarse where they are long, and with damping, spin,
+falling friction and exact contact: the shares of modes_causes.csv add up to the growth of modes.csv, with nothing left, and the pairs of
+modes_feed_in.csv to the powers of their contacts.
+
+    test_closure.py PROGRAM
+"""
+
+import csv
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.mesh.gmsh import make_mesh  # noqa: E402
+from squeal.run.program import ROOT, scene  # noqa: E402
+
+CLOSED = 1e-12  # of the largest cause of a mode, or of the largest power of a pair of it
+SMALL = "-rig_disc_elements 8,40,1 -rig_pad_elements 4,4,2"
+FALLING = "-contact_friction_damping -contact_speed 2 -contact_force 500 -contact_mu_slope -0.02"
+SPIN = "-disc_spin 60 -disc_spin_axis 0,0,1 -disc_spin_centre 0,0,0"
+KINDS = {"friction": "friction_w", "friction damping": "friction_damping_w", "falling friction": "falling_friction_w"}
+MESHES = {"brake": {"size": 24}, "fist_brake": {"size": 30, "vanes": 4, "order": 1}}
+# name: files, words; what has neither friction nor damping has no causes, and damping is put on it
+SCENES = {
+    "affine: matrices": ("affine", ""),
+    "oscillator": ("oscillator", ""),
+    "plate, damped": ("plate", "-rig_disc_elements 8,48,1 -disc_beta 1e-7"),
+    "free_ring, damped": ("free_ring", "-rig_disc_elements 8,48,1 -disc_alpha 5"),
+    "massi2005": ("massi2005", SMALL),
+    "massi2005, loaded": ("massi2005", f"{SMALL} -modes_contact static"),
+    "massi2005, exact, falling friction": ("massi2005", f"{SMALL} {FALLING} -contact_law constraint"),
+    "massi2005, spin, damped": ("massi2005", f"{SMALL} {SPIN} -pad_beta 1e-7 -disc_alpha 2"),
+    "massi2005_coarse": ("massi2005 massi2005_coarse", "-rig_disc_elements 9,67,1 -rig_pad_elements 4,4,2"),
+    "brake: three contacts": ("brake", ""),
+    "fist_brake: ties, bushings, contacts that hold": ("fist_brake", ""),
+}
+
+
+def read(path):
+    if not path.exists():
+        return []
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def closure(folder):
+    """Modes with causes; the worst rest, of the largest cause; the worst sum of pairs beside its contact, of the largest power."""
+    causes, growth = defaultdict(list), {row["mode"]: float(row["growth_rad_s"]) for row in read(folder / "modes.csv")}
+    powers, pairs = {}, defaultdict(float)
+    for row in read(folder / "modes_causes.csv"):
+        causes[row["mode"]].append((row["kind"], float(row["growth_rad_s"])))
+        powers[row["mode"], row["cause"], row["kind"]] = float(row["power_w"])
+    worst = 0
+    for mode, shares in causes.items():
+        largest = max(abs(share) for _, share in shares)
+        rest = sum(abs(share) for kind, share in shares if kind == "rest")
+        off = abs(sum(share for _, share in shares) - growth[mode])
+        worst = max(worst, max(rest, off) / largest if largest else 0)
+    largest = defaultdict(float)
+    for row in read(folder / "modes_feed_in.csv"):
+        for kind, column in KINDS.items():
+            pairs[row["mode"], row["contact"], kind] += float(row[column])
+            largest[row["mode"]] += abs(float(row[column]))
+    parts = max((abs(value - powers.get(key, 0)) / largest[key[0]] for key, value in pairs.items() if largest[key[0]]), default=0)
+    return len(causes), worst, parts
+
+
+def main():
+    failed = 0
+    with tempfile.TemporaryDirectory() as made:
+        for i, (name, (files, words)) in enumerate(SCENES.items()):
+            folder, mesh = Path(made) / str(i), []
+            if files in MESHES:
+                mesh = ["-model_mesh", Path(made) / f"{files}.msh"]
+                make_mesh(files, mesh[1], **MESHES[files])
+            command = [sys.argv[1], *scene(*files.split()), *mesh, *words.split(), "-output_fields", 0, "-output_dir", folder]
+            done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+            n, worst, pairs = closure(folder) if not done.returncode else (0, 0, 0)
+            good = n > 0 and worst <= CLOSED and pairs <= CLOSED
+            failed += not good
+            print(f"{'ok    ' if good else 'FAILED'} {name}: {n} modes, {worst:.1e} of the largest cause, pairs {pairs:.1e} "
+                  f"{done.stderr.strip()[-200:] if done.returncode else ''}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
