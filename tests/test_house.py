@@ -15,6 +15,7 @@
   options    no option is read by two functions
   rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help, a unit and a reader
   refusals   what a run does not read is refused by its row's condition, but for REFUSED, which says why not
+  texts      no error and no help names an option that has no row; those of PETSc and SLEPc excepted
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
@@ -31,6 +32,7 @@ from pathlib import Path
 
 from house import Script, Source, blank
 from house_circles import circles_of
+from house_options import named_without_row
 from house_planted import PLANTED
 
 MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES, MOST_CIRCLES = \
@@ -295,6 +297,12 @@ def refusals(house):
         yield from (f"tests/test_house.py: {name} of REFUSED refuses nothing" for name in REFUSED if name not in found)
 
 
+def texts(house):
+    """Errors and helps that name an option without a row."""
+    for source, at, name in named_without_row(house):
+        yield house.say(source.path, source.line(at), f"a text names {name}, which has no row")
+
+
 def unused(house):
     """Python that nothing uses. What begins with handle_ the standard library calls."""
     named = collections.Counter(word for script in house.python for word in set(re.findall(r"\w+", script.text)))
@@ -339,7 +347,7 @@ def words(house):
 
 
 RULES = (names, includes, lengths, folders, circles, columns, strata, readmes, options, rows, refusals,
-         unused, dead, words)
+         texts, unused, dead, words)
 
 
 def plant(files):

@@ -131,7 +131,7 @@ static PetscErrorCode StepPencilLargest(StepPencil *p, EPS eps, PetscReal s, Vec
   PetscCall(EPSSolve(eps));
   PetscCall(EPSGetConverged(eps, &converged));
   PetscCheck(converged > 0, p->dynamics->comm, PETSC_ERR_NOT_CONVERGED,
-             "largest frequency of the mesh did not converge: give -ts_dt, or more iterations by -dynamics_eps_max_it");
+             "largest frequency of the mesh did not converge: give -ts_dt");
   PetscCall(EPSGetEigenpair(eps, 0, lambda, NULL, x, NULL));
   PetscCall(EPSGetTolerances(eps, &rtol, NULL));
   *lambda *= 1 + rtol;
@@ -182,8 +182,8 @@ static PetscErrorCode CriticalElementStep(Dynamics d, CriticalStep *critical)
     critical->element = PetscSqrtReal(2 / (d->b * bound));
   }
   PetscCheck(critical->element <= (1 + 1e-6) * critical->assembled, d->comm, PETSC_ERR_NOT_CONVERGED,
-             "critical step %.6g s by Lanczos iteration, but the stiffest element alone allows %.6g s: raise "
-             "-dynamics_eps_max_it or lower -dynamics_eps_tol",
+             "critical step %.6g s by Lanczos iteration, but the stiffest element alone allows %.6g s: give "
+             "-ts_dt",
              (double)critical->assembled, (double)critical->element);
   PetscFunctionReturn(0);
 }
