@@ -76,32 +76,52 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* Whether there are contacts, and loads, gravity, motions or interferences that close or open them; a given
-   -contact_force is that of all pairs closed */
-static PetscErrorCode ChainIsLoaded(const Chain *chain, PetscBool *loaded)
+/* Whether there are contacts, and loads, gravity, motions or interferences that close or open them */
+static PetscErrorCode ChainIsLoaded(const Chain *chain, PetscInt n, const ContactInterface interfaces[],
+                                    PetscBool *loaded)
 {
-  const ContactInterface *interfaces;
-  const ModelScene       *scene;
-  PetscInt                n;
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  *loaded = PETSC_FALSE;
-  if (!chain->model) PetscFunctionReturn(0);
   PetscCall(ModelGetScene(chain->model, &scene));
-  PetscCall(ContactGetInterfaces(chain->contact, &n, &interfaces));
-  for (PetscInt i = 0; i < n; i++)
-    if (interfaces[i].force > 0) PetscFunctionReturn(0);
+  *loaded =
+    scene->n_loads || scene->n_motions || Vec3Dot(scene->gravity, scene->gravity) > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (!n) *loaded = PETSC_FALSE;
   for (PetscInt i = 0; i < n; i++)
     if (interfaces[i].interference > 0) *loaded = PETSC_TRUE;
-  if (n && (scene->n_loads || scene->n_motions || Vec3Dot(scene->gravity, scene->gravity) > 0)) *loaded = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* What -modes_contact auto takes. A -contact_force is that of all pairs closed, of all contacts: loads are not used. */
+static PetscErrorCode ChainChooseContact(MPI_Comm comm, Chain *chain)
+{
+  const ContactInterface *interfaces;
+  const char             *stated = NULL;
+  PetscInt                n;
+  PetscBool               loaded, is_static;
+
+  PetscFunctionBeginUser;
+  if (!chain->model) PetscFunctionReturn(0);
+  PetscCall(ContactGetInterfaces(chain->contact, &n, &interfaces));
+  PetscCall(ChainIsLoaded(chain, n, interfaces, &loaded));
+  for (PetscInt i = n - 1; i >= 0; i--)
+    if (interfaces[i].force > 0) stated = interfaces[i].name;
+  PetscCall(ModesSetLoaded(chain->modes, loaded));
+  PetscCall(ModesGetContact(chain->modes, &is_static));
+  if (!stated) PetscFunctionReturn(0);
+  PetscCall(ModesSetLoaded(chain->modes, PETSC_FALSE));
+  PetscCall(ModesGetContact(chain->modes, &loaded));
+  if (is_static && !loaded && 1U << chain->analysis & RUN_LINEAR)
+    PetscCall(PetscPrintf(comm,
+                          "note: -%s_force is that of all pairs closed: they are, and loads are not used; "
+                          "-modes_contact static, without it, is about the loaded state\n",
+                          stated));
   PetscFunctionReturn(0);
 }
 
 /* What not every analysis needs */
 static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
 {
-  PetscBool loaded;
-
   PetscFunctionBeginUser;
   PetscCall(DynamicsCreate(comm, &chain->dynamics));
   if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
@@ -116,8 +136,7 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(ModesCreate(comm, &chain->modes));
   PetscCall(ModesSetFromOptions(chain->modes));
-  PetscCall(ChainIsLoaded(chain, &loaded));
-  PetscCall(ModesSetLoaded(chain->modes, loaded));
+  PetscCall(ChainChooseContact(comm, chain));
   PetscCall(SolverReadEigenOptions(comm));
   PetscCall(SolverReadFactorOptions(comm));
   PetscCall(SolverReadIterativeOptions(comm));
