@@ -112,6 +112,9 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
       PetscCall(PetscViewerASCIIPrintf(viewer, "; largest growth %.5g 1/s, error %.1e, at %.6g Hz",
                                        (double)creal(changed->mode[worst].lambda), (double)changed->mode[worst].error,
                                        (double)(cimag(changed->mode[worst].lambda) / (2 * PETSC_PI))));
+    if (changed->n_left_out)
+      PetscCall(
+        PetscViewerASCIIPrintf(viewer, "; %" PetscInt_FMT " left out, with errors of their size", changed->n_left_out));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
   PetscFunctionReturn(0);

@@ -37,8 +37,8 @@ typedef struct {
 
 /* Those in the band, in order of frequency */
 struct _p_ModesChanged {
-  PetscInt     n;
-  ChangedMode *mode; /* [n] */
+  PetscInt     n, n_left_out; /* and eigenvalues of the space whose error is no less than they are */
+  ChangedMode *mode;          /* [n] */
 };
 
 /* The modes of the system as it was, and behind them its answers to the terms of a change, in steps of two Krylov

@@ -17,6 +17,10 @@
    Near another eigenvalue at the distance g the pair's plane counts: z (z - g) = -e g has a root at |z| = 2 |e| / (1 +
    sqrt(1 - 4 |e| / g)) at most, or sqrt(|e| g) where e is larger than g / 4. The noise of the modes that the space is
    made of, their largest error over condition, is added times the condition, twice: the changed system is rounded too.
+
+   Friction makes the symmetric part of K indefinite, so that the space has eigenvalues that are none of the system (of
+   a symmetric one each is above that of the system, Courant's principle). Where |e| is |lambda| or more the value says
+   nothing, not even a sign: it is left out, and counted.
 */
 #include "changes.h"
 #include <complex.h>
@@ -178,7 +182,7 @@ PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeT
   PetscCall(DenseShiftedSolve(&c.q, shift, &w));
   PetscCall(PetscMalloc2(c.q.n, &x, c.q.n, &y));
   PetscCall(PetscMalloc1(w.N, &changed->mode));
-  changed->n = 0;
+  changed->n = changed->n_left_out = 0;
   for (PetscInt i = 0; i < w.N; i++) {
     ChangedMode mode;
 
@@ -188,6 +192,10 @@ PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeT
     DenseShiftedRight(&w, i, x);
     PetscCall(DenseShiftedLeft(&w, i, y));
     PetscCall(ErrorFind(&c, range->noise, mode.lambda, x, y, &mode.error));
+    if (!(mode.error < cabs(mode.lambda))) {
+      changed->n_left_out++;
+      continue;
+    }
     PetscCall(ChangeFindBefore(s, x, &mode));
     ChangedInsert(changed, &mode);
   }
