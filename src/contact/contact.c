@@ -198,6 +198,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   for (PetscInt i = 0; i < contact->n_interfaces; i++) {
     PetscCall(InterfaceCheck(contact->comm, &contact->interfaces[i]));
     PetscCall(ContactPairInterface(contact, i));
+    PetscCall(ContactFoldWarn(contact, i));
     PetscCall(InterfaceCheckFaces(contact, i));
     PetscCall(ContactGapsSet(contact, i));
   }

@@ -43,6 +43,9 @@ PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt inter
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 
+/* surface/fold.c - says how many pairs of an interface lean at folds of the master. Collective. */
+PETSC_INTERN PetscErrorCode ContactFoldWarn(Contact contact, PetscInt interface);
+
 /* cover.c - areas of the pairs from the first on where faces of the slave lie partly over the master; takes out those
    without. *lost: area over the master of faces without any pair, m^2. Collective. */
 PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interface, PetscInt first, PetscReal *lost);
