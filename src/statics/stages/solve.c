@@ -11,7 +11,8 @@ void StaticsCloseAll(Statics s)
 }
 
 /* Nothing moves without loads on what can move, unless bodies interfere, g0 < 0 with all motions done. Both numbers
-   are those of all ranks. The laws are set again in the first load step. */
+   are those of all ranks. The laws are set again in the first load step. Bodies that have worn until nothing presses
+   them any more are a result. */
 static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
 {
   PetscReal least = 0, size;
@@ -113,7 +114,7 @@ static PetscErrorCode StageSolve(Statics s, PetscInt k, Vec *f0, PetscReal *size
   PetscCall(PairRowsSetMoved(s->model, StagesGet(s, k - 1), stage, &s->rows));
   PetscCall(StaticsCreateLoad(s->operators, s->p, stage, &f, &end));
   *size = PetscMax(*size, end);
-  if (!k) PetscCall(StaticsCheckLoad(s, f));
+  if (!k && !s->n_wear) PetscCall(StaticsCheckLoad(s, f));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   if (k) PetscCall(StageTakeUp(s, l, &w0));

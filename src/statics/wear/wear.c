@@ -15,8 +15,9 @@
 */
 #include "statics/staticsimpl.h"
 
-#define DEPTH_STEPS 50 /* of the last step, to end at -wear_depth to DEPTH_RTOL of it */
+#define DEPTH_STEPS 100 /* trials of the last step, to end at -wear_depth to DEPTH_RTOL of it */
 #define DEPTH_RTOL  1e-10
+#define DEPTH_MISS  1e-6 /* of it, beyond which a depth that no length meets, for forces are not exact, is an error */
 
 /* What a step changes */
 typedef struct {
@@ -64,28 +65,51 @@ static PetscErrorCode WearTry(Wearing *g, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* A step of at most *dt, shorter where it would wear deeper than -wear_depth: by the secant from the step without
-   length, of which the depth is known, to the shortest one that is too deep or the longest that is not */
-static PetscErrorCode WearStep(Wearing *g, PetscReal *dt, PetscBool *ends)
+/* Length of a step between low, not deep enough, and high, too deep, {s, m}: by the secant in the Illinois form, which
+   halves how far an end that stays is off, so that both ends move; each third one by bisection, for depths with steps */
+static PetscErrorCode WearFindLength(Wearing *g, PetscReal low[2], PetscReal high[2], PetscReal *dt)
 {
   const PetscReal most   = g->options->depth;
-  PetscReal       low[2] = {0, g->deepest}, high[2], deepest;
+  PetscReal       off[2] = {low[1] - most, high[1] - most}, miss = off[1];
+  int             stayed = -1;
+
+  PetscFunctionBeginUser;
+  for (int i = 1; i <= DEPTH_STEPS && PetscAbsReal(miss) > DEPTH_RTOL * most; i++) {
+    const PetscReal part = i % 3 ? -off[0] / (off[1] - off[0]) : 0.5;
+    PetscReal       deepest;
+    int             moved;
+
+    *dt = low[0] + part * (high[0] - low[0]);
+    if (*dt <= low[0] || *dt >= high[0]) break;
+    PetscCall(WearTry(g, *dt));
+    PetscCall(WearFindDeepest(g, &deepest));
+    miss                    = deepest - most;
+    moved                   = miss < 0 ? 0 : 1;
+    (moved ? high : low)[0] = *dt;
+    (moved ? high : low)[1] = deepest;
+    off[moved]              = miss;
+    if (stayed == 1 - moved) off[stayed] /= 2;
+    stayed = 1 - moved;
+  }
+  PetscCheck(PetscAbsReal(miss) <= DEPTH_MISS * most, g->s->comm, PETSC_ERR_NOT_CONVERGED,
+             "-wear_depth %g: between %.15g and %.15g s of a step the depth goes from %.6g to %.6g m, and no length "
+             "between them ends there; give more -wear_steps",
+             (double)most, (double)low[0], (double)high[0], (double)low[1], (double)high[1]);
+  PetscFunctionReturn(0);
+}
+
+/* A step of at most *dt, shorter where it would wear deeper than -wear_depth */
+static PetscErrorCode WearStep(Wearing *g, PetscReal *dt, PetscBool *ends)
+{
+  PetscReal low[2] = {0, g->deepest}, high[2] = {*dt, 0};
 
   PetscFunctionBeginUser;
   *ends = PETSC_FALSE;
   PetscCall(WearTry(g, *dt));
-  PetscCall(WearFindDeepest(g, &deepest));
-  if (most == 0 || deepest < most) PetscFunctionReturn(0);
-  *ends   = PETSC_TRUE;
-  high[0] = *dt;
-  high[1] = deepest;
-  for (int i = 0; i < DEPTH_STEPS && PetscAbsReal(deepest - most) > DEPTH_RTOL * most; i++) {
-    *dt = low[0] + (high[0] - low[0]) * (most - low[1]) / (high[1] - low[1]);
-    PetscCall(WearTry(g, *dt));
-    PetscCall(WearFindDeepest(g, &deepest));
-    (deepest < most ? low : high)[0] = *dt;
-    (deepest < most ? low : high)[1] = deepest;
-  }
+  PetscCall(WearFindDeepest(g, &high[1]));
+  if (g->options->depth == 0 || high[1] < g->options->depth) PetscFunctionReturn(0);
+  *ends = PETSC_TRUE;
+  PetscCall(WearFindLength(g, low, high, dt));
   PetscFunctionReturn(0);
 }
 
