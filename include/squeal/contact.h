@@ -190,7 +190,8 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 .  -contact_surfaces <slave,master> - named surfaces
 .  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
 .  -contact_discretization <node|mortar|auto> - pairs of slave nodes and points of the master, or means over both
-                                   surfaces, not in time on the mesh; auto: node where meshes match and in time
+                                   surfaces, not in time on the mesh; auto: node where each node of either
+                                   mesh under the other is one of it too, and in time
                                    on the mesh, mortar elsewhere
 .  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
                                    master against t, as if the slave slid the other way; not in time

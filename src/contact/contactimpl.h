@@ -42,6 +42,13 @@ struct _p_Contact {
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
+/* Whether a slave lies farther beyond the border of the master than is allowed */
+static inline PetscBool ContactFootIsOff(const ContactSurface *surface, const ContactPairFoot *foot)
+{
+  const ContactFacet *facet = foot->facet < 0 ? NULL : &surface->facet[foot->facet];
+
+  return !facet || foot->beyond > 0.5 * ContactEdge(surface, facet) * facet->size ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* surface/fold.c - says how many pairs of an interface lean at folds of the master. Collective. */
 PETSC_INTERN PetscErrorCode ContactFoldWarn(Contact contact, PetscInt interface);
@@ -56,6 +63,9 @@ PETSC_INTERN PetscBool ContactFacetFaces(const ContactFacet *facet, const double
 /* mortar/mortar.c - sides, areas over the master (0 for none) and gaps of the pairs from the first on, which are those
    of all slave nodes of the interface and have their feet. Collective. */
 PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first);
+/* mortar/match.c - whether the meshes of an interface match, from all its slave nodes, the pairs from the first on.
+   Collective. */
+PETSC_INTERN PetscErrorCode ContactMeshesMatch(Contact contact, PetscInt interface, PetscInt first, PetscBool *match);
 
 /* quantities.c - the lists of interfaces and ties; contact.c, tie.c - what their rows do not say */
 /* Why nobody reads how it slides in time, where it does not slide as told */

@@ -9,9 +9,6 @@
 */
 #include "contactimpl.h"
 
-/* a foot at a node has a weight of 1 but for this: of a facet, far above rounding of places */
-#define PAIR_MATCH 1e-6
-
 #define PAIR_BARE                                                                                                      \
   "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "    \
   "-%s_surfaces that lie over each other"
@@ -76,14 +73,6 @@ static void PairOff(const ContactPairFoot *foot, const PetscReal x[3], PairFailu
   failure->nearest[0] = foot->beyond;
   failure->nearest[1] = foot->distance;
   for (int d = 0; d < 3; d++) failure->nearest_x[d] = x[d];
-}
-
-/* Whether a slave lies farther beyond the border of the master than is allowed */
-static PetscBool FootIsOff(const ContactSurface *surface, const ContactPairFoot *foot)
-{
-  const ContactFacet *facet = foot->facet < 0 ? NULL : &surface->facet[foot->facet];
-
-  return !facet || foot->beyond > 0.5 * ContactEdge(surface, facet) * facet->size ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The foot of the slave node of a pair */
@@ -187,7 +176,7 @@ static PetscErrorCode PairsChoose(Contact contact, PetscInt interface, PetscInt 
     ContactPair           *pair = &contact->pairs[p];
     const PetscBool        far  = foot->beyond == 0 && foot->distance > c->tolerance ? PETSC_TRUE : PETSC_FALSE;
 
-    if (foot->facet < 0 || (node ? FootIsOff(surface, foot) : pair->area == 0 && !far)) {
+    if (foot->facet < 0 || (node ? ContactFootIsOff(surface, foot) : pair->area == 0 && !far)) {
       PairOff(foot, pair->x, failure);
       continue;
     }
@@ -200,25 +189,15 @@ static PetscErrorCode PairsChoose(Contact contact, PetscInt interface, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* Whether the pairs from the first on are means over both surfaces: as told, or where some node with a master under it
-   has its foot at no node of the master */
-static PetscErrorCode DiscretizationChoose(Contact contact, PetscInt interface, PetscInt first,
-                                           const ContactSurface *surface)
+/* Whether the pairs from the first on are means over both surfaces: as told, or where the meshes do not match */
+static PetscErrorCode DiscretizationChoose(Contact contact, PetscInt interface, PetscInt first)
 {
-  const ContactDiscretization told   = contact->interfaces[interface].discretization;
-  PetscBool                   mortar = told == CONTACT_MORTAR ? PETSC_TRUE : PETSC_FALSE;
+  const ContactDiscretization told  = contact->interfaces[interface].discretization;
+  PetscBool                   match = told == CONTACT_NODE ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = first; p < contact->n_pairs && told == CONTACT_AUTO; p++) {
-    const ContactPairFoot *foot = &contact->feet[p];
-    PetscReal              most = 0;
-
-    if (FootIsOff(surface, foot)) continue;
-    for (int i = 0; i < surface->facet[foot->facet].n; i++) most = PetscMax(most, foot->weight[i]);
-    if (most < 1 - PAIR_MATCH) mortar = PETSC_TRUE;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mortar, 1, MPIU_BOOL, MPI_LOR, contact->comm));
-  contact->mortar[interface] = mortar;
+  if (told == CONTACT_AUTO) PetscCall(ContactMeshesMatch(contact, interface, first, &match));
+  contact->mortar[interface] = match ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -368,7 +347,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscCall(ContactGetSurface(contact, interface, &surface));
   PetscCall(ModelGetUnit(contact->model, "m", &failure.metre));
   PetscCall(FootPairs(contact, interface, surface));
-  PetscCall(DiscretizationChoose(contact, interface, first, surface));
+  PetscCall(DiscretizationChoose(contact, interface, first));
   PetscCall(PairsChoose(contact, interface, first, surface, &failure));
   PetscCall(PartnerCheck(contact->comm, c, &failure));
   if (!contact->mortar[interface]) PetscCall(PairsCover(contact, interface, first, &lost));
