@@ -13,7 +13,9 @@ static const struct {
   const char *words;
 } within[] = {
   /* in the order of the bits */
-  {RUN_EQUILIBRIUM, "-analysis static, and modes, sweeps and transients about the sliding state"},
+  {RUN_EQUILIBRIUM,
+   "-analysis static, modes, sweeps and frequency responses about the sliding state, and transients with "
+   "-dynamics_start static"},
   {RUN_SLIDING, "modes, sweeps and frequency responses about the sliding state"},
   {RUN_IDENTIFY, "-..._kn identify"},
   {RUN_HOLDS, "equilibria with pairs that can stick, of contacts that are not told where to slide"},

@@ -205,7 +205,7 @@ struct _p_Statics {
   PetscInt   n_kept;
   PetscReal *p, *factored; /* [n_parameters] the point of the solution, and that of the factorisation or NULL */
   /* the solution */
-  PetscBool         solved;
+  PetscBool         solved, rested;                 /* rested: nothing pressed in the stage before */
   PetscInt          n_parameters, n_it, n_factored; /* iterations; sparse factorisations of the last solution */
   ContactStatus    *status;                         /* [n_pairs] open, stick or slip */
   ContactState     *state;                          /* [n_pairs] gap, forces, status */

@@ -10,21 +10,39 @@ void StaticsCloseAll(Statics s)
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = s->rows.law[p].d == 3 ? CONTACT_STICK : CONTACT_SLIP;
 }
 
-/* Nothing moves without loads on what can move, unless bodies interfere, g0 < 0 with all motions done. Both numbers
-   are those of all ranks. The laws are set again in the first load step. Bodies that have worn until nothing presses
-   them any more are a result. */
-static PetscErrorCode StaticsCheckLoad(Statics s, Vec f)
+/* Without loads on what can move, f = 0, motions and interferences, g0 < 0 with all motions done, nothing presses: then
+   u = 0 and all pairs are without force. An error where all acts at once. Told alike on all ranks. The laws are set
+   again in the first load step. */
+static PetscErrorCode StageIsPressed(Statics s, const Stage *stage, Vec f, PetscBool *pressed)
 {
-  PetscReal least = 0, size;
+  const ModelScene *scene;
+  PetscReal         least = 0, size;
+  PetscBool         moves = PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_motions; i++)
+    if (stage->motion[i] != 0) moves = PETSC_TRUE;
   PetscCall(VecNorm(f, NORM_2, &size));
   PairRowsMove(&s->rows, 1, 0, NULL);
   for (PetscInt p = 0; p < s->rows.n_pairs; p++) least = PetscMin(least, s->rows.law[p].g0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, s->comm));
-  PetscCheck(size > 0 || least < 0, s->comm, PETSC_ERR_USER_INPUT,
+  *pressed = size > 0 || least < 0 || s->n_wear || (moves && s->n_stages) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(*pressed || s->n_stages, s->comm, PETSC_ERR_USER_INPUT,
              "nothing presses the bodies together: give -loads on what -supports do not hold, e.g. -loads press "
              "-press_set beam_top -press_force 0,0,-100");
+  PetscFunctionReturn(0);
+}
+
+/* The state in which nothing presses; what follows begins as a first stage does */
+static PetscErrorCode StageRest(Statics s, PetscReal l[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < s->rows.n_pairs; p++) s->status[p] = CONTACT_OPEN;
+  PetscCall(PetscArrayzero(l, s->rows.n));
+  PetscCall(VecSet(s->u, 0));
+  s->rested = PETSC_TRUE;
+  PetscCall(PetscPrintf(s->comm, "stage %s: nothing presses; all pairs are open\n", StagesGet(s, s->stage)->name));
   PetscFunctionReturn(0);
 }
 
@@ -104,31 +122,35 @@ static PetscErrorCode StageSolve(Statics s, PetscInt k, Vec *f0, PetscReal *size
   const Stage *stage = StagesGet(s, k);
   PetscReal   *l, *w0 = NULL, end;
   Vec          f;
+  PetscBool    pressed;
   char         loads[160] = "the loads";
 
   PetscFunctionBeginUser;
   s->stage = k;
   if (stage->name) PetscCall(PetscSNPrintf(loads, sizeof(loads), "the loads up to -stages %s", stage->name));
   PetscCall(StageSetLayout(s, stage));
-  if (!k && s->n_stages) StaticsCloseAll(s);
+  if ((!k || s->rested) && s->n_stages) StaticsCloseAll(s);
+  s->rested = PETSC_FALSE;
   PetscCall(PairRowsSetMoved(s->model, StagesGet(s, k - 1), stage, &s->rows));
   PetscCall(StaticsCreateLoad(s->operators, s->p, stage, &f, &end));
   *size = PetscMax(*size, end);
-  if (!k && !s->n_wear) PetscCall(StaticsCheckLoad(s, f));
+  PetscCall(StageIsPressed(s, stage, f, &pressed));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   if (k) PetscCall(StageTakeUp(s, l, &w0));
   PetscCall(HoldCheck(s->operators, &s->compliance.hold, loads, f, *size));
-  PetscCall(EquilibriumSolve(s, &(Active){.rows       = &s->rows,
-                                          .compliance = &s->compliance,
-                                          .f          = f,
-                                          .f0         = *f0,
-                                          .w0         = w0,
-                                          .size       = *size,
-                                          .load_steps = s->load_steps,
-                                          .status     = s->status,
-                                          .l          = l,
-                                          .u          = s->u}));
+  if (!pressed) PetscCall(StageRest(s, l));
+  if (pressed)
+    PetscCall(EquilibriumSolve(s, &(Active){.rows       = &s->rows,
+                                            .compliance = &s->compliance,
+                                            .f          = f,
+                                            .f0         = *f0,
+                                            .w0         = w0,
+                                            .size       = *size,
+                                            .load_steps = s->load_steps,
+                                            .status     = s->status,
+                                            .l          = l,
+                                            .u          = s->u}));
   s->n_free = s->compliance.hold.n;
   PetscCall(StaticsSetState(s, f, l));
   if (s->n_stages) PetscCall(StaticsFindReactions(s));

@@ -91,8 +91,8 @@ static PetscErrorCode StagesCheckNamed(Statics s, const StageTarget *t, const Pe
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++)
     PetscCheck(named[i] || (wanted && !wanted[i]), s->comm, PETSC_ERR_USER_INPUT,
-               "%s %s acts in none of the -stages: name it in -%s_%s, or in that of another stage", t->list,
-               TargetName(t, i), s->stages[0].name, t->what);
+               "%s %s %s in none of the -stages: name it in -%s_%s, or in that of another stage", t->list,
+               TargetName(t, i), !strcmp(t->what, "sliding") ? "slides as told" : "acts", s->stages[0].name, t->what);
   PetscFunctionReturn(0);
 }
 
