@@ -77,6 +77,20 @@ static PetscErrorCode ChainWriteScene(Chain *chain)
   PetscFunctionReturn(0);
 }
 
+/* The wear of a point of a sweep over wear_time ends at its value */
+static PetscErrorCode ChainCheckWear(const Chain *chain)
+{
+  const ContactWear *wear;
+
+  PetscFunctionBeginUser;
+  if (!chain->contact) PetscFunctionReturn(0);
+  PetscCall(ContactGetWear(chain->contact, &wear));
+  PetscCheck(wear->depth == 0 && wear->settled == 0, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+             "-wear_%s %g: points of a sweep over wear_time would have worn for less than their value; leave it out",
+             wear->depth > 0 ? "depth" : "settled", (double)(wear->depth > 0 ? wear->depth : wear->settled));
+  PetscFunctionReturn(0);
+}
+
 /* A sweep may vary what makes damping, of which one point may have none, and real modes have none. A component ends in
    _x, _y or _z: damper_viscosity_x */
 static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
@@ -99,6 +113,10 @@ static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
       PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesSearch, &search}));
     }
     if (search.found && search.row.varies & VARIES_DAMPING) *does |= RUN_DAMPED | RUN_UNDAMPED;
+    if (search.found && !strcmp(search.row.name, "-wear_time")) {
+      *does |= RUN_WEARS;
+      PetscCall(ChainCheckWear(chain));
+    }
   }
   PetscCall(PetscStrToArrayDestroy(n, name));
   PetscFunctionReturn(0);

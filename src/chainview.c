@@ -38,6 +38,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_OPERATORS) PetscCall(ChainLinearise(chain));
   if (what == SHOWN_OPERATORS) PetscCall(PencilView(chain->pencil, viewer));
   if (what == SHOWN_STATICS) PetscCall(StaticsView(chain->statics, viewer));
+  if (what == SHOWN_MODES || what == SHOWN_FRF) PetscCall(StaticsViewWear(chain->statics, viewer));
   if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
   if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
   if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));

@@ -55,6 +55,7 @@ typedef enum {
   RUN_EPS         = RUN_EQUILIBRIUM << 14, /* SLEPc's EPS solves them, or tells how far to look */
   RUN_PEP         = RUN_EQUILIBRIUM << 15, /* its PEP does */
   RUN_NAMED       = RUN_EQUILIBRIUM << 16, /* its unknowns are those of nodes of parts, of a mesh or -operators_nodes */
+  RUN_WEARS       = RUN_EQUILIBRIUM << 17, /* a sweep over the time that contacts wear */
 } RunBit;
 
 typedef struct {

@@ -105,6 +105,10 @@ PetscErrorCode StaticsSolve(Statics statics, const PetscReal p[]);
     StaticsSolveSliding() find. Not collective. @*/
 PetscErrorCode StaticsSetWears(Statics statics, PetscBool wears);
 
+/*@ StaticsViewWear - how long and how deep contacts have worn before the last state, a line each; nothing where none
+    did. Collective. @*/
+PetscErrorCode StaticsViewWear(Statics statics, PetscViewer viewer);
+
 /*@
    StaticsSolveWorn - the same after wear, the gaps of all pairs grown as (contact/topography/wear.c)
 

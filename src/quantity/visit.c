@@ -32,6 +32,7 @@ static const struct {
   {RUN_EPS, "eigenvalue problems that -eps_* solves"},
   {RUN_PEP, "eigenvalue problems that -pep_* solves"},
   {RUN_NAMED, "scenes with a mesh, and matrices with -operators_nodes"},
+  {RUN_WEARS, "sweeps over wear_time"},
 };
 
 const char *RunBitWords(unsigned i)

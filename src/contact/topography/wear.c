@@ -22,11 +22,20 @@ static const char *WearIdle(const void *contact, const QuantityRun *run)
   return "not used without a -..._wear_rate of a contact";
 }
 
-#define WEARS .in = RUN_STATIC | RUN_SLIDING, .idle = WearIdle, .restart = PETSC_TRUE
+static const char *WearIdleEnd(const void *contact, const QuantityRun *run)
+{
+  const struct _p_Contact *c = contact;
+
+  if (c->wear.time <= 0 && !(run->does & RUN_WEARS)) return "not used without a positive -wear_time";
+  return WearIdle(contact, run);
+}
+
+#define WEARS_IN .in = RUN_STATIC | RUN_SLIDING, .restart = PETSC_TRUE
+#define WEARS    WEARS_IN, .idle = WearIdleEnd
 
 static const Quantity rows[] = {
   {"-wear_time", "time of sliding that contacts have worn when the sliding state is found", "s", QUANTITY_REAL,
-   WEAR(time), QUANTITY_NOT_NEGATIVE, WEARS, .varies = VARIES_LINEAR},
+   WEAR(time), QUANTITY_NOT_NEGATIVE, WEARS_IN, .idle = WearIdle, .varies = VARIES_LINEAR},
   {"-wear_steps", "equal steps of that time, each implicit", NULL, QUANTITY_INT, WEAR(steps), .initial = 50,
    QUANTITY_LEAST(1), WEARS},
   {"-wear_depth", "stop where a pair has worn so deep; 0: do not", "m", QUANTITY_REAL, WEAR(depth),

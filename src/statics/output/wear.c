@@ -98,6 +98,7 @@ PetscErrorCode StaticsViewWear(Statics s, PetscViewer viewer)
   const char *metre, *volume;
 
   PetscFunctionBeginUser;
+  if (!s->n_wear) PetscFunctionReturn(0);
   PetscCall(ModelGetUnit(s->model, "m", &metre));
   PetscCall(ModelGetUnit(s->model, "m^3", &volume));
   for (PetscInt i = 0; i < s->n_wear; i++) {

@@ -66,7 +66,7 @@ static PetscErrorCode WearTry(Wearing *g, PetscReal dt)
 }
 
 /* Length of a step between low, not deep enough, and high, too deep, {s, m}: by the secant in the Illinois form, which
-   halves how far an end that stays is off, so that both ends move; each third one by bisection, for depths with steps */
+   halves how far an end that stays is off, so that both ends move; each third one by bisection, for depths that jump */
 static PetscErrorCode WearFindLength(Wearing *g, PetscReal low[2], PetscReal high[2], PetscReal *dt)
 {
   const PetscReal most   = g->options->depth;
