@@ -333,6 +333,24 @@ static PetscErrorCode PartnerCheck(MPI_Comm comm, ContactInterface *c, PairFailu
   PetscFunctionReturn(0);
 }
 
+/* Says what was chosen unasked, and an interference (m) beside which the contact of this area (m^2) is small */
+static PetscErrorCode ChoicesTell(Contact contact, const ContactInterface *c, PetscReal area)
+{
+  const char *metre;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(contact->model, "m", &metre));
+  if (c->discretization == CONTACT_AUTO && contact->mortar[c - contact->interfaces])
+    PetscCall(PetscPrintf(
+      contact->comm, "contact %s: meshes do not match: mortar, but node to surface in time on the mesh\n", c->name));
+  if (c->interference > 0.1 * PetscSqrtReal(area))
+    PetscCall(PetscFPrintf(contact->comm, stderr,
+                           "squeal: warning: -%s_interference %.6g %s is more than 10 %% of the size of the contact, "
+                           "%.3g %s; is it in %s?\n",
+                           c->name, (double)c->interference, metre, (double)PetscSqrtReal(area), metre, metre));
+  PetscFunctionReturn(0);
+}
+
 /* The pairs of one interface, appended to those before. -X_force F is shared by area, lambda_p = F a_p / sum a: a
    uniform pressure, until statics tells better. The areas are those over the master, hence after PairsCover(). */
 PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
@@ -354,6 +372,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscCall(OffWarn(contact, c, lost));
   for (PetscInt p = first; p < contact->n_pairs; p++) area += contact->pairs[p].area;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPI_SUM, contact->comm));
+  PetscCall(ChoicesTell(contact, c, area));
   for (PetscInt p = first; p < contact->n_pairs; p++)
     contact->pairs[p].force = c->force * contact->pairs[p].area / area;
   PetscFunctionReturn(0);
