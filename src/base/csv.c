@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char mark[] = "\xEF\xBB\xBF"; /* of the order of bytes, before UTF-8 of some spreadsheets */
+
 /* The words of the next line; their number, 0 at the end of the file */
 static PetscInt CsvCut(Csv *csv)
 {
@@ -14,6 +16,8 @@ static PetscInt CsvCut(Csv *csv)
   if (!fgets(csv->text, CSV_MAX_LINE, csv->stream)) return 0;
   csv->line++;
   csv->text[strcspn(csv->text, "\r\n")] = '\0';
+  if (csv->line == 1 && !strncmp(csv->text, mark, strlen(mark)))
+    memmove(csv->text, csv->text + strlen(mark), strlen(csv->text + strlen(mark)) + 1);
   for (char *rest = csv->text; rest && n < CSV_MAX_COLUMNS; n++) {
     char **word = &csv->word[n];
 
@@ -44,6 +48,12 @@ void CsvOpen(Csv *csv, const char file[], PetscInt n, const char *const column[]
   if (!csv->stream) (void)snprintf(csv->fault, sizeof(csv->fault), "%s", FileReason(errno));
   if (!csv->stream) return;
   csv->n_columns = CsvCut(csv);
+  if (csv->n_columns == 1 && strchr(csv->word[0], ';')) {
+    (void)snprintf(csv->fault, sizeof(csv->fault),
+                   "its columns are separated by ';': they must be by ',', and numbers "
+                   "have a point, as 1.5e-6");
+    return;
+  }
   for (PetscInt c = 0; c < n; c++) {
     csv->at[c] = -1;
     for (PetscInt i = 0; i < csv->n_columns; i++)
