@@ -80,21 +80,11 @@ static inline void SegmentTransform(int n, double alpha, double w[])
   if (n == 9) w[8] *= (1 - 2 * alpha) * (1 - 2 * alpha);
 }
 
-/* int N~_j dA over a whole facet, to the accuracy of the rule of its shape, m^2 */
+/* int N~_j dA over a whole facet, to the accuracy of the rule of its shape, m^2: N~ is linear in N */
 static inline void SegmentWhole(int n, const double x[][3], double alpha, double whole[])
 {
-  const FacetShape *shape = FacetShapeOf(n);
-
-  for (int j = 0; j < n; j++) whole[j] = 0;
-  for (int q = 0; q < shape->n_points; q++) {
-    const double *at = shape->point[q];
-    double        N[FACET_NODES], normal[3];
-
-    FacetWeights(n, at, N);
-    FacetNormal(n, x, at, normal);
-    SegmentTransform(n, alpha, N);
-    for (int j = 0; j < n; j++) whole[j] += at[2] * N[j] * Vec3Length(normal);
-  }
+  FacetAreas(n, x, whole);
+  SegmentTransform(n, alpha, whole);
 }
 
 /* u~ of node i as a sum of the values at the nodes, v[n] */

@@ -1,16 +1,16 @@
 /*
-   Tables and fields. static.csv has one row a pair, ordered by interface and position, so that it does not depend on
-   the ranks.
+   Tables and fields. static.csv and gap.csv have one row a pair, ordered by interface and position, so that they do not
+   depend on the ranks.
 */
 #include "statics/staticsimpl.h"
 #include "base/gather.h"
 #include "base/algebra/vec3.h"
 #include <stdlib.h>
 
-/* One row of the table */
+/* One row of the tables: topography is the gap of the unloaded surfaces, worn what slave and master have lost, m */
 typedef struct {
   PetscInt     interface;
-  PetscReal    x[3], t[3], n[3], area, pressure, stiffness;
+  PetscReal    x[3], t[3], n[3], area, pressure, stiffness, topography, worn[2];
   ContactState state;
 } StaticsRecord;
 
@@ -49,6 +49,19 @@ static PetscErrorCode StaticsSetPressure(Statics s, PetscInt interface, StaticsR
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode StaticsSetTopography(Statics s, PetscInt p, StaticsRecord *r)
+{
+  const PetscReal worn = s->worn[p];
+  OperatorsWear   wear;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetPairWear(s->operators, s->p, &s->rows.pair[p], &wear));
+  r->topography = s->rows.pair[p].gap + worn;
+  r->worn[0]    = wear.share * worn;
+  r->worn[1]    = worn - r->worn[0];
+  PetscFunctionReturn(0);
+}
+
 /* Records of all ranks, in order, on every rank */
 static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord **all)
 {
@@ -63,6 +76,7 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
     PetscCall(PetscArraycpy(local[p].x, rows->pair[p].x, 3));
     PetscCall(PetscArraycpy(local[p].t, rows->pair[p].t, 3));
     PetscCall(PetscArraycpy(local[p].n, rows->pair[p].n, 3));
+    PetscCall(StaticsSetTopography(s, p, &local[p]));
   }
   for (PetscInt i = 0; i < rows->n_interfaces; i++) PetscCall(StaticsSetPressure(s, i, local));
   PetscCall(GatherRecords(s->comm, rows->n_pairs, sizeof(StaticsRecord), local, n, all));
@@ -72,14 +86,11 @@ static PetscErrorCode StaticsGatherRecords(Statics s, PetscInt *n, StaticsRecord
 }
 
 /* static.csv */
-static PetscErrorCode StaticsWritePairs(Statics s, Results results)
+static PetscErrorCode StaticsWritePairs(Statics s, PetscInt n, const StaticsRecord record[], Results results)
 {
-  ResultsTable   table;
-  PetscInt       n;
-  StaticsRecord *record;
+  ResultsTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(StaticsGatherRecords(s, &n, &record));
   PetscCall(ResultsTableOpen(results, "static",
                              "pair,x_m,y_m,z_m,gap_m,lambda_n_n,lambda_t_n,status,interface,lambda_b_n,area_m2,"
                              "pressure_pa,slip_t_m,slip_b_m,t_x,t_y,t_z,n_x,n_y,n_z,stiffness_n_m",
@@ -99,7 +110,24 @@ static PetscErrorCode StaticsWritePairs(Statics s, Results results)
       (double)r->stiffness));
   }
   PetscCall(ResultsTableClose(&table));
-  PetscCall(PetscFree(record));
+  PetscFunctionReturn(0);
+}
+
+/* gap.csv, the topography as -contact_gap reads it; of 17 digits, so that what reads it has the same numbers */
+static PetscErrorCode StaticsWriteGaps(Statics s, PetscInt n, const StaticsRecord record[], Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "gap", "pair,x_m,y_m,z_m,gap_m,interface,worn_slave_m,worn_master_m", &table));
+  for (PetscInt i = 0; i < n; i++) {
+    const StaticsRecord *r = &record[i];
+
+    PetscCall(ResultsTableRow(table, "%" PetscInt_FMT ",%.17g,%.17g,%.17g,%.17g,%s,%.15g,%.15g", i + 1, (double)r->x[0],
+                              (double)r->x[1], (double)r->x[2], (double)r->topography,
+                              s->rows.interface[r->interface].name, (double)r->worn[0], (double)r->worn[1]));
+  }
+  PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
 
@@ -122,9 +150,15 @@ static PetscErrorCode StaticsNote(Statics s, Results results)
 
 PetscErrorCode StaticsWrite(Statics s, Results results)
 {
+  PetscInt       n;
+  StaticsRecord *record;
+
   PetscFunctionBeginUser;
   PetscCall(StaticsNote(s, results));
-  PetscCall(StaticsWritePairs(s, results));
+  PetscCall(StaticsGatherRecords(s, &n, &record));
+  PetscCall(StaticsWritePairs(s, n, record, results));
+  PetscCall(StaticsWriteGaps(s, n, record, results));
+  PetscCall(PetscFree(record));
   PetscCall(StaticsWriteReactions(s, results));
   PetscCall(StagesWrite(s, results));
   PetscCall(StaticsWriteWear(s, results));
