@@ -351,7 +351,7 @@ PETSC_INTERN PetscErrorCode EquilibriumSolve(Statics statics, Active *active);
 /* wear/wear.c - lets the gaps of the last solution grow, rows.worn, with its pairs beginning from the forces l [rows]
    over kappa; none without wear. Collective. */
 PETSC_INTERN PetscErrorCode StaticsWear(Statics statics, PetscBool *worn);
-/* output/wear.c - wear.csv, where something wore; gap.csv */
+/* output/wear.c - wear.csv, where something wore */
 PETSC_INTERN PetscErrorCode StaticsWriteWear(Statics statics, Results results);
 
 /* balance.c - what the pairs, with their friction times a factor, cannot balance of the loads, left [m]; worst is the
