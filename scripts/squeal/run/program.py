@@ -37,10 +37,10 @@ def compiled_program():
     return Path(program)
 
 
-def chosen_program(path):
-    """The program of --program, or the compiled one where none is given."""
+def chosen_program(path, said="--program"):
+    """The program that an option gives, or the compiled one where none is given."""
     if path and not (path.is_file() and os.access(path, os.X_OK)):
-        raise SystemExit(f"--program {path}: {'is no program' if path.exists() else 'no such file'}; needed is squeal")
+        raise SystemExit(f"{said} {path}: {'is no program' if path.exists() else 'no such file'}; needed is squeal")
     return (path or compiled_program()).resolve()
 
 
