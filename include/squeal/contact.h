@@ -184,42 +184,7 @@ PetscErrorCode ContactCreate(Model model, Contact *contact);
 /*@
    ContactSetFromOptions - reads the interfaces and asks the model to keep their surfaces on one rank. Collective.
 
-   Options Database Keys:
-+  -contacts <names>              - interfaces; each name is the prefix of the following, shown for a contact named
-`contact`
-.  -contact_surfaces <slave,master> - named surfaces
-.  -contact_law <penalty|constraint> - k_n per pair, or k_n to infinity
-.  -contact_discretization <node|mortar|auto> - pairs of slave nodes and points of the master, or means over both
-                                   surfaces, not in time on the mesh; auto: node where each node of either
-                                   mesh under the other is one of it too, and in time
-                                   on the mesh, mortar elsewhere
-.  -contact_friction_law, -contact_mu, ... - friction (FrictionSetFromOptions()); a negative mu drags the
-                                   master against t, as if the slave slid the other way; not in time
-.  -contact_kn <N/m|identify>     - penalty stiffness per pair, or found by pressing (statics.h)
-.  -contact_pressure_law, ...      - or: pressure over closing (PressureSetFromOptions())
-.  -contact_kt <N/m>              - in modes, of an interface that holds by friction (no slip or rotation is given):
-stiffness
-                                   along the surface of a pair that sticks; or -contact_kt_per_area <N/m^3>
-.  -contact_slip <x,y,z>          - direction of the slave's velocity relative to the master
-.  -contact_rotation <x,y,z>      - or: angular velocity of the master relative to the slave, rad/s
-.  -contact_centre <0,0,0>        - a point of the axis of rotation, m
-.  -contact_speed <m/s>           - sliding speed where only the direction is given
-.  -contact_force <N>             - total normal force in the sliding state, shared by area
-.  -contact_friction_damping <bool> - add mu N0 / v across the slip and mu' N0 along it
-.  -contact_interference <m>      - in statics: by how much the surfaces overlap before the bodies yield, off every gap
-.  -contact_gap <file>            - gaps of the unloaded surfaces in place of the mesh's, a table x_m,y_m,z_m,gap_m
-.  -contact_wear_rate <1/Pa>, -contact_wear_rate_master, -contact_wear_exponent <1> - depth over pressure and length of
-                                   sliding, of slave and master
-.  -wear_time <s>, -wear_steps <50>, -wear_depth <m>, -wear_settled - how long contacts wear before modes
-.  -contact_tolerance <m>         - largest distance of a slave node from the master along the normal
-.  -contact_overhang <m>          - largest distance beyond the master's border, along the surface, at which a slave
-node has a
-                                   pair; default 1 % of the size of the facet
-.  -ties <names>                  - surfaces glued to others; each name is the prefix of the following, shown for one
-named `bond`
-.  -bond_surfaces <slave,master>  - a set whose nodes follow, and a surface
-.  -bond_distance <m>             - largest distance of a node from the surface; default 5 % of the size of the facet
--  -bond_far <error|free>         - what becomes of nodes that are farther off
+   Options are the rows of src/contact/quantities.c and of the laws, see frictionlaw.h and pressurelaw.h.
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact);
 

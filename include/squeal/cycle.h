@@ -72,19 +72,7 @@ PetscErrorCode CycleCreate(MPI_Comm comm, LimitCycle *cycle);
 /*@
    CycleSetFromOptions - reads what is looked for. Collective.
 
-   Options Database Keys:
-+  -cycle_steps <0>        - steps in a period, odd, 7 to 1000001; 0: as long as those of the transient
-.  -cycle_rtol <1e-9>      - of Phi - x, relative to the size of the vibration; 1e-13 to 1e-3
-.  -cycle_max_it <30>      - of Newton's method
-.  -cycle_verify <true>    - once more with twice the steps, and twice with steps that begin elsewhere, for the errors
-and the class
-.  -cycle_verify_cutoff <false> - once more with 2.25 times -dynamics_cutoff, for the errors of the reduction
-.  -cycle_parameter <name> - an option of the scene, e.g. contact_mu or pad_young, over which the branch is followed
-.  -cycle_range <lo,hi>    - where the branch ends
-.  -cycle_points <60>      - cycles on it, at most; half of them the first way
-.  -cycle_start <transient|mode> - the first cycle: at the end of the transient, or near the onset of a mode's
-instability
--  -cycle_amplitude <0.3>  - change of the pairs' normal forces in the latter, of those at rest
+   Options are the rows of src/reduced/cycle/quantities.c.
 @*/
 PetscErrorCode CycleSetFromOptions(LimitCycle cycle);
 

@@ -32,41 +32,7 @@ PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact)
 /*@
    DynamicsSetFromOptions - reads how to integrate. Collective.
 
-   Options Database Keys:
-+  -ts_max_time <s>, -ts_max_steps <n> - how long; with them all of TS's own options
-.  -ts_dt <s>                    - the step, as long as the run at most; without it, and then cut to the run,
-.  -dynamics_step_fraction <0.9> - of the critical one, in six digits, not longer
-.  -dynamics_step_force <false>  - integrate with a step above the critical one
-.  -ts_central_b <0.5>           - b of the integrator, 0.5 to 1
-.  -dynamics_start <rest|static> - from rest, or from the sliding state under the loads
-.  -dynamics_shape <dir>         - folder of a run of modes, one of which is added to the start:
-.  -dynamics_shape_mode <1>      - its number in modes.csv
-.  -dynamics_shape_amplitude <1e-9> - largest component of its displacement x, m, in the phase in which it is positive;
-                                       velocity Re(lambda x)
-.  -dynamics_filters <dir>       - folder of a run of modes about the sliding state, -modes_filters and lumped mass:
-                                   their amplitudes in amplitudes.csv, |c| at the largest component of the shape, m
-.  -dynamics_filters_modes <0> - numbers of the modes in modes.csv; 0: all unstable ones
-.  -dynamics_coriolis, -dynamics_centrifugal <false> - inertial forces in parts that turn
-.  -dynamics_kernel <auto|general> - internal forces; general: one matrix of blocks for every body
-.  -dynamics_history_interval <5e-6> - between rows of transient.csv, s; rounded to whole steps, and cut to the run, as
-the next two:
-                                   longer ones of the command line are refused
-.  -dynamics_pairs_interval <0>  - between states of all pairs in contact_pairs.csv, s; 0 for none
-.  -dynamics_snapshot_interval <0> - between fields, s; 0 for none
-.  -dynamics_live <1>            - between live lines, s of the wall; 0 for none
-.  -contact_view_kkt <false>     - print the residuals of the contact laws in the last step
-.  -dynamics_check_interval <0>  - between looks at the laws by second paths, steps, and the last one; 0 for none
-.  -dynamics_checkpoint_interval <0> - between checkpoints, steps; 0 for none
--  -dynamics_restart <false>     - go on from the checkpoint in the output folder
-   and of the scene
-+  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - ramp of the load `press`, s
-                                     which begins before the end of the run
-.  -disc_velocity <0,0,0>        - of the part `disc` at the start, m/s
-.  -lift_ramp, -lift_ramp_shape, -lift_delay - the same of the motion `lift` (model.h), whose ramp must be given;
-                                   from the sliding state motions are there from the start, and have none
--  -impulses <names>             - at nodes: -hit_at x,y,z (m), -hit_part, -hit_impulse x,y,z (N s; zeros for none),
--hit_time (s), before
-                                   the last step
+   Options are the rows of src/dynamics/quantities.c.
    Those of contact surfaces are in projector.h.
 @*/
 PetscErrorCode DynamicsSetFromOptions(Dynamics dynamics);

@@ -71,18 +71,7 @@ PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil);
 /*@
    FrfSetFromOptions - reads where it is hit, where it is looked at, and at which frequencies. Collective.
 
-   Options Database Keys:
-+  -frf_force <probe,direction>   - where the force of 1 N acts: a probe and x, y, z or three numbers; for matrices
-without a mesh the number of an unknown, from 1
-.  -frf_probes <names>            - where the response is recorded; circles by name; default all probes, or all of up to
-10 unknowns
-.  -frf_directions <xyz>          - in which directions
-.  -frf_frequencies <low:high:n>  - Hz; low:high:n:log for equal ratios; or a list
-.  -frf_times <low:high:n>        - s; the answer of the modes to an impulse of 1 N s as well; or a list
-.  -frf_method <modal>            - superposition of modes; direct solves the whole system at each frequency
-.  -frf_rtol <1e-8>               - largest estimated relative error of the modal method, rounding apart
-.  -frf_max_steps <30>            - most steps of the residual term
--  -frf_restart <true>            - go on where a direct response of the same scene in -output_dir was stopped
+   Options are the rows of src/frf/quantities.c.
 
    Errors: PETSC_ERR_USER_INPUT for frequencies that are not positive, directions that are none.
 @*/

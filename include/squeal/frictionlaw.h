@@ -76,12 +76,7 @@ PetscInt FrictionGetParameters(const FrictionLaw *law, const FrictionParameter *
    Output Parameter:
 .  law  - with the stated speed 0
 
-   Options Database Keys:
-+  -contact_friction_law <coulomb|static_kinetic|stribeck>   - which law
-.  -contact_mu, -contact_mu_slope                            - coulomb: mu(s) = max(0, mu + mu_slope (s - v)), v the
-                                                               stated speed
-.  -contact_mu_static, _kinetic, _decay_speed                - static_kinetic: mu_k + (mu_s - mu_k) exp(-s / s_0)
--  -contact_mu_static, _kinetic, _stribeck_speed, _viscous   - stribeck: mu_k + (mu_s - mu_k) exp(-(s / s_0)^2) + b s
+   Options are the rows of src/contact/law/law.c and of the file of each law beside it, which has mu(s).
 
    Errors: PETSC_ERR_USER_INPUT for parameters beyond their limits, and on the command line for those of another law.
 @*/

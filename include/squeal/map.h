@@ -69,22 +69,8 @@ PetscErrorCode MapCreate(MPI_Comm comm, Map *map);
 /*@
    MapSetFromOptions - reads what to vary. Collective.
 
-   Options Database Keys:
-+  -map_parameter <name[,name]> - as -sweep_parameter, and also the speed of a contact and all of its friction law and
-the force (N, its length), pressure (Pa) or moment (N m) of a load that has one of them
-.  -map_values <first:last:n>   - as -sweep_values: first:last:n, first:last:n:log, or v1,v2,...
-.  -map_values_2 <values>       - those of the second parameter
-.  -map_link <name,name[:...]>  - as -sweep_link: parameters of one unit that take the same value
-.  -map_direction <both>        - both, up or down along the first parameter, in the order of its values; apart: every
-point from its own sliding state
-.  -map_window <5e-3>           - s, of which amplitude and frequency are taken
-.  -map_verify <0>              - points, spread evenly over the map, that are run again with half the step, with
-contact laws to 1e-12, and with 2.25 times the cut-off: map_errors.csv
-.  -map_twins <3>      - transients beside that of a point at most, at most 8, which tell what rounding changes; 0: it
-is not in error_estimate
-.  -map_restart <true>          - go on where a map of the same scene in -output_dir was stopped
--  -map_rtol <0.01>             - relative change of the rms, or standard error of its mean, below which an amplitude is
-settled @*/
+   Options are the rows of src/map/quantities.c.
+@*/
 PetscErrorCode MapSetFromOptions(Map map);
 
 /*@ MapVisit - shows the rows of its options. Collective. @*/

@@ -122,28 +122,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
    points, loads, motions, probes, circles.
    Collective.
 
-   Options Database Keys:
-+  -model_source <rig|file> - where the mesh comes from
-.  -model_mesh <file>       - Gmsh file, format 2.2 or 4.1
-.  -model_element <incompatible|full> - formulation of 8-node hexahedra
-.  -parts, -supports, -springs, -dashpots, -joints, -points, -loads, -motions, -probes, -circles <names> - lists; each
-   name is the prefix of its own options
-.  -<part>_young, _poisson, _shear, _axis_1, _axis_2, _axis_3, _cylinder_axis, _cylinder_centre - elasticity, isotropic
-   or not: model/scene/anisotropic.c
-.  -<part>_spin, _spin_axis, _spin_centre - steady spin of a body of revolution, rad/s, in modes
-.  -<part>_loss_factor <0>  - structural damping, exact at -model_loss_frequency <Hz>: beta grows by loss / (2 pi
-frequency)
-.  -model_gravity <0,0,0>   - acceleration of gravity, m/s^2, which acts on the mass of all parts in statics and in time
-.  -bush_a, -bush_b <the ground>, -bush_at x,y,z <the middle>, -bush_stiffness, _turn_stiffness, _viscosity,
-   _turn_viscosity - of a bushing named `bush`: sets of its two sides, m, N/m, N m/rad, N s/m, N m s/rad
-.  -tip_set, -tip_at, -tip_mass, -tip_inertia xx,yy,zz[,xy,xz,yz], -tip_stiffness and so on - of a point named `tip`
-.  -push_point, -push_force, -push_moment - of a load on a point: its name, N, N m
-.  -lift_set, -lift_displacement x,y,z, -lift_directions <those of the displacement> - of a motion named `lift`: named
-   set, m, some of x, y, z
-.  -rim_radius, -rim_count, -rim_part <disc>, -rim_face <z+>, -rim_centre x,y,z, -rim_tolerance - of a circle named
-`rim`:
-   m, nodes, which part and side of it, m, m
--  -rig_*                   - dimensions (m) and counts of the built-in disc, pad and beam
+   Options are the rows of src/model/quantities.c.
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value, naming option, value and what is valid.
 @*/

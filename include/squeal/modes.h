@@ -70,27 +70,7 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 /*@
    ModesSetFromOptions - reads what to compute. Collective.
 
-   Options Database Keys:
-+  -modes_band <f1,f2>       - all eigenvalues with frequency in this band, Hz
-.  -modes_target <0>         - instead of a band: the -modes_count modes nearest to this frequency, Hz
-.  -modes_count <20>         - how many; either of the two overrides a band
-.  -modes_growth <1/s>       - modes of a band with growth and decay up to this must be found; default a tenth of the
-angular frequency of f2
-.  -modes_most <3000>        - modes that a band may hold, counted before they are computed (0: any number); 100 where
-the units of a part are in doubt
-.  -modes_unstable_damping <0> - growth within this damping ratio, %, is no instability
-.  -modes_unstable_growth <0>  - growth up to this, 1/s, is none
-.  -modes_left <true>        - compute left vectors (condition and error need them)
-.  -modes_filters <false>    - write modal filters (filters.h5), for the amplitudes of the modes in a transient
-.  -modes_components <0>     - write which free modes of the bodies make up each mode, of those up to this multiple of
-the highest frequency
-.  -modes_changes <names>    - changes to try on the modes found, each the prefix of its -at, -part, -to, -to_part,
--unknown, -to_unknown, -direction, -mass, -stiffness, -viscosity, -with
-.  -modes_disc <disc>        - part whose modes are labelled by nodal circles and diameters; where none is called
-disc, the only one with the word disc, disk, rotor or drum in its name, in any letters
-.  -modes_damping <auto>     - route of a damped solution: auto, project (on undamped modes), pep
--  -modes_contact <auto|all|static> - whether the pencil that is set is to be one with all pairs closed, or
-about the sliding state (statics.h); auto: about it where contacts are loaded
+   Options are the rows of src/modes/quantities.c.
    The solvers take -eps_*, -pep_*, -st_*.
 @*/
 PetscErrorCode ModesSetFromOptions(Modes modes);

@@ -47,22 +47,7 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 /*@
    OperatorsSetFromOptions - reads where the matrices come from and go to. Collective.
 
-   Options Database Keys:
-+  -operators_load_k, _m, _c, _h <file>  - PETSc binary matrices; K and M are required together
-.  -operators_dense_k, _m, _c, _h <list> - small dense matrices inline, rows one after another
-.  -terms <names>                        - matrices, each the prefix of -.._file or _dense, _kind
-<stiffness|damping|mass>, _parameter <names>, _power <integers>, _scale, _symmetry <any|symmetric|skew>: K, C and M are
-sums of scale prod_i p_i^n_i A
-.  -operators_nodes <file>               - table unknown,node,direction,x,y,z[,part] of matrices, for shapes and their
-names
-.  -operators_mass <consistent|lumped>   - mass matrix of a model
-.  -operators_factors <auto|lu|symmetric> - with friction LU, or LDL' of the symmetric part with an update for the
-closed pairs; auto takes what needs less memory
-.  -contact_mu <mu>                      - friction coefficient of K + mu H for loaded or dense matrices
--  -operators_save <dir>                 - write K.bin, M.bin and, where there are any, C.bin, H.bin and the loads
-F.bin;
-                                          with the contact constraint, ties or rigid points the projected ones, friction
-                                          in K.bin and M.bin
+   Options are the rows of src/operators/quantities.c.
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 

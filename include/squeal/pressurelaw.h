@@ -51,11 +51,7 @@ const char *PressureGetName(const PressureLaw *law);
    Output Parameter:
 .  law  - a linear one has no stiffness yet
 
-   Options Database Keys:
-+  -contact_pressure_law <linear|exponential|power|table> - which law
-.  -contact_pressure_c0, -contact_pressure_p0       - exponential: p0 / (e - 1) x (e^x - 1), x = c / c0 + 1, c > -c0
-.  -contact_pressure_k, -contact_pressure_m         - power: k c^m
--  -contact_pressure_table, -contact_pressure_file  - table: points closing,pressure, straight lines between them
+   Options are the rows of src/contact/pressure/pressure.c and of the file of each law beside it, which has p(c).
 
    Errors: PETSC_ERR_USER_INPUT for parameters beyond their limits, and on the command line for those of another law;
    for a table that does not rise, or does not begin without pressure.

@@ -73,10 +73,7 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
 /*@
    ContactProjectorSetFromOptions - reads how the masters move, and the most sweeps. Collective.
 
-   Options Database Keys:
-+  -contact_kinematics <prescribed|turning> - see above
-.  -contact_ramp <0>, -contact_ramp_shape <smooth|linear>, -contact_delay <0> - of the sliding velocity, s
--  -projector_max_it <1000> - sweeps; beyond, PETSC_ERR_NOT_CONVERGED with residual and pair
+   Options are the rows of src/contact/projector/quantities.c.
 @*/
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector projector);
 

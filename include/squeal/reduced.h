@@ -190,18 +190,7 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced);
 /*@
    ReducedSetFromOptions - reads whether and how to reduce. Collective.
 
-   Options Database Keys:
-+  -dynamics_model <full|reduced> - the mesh, or modes and compliance
-.  -dynamics_verify <false>       - runs again with half the step, and with 2.25 times the cut-off: how the force
-differs
-.  -dynamics_compare <true>       - with -modes_band: eigenvalues about the sliding state beside those of the mesh
-.  -dynamics_cutoff <f>           - of the modes, Hz; without it 4 times the upper end of -modes_band, or 20 kHz, and
-more where
-                                    the comparison asks for it
--  -dynamics_growth_rtol <5e-3>   - what growth of unstable modes in -modes_band may be off by where cut-off and step
-are chosen; where
-                                    it is given without a band, of all modes below the cut-off, by their inertia above,
-                                    the cut-off alone
+   Options are the rows of src/reduced/quantities.c.
 @*/
 PetscErrorCode ReducedSetFromOptions(ReducedRun reduced);
 

@@ -21,9 +21,7 @@ PetscErrorCode ResultsCreate(MPI_Comm comm, Results *results);
 /*@
    ResultsSetFromOptions - reads where to write. Collective.
 
-   Options Database Keys:
-+  -output_dir <results>  - folder of all files
--  -output_fields <true>  - write shapes (*.h5, *.xmf) beside the tables
+   Options are the rows of src/results/results.c.
 @*/
 PetscErrorCode ResultsSetFromOptions(Results results);
 

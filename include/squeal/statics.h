@@ -66,20 +66,7 @@ PetscErrorCode StaticsSetOperators(Statics statics, Operators operators);
 /*@
    StaticsSetFromOptions - reads how to solve. Collective.
 
-   Options Database Keys:
-+  -static_max_it <50>       - most iterations of the active set at one load
-.  -static_load_steps <1>    - equal steps of the loads; slip is counted from the step before (Coulomb's law)
-.  -stages <names>           - stages of the loading in their order, each the prefix of the following, shown for one
-named `press`
-.  -press_loads, -press_motions, -press_sliding, -press_interferences <names> - loads, motions, contacts that begin to
-act in it, to slide, to overlap by their -contact_interference; each must be named in a stage
-.  -press_ends <names>       - loads that cease in it
-.  -static_dense <2000>      - most rows of the contact problem for a dense one; beyond, GMRES on the factorisation
-.  -static_rows <0>          - for modes: rows of pairs more (> 0) or less (< 0) than the sliding state closes
-.  -static_geometric <false> - for modes: geometric stiffness of the preload
-.  -static_follower <false>  - for modes: contact forces turn with the master surface
-.  -static_identify_steps <10> - steps of the force ramp that identifies the contact stiffness
--  -static_view_kkt <false>  - print the residuals of the contact laws
+   Options are the rows of src/statics/quantities.c.
    The factorisation takes -st_pc_*, -st_mat_mumps_*, GMRES -st_pairs_ksp_*.
 @*/
 PetscErrorCode StaticsSetFromOptions(Statics statics);

@@ -50,30 +50,7 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics);
 /*@
    SweepSetFromOptions - reads what to vary and how accurately. Collective.
 
-   Options Database Keys:
-+  -sweep_parameter <name[,name]> - one or two options of the scene: young, density, alpha, beta of a part, stiffness of
-springs, viscosity of dashpots, mu, kn, speed, ... of a contact, e.g. pad_young,contact_mu; about the sliding state also
-the size of a load: force (N, its length), pressure (Pa) or moment (N m)
-.  -sweep_values <first:last:n>   - n equal steps; first:last:n:log for equal ratios; or a list v1,v2,...
-.  -sweep_values_2 <values>       - those of the second parameter
-.  -sweep_link <name,name[:...]>  - parameters of one unit that take the value of the swept one among them, one link or,
-with : between, one for each swept parameter: inner_mu,outer_mu. Derivatives along a link are sums over its parameters;
--sweep_uncertain moves all of a link, each by the same part of its own value
-.  -sweep_method <reduced>        - reduced; full solves every point in full, and nothing between; real projects on real
-modes
-.  -sweep_rtol <1e-6>             - largest estimated relative error of an eigenvalue
-.  -sweep_real_modes <80>         - real modes of each point that -sweep_method real projects on
-.  -sweep_real_stiffness <symmetrised> - of these modes: K + mu H made symmetric, or K alone (frictionless)
-.  -sweep_max_samples <20>        - most full solutions; by itself as many as there are points and ends of brackets
-around changes of contact status, where these are more
-.  -sweep_verify <0>              - full solutions at this many points between those of the sweep: true errors
-.  -sweep_onsets <true>           - critical values of the first parameter, confirmed on the full problem (full: between
-points)
-.  -sweep_sensitivities <false>   - derivatives of every eigenvalue by every parameter
-.  -sweep_uncertain <names>       - parameters known to -sweep_percent only: which modes can become unstable
-.  -sweep_percent <percents>      - their uncertainty, one value for all names or one for each
-.  -sweep_groups <0>              - ranks that share the points, 0 for all; full solutions use all ranks
--  -sweep_restart <true>          - go on where a sweep of the same scene in -output_dir was stopped
+   Options are the rows of src/sweep/quantities.c.
 @*/
 PetscErrorCode SweepSetFromOptions(Sweep sweep);
 

@@ -47,15 +47,7 @@ PetscErrorCode SquealViewUsage(MPI_Comm comm);
 /*@
    SquealSetFromOptions - what concerns every room. Collective.
 
-   Options Database Keys:
-+  -squeal_traceback  - shows PETSc's traceback of an error, on each rank that meets it, before the line that a user
-sees
-.  -squeal_log <file> - all that is printed on stdout and stderr, but for progress, goes to this file as well; also
-                        -log_file
-.  -squeal_progress   - the stage and the time left, on stderr; by default where that is a terminal
--  -squeal_memory <mb> - that factors, or models over -cycle_parameter, may take on one machine, all ranks there
-together; by default
-                        what is free
+   Options are the rows of src/quantity/settings.c.
 
    Errors: PETSC_ERR_FILE_OPEN for a log that cannot be written, or would replace a file that is no log.
 @*/

@@ -49,10 +49,7 @@ static inline double RampIntegral(const Ramp *ramp, double t)
 /*@
    RampSetFromOptions - reads the ramp of a name; title heads it in -help, before the name. Collective.
 
-   Options Database Keys (press_ being the prefix):
-+  -press_ramp <0>                      - length, s; 0 is a jump
-.  -press_ramp_shape <smooth|linear>    - cosine, without jumps of the rate, or straight
--  -press_delay <0>                     - time at which it begins, s
+   Options are the rows of ramp.c.
 
    Output Parameter:
 .  ramp - the defaults where nothing is given, whatever it was before

@@ -44,9 +44,11 @@ def chosen_program(path, said="--program"):
     return (path or compiled_program()).resolve()
 
 
-def scene(*names):
-    """Words of the options files of options/, named without their ending, in their order."""
-    return [word for name in names for word in ("-options_file", ROOT / f"options/{name}.yaml")]
+def scene(*names, before=None):
+    """Words of the options files of options/, named without their ending, in their order; of the folder `before` where it has them."""
+    own = ROOT / "options"
+    files = [(before if before and (before / f"{name}.yaml").is_file() else own) / f"{name}.yaml" for name in names]
+    return [word for file in files for word in ("-options_file", file)]
 
 
 def launch(program, ranks, words, about):

@@ -80,7 +80,7 @@ class Gallery:
 
     def __init__(self, args):
         self.program, self.folder, self.seconds, self.quick = args.program, args.output.resolve(), args.seconds, args.quick
-        self.before, self.changed = args.before, frozenset(args.changed)
+        self.before, self.scenes, self.changed = args.before, args.scenes, frozenset(args.changed)
         self.ranks = [int(word) for word in args.ranks.split(",")]
         self.preload = ["-x", f"LD_PRELOAD={args.collective.resolve()}"] if args.collective else []
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -96,16 +96,16 @@ class Gallery:
             make_mesh("block" if run.mesh == "sliding_block" else run.mesh, path, **numbers)
         return ["-model_mesh", path]
 
-    def words(self, run):
-        """The command of a scene, without program and folder."""
+    def words(self, run, before=None):
+        """The command of a scene, without program and folder; with files of the folder `before` where it has them."""
         short = run.quick if self.quick and run.quick else run.short
-        return [*scene(*run.files.split()), *self.mesh(run), *run.words.split(), *short.split(), "-output_fields", 0]
+        return [*scene(*run.files.split(), before=before), *self.mesh(run), *run.words.split(), *short.split(), "-output_fields", 0]
 
     def made(self, name, run, ranks, more=(), program=None):
         """The folder of a run and s of the clock; what happened in place of the folder where it did not end well."""
         out = self.folder / f"{name.replace(' ', '-')}-{ranks}{'-nudged' if more else '-before' if program else ''}"
-        command = [ROOT / "scripts/mpirun", "-n", ranks, *(self.preload if ranks > 1 else []), program or self.program, *self.words(run),
-                   *more, "-output_dir", out]
+        command = [ROOT / "scripts/mpirun", "-n", ranks, *(self.preload if ranks > 1 else []), program or self.program,
+                   *self.words(run, self.scenes if program else None), *more, "-output_dir", out]
         begun = time.monotonic()
         with subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                               text=True) as process:

@@ -73,8 +73,7 @@ PetscErrorCode BodiesCreate(MPI_Comm comm, Bodies *bodies);
 /*@
    BodiesSetFromOptions - reads the choice of kernels. Collective.
 
-   Options Database Keys:
-.  -dynamics_kernel <auto|general> - general: one sparse matrix of 3 x 3 blocks for every body
+   Its option is the row of bodies.c.
 @*/
 PetscErrorCode BodiesSetFromOptions(Bodies bodies);
 

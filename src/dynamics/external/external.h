@@ -38,13 +38,7 @@ PETSC_INTERN PetscErrorCode ExternalCreate(MPI_Comm comm, Model model, External 
 /*
    ExternalSetFromOptions - reads what the scene prescribes; after ModelSetFromOptions(). Collective.
 
-   Options Database Keys:
-+  -press_ramp <0>, -press_ramp_shape <smooth|linear>, -press_delay <0> - of the load `press`: length, shape, begin, s
-.  -lift_ramp, -lift_ramp_shape <smooth|linear>, -lift_delay <0> - of the motion `lift`, as of loads; the length must be
-   positive, unless the model holds the motions (ModelHoldMotions()): then they stay where they are from the start
-.  -impulses <names>      - at nodes, each the prefix of its own options
-.  -hit_at x,y,z, -hit_part, -hit_impulse x,y,z, -hit_time <0> - place (m) whose nearest node is hit, its part, N s, s
--  -disc_velocity <0,0,0> - of the part `disc` at the start, m/s
+   Options are the rows of quantities.c, ramp.h and, of motions, of the model.
 
    Errors: PETSC_ERR_USER_INPUT for a missing or invalid value.
 */

@@ -47,19 +47,7 @@ static PetscErrorCode RigCheck(MPI_Comm comm, const Rig *rig)
 /*
    RigSetFromOptions - reads dimensions and counts of the rig. Collective.
 
-   Options Database Keys:
-+  -rig_disc_inner, -rig_disc_outer, -rig_disc_thickness <0.05, 0.12, 0.01> - m
-.  -rig_disc_mesh <patch|axisymmetric>        - grid of the disc
-.  -rig_disc_elements <21,100,3 or 16,160,4>  - rings, columns, layers
-.  -rig_disc_spread <0>                       - 0: rings of the patch keep their radii all around, 1: they even out
-.  -rig_pad <true>                            - false: the disc alone
-.  -rig_pad_radius <0.11>                     - radius of the pad's centre, m
-.  -rig_pad_size <0.01,0.01,0.01>             - m
-.  -rig_pad_elements <10,10,10>               - in x, y, z
-.  -rig_beam_height <0.1>                     - m
-.  -rig_beam_elements <20>                    - over the height
-.  -rig_beam_rows <0.02,0.08>                 - heights of the rows of spring nodes above the beam's lower end, m
--  -rig_save <file>                           - write mesh and sets as a Gmsh file
+   Options are the rows of rig_quantities.
 
    Errors: PETSC_ERR_USER_INPUT for impossible dimensions and counts.
 */
