@@ -28,9 +28,12 @@ def has_row(owner, name, rows):
 
 
 def named_without_row(house):
-    """Each text that names an option without a row: source, place, option. What has no underscore and no owner may be a word."""
+    """Each text that names an option without a row, and each list of options in a comment: source, place, option.
+    What has no underscore and no owner may be a word."""
     rows = rows_of(house)
     for source in house.c:
+        for listed in re.finditer("Options Database Keys", source.text):  # what PETSc's manual pages call a list of options
+            yield source, listed.start(), "options beside their rows"
         bare = re.sub(r"/\*.*?\*/", lambda found: re.sub(r"[^\n]", " ", found[0]), source.text, flags=re.DOTALL)
         for text in TEXT.finditer(bare):
             for found in NAMED.finditer(text[0]):

@@ -58,6 +58,7 @@ PLANTED = (
                                           '  {"-force", "a", "N", QUANTITY_REAL, FORCE(f)},\n};\n'}),
     ("refusals", "Own refuses outside", {"src/model/a.c": 'static int Own(void)\n{\n  return OptionsRefuse(comm, "-mu", "odd");\n}\n'}),
     ("texts", "names -modes_bnad", {"src/model/a.c": 'static const char why[] = "not used; give -modes_bnad";\n'}),
+    ("texts", "options beside their rows", {"src/model/a.h": "/*\n   Options Database Keys:\n.  -modes_band <f1,f2> - Hz\n*/\n"}),
     ("unused", "nothing names gone", {"tests/a.py": "def gone():\n    pass\n"}),
     ("unused", "os is imported in vain", {"scripts/a": "#!/usr/bin/env python3\nimport os\nimport sys  # noqa: F401\n"}),
     ("dead", "Twice is dead", {"src/model/a.c": "int Twice(void)\n{\n  return 1;\n}\n", "src/model/a.h": "int Twice(void);\n",

@@ -15,7 +15,7 @@
   options    no option is read by two functions
   rows       an option is read by its row (include/squeal/quantity.h), but for UNROWED; each row has a help, a unit and a reader
   refusals   what a run does not read is refused by its row's condition, but for REFUSED, which says why not
-  texts      no error and no help names an option that has no row; those of PETSc and SLEPc excepted
+  texts      no error and no help names an option that has no row; those of PETSc and SLEPc excepted; no header lists options
   unused     nothing of Python is imported or defined in vain: each function and class is named somewhere else
   dead       no function of C is kept alive by a test alone, but for public ones, and what one file uses is static
   words      nothing of who wrote it where: no paths of somebody's own folders, no day's work, no numbers of tasks
@@ -300,7 +300,7 @@ def refusals(house):
 def texts(house):
     """Errors and helps that name an option without a row."""
     for source, at, name in named_without_row(house):
-        yield house.say(source.path, source.line(at), f"a text names {name}, which has no row")
+        yield house.say(source.path, source.line(at), f"a text names {name}, which has no row" if name[0] == "-" else name)
 
 
 def unused(house):

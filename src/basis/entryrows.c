@@ -1,6 +1,8 @@
 /*
    Products of many vectors over the rows in which a matrix has entries. A brake has a disc with nearly all unknowns,
    and a pad, springs, and pairs with a hundredth of them: V' A W of those costs a hundredth of the disc's.
+
+      H = X' D Y = sum_k x_k' d_k y_k over these rows k, D a diagonal or the identity
 */
 #include "entryrows.h"
 #include <petscblaslapack.h>
@@ -97,6 +99,7 @@ static PetscErrorCode RowsViewDestroy(BV X, RowsView *v)
   PetscFunctionReturn(0);
 }
 
+/* H [columns of X][columns of Y] of all ranks, by one dgemm of each rank's rows: 2 n mx my flops */
 PetscErrorCode EntryRowsProducts(const EntryRows *rows, BV X, Vec diagonal, BV Y, Mat *H)
 {
   const PetscScalar  one = 1, zero = 0;

@@ -1,5 +1,10 @@
 /*
    Residuals of eigenpairs of the quadratic problem on real matrices; see residual.h.
+
+      r = K x + lambda C x + lambda^2 M x,   x = V q,   of left vectors with K', C', M'
+
+   in two real columns for a complex mode, in one for a real one. Where friction is apart, K = K_even + left' right, of
+   which the transpose is K_even + right' left.
 */
 #include "residual.h"
 #include "solver/block/orthonormal.h"
@@ -45,7 +50,7 @@ typedef struct {
   Mat                   X, R, AX[2];
 } ResidualPart;
 
-/* R += lambda^power AX, mode by mode */
+/* R += lambda^power AX, mode by mode: with lambda^power = a + i b the columns are a xr - b xi and a xi + b xr */
 static PetscErrorCode ResidualScale(const ResidualPart *p, int power, Mat AX)
 {
   const ComplexColumns *c = p->c;
@@ -183,7 +188,7 @@ PetscErrorCode ResidualMake(const PencilMatrices *pencil, PetscBool transposed, 
   PetscFunctionReturn(0);
 }
 
-/* The active columns of Z of one side */
+/* The active columns of Z of one side, Z = P^-1 R or P^-T R, P = Q at the shift */
 static PetscErrorCode ResidualSolve(const ShiftInvert *factor, PetscBool transposed, BV R, BV Z)
 {
   Mat from, to;
@@ -197,6 +202,8 @@ static PetscErrorCode ResidualSolve(const ShiftInvert *factor, PetscBool transpo
   PetscFunctionReturn(0);
 }
 
+/* Of both sides at once where friction is an update of symmetric factors: P^-1 and P^-T share their substitutions, and
+   a block of both reads the factors once. */
 PetscErrorCode ResidualsSolve(const ShiftInvert *factor, const BV R[2], BV Z)
 {
   PetscInt  n[2] = {0, 0};

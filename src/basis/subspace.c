@@ -1,6 +1,10 @@
 /*
    The basis of a Galerkin method for right and left vectors together: two bases would make the dense problem
-   ill-conditioned.
+   ill-conditioned. With V'MV = I, or nearly, the pencil
+
+      V'Q(lambda)V = lambda^2 V'MV + lambda V'CV + V'KV
+
+   is kept dense, and grows by a row and a column for each vector: a matrix is never multiplied with a column twice.
 */
 #include "subspace.h"
 #include "base/events.h"
@@ -46,7 +50,7 @@ static PetscErrorCode LooksSymmetric(Mat A, PetscBool *symmetric)
   PetscFunctionReturn(0);
 }
 
-/* A', or A itself where it is symmetric */
+/* A', or A itself where it is symmetric: A'V is asked for beside A V, since V'A V grows by a row and a column */
 static PetscErrorCode TermTranspose(SubspaceTerm *term)
 {
   PetscFunctionBeginUser;
@@ -105,7 +109,7 @@ PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
   PetscFunctionReturn(0);
 }
 
-/* The block by what it holds beyond V, orthonormal */
+/* The block W by what it holds beyond V, W - V V'M W, orthonormal: V'W = 0, W'W = I in M */
 static PetscErrorCode SubspaceOrthonormalise(Subspace *s, PetscReal drop, BV block)
 {
   BlockFactors factors = {.drop = drop, .loose = s->loose};
@@ -156,6 +160,8 @@ PetscErrorCode SubspaceExtend(Subspace *s, BV block)
   PetscFunctionReturn(0);
 }
 
+/* The dense matrices are column-major with as many rows as there are columns of V: those of a leading part move
+   together, column by column, from the front. */
 PetscErrorCode SubspaceTruncate(Subspace *s, PetscInt n)
 {
   PetscFunctionBeginUser;

@@ -6,7 +6,8 @@
 
 #define FACE_MAX_NODES 9 /* of a biquadratic quadrilateral */
 
-/* Whether the corners of a face are clockwise seen from outside its cell */
+/* Whether the corners of a face are clockwise seen from outside its cell: the normal a x b, a and b the diagonals of a
+   quadrilateral or two edges of a triangle, points to the middle of the cell's corners then */
 static PetscErrorCode FaceIsReversed(Model model, PetscInt face, PetscInt n, const PetscInt corner[], PetscBool *is)
 {
   const PetscReal *x = model->mesh.x;

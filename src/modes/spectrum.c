@@ -1,8 +1,10 @@
 /*
-   Spectrum: a list of eigenvalues with their vectors.
+   Spectrum: a list of eigenvalues lambda = sigma + i omega (rad/s, omega >= 0: the conjugates are not listed) with
+   their vectors x = xr + i xi, xi NULL where x is real. A list owns its vectors.
 */
 #include "modesimpl.h"
 
+/* |kappa - shift|, (rad/s)^2, with kappa = -lambda^2 = omega^2 - sigma^2 - 2 i sigma omega */
 PetscReal SpectrumDistance(const Spectrum *s, PetscInt i, PetscReal shift)
 {
   const PetscReal re = s->omega[i] * s->omega[i] - s->sigma[i] * s->sigma[i] - shift;
@@ -68,6 +70,7 @@ static PetscBool SpectrumIsAfter(const Spectrum *s, PetscInt i, PetscInt j)
   return s->sigma[i] > s->sigma[j] ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* By insertion, so that what is equal keeps its order */
 PetscErrorCode SpectrumSort(Spectrum *s)
 {
   PetscFunctionBeginUser;
@@ -182,6 +185,7 @@ PetscErrorCode ModesGetVectors(Modes modes, PetscInt i, Vec *xr, Vec *xi, Vec *y
   PetscFunctionReturn(0);
 }
 
+/* A seed of each rank: with one for all, ranks with as many unknowns would begin with equal parts */
 PetscErrorCode SolverSeed(BV bv, unsigned long seed)
 {
   PetscMPIInt rank;

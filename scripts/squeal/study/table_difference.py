@@ -134,11 +134,16 @@ def added_columns(one, other):
     return frozenset(name for first, second in rows if first and second for name in first[0].keys() - second[0].keys()) | tables
 
 
-def difference(one, other, limit, added=frozenset()):
-    """The worst of all tables of two folders, but for the tables and columns `added` to the first one."""
+def of_tables(one, other, limit, added=frozenset()):
+    """Of each table of two folders the worst, but for the tables and columns `added` to the first one."""
     names = [{path.name for path in Path(folder).glob("*.csv")} - added for folder in (one, other)]
     if names[0] != names[1] or not names[0]:
-        return Difference(math.inf, f"tables {' '.join(sorted(names[0] ^ names[1])) or 'none'}")
-    found = [of_table(name, read(one / name), read(other / name), limit, added) for name in sorted(names[0])]
+        return [Difference(math.inf, f"tables {' '.join(sorted(names[0] ^ names[1])) or 'none'}")]
+    return [of_table(name, read(one / name), read(other / name), limit, added) for name in sorted(names[0])]
+
+
+def difference(one, other, limit, added=frozenset()):
+    """The worst of all these tables."""
+    found = of_tables(one, other, limit, added)
     worst = max(found, key=lambda one: one.value)
     return worst._replace(since=min((one.since for one in found if not math.isnan(one.since)), default=math.nan))

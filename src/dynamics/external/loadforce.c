@@ -1,5 +1,7 @@
 /*
-   Loads of the model in time: F(t) = r(t) F with a ramp r, distributed by the model once for all.
+   Loads of the model in time: F(t) = r(t) F (N) with a ramp r, distributed by the model once for all. Of the work
+   dt/2 (v_{n-1/2} + v_{n+1/2})'F(t_n), J, a step takes the power v'F at both of its ends: now with r(t_n), and `old`
+   with the factor of the step before, whose second half it is (history/ledger.c).
 */
 #include "externalimpl.h"
 #include "base/algebra/vec3.h"

@@ -40,7 +40,7 @@ static PetscErrorCode ExtentsMeasure(Model model)
   PetscFunctionReturn(0);
 }
 
-/* Time that a wave takes along the longest side, s */
+/* Time that a wave takes along the longest side L, s: L / sqrt(E / rho), sqrt(E / rho) the speed of waves in a bar */
 static PetscReal PartCrossing(const Part *p, const PartExtent *e)
 {
   return PetscMax(e->size[0], PetscMax(e->size[1], e->size[2])) / PetscSqrtReal(p->young / p->density);

@@ -1,10 +1,18 @@
 /*
    Fit of a disc's displacement (see label.c for the formula): normal equations by BLAS, the same ones for all three
    directions, and what its harmonics tell.
+
+      min sum_i w_i |u_d(x_i) - sum_k c_k phi_k(x_i)|^2   ->   G c = b,   G = Phi' W Phi,   b = Phi' W u_d,
+
+   phi_k = P_j(s) cos m theta and P_j(s) sin m theta, w_i the masses of the nodes (kg), d axial, radial, tangential.
+   Over the harmonic m alone b'G_m^-1 b is the energy sum w u^2 that it explains.
 */
 #include "disc.h"
 #include "base/algebra/vec3.h"
 #include <petscblaslapack.h>
+
+#define REGULAR                                                                                                        \
+  1e-6 /* of the mean of G's diagonal, added to it: of no weight beside the harmonics that a ring resolves */
 
 void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
 {
@@ -87,7 +95,8 @@ PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[])
   PetscFunctionReturn(0);
 }
 
-/* Displacement u of node i in the directions of the disc; its row of the basis has cos theta and sin theta */
+/* Displacement u of node i in the directions of the disc; its row of the basis has cos theta and sin theta (m = 1 times
+   P_0 = 1) */
 static void DiscTurn(const Disc *disc, PetscInt i, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
 {
   const PetscReal *row = &disc->basis[i * DISC_TERMS];
@@ -147,8 +156,8 @@ PetscErrorCode DiscSolve(Disc *disc)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->rhs, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, disc->comm));
   for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
-  for (int k = 0; k < DISC_TERMS; k++)
-    disc->gram[k * (DISC_TERMS + 1)] += 1e-6 * trace / DISC_TERMS; /* coarse rings alias high harmonics */
+  /* coarse rings alias high harmonics: beyond half as many as a ring has columns G would be singular */
+  for (int k = 0; k < DISC_TERMS; k++) disc->gram[k * (DISC_TERMS + 1)] += REGULAR * trace / DISC_TERMS;
   PetscCall(PetscMalloc1(DISC_TERMS * DISC_TERMS, &A));
   PetscCall(PetscArraycpy(A, disc->gram, DISC_TERMS * DISC_TERMS));
   PetscCall(PetscArraycpy(disc->fit, disc->rhs, n));

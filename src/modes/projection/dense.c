@@ -4,10 +4,14 @@
 */
 #include "projection.h"
 
-#define FOLLOW_FAR  1e-3  /* relative change of lambda that is another mode's */
-#define FOLLOW_ONE  0.999 /* cosine of the angle of two vectors that are one */
-#define EDGE_POINTS 64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
+#define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
+#define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define FOLLOW_EQUAL 1e-9  /* relative distance of eigenvalues that are one */
 
+/* Whether the window claims a mode and the basis can have it: of the modes nearest to a target those within reach, of a
+   band those between its edges with no more growth or decay than is asked for, or else with an undamped frequency
+   root(kappa) in the band, which V holds */
 PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 {
   const Window      *w     = p->window;
@@ -20,11 +24,14 @@ PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
   return creal(kappa) >= PetscSqr(w->edge[0]) && creal(kappa) <= PetscSqr(w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* |kappa(lambda) - s|, (rad/s)^2: how far from the shift the undamped mode of lambda is */
 static PetscReal LambdaFar(const Projection *p, PetscComplex lambda)
 {
   return cabs(ProjectionKappa(p, lambda) - p->si.shift);
 }
 
+/* kappa(lambda) is analytic but for its pole, so that |kappa - s| is largest on the edge of a region without the pole:
+   of a circle of radius d about the target, or of the rectangle |sigma| <= growth, low <= omega <= high */
 PetscReal ProjectionEdge(const Projection *p, PetscReal d)
 {
   const Window *w       = p->window;
@@ -112,7 +119,8 @@ static PetscBool HasTwice(const ProjectionModes *m)
       if (cabs(m->lambda[i] - m->lambda[j]) > FOLLOW_FAR * cabs(m->lambda[i]) || m->lambda[i] == 0) continue;
       for (PetscInt k = 0; k < m->size; k++)
         dot += conj(m->vectors[0][i * m->size + k]) * m->vectors[0][j * m->size + k];
-      if (cabs(dot) > FOLLOW_ONE && cabs(m->lambda[i] - m->lambda[j]) < 1e-9 * cabs(m->lambda[i])) return PETSC_TRUE;
+      if (cabs(dot) > FOLLOW_ONE && cabs(m->lambda[i] - m->lambda[j]) < FOLLOW_EQUAL * cabs(m->lambda[i]))
+        return PETSC_TRUE;
     }
   return PETSC_FALSE;
 }
@@ -129,7 +137,9 @@ static PetscErrorCode ModesShare(MPI_Comm comm, ProjectionModes *m)
   PetscFunctionReturn(0);
 }
 
-/* Mode i from what it was before */
+/* Mode i from what it was on fewer vectors, padded by zeros, by inverse iteration on the dense pencil: an LU of n rows
+   in place of all eigenvalues of a problem of 2 n. A mode whose errors are met already, or a rigid one, stays as it
+   is. */
 static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, const ProjectionModes *before,
                                  PetscInt i, ProjectionModes *modes, PetscBool *found)
 {
