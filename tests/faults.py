@@ -45,7 +45,7 @@ FAULTS = (
     ("tied bodies that part at the start have all their energy", "src/reduced/run/start.c", "VecDot(f, y, &product)",
      "VecDot(Mx, x, &product)", "reduced_tie"),
     ("forces on slaves of a tie do not reach supports", "src/contact/nodal.c",
-     "part[e] += link->follow[i][3 * d + e] * force[d];", "part[e] += 0 * force[d];", "tie"),
+     "part[e] += link->master[i].follow[3 * d + e] * force[d];", "part[e] += 0 * force[d];", "tie"),
     ("0.99 mu in the cone of dynamics", "src/kernels/contact/cone.h", ".mu = mu};", ".mu = 0.99 * mu};", "cone-1 project-1"),
     ("0.99 mu in the cone of statics", "src/kernels/contact/coulomb.h", "-pair->mu * e[i] * law->P", "-0.99 * pair->mu * e[i] * law->P",
      "coulomb-1 static_stick"),

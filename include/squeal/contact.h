@@ -156,26 +156,36 @@ static inline PetscBool ContactWears(const ContactInterface *c)
   return c->wear_rate > 0 || c->wear_rate_master > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* A tie: nodes of the slave follow points of the master, their feet (ContactLink) */
+/* A tie: nodes of the slave follow points of the master, their feet, or means over it (ContactLink) */
 typedef struct {
   char     *name, *slave, *master; /* a set of nodes; a surface */
   PetscReal distance; /* nodes farther from their foot are too far off, m; 0: 5 % of the size of the facet */
   PetscBool has_distance;
-  PetscBool free;               /* these stay free, else they are an error */
-  PetscInt  n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
+  ContactDiscretization discretization;
+  PetscBool             mortar;             /* what that comes to */
+  PetscBool             free;               /* these stay free, else they are an error */
+  PetscInt              n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
   /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */
   PetscInt  n_beyond;
+  PetscInt  n_off;          /* of mortar: nodes that stay free, since no or little master lies under them */
   PetscReal offset, beyond; /* largest distance of a node from its foot, and of these along the surface, m */
 } ContactTie;
+
+/* A node that another follows */
+typedef struct {
+  PetscInt  number, unknown[3]; /* global; -1 where held */
+  PetscReal weight;             /* of a foot: w_i, sum 1 */
+  PetscReal follow[9];          /* [3][3] by rows; rows of directions that a support holds of the slave are 0 */
+} ContactLinkNode;
 
 /* A node that follows others, u = sum_i follow_i u_i: w_i times the identity where the surfaces touch, and more where a
    gap is kept as a rigid arm. It lives on the rank that owns the node */
 typedef struct {
-  PetscInt  tie, n_master, node, vertex, corner[CONTACT_MAX_MASTER]; /* local node; global numbers */
-  PetscInt  slave[3], master[CONTACT_MAX_MASTER][3];                 /* unknowns x, y, z; -1 where held */
-  PetscReal weight[CONTACT_MAX_MASTER];                              /* w_i, sum 1 */
-  PetscReal follow[CONTACT_MAX_MASTER][9]; /* [3][3] by rows; rows of directions that a support holds are 0 */
-  PetscReal x[3];                          /* m */
+  PetscInt               tie, node, vertex; /* local node; global number */
+  PetscInt               slave[3];          /* unknowns x, y, z; -1 where held */
+  PetscReal              x[3];              /* m */
+  PetscInt               n_master;
+  const ContactLinkNode *master; /* borrowed */
 } ContactLink;
 
 /*@ ContactCreate - makes the interfaces of a model; call before ModelSetUp(). Collective. @*/

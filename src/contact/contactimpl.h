@@ -35,7 +35,8 @@ struct _p_Contact {
   ContactSurface    surface[CONTACT_MAX]; /* of the masters, made when they are asked for first */
   PetscInt          n_ties, n_links;      /* links of this rank */
   ContactTie       *ties;
-  ContactLink      *links; /* ordered by tie */
+  ContactLink      *links;    /* ordered by tie */
+  ContactLinkNode **followed; /* [n_ties] what those of each follow */
 };
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
@@ -67,13 +68,21 @@ PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interfa
    Collective. */
 PETSC_INTERN PetscErrorCode ContactMeshesMatch(Contact contact, PetscInt interface, PetscInt first, PetscBool *match);
 
-/* quantities.c - the lists of interfaces and ties; contact.c, tie.c - what their rows do not say */
+/* mortar/match.c - whether the meshes of a tie match, from its links to feet, those from the first on. Collective. */
+PETSC_INTERN PetscErrorCode ContactTieMatches(Contact contact, PetscInt tie, PetscInt first,
+                                              const ContactSurface *master, PetscBool *match);
+/* mortar/glue.c - appends the mortar links of the nodes of this rank, counts them; *held = 1 and x (m) where a support
+   holds slaves in a direction in which the master is free. Collective. */
+PETSC_INTERN PetscErrorCode ContactGlue(Contact contact, PetscInt t, const ContactSurface *master, ContactTie *count,
+                                        PetscReal *held, PetscReal x[3]);
+
+/* quantities.c - the lists of interfaces and ties; contact.c, tie/tie.c - what their rows do not say */
 /* Why nobody reads how it slides in time, where it does not slide as told */
 #define CONTACT_STILL "not used where nothing slides as told: give -@slip or -@rotation"
 extern const QuantityList   contacts_list, ties_list;
 PETSC_INTERN PetscErrorCode InterfaceCheckOptions(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode ContactTiesDestroy(Contact contact);
-/* tie.c - adds surfaces and distances; in words. Collective. */
+/* tie/ties.c - adds surfaces and distances; in words. Collective. */
 PETSC_INTERN PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum checksum);
 PETSC_INTERN PetscErrorCode ContactTiesView(Contact contact, PetscViewer viewer);

@@ -83,7 +83,7 @@ PetscErrorCode ContactNodalForces(Contact contact, const ContactState state[], V
 
 /* Adds what passes of the force f (N, [3]) on the slave of a link: A_i' f to node i that it follows, and -f to
    itself, but in directions that a support holds, where f stays as its reaction; the rows of A_i of these directions
-   are 0 (tie.c) */
+   are 0 (tie/tie.c) */
 static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal force[3], Vec forces)
 {
   PetscScalar part[3];
@@ -92,9 +92,9 @@ static PetscErrorCode LinkAddForce(const ContactLink *link, const PetscReal forc
   for (PetscInt i = 0; i < link->n_master; i++) {
     for (int e = 0; e < 3; e++) {
       part[e] = 0;
-      for (int d = 0; d < 3; d++) part[e] += link->follow[i][3 * d + e] * force[d];
+      for (int d = 0; d < 3; d++) part[e] += link->master[i].follow[3 * d + e] * force[d];
     }
-    PetscCall(VecSetValuesBlocked(forces, 1, &link->corner[i], part, ADD_VALUES));
+    PetscCall(VecSetValuesBlocked(forces, 1, &link->master[i].number, part, ADD_VALUES));
   }
   for (int d = 0; d < 3; d++) part[d] = link->slave[d] < 0 ? 0 : -force[d];
   PetscCall(VecSetValuesBlocked(forces, 1, &link->vertex, part, ADD_VALUES));

@@ -147,7 +147,12 @@ static const Quantity tie[] = {
    .required = PETSC_TRUE, .why = "two names, slave,master"},
   {"-distance", "largest distance of a node of the slave from its foot; default 5 % of the facet's size", "m",
    QUANTITY_REAL, TIE(distance), QUANTITY_POSITIVE, .given = offsetof(ContactTie, has_distance)},
-  {"-far", "nodes farther off are an error, or stay free", NULL, QUANTITY_WORD, TIE(free), .words = fars},
+  {"-discretization",
+   "each node of the slave follows its foot; means of both surfaces are one (mortar); or where not all meshes match "
+   "(auto)",
+   NULL, QUANTITY_WORD, TIE(discretization), .words = discretizations},
+  {"-far", "nodes farther off are an error, or stay free (not over the master by mortar)", NULL, QUANTITY_WORD,
+   TIE(free), .words = fars},
 };
 
 static const QuantityTable ties          = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};

@@ -15,7 +15,7 @@ from .shares import face_shares, set_shares
 KINDS = {"tet4": "C3D4", "tet10": "C3D10", "wedge6": "C3D6", "wedge15": "C3D15", "hex8": "C3D8I", "hex20": "C3D20"}
 DIFFERS = {"C3D10": "C3D10 integrates its mass by 4 points alone, which moves frequencies; squeal's tet10 is exact",
            "C3D8I": "C3D8I has incompatible modes of its own, squeal's hex8 those of QM6"}
-TIE_SHARE = 0.05  # of the size of a facet: how far a tie reaches by itself (src/contact/tie.c)
+TIE_SHARE = 0.05  # of the size of a facet: how far a tie reaches by itself (src/contact/tie/tie.c)
 AXES = {"x": 0, "y": 1, "z": 2}
 
 

@@ -69,6 +69,8 @@ void MortarBorderAdd(MortarBorder *border, PetscInt f, PetscReal alpha, const Se
     border->whole[v] = PetscMax(border->whole[v], whole[j]);
     border->sum[v] += border->cover[f] == MORTAR_OVER ? whole[j] : sums->d[j];
   }
+  for (int j = 0; j < s->n && border->out; j++)
+    if (border->out[s->node[j]] && border->cover[f] == MORTAR_OVER) border->cover[f] = MORTAR_PARTLY;
 }
 
 PetscErrorCode MortarBorderDecide(MPI_Comm comm, const PetscInt of[], MortarBorder *border)
@@ -90,6 +92,7 @@ PetscErrorCode MortarBorderDecide(MPI_Comm comm, const PetscInt of[], MortarBord
     }
     border->kept[v] =
       border->part[v] > BORDER_BARE && border->part[v] >= BORDER_PART * PetscMin(1, most) ? PETSC_TRUE : PETSC_FALSE;
+    if (border->out && border->out[v]) border->kept[v] = PETSC_FALSE;
   }
   PetscFunctionReturn(0);
 }
@@ -154,11 +157,29 @@ PetscErrorCode MortarBorderTakers(MortarBorder *border, PetscInt f, PetscInt *n,
   PetscFunctionReturn(0);
 }
 
+/* Of a tie: all of u~ of a side without a pair goes to a corner of it that has one, so that no two nodes follow each
+   other. Whether it is so. */
+static PetscBool SideGives(const MortarBorder *border, PetscInt v, PetscInt n, const PetscInt node[], PetscReal share[])
+{
+  const PetscInt      at = border->around[border->first[v]];
+  const ContactFacet *s  = &border->slave->facet[at / FACET_NODES];
+  const int           j = (int)(at % FACET_NODES), corners = ContactFacetCorners(s);
+  PetscInt            a, b, to;
+
+  if (!border->out || border->kept[v] || j < corners || j >= 2 * corners) return PETSC_FALSE;
+  a  = s->node[j - corners];
+  b  = s->node[(j + 1) % corners];
+  to = border->kept[a] ? a : border->kept[b] ? b : -1;
+  for (PetscInt i = 0; i < n; i++) share[i] = node[i] == to ? 1 : 0;
+  return to >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 void MortarBorderShares(const MortarBorder *border, PetscInt v, PetscInt n, const PetscInt node[], PetscReal share[])
 {
   const PetscReal *x   = MortarBorderPlace(border, v);
   PetscReal        sum = 0, size = PETSC_MAX_REAL;
 
+  if (SideGives(border, v, n, node, share)) return;
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal *y = MortarBorderPlace(border, node[i]), away[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 

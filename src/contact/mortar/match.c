@@ -52,38 +52,86 @@ static PetscBool NodeIsUnder(const ContactSurface *slave, const ContactFacet *fa
 
 /* Whether some node of the master under the slave is no foot. Both surfaces are on every rank; each rank looks at some
    facets. */
-static PetscErrorCode MatchUnder(Contact contact, PetscInt interface, const ContactSurface *master,
-                                 const PetscBool met[], PetscBool *missed)
+static PetscErrorCode MatchUnder(MPI_Comm comm, const ContactSurface *slave, const ContactSurface *master,
+                                 PetscReal tolerance, const PetscBool met[], PetscBool *missed)
 {
-  const ContactInterface *c     = &contact->interfaces[interface];
-  ContactSurface          slave = {.n_facets = 0};
-  PetscMPIInt             rank, n_ranks;
+  PetscMPIInt rank, n_ranks;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(contact->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(contact->comm, &n_ranks));
-  PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
   *missed = PETSC_FALSE;
-  for (PetscInt f = rank; f < master->n_facets && slave.n_facets && !*missed; f += n_ranks)
+  for (PetscInt f = rank; f < master->n_facets && slave->n_facets && !*missed; f += n_ranks)
     for (int i = 0; i < master->facet[f].n; i++)
-      if (!met[master->facet[f].node[i]] && NodeIsUnder(&slave, &master->facet[f], i, c->tolerance))
-        *missed = PETSC_TRUE;
-  PetscCall(ContactSurfaceDestroy(&slave));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, missed, 1, MPIU_BOOL, MPI_LOR, contact->comm));
+      if (!met[master->facet[f].node[i]] && NodeIsUnder(slave, &master->facet[f], i, tolerance)) *missed = PETSC_TRUE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, missed, 1, MPIU_BOOL, MPI_LOR, comm));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ContactMeshesMatch(Contact contact, PetscInt interface, PetscInt first, PetscBool *match)
 {
-  const ContactSurface *master;
-  PetscBool            *met, fails;
+  const ContactInterface *c     = &contact->interfaces[interface];
+  ContactSurface          slave = {.n_facets = 0};
+  const ContactSurface   *master;
+  PetscBool              *met, fails;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &master));
   PetscCall(PetscCalloc1(master->n_nodes, &met));
   PetscCall(MatchFeet(contact, first, master, met, &fails));
-  if (!fails) PetscCall(MatchUnder(contact, interface, master, met, &fails));
+  if (!fails) {
+    PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
+    PetscCall(MatchUnder(contact->comm, &slave, master, c->tolerance, met, &fails));
+    PetscCall(ContactSurfaceDestroy(&slave));
+  }
   PetscCall(PetscFree(met));
+  *match = fails ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Marks the nodes of the master that slaves of a tie follow alone, or that are nodes of both, met[n_nodes] over all
+   ranks; *between where some slave follows several */
+static PetscErrorCode MatchLinks(Contact contact, PetscInt first, const ContactSurface *slave,
+                                 const ContactSurface *master, PetscBool met[], PetscBool *between)
+{
+  PetscInt at;
+
+  PetscFunctionBeginUser;
+  *between = PETSC_FALSE;
+  for (PetscInt l = first; l < contact->n_links; l++) {
+    const ContactLinkNode *most = &contact->links[l].master[0];
+
+    for (PetscInt i = 1; i < contact->links[l].n_master; i++)
+      if (contact->links[l].master[i].weight > most->weight) most = &contact->links[l].master[i];
+    PetscCall(PetscFindInt(most->number, master->n_nodes, master->vertex, &at));
+    if (most->weight < 1 - MATCH_NODE)
+      *between = PETSC_TRUE;
+    else
+      met[at] = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < slave->n_nodes; i++) {
+    PetscCall(PetscFindInt(slave->vertex[i], master->n_nodes, master->vertex, &at));
+    if (at >= 0) met[at] = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, between, 1, MPIU_BOOL, MPI_LOR, contact->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, met, (PetscMPIInt)master->n_nodes, MPIU_BOOL, MPI_LOR, contact->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTieMatches(Contact contact, PetscInt tie, PetscInt first, const ContactSurface *master,
+                                 PetscBool *match)
+{
+  const ContactTie *t     = &contact->ties[tie];
+  ContactSurface    slave = {.n_facets = 0};
+  PetscBool        *met, fails;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSurfaceCreate(contact, t->slave, &slave));
+  PetscCall(PetscCalloc1(master->n_nodes, &met));
+  PetscCall(MatchLinks(contact, first, &slave, master, met, &fails));
+  if (!fails) PetscCall(MatchUnder(contact->comm, &slave, master, t->distance, met, &fails));
+  PetscCall(PetscFree(met));
+  PetscCall(ContactSurfaceDestroy(&slave));
   *match = fails ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }

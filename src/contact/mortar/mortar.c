@@ -83,6 +83,24 @@ static PetscErrorCode FacetsTake(MortarPairs *m)
   PetscFunctionReturn(0);
 }
 
+/* Keeps a facet of a tie that none takes, where the master under it is free; of the rank of one of its nodes */
+static PetscErrorCode FacetLose(MortarPairs *m, PetscInt f)
+{
+  PetscInt here = 0;
+
+  PetscFunctionBeginUser;
+  for (int j = 0; j < m->mortar.slave->facet[f].n; j++) here += m->of[m->mortar.slave->facet[f].node[j]] >= 0;
+  if (!here) PetscFunctionReturn(0);
+  PetscCall(MortarIntegrate(&m->mortar, f, &m->facet));
+  for (PetscInt i = 0; i < m->facet.n; i++) {
+    const ContactFacet *master = &m->mortar.master->facet[m->facet.block[i].facet];
+
+    for (int l = 0; l < master->n; l++)
+      if (master->unknowns[l][m->direction] >= 0) m->lost = f;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Takes what facets partly over the master have for the nodes of this rank that take it */
 static PetscErrorCode PartsTake(MortarPairs *m)
 {
@@ -97,6 +115,7 @@ static PetscErrorCode PartsTake(MortarPairs *m)
 
     if (m->border.cover[f] != MORTAR_PARTLY) continue;
     PetscCall(MortarBorderTakers(&m->border, f, &n, &node));
+    if (!n && m->out) PetscCall(FacetLose(m, f));
     for (PetscInt i = 0; i < n; i++) here += m->of[node[i]] >= 0;
     if (!here) continue;
     PetscCall(MortarIntegrate(&m->mortar, f, &m->facet));
@@ -110,21 +129,75 @@ static PetscErrorCode PartsTake(MortarPairs *m)
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for faces over which no point can be found, and for sums that no contact has */
-static PetscErrorCode SumsCheck(MPI_Comm comm, const ContactInterface *c, const MortarPairs *m)
+PetscErrorCode MortarSumsCheck(MPI_Comm comm, const char what[], const char name[], const char slave[],
+                               const char master[], const MortarPairs *m)
 {
   PetscInt failed[2] = {m->mortar.n_failed, m->n_bare};
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, failed, 2, MPIU_INT, MPI_SUM, comm));
   PetscCheck(!failed[0], comm, PETSC_ERR_USER_INPUT,
-             "contact %s: faces of %s or %s are so distorted that no point over them can be found in them; mesh them "
+             "%s %s: faces of %s or %s are so distorted that no point over them can be found in them; mesh them "
              "anew, or give -%s_discretization node",
-             c->name, c->slave, c->master, c->name);
+             what, name, slave, master, name);
   PetscCheck(!failed[1], comm, PETSC_ERR_SUP,
-             "contact %s: functions of %" PetscInt_FMT " nodes of %s have no area over %s; give -%s_discretization "
+             "%s %s: functions of %" PetscInt_FMT " nodes of %s have no area over %s; give -%s_discretization "
              "node, or finer faces of %s",
-             c->name, failed[1], c->slave, c->master, c->name, c->slave);
+             what, name, failed[1], slave, master, name, slave);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const ContactSurface *master,
+                               PetscReal tolerance, MortarPairs *m)
+{
+  PetscFunctionBeginUser;
+  m->lost = -1;
+  PetscCall(MortarCreate(slave, master, tolerance, &m->mortar));
+  PetscCall(MortarBorderCreate(slave, &m->border));
+  m->border.out = m->out;
+  PetscCall(MeansFind(m));
+  PetscCall(FacetsTake(m));
+  PetscCall(MortarBorderDecide(comm, m->of, &m->border));
+  PetscCall(PartsTake(m));
+  PetscCall(MortarSetSides(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MortarPairsDestroy(MortarPairs *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->of));
+  PetscCall(PetscFree3(m->node, m->off, m->own));
+  PetscCall(PetscFree(m->under.entry));
+  PetscCall(PetscFree(m->taken.entry));
+  PetscCall(PetscFree(m->facet.block));
+  PetscCall(MortarBorderDestroy(&m->border));
+  PetscCall(MortarDestroy(&m->mortar));
+  PetscFunctionReturn(0);
+}
+
+/* Whether faces around a node are over the master, and others take its phi */
+static PetscBool NodeGives(const MortarBorder *border, PetscInt node)
+{
+  if (border->kept[node]) return PETSC_FALSE;
+  for (PetscInt i = border->first[node]; i < border->first[node + 1]; i++)
+    if (border->cover[border->around[i] / FACET_NODES] != MORTAR_BESIDE) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Means of the nodes of this rank whose phi others take, where they are of several nodes */
+static PetscErrorCode MeansAlone(Contact contact, PetscInt interface, MortarPairs *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->n_pairs; p++) {
+    const PetscInt node = m->node[p];
+    const int      n    = MortarMean(m, node, m->end);
+
+    if (n == 1 || !NodeGives(&m->border, node)) continue;
+    PetscCall(PetscRealloc(sizeof(ContactMean) * (size_t)(contact->n_means + 1), &contact->means));
+    contact->means[contact->n_means++] = (ContactMean){interface, n, m->end};
+    m->end += n;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -138,21 +211,11 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &master));
   PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
-  PetscCall(MortarCreate(&slave, master, c->tolerance, &m.mortar));
-  PetscCall(MortarBorderCreate(&slave, &m.border));
-  PetscCall(MeansFind(&m));
-  PetscCall(FacetsTake(&m));
-  PetscCall(MortarBorderDecide(contact->comm, m.of, &m.border));
-  PetscCall(PartsTake(&m));
-  PetscCall(MortarSetSides(contact, interface, &m));
-  PetscCall(SumsCheck(contact->comm, c, &m));
-  PetscCall(PetscFree(m.of));
-  PetscCall(PetscFree3(m.node, m.off, m.own));
-  PetscCall(PetscFree(m.under.entry));
-  PetscCall(PetscFree(m.taken.entry));
-  PetscCall(PetscFree(m.facet.block));
-  PetscCall(MortarBorderDestroy(&m.border));
-  PetscCall(MortarDestroy(&m.mortar));
+  PetscCall(MortarPairsMake(contact->comm, &slave, master, c->tolerance, &m));
+  contact->sides[interface] = m.sides;
+  PetscCall(MeansAlone(contact, interface, &m));
+  PetscCall(MortarSumsCheck(contact->comm, "contact", c->name, c->slave, c->master, &m));
+  PetscCall(MortarPairsDestroy(&m));
   PetscCall(ContactSurfaceDestroy(&slave));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Private to contact/mortar: integrals of mortar contact over facets of the slave */
+/* Private to contact/mortar: integrals of mortar contact and mortar ties over facets of the slave */
 #pragma once
 
 #include "contact/contactimpl.h"
@@ -49,6 +49,7 @@ typedef struct {
   PetscReal            *sum, *whole;    /* [nodes] sum_f D_k, and the largest int N~_k dA over one face, m^2 */
   PetscInt             *cover;          /* [facets] MortarCover */
   PetscBool            *kept;           /* [nodes] */
+  const PetscBool      *out;            /* [nodes] of a tie: without pairs, for other reasons; NULL of a contact */
   PetscInt             *first, *around; /* [nodes + 1]; FACET_NODES times a facet around each, and its place there */
   PetscInt             *mark;           /* [nodes] 0 between calls */
   ContactFacetList      takes;          /* nodes that take phi of a facet */
@@ -85,24 +86,41 @@ typedef struct {
   MortarEntry *entry;
 } MortarEntries;
 
-/* The pairs of an interface as they are made */
+/* The pairs of an interface, or of a tie, as they are made */
 typedef struct {
   Mortar       mortar;
   MortarFacet  facet;
   MortarBorder border;
-  ContactPair *pair;    /* [n_pairs] */
-  PetscInt     n_pairs; /* of all slave nodes of this rank */
-  PetscInt    *of;      /* [slave nodes] their pairs, -1 for none on this rank */
-  PetscInt    *node;    /* [n_pairs] their slave nodes */
-  PetscReal   *own;     /* [n_pairs] D of the node itself, m^2 */
-  PetscReal (*off)[3];  /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
-  PetscInt      n_bare; /* pairs with D_p <= 0 */
-  MortarEntries under;  /* int phi_p N_l dA at the nodes of the master */
-  MortarEntries taken;  /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
+  ContactPair *pair;            /* [n_pairs] */
+  PetscInt     n_pairs;         /* of all slave nodes of this rank */
+  PetscInt    *of;              /* [slave nodes] their pairs, -1 for none on this rank */
+  PetscInt    *node;            /* [n_pairs] their slave nodes */
+  PetscReal   *own;             /* [n_pairs] D of the node itself, m^2 */
+  PetscReal (*off)[3];          /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
+  PetscInt         n_bare;      /* pairs with D_p <= 0 */
+  const PetscBool *out;         /* MortarBorder */
+  PetscInt         direction;   /* of a tie: along which its equations are */
+  PetscInt         lost;        /* of a tie: a facet over a free master without any pair near it, -1 for none */
+  ContactPairNode *sides, *end; /* nodes of the sides, and where they end; the caller frees them */
+  MortarEntries    under;       /* int phi_p N_l dA at the nodes of the master */
+  MortarEntries    taken;       /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
 } MortarPairs;
 
+/* mortar.c - areas and sides of the pairs, whose nodes are m->sides; pair, n_pairs, out and direction are set.
+   Collective. */
+PETSC_INTERN PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const ContactSurface *master,
+                                            PetscReal tolerance, MortarPairs *m);
+PETSC_INTERN PetscErrorCode MortarPairsDestroy(MortarPairs *m);
+/* mortar.c - raises the error for faces over which no point can be found, and for sums that no contact or tie (what)
+   has */
+PETSC_INTERN PetscErrorCode MortarSumsCheck(MPI_Comm comm, const char what[], const char name[], const char slave[],
+                                            const char master[], const MortarPairs *m);
+/* sides.c - u~ of a node of the slave as a sum over nodes, itself first; their number */
+PETSC_INTERN int MortarMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES]);
+/* sides.c - sum_k v_k x_k - sum_l w_l x_l of a pair, m */
+PETSC_INTERN PetscErrorCode MortarOffset(const MortarPairs *m, PetscInt p, PetscReal offset[3]);
 /* sides.c - appends an entry */
 PETSC_INTERN PetscErrorCode MortarEntryAdd(MortarEntries *list, PetscInt pair, PetscInt number,
                                            const PetscInt unknown[3], PetscReal weight);
 /* sides.c - sides and gaps of the pairs */
-PETSC_INTERN PetscErrorCode MortarSetSides(Contact contact, PetscInt interface, MortarPairs *m);
+PETSC_INTERN PetscErrorCode MortarSetSides(MortarPairs *m);

@@ -47,8 +47,7 @@ static void EntriesMerge(MortarEntries *list, PetscInt n_pairs, PetscInt first[]
   list->n = n;
 }
 
-/* u~ of a node of the slave as a sum over nodes, itself first; their number */
-static int NodeMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES])
+int MortarMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES])
 {
   const PetscInt      at = m->border.around[m->border.first[node]];
   const ContactFacet *s  = &m->mortar.slave->facet[at / FACET_NODES];
@@ -91,7 +90,7 @@ static ContactPairNode *SlaveSet(MortarPairs *m, PetscInt p, PetscInt n, const M
   ContactPairNode mean[FACET_NODES];
 
   for (PetscInt i = 0; i < n; i++) whole += entry[i].node.weight;
-  pair->n_own = NodeMean(m, m->node[p], side);
+  pair->n_own = MortarMean(m, m->node[p], side);
   pair->own = pair->slave = side;
   side += pair->n_own;
   pair->n_slave = pair->n_own;
@@ -106,7 +105,7 @@ static ContactPairNode *SlaveSet(MortarPairs *m, PetscInt p, PetscInt n, const M
   pair->slave   = side;
   pair->n_slave = SideAdd(m->own[p] / whole, (int)pair->n_own, pair->own, 0, side);
   for (PetscInt i = 0; i < n; i++) {
-    const int n_mean = NodeMean(m, entry[i].node.number, mean);
+    const int n_mean = MortarMean(m, entry[i].node.number, mean);
 
     pair->n_slave = SideAdd(pair->taken[i].weight, n_mean, mean, pair->n_slave, side);
   }
@@ -133,79 +132,63 @@ static ContactPairNode *MasterSet(MortarPairs *m, PetscInt p, PetscInt n, const 
   return side;
 }
 
-/* n . (sum_k v_k x_k - sum_l w_l x_l), m, differences from the slave's node first; what is 1e-9 of the facet's size is
-   rounding of the coordinates, and 0 */
-static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
+/* Differences from the slave's node first */
+PetscErrorCode MortarOffset(const MortarPairs *m, PetscInt p, PetscReal offset[3])
 {
   const ContactSurface *slave = m->mortar.slave;
-  ContactPair          *pair  = &m->pair[p];
-  const PetscReal       size  = slave->facet[m->border.around[m->border.first[m->node[p]]] / FACET_NODES].size;
+  const ContactPair    *pair  = &m->pair[p];
 
   PetscFunctionBeginUser;
-  pair->gap = 0;
-  for (int d = 0; d < 3; d++) pair->gap -= pair->n[d] * m->off[p][d] / pair->area;
+  for (int d = 0; d < 3; d++) offset[d] = -m->off[p][d] / pair->area;
   for (PetscInt k = 1; k < pair->n_slave; k++) {
     const PetscReal *x;
     PetscInt         at;
 
     PetscCall(PetscFindInt(pair->slave[k].number, slave->n_nodes, slave->vertex, &at));
     x = MortarBorderPlace(&m->border, at);
-    for (int d = 0; d < 3; d++) pair->gap += pair->n[d] * pair->slave[k].weight * (x[d] - pair->x[d]);
+    for (int d = 0; d < 3; d++) offset[d] += pair->slave[k].weight * (x[d] - pair->x[d]);
   }
+  PetscFunctionReturn(0);
+}
+
+/* n . offset, m; what is 1e-9 of the facet's size is rounding of the coordinates, and 0 */
+static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
+{
+  const ContactSurface *slave = m->mortar.slave;
+  ContactPair          *pair  = &m->pair[p];
+  const PetscReal       size  = slave->facet[m->border.around[m->border.first[m->node[p]]] / FACET_NODES].size;
+  PetscReal             offset[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(MortarOffset(m, p, offset));
+  pair->gap = Vec3Dot(pair->n, offset);
   if (PetscAbsReal(pair->gap) < 1e-9 * size) pair->gap = 0;
   PetscFunctionReturn(0);
 }
 
-/* Whether faces around a node are over the master, and others take its phi */
-static PetscBool NodeGives(const MortarBorder *border, PetscInt node)
-{
-  if (border->kept[node]) return PETSC_FALSE;
-  for (PetscInt i = border->first[node]; i < border->first[node + 1]; i++)
-    if (border->cover[border->around[i] / FACET_NODES] != MORTAR_BESIDE) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Means of the nodes of this rank whose phi others take, where they are of several nodes */
-static PetscErrorCode MeansAlone(Contact contact, PetscInt interface, const MortarPairs *m, ContactPairNode *side)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->n_pairs; p++) {
-    const PetscInt node = m->node[p];
-    const int      n    = NodeMean(m, node, side);
-
-    if (n == 1 || !NodeGives(&m->border, node)) continue;
-    PetscCall(PetscRealloc(sizeof(ContactMean) * (size_t)(contact->n_means + 1), &contact->means));
-    contact->means[contact->n_means++] = (ContactMean){interface, n, side};
-    side += n;
-  }
-  PetscFunctionReturn(0);
-}
-
 /* The others keep an area of 0 and no sides */
-PetscErrorCode MortarSetSides(Contact contact, PetscInt interface, MortarPairs *m)
+PetscErrorCode MortarSetSides(MortarPairs *m)
 {
-  PetscInt        *first, *taken;
-  ContactPairNode *side;
+  PetscInt *first, *taken;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m->n_pairs + 1, &first, m->n_pairs + 1, &taken));
   EntriesMerge(&m->under, m->n_pairs, first);
   EntriesMerge(&m->taken, m->n_pairs, taken);
-  PetscCall(PetscMalloc1(m->under.n + (1 + FACET_NODES) * m->taken.n + 3 * FACET_NODES * m->n_pairs + FACET_NODES,
-                         &contact->sides[interface]));
-  side = contact->sides[interface];
+  PetscCall(
+    PetscMalloc1(m->under.n + (1 + FACET_NODES) * m->taken.n + 3 * FACET_NODES * m->n_pairs + FACET_NODES, &m->sides));
+  m->end = m->sides;
   for (PetscInt p = 0; p < m->n_pairs; p++) {
     if (!m->border.kept[m->node[p]]) {
       m->pair[p].area = 0;
       continue;
     }
     if (m->pair[p].area <= 0) m->n_bare++;
-    side = SlaveSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]], side);
-    side = MasterSet(m, p, first[p + 1] - first[p], &m->under.entry[first[p]], side);
+    m->end = SlaveSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]], m->end);
+    m->end = MasterSet(m, p, first[p + 1] - first[p], &m->under.entry[first[p]], m->end);
     PetscCall(GapSet(m, p));
     m->pair[p].mean = PETSC_TRUE; /* int N~_p p dA over D_p is a pressure; at no D_p = 0 */
   }
-  PetscCall(MeansAlone(contact, interface, m, side));
   PetscCall(PetscFree2(first, taken));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 /*
    Displacements that follow others: the nodes of points that are joined rigidly (rigid.c) and the slaves of ties
-   (contact/tie.c). With D the rows of the followers and E the injection of all others, q = E'u,
+   (contact/tie/tie.c). With D the rows of the followers and E the injection of all others, q = E'u,
 
       u = D u + E q = Z q,   Z = E + D E + D^2 E + ...,
 
@@ -10,18 +10,22 @@
 */
 #include "dependents.h"
 
-/* The rows of a node that follows the nodes of a facet */
+/* The rows of a node that follows others by a tie */
 static PetscErrorCode LinkAddRows(const ContactLink *link, PetscInt by, Dependents *d)
 {
-  PetscReal value[3 * CONTACT_MAX_MASTER];
+  PetscReal *value;
+  PetscInt  *column;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * link->n_master, &value, 3 * link->n_master, &column));
+  for (PetscInt i = 0; i < 3 * link->n_master; i++) column[i] = link->master[i / 3].unknown[i % 3];
   for (int e = 0; e < 3; e++) {
     if (link->slave[e] < 0) continue;
-    for (PetscInt i = 0; i < 3 * link->n_master; i++) value[i] = link->follow[i / 3][3 * e + i % 3];
+    for (PetscInt i = 0; i < 3 * link->n_master; i++) value[i] = link->master[i / 3].follow[3 * e + i % 3];
     PetscCall(DependentsClaim(d, link->slave[e], by));
-    PetscCall(DependentsFollow(d, link->slave[e], 3 * link->n_master, &link->master[0][0], value));
+    PetscCall(DependentsFollow(d, link->slave[e], 3 * link->n_master, column, value));
   }
+  PetscCall(PetscFree2(value, column));
   PetscFunctionReturn(0);
 }
 

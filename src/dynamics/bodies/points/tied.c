@@ -1,6 +1,6 @@
 /*
-   Ties in time: the nodes x of a tie follow its masters q, x = T q (contact/tie.c). With the lumped masses D of all of
-   them
+   Ties in time: the nodes x of a tie follow its masters q, x = T q (contact/tie/tie.c). With the lumped masses D of
+   all of them
 
       a = T (T'D T)^-1 T'f,
 
@@ -11,16 +11,41 @@
 #include "dynamics/bodies/bodiesimpl.h"
 #include "base/gather.h"
 
-/* The nodes of all links, ascending: global numbers, and where they are here; places of slaves and masters among
-   them */
-static PetscErrorCode TiedFindNodes(Bodies b, PetscInt n_links, const ContactLink links[], Tied *t, PetscInt slave[],
-                                    PetscInt master[])
+/* The links of all ranks, with what they follow; the caller frees both */
+static PetscErrorCode LinksGather(Bodies b, PetscInt *n, ContactLink **links, ContactLinkNode **nodes)
 {
+  const ContactLink *own;
+  ContactLinkNode   *mine, *next;
+  Contact            scene;
+  PetscInt           n_own, n_mine = 0, n_nodes;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1((CONTACT_MAX_MASTER + 1) * n_links, &t->number));
+  PetscCall(OperatorsGetModel(b->operators, NULL, &scene));
+  PetscCall(ContactGetLinks(scene, &n_own, &own));
+  for (PetscInt l = 0; l < n_own; l++) n_mine += own[l].n_master;
+  PetscCall(PetscMalloc1(n_mine, &mine));
+  next = mine;
+  for (PetscInt l = 0; l < n_own; next += own[l++].n_master)
+    PetscCall(PetscArraycpy(next, own[l].master, own[l].n_master));
+  PetscCall(GatherRecords(b->comm, n_own, sizeof(ContactLink), own, n, links));
+  PetscCall(GatherRecords(b->comm, n_mine, sizeof(ContactLinkNode), mine, &n_nodes, nodes));
+  PetscCall(PetscFree(mine));
+  next = *nodes;
+  for (PetscInt l = 0; l < *n; next += (*links)[l++].n_master) (*links)[l].master = next;
+  PetscFunctionReturn(0);
+}
+
+/* The nodes of all links, ascending: global numbers, and where they are here; places of slaves among them */
+static PetscErrorCode TiedFindNodes(Bodies b, PetscInt n_links, const ContactLink links[], Tied *t, PetscInt slave[])
+{
+  PetscInt n = n_links;
+
+  PetscFunctionBeginUser;
+  for (PetscInt l = 0; l < n_links; l++) n += links[l].n_master;
+  PetscCall(PetscMalloc1(n, &t->number));
   for (PetscInt l = 0; l < n_links; l++) {
     t->number[t->n++] = links[l].vertex;
-    for (PetscInt i = 0; i < links[l].n_master; i++) t->number[t->n++] = links[l].corner[i];
+    for (PetscInt i = 0; i < links[l].n_master; i++) t->number[t->n++] = links[l].master[i].number;
   }
   PetscCall(PetscSortRemoveDupsInt(&t->n, t->number));
   PetscCall(PetscMalloc1(t->n, &t->vertex));
@@ -31,52 +56,73 @@ static PetscErrorCode TiedFindNodes(Bodies b, PetscInt n_links, const ContactLin
     PetscCall(PetscFindInt(b->mesh->number[v], t->n, t->number, &k));
     if (k >= 0) t->vertex[k] = v;
   }
-  for (PetscInt l = 0; l < n_links; l++) {
-    PetscCall(PetscFindInt(links[l].vertex, t->n, t->number, &slave[l]));
-    for (PetscInt i = 0; i < links[l].n_master; i++)
-      PetscCall(PetscFindInt(links[l].corner[i], t->n, t->number, &master[CONTACT_MAX_MASTER * l + i]));
-  }
+  for (PetscInt l = 0; l < n_links; l++) PetscCall(PetscFindInt(links[l].vertex, t->n, t->number, &slave[l]));
   PetscFunctionReturn(0);
 }
 
-/* Columns of the nodes that follow none, -1 of the others; raises an error where one that follows leads as well */
-static PetscErrorCode TiedCountColumns(Bodies b, PetscInt n_links, const ContactLink links[], const PetscInt slave[],
-                                       const PetscInt master[], Tied *t)
+/* Columns of the nodes that follow none, -1 of the others */
+static PetscErrorCode TiedCountColumns(PetscInt n_links, const PetscInt slave[], Tied *t)
 {
-  PetscBool leads = PETSC_FALSE;
-
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(t->n, &t->column));
   for (PetscInt l = 0; l < n_links; l++) t->column[slave[l]] = -1;
-  for (PetscInt l = 0; l < n_links; l++)
-    for (PetscInt i = 0; i < links[l].n_master; i++)
-      if (t->column[master[CONTACT_MAX_MASTER * l + i]] < 0) leads = PETSC_TRUE;
-  PetscCheck(
-    !leads, b->comm, PETSC_ERR_SUP,
-    "-ties: nodes follow others that follow others themselves, which -dynamics_model full does not support: let "
-    "the body in the middle be the master of both, or take -dynamics_model reduced");
   for (PetscInt k = 0; k < t->n; k++)
     if (t->column[k] == 0) t->column[k] = t->n_masters++;
   PetscFunctionReturn(0);
 }
 
-/* T, [3 nodes][3 masters] */
-static PetscErrorCode TiedCreateMap(PetscInt n_links, const ContactLink links[], const PetscInt slave[],
-                                    const PetscInt master[], Tied *t)
+/* D, [3 nodes][3 nodes], what each follows */
+static PetscErrorCode TiedCreateRows(PetscInt n_links, const ContactLink links[], const PetscInt slave[], const Tied *t,
+                                     Mat *D)
 {
+  PetscInt most = 0;
+
   PetscFunctionBeginUser;
-  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, 3 * t->n, 3 * t->n_masters, 3 * CONTACT_MAX_MASTER, NULL, &t->T));
+  for (PetscInt l = 0; l < n_links; l++) most = PetscMax(most, links[l].n_master);
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, 3 * t->n, 3 * t->n, 3 * most, NULL, D));
+  for (PetscInt l = 0; l < n_links; l++)
+    for (PetscInt i = 0; i < links[l].n_master; i++) {
+      const ContactLinkNode *master = &links[l].master[i];
+      PetscInt               at;
+
+      PetscCall(PetscFindInt(master->number, t->n, t->number, &at));
+      for (int k = 0; k < 9; k++)
+        if (master->follow[k] != 0)
+          PetscCall(MatSetValue(*D, 3 * slave[l] + k / 3, 3 * at + k % 3, master->follow[k], INSERT_VALUES));
+    }
+  PetscCall(MatAssemblyBegin(*D, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*D, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+/* T = E + D E + D^2 E + ..., [3 nodes][3 masters], E the injection of those that follow none: a sum that ends, where
+   chains do (operators/points/dependents.c) */
+static PetscErrorCode TiedCreateMap(MPI_Comm comm, PetscInt n_links, const ContactLink links[], const PetscInt slave[],
+                                    Tied *t)
+{
+  PetscReal left = 1;
+  Mat       D, power, next;
+
+  PetscFunctionBeginUser;
+  PetscCall(TiedCreateRows(n_links, links, slave, t, &D));
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, 3 * t->n, 3 * t->n_masters, 1, NULL, &t->T));
   for (PetscInt k = 0; k < 3 * t->n; k++)
     if (t->column[k / 3] >= 0) PetscCall(MatSetValue(t->T, k, 3 * t->column[k / 3] + k % 3, 1, INSERT_VALUES));
-  for (PetscInt l = 0; l < n_links; l++)
-    for (PetscInt i = 0; i < 9 * links[l].n_master; i++) {
-      const PetscInt  leads = t->column[master[CONTACT_MAX_MASTER * l + i / 9]];
-      const PetscReal c     = links[l].follow[i / 9][i % 9];
-
-      if (c != 0) PetscCall(MatSetValue(t->T, 3 * slave[l] + i % 9 / 3, 3 * leads + i % 3, c, INSERT_VALUES));
-    }
   PetscCall(MatAssemblyBegin(t->T, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(t->T, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatDuplicate(t->T, MAT_COPY_VALUES, &power));
+  for (PetscInt step = 0; left > 0; step++) {
+    PetscCheck(step <= n_links && t->n_masters, comm, PETSC_ERR_USER_INPUT,
+               "-ties go round in a circle, so that nodes follow themselves: of two surfaces that are tied, let the "
+               "same one be the slave everywhere");
+    PetscCall(MatMatMult(D, power, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &next));
+    PetscCall(MatNorm(next, NORM_FROBENIUS, &left));
+    if (left > 0) PetscCall(MatAXPY(t->T, 1, next, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatDestroy(&power));
+    power = next;
+  }
+  PetscCall(MatDestroy(&power));
+  PetscCall(MatDestroy(&D));
   PetscFunctionReturn(0);
 }
 
@@ -165,26 +211,24 @@ static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, const unsigned cha
 
 PetscErrorCode TiedSetUp(Bodies b, const unsigned char mark[])
 {
-  Tied              *t = &b->tied;
-  const ContactLink *own;
-  ContactLink       *links;
-  Contact            scene;
-  PetscInt           n_own, n_links, *slave, *master;
+  Tied            *t = &b->tied;
+  ContactLink     *links;
+  ContactLinkNode *nodes;
+  PetscInt         n_links, *slave;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(b->operators, NULL, &scene));
-  PetscCall(ContactGetLinks(scene, &n_own, &own));
-  PetscCall(GatherRecords(b->comm, n_own, sizeof(ContactLink), own, &n_links, &links));
-  PetscCall(PetscMalloc2(n_links, &slave, CONTACT_MAX_MASTER * n_links, &master));
+  PetscCall(LinksGather(b, &n_links, &links, &nodes));
+  PetscCall(PetscMalloc1(n_links, &slave));
   if (n_links) {
-    PetscCall(TiedFindNodes(b, n_links, links, t, slave, master));
+    PetscCall(TiedFindNodes(b, n_links, links, t, slave));
     PetscCall(TiedCheckNodes(b, t, mark));
-    PetscCall(TiedCountColumns(b, n_links, links, slave, master, t));
-    PetscCall(TiedCreateMap(n_links, links, slave, master, t));
+    PetscCall(TiedCountColumns(n_links, slave, t));
+    PetscCall(TiedCreateMap(b->comm, n_links, links, slave, t));
     PetscCall(TiedFactor(b, t));
   }
-  PetscCall(PetscFree2(slave, master));
+  PetscCall(PetscFree(slave));
   PetscCall(PetscFree(links));
+  PetscCall(PetscFree(nodes));
   PetscFunctionReturn(0);
 }
 

@@ -19,7 +19,7 @@
    Nodes of both surfaces need no equation. A direction in which a support holds the slave needs none where it holds the
    nodes of the facet as well.
 */
-#include "contactimpl.h"
+#include "contact/contactimpl.h"
 #include "kernels/contact/arm.h"
 
 /* of the size of a facet: the largest distance where none is given; gaps of meshes of one curved surface, whose
@@ -66,13 +66,14 @@ static PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, 
 }
 
 /* The nodes that a link follows, with their matrices A_i = w_i I + (turning of the facet by node i) x arm, [3][3] by
-   rows. Those with A_i = 0 are left out: on matching meshes without a gap one node of weight 1 remains. A node of
-   weight 0 stays where the arm needs its part of the turning. */
-static void LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
-                          ContactLink *link)
+   rows, room for those of a facet; their number. Those with A_i = 0 are left out: on matching meshes without a gap one
+   node of weight 1 remains. A node of weight 0 stays where the arm needs its part of the turning. */
+static PetscInt LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
+                              ContactLinkNode master[])
 {
   const ContactFacet *facet = &surface->facet[foot->facet];
   PetscReal           w[CONTACT_MAX_MASTER], A[CONTACT_MAX_MASTER][9];
+  PetscInt            n = 0;
 
   FacetWeights(facet->n, foot->natural, w);
   FacetArm(facet->n, (const double(*)[3])facet->x, foot->natural, arm, A);
@@ -81,33 +82,34 @@ static void LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot
 
     for (int k = 0; k < 9; k++) size += PetscAbsReal(A[i][k]);
     if (size == 0) continue;
-    for (int d = 0; d < 3; d++) link->master[link->n_master][d] = facet->unknowns[i][d];
-    for (int k = 0; k < 9; k++) link->follow[link->n_master][k] = A[i][k];
-    link->weight[link->n_master]   = w[i];
-    link->corner[link->n_master++] = surface->vertex[facet->node[i]];
+    master[n] = (ContactLinkNode){.number = surface->vertex[facet->node[i]], .weight = w[i]};
+    for (int d = 0; d < 3; d++) master[n].unknown[d] = facet->unknowns[i][d];
+    for (int k = 0; k < 9; k++) master[n].follow[k] = A[i][k];
+    n++;
   }
+  return n;
 }
 
 /* Whether it is a node of both surfaces, which needs no link */
 static PetscBool LinkIsCommon(const ContactLink *link)
 {
   for (PetscInt i = 0; i < link->n_master; i++)
-    if (link->corner[i] == link->vertex && PetscAbsReal(link->weight[i] - 1) < 1e-9) return PETSC_TRUE;
+    if (link->master[i].number == link->vertex && PetscAbsReal(link->master[i].weight - 1) < 1e-9) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
 /* Drops the directions in which supports hold slave and master: rows of A_i of these become 0. True where a support
    holds the slave alone, in which case u_s = 0 and sum_i w_i u_i = 0 would be an equation on the master, which no
    elimination of slaves makes. */
-static PetscBool LinkDropHeld(ContactLink *link)
+static PetscBool LinkDropHeld(const ContactLink *link, ContactLinkNode master[])
 {
   PetscBool alone = PETSC_FALSE;
 
   for (int d = 0; d < 3; d++) {
     if (link->slave[d] >= 0) continue;
     for (PetscInt i = 0; i < link->n_master; i++) {
-      if (link->weight[i] != 0 && link->master[i][d] >= 0) alone = PETSC_TRUE;
-      for (int e = 0; e < 3; e++) link->follow[i][3 * d + e] = 0;
+      if (master[i].weight != 0 && master[i].unknown[d] >= 0) alone = PETSC_TRUE;
+      for (int e = 0; e < 3; e++) master[i].follow[3 * d + e] = 0;
     }
   }
   return alone;
@@ -118,6 +120,7 @@ typedef struct {
   const Mesh    *mesh;
   ContactTie     tie; /* with the counts of this rank */
   ContactSurface master;
+  PetscBool      mortar; /* nodes beyond the border of the master do not matter */
   TieFailure     failure;
 } TieWork;
 
@@ -138,8 +141,8 @@ static void TieLookBeyond(const ContactFacet *facet, const ContactFoot *foot, co
   tie->n_beyond++, tie->beyond = PetscMax(tie->beyond, beyond);
 }
 
-/* The link of local node v; none for one that is too far off, or common to both */
-static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
+/* The link of local node v, with room for what it follows; none for one that is too far off, or common to both */
+static void LinkMake(TieWork *work, PetscInt v, ContactLink *link, ContactLinkNode master[])
 {
   ContactTie         *tie = &work->tie;
   const ContactFacet *facet;
@@ -149,6 +152,7 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
   link->node     = v;
   link->vertex   = work->mesh->number[v];
   link->n_master = 0;
+  link->master   = master;
   for (int d = 0; d < 3; d++) {
     link->x[d]     = work->mesh->x[3 * v + d];
     link->slave[d] = work->mesh->unknown[3 * v + d];
@@ -157,11 +161,12 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
   facet = foot.facet < 0 ? NULL : &work->master.facet[foot.facet];
   if (facet) foot.distance = FootGetArm(facet, &foot, link->x, arm);
   if (!facet || foot.distance > TieReach(tie, facet)) {
+    if (facet && foot.across > 0 && work->mortar) return;
     tie->n_far++;
     FailureTake(foot.distance, link->x, &work->failure.distance, work->failure.x);
     return;
   }
-  LinkSetMaster(&work->master, &foot, arm, link);
+  link->n_master = LinkSetMaster(&work->master, &foot, arm, master);
   if (LinkIsCommon(link)) {
     tie->n_common++;
     link->n_master = 0;
@@ -170,13 +175,13 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link)
   tie->n++;
   tie->offset = PetscMax(tie->offset, foot.distance);
   TieLookBeyond(facet, &foot, arm, tie);
-  FailureTake(LinkDropHeld(link) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
+  FailureTake(LinkDropHeld(link, master) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
 }
 
 /* Raises the errors of one tie, whose counts are those of all ranks */
 static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure *failure)
 {
-  const PetscInt all       = tie->n + tie->n_common + tie->n_far;
+  const PetscInt all       = tie->mortar ? tie->n + tie->n_off : tie->n + tie->n_common + tie->n_far;
   char           words[64] = "(5 % of a facet)";
 
   PetscFunctionBeginUser;
@@ -184,12 +189,15 @@ static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure 
   PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
   PetscCall(ContactShareWorst(comm, &failure->held, failure->held_x));
   PetscCheck(
-    tie->n_far == 0 || (tie->free && tie->n + tie->n_common), comm, PETSC_ERR_USER_INPUT,
+    tie->n_far == 0 || (tie->free && !tie->mortar && tie->n + tie->n_common), comm, PETSC_ERR_USER_INPUT,
     "tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
     " nodes of %s are farther from %s than -%s_distance %s; the one at %.6g, %.6g, %.6g m is %.6g m away; give a "
-    "larger one, a set of the nodes that touch, or -%s_far free",
+    "larger one, a set of the nodes that touch, or -%s_%s",
     tie->name, tie->n_far, all, tie->slave, tie->master, tie->name, words, (double)failure->x[0], (double)failure->x[1],
-    (double)failure->x[2], (double)failure->distance, tie->name);
+    (double)failure->x[2], (double)failure->distance, tie->name, tie->mortar ? "discretization node" : "far free");
+  PetscCheck(tie->n || !tie->mortar || tie->n_common, comm, PETSC_ERR_USER_INPUT,
+             "tie %s glues nothing: no face of %s lies over %s; give two of -%s_surfaces that do", tie->name,
+             tie->slave, tie->master, tie->name);
   PetscCheck(tie->n || !tie->n_common, comm, PETSC_ERR_USER_INPUT,
              "tie %s glues nothing: %" PetscInt_FMT
              " nodes of %s are nodes of %s as well; leave it out, or give each body "
@@ -227,37 +235,91 @@ static PetscErrorCode TieCheckMotions(Contact contact, const ContactTie *tie, co
   PetscFunctionReturn(0);
 }
 
-/* Appends the links of one tie, of the slave nodes that this rank owns. Every rank has the whole master, so that feet
+/* Appends the links of slave nodes that this rank owns to their feet. Every rank has the whole master, so that feet
    need no exchange; errors are raised by all ranks from counts that are summed before. */
-static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
+static PetscErrorCode LinksMake(Contact contact, PetscInt t, TieWork *work)
 {
-  ContactTie *tie  = &contact->ties[t];
-  TieWork     work = {.tie = *tie};
-  PetscInt    n, *vertex;
+  PetscInt         n, *vertex;
+  ContactLinkNode *master;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetMesh(contact->model, &work.mesh));
-  PetscCall(ContactSurfaceCreate(contact, tie->master, &work.master));
-  PetscCall(ModelGetOwnedNodes(contact->model, tie->slave, &n, &vertex));
+  PetscCall(ModelGetOwnedNodes(contact->model, work->tie.slave, &n, &vertex));
   PetscCall(PetscRealloc(sizeof(ContactLink) * (size_t)(contact->n_links + n), &contact->links));
+  PetscCall(PetscMalloc1(CONTACT_MAX_MASTER * n, &master));
+  contact->followed[t] = master;
   for (PetscInt i = 0; i < n; i++) {
     ContactLink *link = &contact->links[contact->n_links];
 
     link->tie = t;
-    LinkMake(&work, vertex[i], link);
+    LinkMake(work, vertex[i], link, master);
+    master += link->n_master;
     if (link->n_master) contact->n_links++;
   }
   PetscCall(PetscFree(vertex));
-  PetscCall(ContactSurfaceDestroy(&work.master));
-  /* n, n_common, n_far and n_beyond, then offset and beyond, stand one after the other in ContactTie */
-  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 4, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, contact->comm));
-  PetscCall(TieCheck(contact->comm, tie, &work.failure));
+  PetscFunctionReturn(0);
+}
+
+/* Puts mortar links in the place of those from the first on */
+static PetscErrorCode LinksReplace(Contact contact, PetscInt t, PetscInt first, TieWork *work)
+{
+  TieWork again = {.mesh = work->mesh, .tie = contact->ties[t], .master = work->master, .mortar = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(contact->followed[t]));
+  contact->n_links = first;
+  PetscCall(LinksMake(contact, t, &again)); /* of nodes that are too far off */
+  PetscCall(PetscFree(contact->followed[t]));
+  contact->n_links   = first;
+  *work              = again;
+  work->failure.held = 0;
+  work->tie.n = work->tie.n_beyond = 0;
+  work->tie.offset = work->tie.beyond = 0;
+  contact->ties[t].mortar             = PETSC_TRUE;
+  PetscCall(ContactGlue(contact, t, &work->master, &work->tie, &work->failure.held, work->failure.held_x));
+  PetscFunctionReturn(0);
+}
+
+/* What was chosen, and which nodes are beside the master */
+static PetscErrorCode TieTell(MPI_Comm comm, const ContactTie *tie)
+{
+  const PetscInt all = tie->n + tie->n_common + tie->n_far + tie->n_off;
+
+  PetscFunctionBeginUser;
+  if (tie->discretization == CONTACT_AUTO && tie->mortar)
+    PetscCall(PetscPrintf(comm, "tie %s: meshes do not match: mortar\n", tie->name));
   if (tie->n_beyond)
-    PetscCall(PetscPrintf(contact->comm,
+    PetscCall(PetscPrintf(comm,
                           "note: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT " nodes lie beyond the border of %s, the "
                           "farthest %.6g m, and follow it by rigid arms; a smaller -%s_distance leaves them out\n",
                           tie->name, tie->n_beyond, tie->n, tie->master, (double)tie->beyond, tie->name));
+  if (tie->n_off)
+    PetscCall(PetscPrintf(comm,
+                          "note: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no or little of %s "
+                          "under them, and stay free\n",
+                          tie->name, tie->n_off, all, tie->slave, tie->master));
+  PetscFunctionReturn(0);
+}
+
+/* Appends the links of one tie */
+static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
+{
+  ContactTie    *tie   = &contact->ties[t];
+  TieWork        work  = {.tie = *tie, .mortar = tie->discretization == CONTACT_MORTAR ? PETSC_TRUE : PETSC_FALSE};
+  const PetscInt first = contact->n_links;
+  PetscBool      match = tie->discretization == CONTACT_NODE ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(contact->model, &work.mesh));
+  PetscCall(ContactSurfaceCreate(contact, tie->master, &work.master));
+  PetscCall(LinksMake(contact, t, &work));
+  if (tie->discretization == CONTACT_AUTO) PetscCall(ContactTieMatches(contact, t, first, &work.master, &match));
+  if (!match) PetscCall(LinksReplace(contact, t, first, &work));
+  PetscCall(ContactSurfaceDestroy(&work.master));
+  /* n, n_common, n_far, n_beyond and n_off, then offset and beyond, stand one after the other in ContactTie */
+  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 5, MPIU_INT, MPI_SUM, contact->comm));
+  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, contact->comm));
+  PetscCall(TieCheck(contact->comm, tie, &work.failure));
+  PetscCall(TieTell(contact->comm, tie));
   PetscCall(TieCheckMotions(contact, tie, tie->slave));
   PetscCall(TieCheckMotions(contact, tie, tie->master));
   PetscFunctionReturn(0);
@@ -266,72 +328,7 @@ static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
 PetscErrorCode ContactSetUpTies(Contact contact)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(contact->n_ties, &contact->followed));
   for (PetscInt t = 0; t < contact->n_ties; t++) PetscCall(TieSetUp(contact, t));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **ties)
-{
-  PetscFunctionBeginUser;
-  *n    = contact ? contact->n_ties : 0;
-  *ties = contact ? contact->ties : NULL;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links)
-{
-  PetscFunctionBeginUser;
-  *n     = contact ? contact->n_links : 0;
-  *links = contact ? contact->links : NULL;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactTiesAddChecksum(Contact contact, Checksum c)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < contact->n_ties; t++) {
-    const ContactTie *tie = &contact->ties[t];
-
-    PetscCall(ChecksumSetPart(c, "tie %s", tie->name));
-    PetscCall(ModelAddSetChecksum(contact->model, tie->slave, PETSC_FALSE, c));
-    PetscCall(ModelAddSetChecksum(contact->model, tie->master, PETSC_TRUE, c));
-    PetscCall(ChecksumAddReals(c, 1, &tie->distance));
-    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){tie->free}));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactTiesView(Contact contact, PetscViewer viewer)
-{
-  const char *unit;
-
-  PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < contact->n_ties; t++) {
-    const ContactTie *tie = &contact->ties[t];
-
-    PetscCall(ModelGetUnit(contact->model, "m", &unit));
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "tie %s: %" PetscInt_FMT " nodes of %s follow %s, the farthest %.6g %s off it",
-                                     tie->name, tie->n, tie->slave, tie->master, (double)tie->offset, unit));
-    if (tie->n_common)
-      PetscCall(PetscViewerASCIIPrintf(viewer, " (%" PetscInt_FMT " are nodes of both)", tie->n_common));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-    if (tie->n_far)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " nodes of %s are farther off, and stay free\n",
-                                       tie->n_far, tie->slave));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactTiesDestroy(Contact contact)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < contact->n_ties; t++) {
-    PetscCall(PetscFree(contact->ties[t].name));
-    PetscCall(PetscFree(contact->ties[t].slave));
-    PetscCall(PetscFree(contact->ties[t].master));
-  }
-  PetscCall(PetscFree(contact->ties));
-  PetscCall(PetscFree(contact->links));
   PetscFunctionReturn(0);
 }
