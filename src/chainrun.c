@@ -10,23 +10,24 @@ static PetscErrorCode ChainGivePencil(Chain *chain)
 
   PetscFunctionBeginUser;
   PetscCall(ChainLinearise(chain));
-  PetscCall(ModesWantTerms(chain->modes, &terms));
-  PetscCall(ModesWantComponents(chain->modes, &components));
-  if (chain->analysis == ANALYSIS_MODES && !terms && !components) PetscCall(PencilReleaseTerms(chain->pencil));
   PetscCall(ModesSetPencil(chain->modes, chain->pencil));
+  if (chain->analysis == ANALYSIS_MODES) {
+    PetscCall(ModesWantTerms(chain->modes, &terms));
+    PetscCall(ModesPrepareComponents(chain->modes, &components));
+    if (!terms && !components) PetscCall(PencilReleaseTerms(chain->pencil));
+  }
   PetscCall(FrfSetPencil(chain->frf, chain->pencil));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ChainSolveModes(Chain *chain)
 {
-  PetscBool components, changes;
+  PetscBool changes;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesWantComponents(chain->modes, &components));
   PetscCall(ModesPlaceChanges(chain->modes, &changes));
   PetscCall(ModesSolve(chain->modes));
-  if (components) PetscCall(ModesFindComponents(chain->modes));
+  PetscCall(ModesFindComponents(chain->modes));
   if (changes) PetscCall(ModesFindChanges(chain->modes));
   PetscFunctionReturn(0);
 }

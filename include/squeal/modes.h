@@ -119,13 +119,14 @@ PetscErrorCode ModesSolve(Modes modes);
     collective. @*/
 PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted);
 
-/*@ ModesWantComponents - whether the options ask for contributions of component modes. Not collective. @*/
-PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted);
+/*@ ModesPrepareComponents - finds the bodies of the pencil while its terms are there, as ModesFindComponents() needs
+    them; keep_terms = -modes_components asks for a solution of its own, which needs the terms. Collective.
+    Errors: PETSC_ERR_USER_INPUT for -modes_components with loaded matrices. @*/
+PetscErrorCode ModesPrepareComponents(Modes modes, PetscBool *keep_terms);
 
 /*@ ModesFindComponents - which free modes of the bodies make up each mode of the last solution, for ModesView() and
-    ModesWrite(), and names by them; with -modes_components_found of the unstable modes, by Ritz vectors. The terms of
-    the operators must be there. Collective.
-    Errors: PETSC_ERR_USER_INPUT for loaded matrices. @*/
+    ModesWrite(), and names by them; without -modes_components of the unstable modes, by Ritz vectors. Nothing where
+    ModesPrepareComponents() found no bodies. Collective. @*/
 PetscErrorCode ModesFindComponents(Modes modes);
 
 /*@ ModesPlaceChanges - whether the options give changes to try on the modes; then finds their places, and has

@@ -126,6 +126,19 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
 @*/
 PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[], PetscBool apart, Pencil *bodies);
 
+/*@ PencilGetTermsApart - matrices of stiffness and mass of the bodies apart at the present point, in all unknowns
+    (borrowed, until PencilReleaseTerms(); the caller frees the list). Not collective. @*/
+PetscErrorCode PencilGetTermsApart(Pencil pencil, PetscInt *n, Mat **terms);
+
+/*@ PencilKeepApart - keeps what joins the bodies at the present point, so that PencilGetStiffnessApart() can be called
+    after PencilReleaseTerms(). Collective. @*/
+PetscErrorCode PencilKeepApart(Pencil pencil);
+
+/*@ PencilGetStiffnessApart - K + less is the stiffness of the bodies apart in all unknowns, as
+    OperatorsLineariseBodies() has it, but that nothing follows (borrowed; less is NULL where nothing joins them).
+    Collective. Errors: PETSC_ERR_ARG_WRONGSTATE without PencilKeepApart(). @*/
+PetscErrorCode PencilGetStiffnessApart(Pencil pencil, Mat *K, Mat *less);
+
 /*@ PencilGetParameters - the parameters of the operators, then closed_1, closed_2, ... of the groups, and the present
     point (borrowed); pass NULL for what is not needed. Not collective. @*/
 PetscErrorCode PencilGetParameters(Pencil pencil, PetscInt *n, const OperatorsParameter **parameters,
@@ -154,21 +167,27 @@ PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[]
     after PencilReleaseTerms() too. Collective. @*/
 PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **causes);
 
+/* An eigenvalue sigma + i omega, rad/s, omega > 0, and its right vector xr + i xi, of all unknowns, x^H M x = 1; xi is
+   NULL for a real one */
+typedef struct {
+  PetscReal sigma, omega;
+  Vec       xr, xi;
+} PencilMode;
+
 /*@
-   PencilMeasureCauses - the shares of the causes in the growth of one eigenvalue, from the imaginary part of u^H
+   PencilMeasureCauses - the shares of the causes in the growth of n eigenvalues, from the imaginary part of u^H
    (lambda^2 M + lambda C + K) u = 0. Their sum is sigma, but for what the residual of the eigenvector leaves.
    Collective. The mean energy E = omega D / 4, D = 2 omega u^H M u + Im u^H C u, is that of u = Re(u e^(i omega t)) at
    constant amplitude, twice the kinetic one; a cause of growth s feeds it with the power 2 E s.
 
-   Input Parameters:
-+  lambda - the eigenvalue sigma + i omega, rad/s, omega > 0
--  ur, ui - its right vector, of all unknowns; ui NULL for a real one
-   Output Parameter:
-+  growth - [causes of PencilGetCauses(), called before] 1/s
--  energy - E, J, of displacements in m; NULL where it is not needed
+   Input Parameter:
+.  mode - [n] the eigenvalues
+   Output Parameters:
++  growth - [n][causes of PencilGetCauses(), called before] 1/s
+-  energy - [n] E, J, of displacements in m
 @*/
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscComplex lambda, Vec ur, Vec ui, PetscReal growth[],
-                                   PetscReal *energy);
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscInt n, const PencilMode mode[], PetscReal growth[],
+                                   PetscReal energy[]);
 
 /* What friction does at a pair, with the kinds of PencilCause for names */
 typedef enum { PENCIL_FRICTION, PENCIL_FRICTION_DAMPING, PENCIL_FALLING_FRICTION, PENCIL_N_POWERS } PencilPower;

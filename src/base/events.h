@@ -14,6 +14,10 @@ typedef enum {
   EVENT_FACTOR,
   EVENT_SOLVE,
   EVENT_COLUMN, /* counts the right-hand sides that are solved in blocks; takes no time */
+  EVENT_LABEL,
+  EVENT_CAUSES, /* balance and mechanism of each mode, power at each pair */
+  EVENT_COMPONENTS,
+  EVENT_EFFECTS,
   EVENT_CORRECT,
   EVENT_ORTHOGONALISE,
   EVENT_REDUCED,

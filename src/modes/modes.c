@@ -3,6 +3,7 @@
    errors -> labels, with the check that no mode is missing.
 */
 #include "modesimpl.h"
+#include "base/events.h"
 #include "base/process/memory.h"
 #include "solver/block/krylov.h"
 #include "solver/factor/ordering.h"
@@ -218,7 +219,9 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(LimitBegin(modes));
   PetscCall(FindAll(modes, &window, &none));
   if (!modes->n) PetscCall(ComplainNone(modes, window.known.below));
+  PetscCall(EventBegin(EVENT_LABEL));
   PetscCall(ModesLabel(modes));
+  PetscCall(EventEnd(EVENT_LABEL));
   PetscFunctionReturn(0);
 }
 
@@ -236,6 +239,7 @@ PetscErrorCode ModesDestroy(Modes *modes)
   if (!*modes) PetscFunctionReturn(0);
   PetscCall(ModesReset(*modes));
   PetscCall(ChangesDestroy(*modes));
+  PetscCall(FreeBodiesDestroy(&(*modes)->bodies));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(0);
 }

@@ -65,11 +65,15 @@ enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 
 /* components/ - which free modes of the bodies make up each mode */
 typedef struct _p_ModesComponents *ModesComponents;
+typedef struct _p_FreeBodies       FreeBodies;
 
-/* Masses of nodes by which shapes are weighed, of what the cells of each part give (label/weigh.c) */
+/* Masses of nodes by which shapes are weighed, of what the cells of each part give (label/weigh.c), and the disc */
 typedef struct {
-  PetscInt    n;    /* parts */
-  PetscReal **mass; /* [parts][local nodes] kg */
+  PetscInt        n;         /* parts */
+  PetscReal     **mass;      /* [parts][local nodes] kg */
+  PetscBool       has_disc;  /* it was looked for */
+  PetscInt        disc_part; /* -1 for none */
+  struct _p_Disc *disc;      /* label/disc.h; NULL for none */
 } ModesWeights;
 
 /* changes/ - masses, springs and dashpots to try on the modes found, and the modes that they make */
@@ -108,6 +112,7 @@ struct _p_Modes {
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
   PetscInt       *label_part;    /* the part that a mode is named after, -1 for none [n], NULL likewise */
   ModesWeights   *weights;       /* NULL: not weighed yet */
+  FreeBodies     *bodies;        /* of the pencil; NULL: not asked for, or none */
   ModesComponents components;    /* NULL: not asked for */
   ModesChanged    changed;       /* [n_changes], NULL likewise */
   PetscBool       dense;         /* LAPACK found all eigenvalues */
@@ -205,6 +210,7 @@ PETSC_INTERN PetscErrorCode ComponentsWrite(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer);
 /* components/bodies.c */
 PETSC_INTERN PetscErrorCode ComponentsDestroy(ModesComponents *components);
+PETSC_INTERN PetscErrorCode FreeBodiesDestroy(FreeBodies **bodies);
 
 /* growth/sensitivity.c - modes_sensitivities.csv; the largest effects on each unstable mode; nothing where they are not
    asked for. Collective */

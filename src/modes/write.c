@@ -2,6 +2,7 @@
    The table of modes for people and for files, and the shapes.
 */
 #include "modesimpl.h"
+#include "base/events.h"
 
 static PetscReal ModeFrequency(const Mode *mode)
 {
@@ -178,15 +179,19 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   const Mesh *mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(ModesBalance(modes));
   PetscCall(ModesGetModel(modes, &model, NULL));
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));
+  PetscCall(ModesBalance(modes));
   PetscCall(ModesWriteTable(modes, mesh, results));
+  PetscCall(EventBegin(EVENT_CAUSES));
   PetscCall(ModesWriteCauses(modes, results));
   PetscCall(ModesWriteFeedIn(modes, results));
+  PetscCall(EventEnd(EVENT_CAUSES));
   PetscCall(ModesWriteSensitivities(modes, results));
+  PetscCall(EventBegin(EVENT_EFFECTS));
   PetscCall(ModesWriteEffects(modes, operators, mesh, results));
+  PetscCall(EventEnd(EVENT_EFFECTS));
   PetscCall(ComponentsWrite(modes, results));
   PetscCall(ChangesWrite(modes, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));

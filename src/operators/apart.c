@@ -5,6 +5,10 @@
 
    at a point p where the parameters of damping and spin that belong to the bodies are 0,
    whose modes are named and in which those of the coupled bodies are expanded.
+
+   Of a pencil with contact, K_bodies = K + D in all unknowns: D takes off the terms of the contact, of bushings between
+   two sets, of preload and spin. Most of its rows are empty, but for a body that spins or is preloaded, and it is kept
+   where the terms are not.
 */
 #include "pencilimpl.h"
 
@@ -57,8 +61,23 @@ static PetscErrorCode StateCreateOpen(Contact contact, SlidingState *state)
   PetscFunctionReturn(0);
 }
 
-/* p NULL: the point of the scene. Damping and spin are set to 0 in a copy of p, not taken out of the terms, so that
-   the pencil has the parameters of all others. */
+/* The point `still` [n] of the bodies: damping and spin are 0 in a copy of p, not taken out of the terms, so that the
+   pencil has the parameters of all others */
+static PetscErrorCode PointOfBodies(Operators operators, PetscInt n, const OperatorsParameter parameter[],
+                                    const PetscReal p[], PetscBool apart, PetscReal still[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool gyrates, joins = PETSC_FALSE;
+
+    PetscCall(OperatorsUnitIsGyration(parameter[i].unit, &gyrates));
+    if (apart) PetscCall(ParameterJoins(operators, &parameter[i], &joins));
+    still[i] = (gyrates && parameter[i].body) || joins ? 0 : p[i]; /* a contact that turns is none of them */
+  }
+  PetscFunctionReturn(0);
+}
+
+/* p NULL: the point of the scene */
 PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[], PetscBool apart, Pencil *bodies)
 {
   const OperatorsParameter *parameter;
@@ -72,16 +91,88 @@ PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[]
   PetscCall(OperatorsLinearise(operators, &state, bodies));
   PetscCall(SlidingStateDestroy(&state));
   PetscCall(PencilGetParameters(*bodies, &n, &parameter, &scene));
-  if (!p) p = scene;
   PetscCall(PetscMalloc1(n, &still));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscBool gyrates, joins = PETSC_FALSE;
-
-    PetscCall(OperatorsUnitIsGyration(parameter[i].unit, &gyrates));
-    if (apart) PetscCall(ParameterJoins(operators, &parameter[i], &joins));
-    still[i] = (gyrates && parameter[i].body) || joins ? 0 : p[i]; /* a contact that turns is none of them */
-  }
+  PetscCall(PointOfBodies(operators, n, parameter, p ? p : scene, apart, still));
   PetscCall(PencilSetParameters(*bodies, still));
   PetscCall(PetscFree(still));
+  PetscFunctionReturn(0);
+}
+
+/* How many terms, the first ones, are of the bodies */
+static PetscInt TermsOfBodies(Pencil pencil)
+{
+  return pencil->operators->terms.n + pencil->operators->spin.n;
+}
+
+/* Coefficients of the terms in the bodies apart [terms] */
+static PetscErrorCode CoefficientsApart(Pencil pencil, PetscReal c[])
+{
+  const Parameters *parameters = &pencil->parameters;
+  PetscReal        *still;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(parameters->n, &still));
+  PetscCall(PointOfBodies(pencil->operators, parameters->n, parameters->list, parameters->p, PETSC_TRUE, still));
+  for (PetscInt t = 0; t < pencil->base.n; t++)
+    c[t] = t < TermsOfBodies(pencil) ? OperatorsTermCoefficient(&pencil->base.term[t], still) : 0;
+  PetscCall(PetscFree(still));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilGetTermsApart(Pencil pencil, PetscInt *n, Mat **terms)
+{
+  PetscReal *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pencil->base.n, terms));
+  PetscCall(PetscMalloc1(pencil->base.n, &c));
+  PetscCall(CoefficientsApart(pencil, c));
+  *n = 0;
+  for (PetscInt t = 0; t < pencil->base.n; t++)
+    if (c[t] != 0 && pencil->base.term[t].kind != OPERATORS_DAMPING) (*terms)[(*n)++] = pencil->base.term[t].A;
+  PetscCall(PetscFree(c));
+  PetscFunctionReturn(0);
+}
+
+/* D: of what PencilGetStiffnessApart() takes for K */
+PetscErrorCode PencilKeepApart(Pencil pencil)
+{
+  PetscReal *c;
+  PetscBool  none = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pencil->base.n, &c));
+  PetscCall(CoefficientsApart(pencil, c));
+  for (PetscInt t = 0; t < pencil->base.n; t++) {
+    const OperatorsTerm *term = &pencil->base.term[t];
+    const PetscBool      counts =
+      term->kind == OPERATORS_STIFFNESS && !(pencil->Zr && term->frictional) ? PETSC_TRUE : PETSC_FALSE;
+
+    c[t] = counts ? c[t] - OperatorsTermCoefficient(term, pencil->parameters.p) : 0;
+    if (c[t] != 0) none = PETSC_FALSE;
+  }
+  PetscCall(TermsSumDestroy(&pencil->joining));
+  if (!none) PetscCall(TermsSumAdd(&pencil->base, c, &pencil->joining));
+  pencil->keeps_apart = PETSC_TRUE;
+  PetscCall(PetscFree(c));
+  PetscFunctionReturn(0);
+}
+
+/* K with friction, which is there, or where constraints project the pencil its symmetric part in all unknowns */
+PetscErrorCode PencilGetStiffnessApart(Pencil pencil, Mat *K, Mat *less)
+{
+  PencilMatrices m;
+  PencilParts    parts;
+
+  PetscFunctionBeginUser;
+  PetscCheck(pencil->keeps_apart, pencil->comm, PETSC_ERR_ARG_WRONGSTATE, "PencilKeepApart() was not called");
+  if (pencil->Zr) {
+    PetscCall(PencilGetParts(pencil, &parts));
+    *K = parts.K;
+  } else {
+    PetscCall(PencilGetMatrices(pencil, &m));
+    *K = m.K;
+  }
+  *less = pencil->joining.A;
   PetscFunctionReturn(0);
 }

@@ -156,6 +156,7 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   for (int i = 0; i < N_PENCIL_SUMS; i++) PetscCall(TermsSumDestroy(&s->sum[i]));
+  PetscCall(TermsSumDestroy(&s->joining));
   for (int i = 0; i < 2; i++) PetscCall(MatDestroy(&s->factor[i]));
   PetscCall(MatDestroy(&s->half));
   PetscCall(PencilDestroyNullSpaces(s));

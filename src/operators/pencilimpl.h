@@ -43,6 +43,8 @@ struct _p_Pencil {
   Terms    causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
   PetscInt n_causes;
   PencilCause *cause;
+  PetscBool    keeps_apart; /* joining was formed */
+  TermsSum     joining;     /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
   PetscBool    mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool    released;      /* the terms are gone */
   PetscBool    has_factors;   /* left' right was formed at the present point */

@@ -187,7 +187,8 @@ static PetscErrorCode TestNames(int drum, int *failed)
   }
   Turn(0, unit, contact);
   for (int d = 0; d < 3; d++) contact[d] += 0.5 * d;
-  PetscCall(DiscCreate(PETSC_COMM_WORLD, &(DiscPart){n, x, mass, contact, NULL}, N_CASES, &disc, &is_disc));
+  PetscCall(DiscCreate(PETSC_COMM_WORLD, &(DiscPart){n, x, mass, contact, NULL}, &disc, &is_disc));
+  PetscCall(DiscFitBegin(&disc, N_CASES));
   *failed += CheckTrue(drum ? "a drum is a disc" : "a ring is a disc", is_disc && (int)disc.is_drum == drum, disc.size);
   for (int i = 0; i < N_CASES; i++) {
     for (int k = rank, v = 0; k < NODES; k += size, v++) {

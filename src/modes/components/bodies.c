@@ -1,6 +1,6 @@
 /*
-   Bodies: parts that K or M of a pencil connects, or that follow others. A random vector r that is zero outside of a
-   part has K r, M r and Z r exactly zero at what is not connected with it.
+   Bodies: parts that a term of K or M connects, but for contact and bushings, or that follow others. A random vector r
+   that is zero outside of a part has A r and Z r exactly zero at what is not connected with it.
 */
 #include "components.h"
 #include "solver/block/orthonormal.h"
@@ -80,58 +80,69 @@ static PetscErrorCode PartsMarkAll(Vec part, Mat moved, PetscInt n, PetscInt joi
   PetscFunctionReturn(0);
 }
 
-/* What K and M join: r of every part, all at once */
-static PetscErrorCode PartsJoinByMatrices(const PencilMatrices *matrices, PetscInt n, Vec own, PetscInt joined[])
+/* R, whose column p is r of part p */
+static PetscErrorCode PartsScatter(Vec part, PetscInt n, Mat *R)
 {
-  const Mat A[2] = {matrices->K, matrices->M};
-  PetscInt  n_own;
-  Mat       R, AR[2];
+  PetscInt n_own;
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetLocalSize(own, &n_own));
-  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)own), n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &R));
+  PetscCall(VecGetLocalSize(part, &n_own));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)part), n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, R));
   for (PetscInt p = 0; p < n; p++) {
     Vec column;
 
-    PetscCall(MatDenseGetColumnVecWrite(R, p, &column));
-    PetscCall(PartTake(own, p, column));
-    PetscCall(MatDenseRestoreColumnVecWrite(R, p, &column));
+    PetscCall(MatDenseGetColumnVecWrite(*R, p, &column));
+    PetscCall(PartTake(part, p, column));
+    PetscCall(MatDenseRestoreColumnVecWrite(*R, p, &column));
   }
-  for (int k = 0; k < 2; k++) PetscCall(MatDuplicate(R, MAT_DO_NOT_COPY_VALUES, &AR[k]));
-  PetscCall(BlockMultiplyEach(2, A, R, AR));
-  for (int k = 0; k < 2; k++) {
-    PetscCall(PartsMarkAll(own, AR[k], n, joined));
-    PetscCall(MatDestroy(&AR[k]));
+  PetscFunctionReturn(0);
+}
+
+/* What displacements that follow others join: Z E' r of part p, in the unknowns that follow none and in all */
+static PetscErrorCode PartsJoinFollowers(Operators operators, Vec part, PetscInt n, Mat R, PetscInt joined[])
+{
+  Mat Z, E;
+  Vec q, u;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetDependents(operators, &Z, &E));
+  if (!Z) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(Z, &q, &u));
+  for (PetscInt p = 0; p < n; p++) {
+    Vec column;
+
+    PetscCall(MatDenseGetColumnVecRead(R, p, &column));
+    PetscCall(MatMultTranspose(E, column, q));
+    PetscCall(MatDenseRestoreColumnVecRead(R, p, &column));
+    PetscCall(MatMult(Z, q, u));
+    PetscCall(PartsMark(part, u, &joined[p * n]));
   }
-  PetscCall(MatDestroy(&R));
+  PetscCall(VecDestroy(&q));
+  PetscCall(VecDestroy(&u));
   PetscFunctionReturn(0);
 }
 
 /* joined[p][q] of n parts: whether p is connected with q; with itself: whether it has unknowns */
-static PetscErrorCode PartsJoin(Pencil pencil, PetscInt n, Vec part, PetscInt joined[])
+static PetscErrorCode PartsJoin(Pencil pencil, Operators operators, PetscInt n, Vec part, PetscInt joined[])
 {
-  PencilMatrices matrices;
-  Vec            own, r, u;
+  PetscInt n_terms;
+  Mat      R, AR, *terms;
 
   PetscFunctionBeginUser;
-  PetscCall(PencilGetMatrices(pencil, &matrices));
-  PetscCall(MatCreateVecs(matrices.K, &r, NULL));
-  PetscCall(VecDuplicate(r, &own));
-  PetscCall(VecDuplicate(part, &u));
-  PetscCall(PencilRestrict(pencil, part, own));
-  PetscCall(PartsJoinByMatrices(&matrices, n, own, joined));
-  for (PetscInt p = 0; p < n; p++) {
-    PetscCall(PartTake(own, p, r));
-    PetscCall(PencilExpand(pencil, PETSC_FALSE, r, u));
-    PetscCall(PartsMark(part, u, &joined[p * n]));
-    PetscCall(PartTake(part, p, u));
-    PetscCall(PartsMark(part, u, &joined[p * n]));
+  PetscCall(PartsScatter(part, n, &R));
+  PetscCall(PartsMarkAll(part, R, n, joined));
+  PetscCall(PartsJoinFollowers(operators, part, n, R, joined));
+  PetscCall(MatDuplicate(R, MAT_DO_NOT_COPY_VALUES, &AR));
+  PetscCall(PencilGetTermsApart(pencil, &n_terms, &terms));
+  for (PetscInt t = 0; t < n_terms; t++) {
+    PetscCall(BlockMultiply(terms[t], R, AR));
+    PetscCall(PartsMarkAll(part, AR, n, joined));
   }
+  PetscCall(PetscFree(terms));
+  PetscCall(MatDestroy(&AR));
+  PetscCall(MatDestroy(&R));
   PetscCallMPI(
     MPI_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)part)));
-  PetscCall(VecDestroy(&own));
-  PetscCall(VecDestroy(&r));
-  PetscCall(VecDestroy(&u));
   PetscFunctionReturn(0);
 }
 
@@ -173,8 +184,9 @@ static PetscErrorCode FreeBodiesName(const Mesh *mesh, const PetscInt body[], Fr
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies)
+PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies **found)
 {
+  FreeBodies        *bodies;
   const PetscScalar *at;
   PetscInt           n, n_own, *joined, *body;
   Operators          operators;
@@ -185,10 +197,12 @@ PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies)
   PetscCall(PencilGetOperators(pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));
   n = mesh->n_parts + 1;
+  PetscCall(PetscCalloc1(1, found));
+  bodies = *found;
   PetscCall(PetscCalloc2(n * n, &joined, n, &body));
   PetscCall(OperatorsCreateVec(operators, &part));
   PetscCall(PartsOfUnknowns(mesh, part));
-  PetscCall(PartsJoin(pencil, n, part, joined));
+  PetscCall(PartsJoin(pencil, operators, n, part, joined));
   bodies->n = FreeBodiesNumber(n, joined, body);
   PetscCall(FreeBodiesName(mesh, body, bodies));
   PetscCall(VecGetLocalSize(part, &n_own));
@@ -219,13 +233,15 @@ PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscRea
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FreeBodiesDestroy(FreeBodies *bodies)
+PetscErrorCode FreeBodiesDestroy(FreeBodies **bodies)
 {
   PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < bodies->n; b++) PetscCall(PetscFree(bodies->name[b]));
-  PetscCall(PetscFree(bodies->name));
-  PetscCall(PetscFree(bodies->of));
-  PetscCall(PetscFree(bodies->of_part));
+  if (!*bodies) PetscFunctionReturn(0);
+  for (PetscInt b = 0; b < (*bodies)->n; b++) PetscCall(PetscFree((*bodies)->name[b]));
+  PetscCall(PetscFree((*bodies)->name));
+  PetscCall(PetscFree((*bodies)->of));
+  PetscCall(PetscFree((*bodies)->of_part));
+  PetscCall(PetscFree(*bodies));
   PetscFunctionReturn(0);
 }
 
@@ -233,7 +249,6 @@ PetscErrorCode ComponentsDestroy(ModesComponents *c)
 {
   PetscFunctionBeginUser;
   if (!*c) PetscFunctionReturn(0);
-  PetscCall(FreeBodiesDestroy(&(*c)->bodies));
   PetscCall(PetscFree((*c)->level));
   PetscCall(PetscFree((*c)->found_of));
   PetscCall(PetscFree((*c)->free));

@@ -17,6 +17,7 @@
    phi| / |omega_k^2 - omega_j^2|, so that the share is off by 2 s (d + d_k), s the largest share.
 */
 #include "components.h"
+#include "base/events.h"
 #include <complex.h>
 
 #define LEVEL_EQUAL 1e-6 /* of the frequency: free modes of one frequency */
@@ -25,22 +26,33 @@
 enum { SUM_X_RE, SUM_X_IM, SUM_Y_RE, SUM_Y_IM, N_SUMS };
 enum { SUM_RE_RE, SUM_RE_IM, SUM_IM_RE, SUM_IM_IM, SUM_X_X_RE, SUM_X_X_IM, N_WHOLE }; /* y re M x re, ... */
 
-PetscErrorCode ModesWantComponents(Modes modes, PetscBool *wanted)
+/* By a solution with a pencil of its own */
+static PetscErrorCode FreeModesSolve(Modes modes, Modes free)
 {
+  const PetscReal *p;
+  Operators        operators;
+  Pencil           bodies;
+
   PetscFunctionBeginUser;
-  *wanted = modes->free_to > 0 || modes->free_found ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
+  PetscCall(OperatorsLineariseBodies(operators, p, PETSC_TRUE, &bodies));
+  PetscCall(ModesSetPencil(free, bodies));
+  PetscCall(ModesSolve(free));
+  PetscCall(ModesSetPencil(free, modes->pencil));
+  PetscCall(PencilDestroy(&bodies));
   PetscFunctionReturn(0);
 }
 
 /* Free modes below the multiple of the highest frequency by a solution, or from the modes found */
-static PetscErrorCode FreeModesFind(Modes modes, Pencil bodies, ModesComponents c, Modes *free)
+static PetscErrorCode FreeModesFind(Modes modes, ModesComponents c, Modes *free)
 {
   const PetscReal highest = modes->mode[modes->n - 1].omega / (2 * PETSC_PI);
   const PetscReal band[2] = {0, modes->free_to * (modes->has_band ? modes->band[1] : highest)};
 
   PetscFunctionBeginUser;
   PetscCall(ModesCreate(modes->comm, free));
-  PetscCall(ModesSetPencil(*free, bodies));
+  PetscCall(ModesSetPencil(*free, modes->pencil));
   PetscCall(ModesSetBand(*free, band));
   (*free)->has_disc = modes->has_disc;
   (*free)->most     = modes->most;
@@ -48,9 +60,9 @@ static PetscErrorCode FreeModesFind(Modes modes, Pencil bodies, ModesComponents 
   PetscCall(PetscStrncpy((*free)->disc, modes->disc, sizeof((*free)->disc)));
   c->found = modes->free_to > 0 ? PETSC_FALSE : PETSC_TRUE;
   if (c->found)
-    PetscCall(FreeModesTake(modes, bodies, c, *free));
+    PetscCall(FreeModesTake(modes, c, *free));
   else
-    PetscCall(ModesSolve(*free));
+    PetscCall(FreeModesSolve(modes, *free));
   PetscFunctionReturn(0);
 }
 
@@ -137,22 +149,24 @@ static PetscErrorCode SharesDot(const Modes free, const ModesComponents c, Vec p
 
 /* Sums of mode i with the free modes, [free modes][N_SUMS][bodies], then of the whole, [N_WHOLE][bodies]; product has
    room for N_SUMS + 1 vectors */
-static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, const ModesComponents c, Vec product[],
+static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, PetscBool left, Vec product[],
                                 PetscReal sums[])
 {
-  const FreeBodies *bodies = &c->bodies;
-  PetscReal        *whole  = &sums[free->n * N_SUMS * bodies->n];
-  Vec               v[N_SUMS];
-  Mat               M;
+  const ModesComponents c      = modes->components;
+  const FreeBodies     *bodies = &c->bodies;
+  PetscReal            *whole  = &sums[free->n * N_SUMS * bodies->n];
+  Vec                   v[N_SUMS];
+  Mat                   M;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetMass(modes->pencil, &M));
   PetscCall(ModesGetVectors(modes, i, &v[SUM_X_RE], &v[SUM_X_IM], &v[SUM_Y_RE], &v[SUM_Y_IM]));
+  if (!left) v[SUM_Y_RE] = v[SUM_Y_IM] = NULL;
   for (int k = 0; k < N_SUMS; k++) {
     PetscReal size = 0;
 
-    if (v[k]) PetscCall(VecNorm(v[k], NORM_INFINITY, &size));
-    if (size == 0) v[k] = NULL; /* the imaginary part of a real vector */
+    if (v[k]) PetscCall(VecDot(v[k], v[k], &size)); /* VecNorm() may remember that of a time before */
+    if (size == 0) v[k] = NULL;                     /* the imaginary part of a real vector */
     if (!v[k]) continue;
     PetscCall(MatMult(M, v[k], product[k]));
     PetscCall(SharesDot(free, c, product[k], product[N_SUMS], k, sums));
@@ -224,11 +238,14 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
   PetscCall(PetscMalloc1(n_sums, &sums));
   for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
   for (PetscInt i = 0; i < modes->n; i++) {
+    PetscBool left;
+
     if (c->found && !ComponentsAsks(modes, i)) continue;
-    PetscCall(PetscArrayzero(sums, n_sums));
-    PetscCall(SharesSum(modes, free, i, c, product, sums));
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
-    SharesForm(c, yr ? PETSC_TRUE : PETSC_FALSE, free->n, i, sums);
+    left = yr && (!c->found || modes->mode[i].unstable) ? PETSC_TRUE : PETSC_FALSE; /* names need energies alone */
+    PetscCall(PetscArrayzero(sums, n_sums));
+    PetscCall(SharesSum(modes, free, i, left, product, sums));
+    SharesForm(c, left, free->n, i, sums);
     c->mixed[i] = ShapeMixed(modes, i);
   }
   for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDestroy(&product[k]));
@@ -255,30 +272,58 @@ static PetscErrorCode ComponentsMake(Modes modes, const Modes free)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesFindComponents(Modes modes)
+/* Bodies, while the terms are there, and what joins them */
+static PetscErrorCode ComponentsPrepare(Modes modes, PetscBool solve)
 {
-  const PetscReal *p;
-  PetscBool        asked = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
-  Operators        operators;
-  Pencil           pencil;
-  Model            model;
-  Modes            free;
+  Operators operators;
+  Model     model;
 
   PetscFunctionBeginUser;
+  PetscCall(FreeBodiesDestroy(&modes->bodies));
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetModel(operators, &model, NULL));
-  PetscCheck(model, modes->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(model || !solve, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_components needs a mesh: loaded matrices have no bodies");
-  PetscCall(ComponentsDestroy(&modes->components));
-  for (PetscInt i = 0; i < modes->n && !asked; i++) asked = ComponentsAsks(modes, i);
-  if (!asked) PetscFunctionReturn(0);
+  if (!model || !(solve || modes->free_found)) PetscFunctionReturn(0);
+  PetscCall(FreeBodiesFind(modes->pencil, &modes->bodies));
+  if (!solve) PetscCall(PencilKeepApart(modes->pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesPrepareComponents(Modes modes, PetscBool *keep_terms)
+{
+  PetscFunctionBeginUser;
+  *keep_terms = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(EventBegin(EVENT_COMPONENTS));
+  PetscCall(ComponentsPrepare(modes, *keep_terms));
+  PetscCall(EventEnd(EVENT_COMPONENTS));
+  PetscFunctionReturn(0);
+}
+
+/* From bodies to names and shares */
+static PetscErrorCode ContributionsFind(Modes modes)
+{
+  Modes free;
+
+  PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, &modes->components));
-  PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
-  PetscCall(OperatorsLineariseBodies(operators, p, PETSC_TRUE, &pencil));
-  PetscCall(FreeBodiesFind(pencil, &modes->components->bodies));
-  PetscCall(FreeModesFind(modes, pencil, modes->components, &free));
+  modes->components->bodies = *modes->bodies;
+  PetscCall(FreeModesFind(modes, modes->components, &free));
   PetscCall(ComponentsMake(modes, free));
   PetscCall(ModesDestroy(&free));
-  PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesFindComponents(Modes modes)
+{
+  PetscBool asked = modes->free_to > 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(EventBegin(EVENT_COMPONENTS));
+  PetscCall(ComponentsDestroy(&modes->components));
+  for (PetscInt i = 0; i < modes->n && modes->bodies && !asked; i++) asked = ComponentsAsks(modes, i);
+  if (asked && modes->bodies) PetscCall(ContributionsFind(modes));
+  PetscCall(LabelsForgetWeights(modes)); /* with the disc's basis */
+  PetscCall(EventEnd(EVENT_COMPONENTS));
   PetscFunctionReturn(0);
 }

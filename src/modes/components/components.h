@@ -4,12 +4,12 @@
 #include "modes/modesimpl.h"
 
 /* Parts that share nodes, ties or rigid points are one body */
-typedef struct {
+struct _p_FreeBodies {
   PetscInt  n;
   char    **name;    /* [n] the names of its parts with + between */
   PetscInt *of;      /* [unknowns of this rank] body of each */
   PetscInt *of_part; /* [parts] body of each, -1 for a part without unknowns */
-} FreeBodies;
+};
 
 /* Free modes of one frequency, which are any basis of a plane: they have one share */
 typedef struct {
@@ -29,7 +29,7 @@ typedef struct {
 } FreeMode;
 
 struct _p_ModesComponents {
-  FreeBodies bodies;
+  FreeBodies bodies; /* those of the modes (shallow) */
   PetscInt   n_levels;
   FreeLevel *level;    /* [levels] by frequency */
   FreeMode  *free;     /* [levels][bodies] */
@@ -50,17 +50,24 @@ PETSC_INTERN PetscBool ComponentsAsks(const Modes modes, PetscInt i);
    FREE_MOTIONS */
 typedef struct {
   PetscInt   n, n_bodies;
-  Mat        V;                 /* [n] columns in the unknowns of the pencil of the bodies */
+  Vec       *v;                 /* [n] in all unknowns (borrowed, but for the last FREE_MOTIONS) */
   PetscInt **row, *n_rows;      /* [bodies] the unknowns of this rank that are of each */
   PetscReal *mass, *stiffness;  /* [bodies][n][n] V_b' M V_b, V_b' K V_b */
   PetscInt  *n_rigid, *n_modes; /* [bodies] modes among them: rigid ones, the first; all */
   PetscReal *kappa, *Z;         /* [bodies][n] (rad/s)^2, ascending; [bodies][n][n] vector k is V_b Z[b][k] */
 } FreeBasis;
 
-/* ritz.c - makes room for n columns, which the caller fills; measures and solves; columns first .. first + n - 1 of F
+/* Stiffness K + less and mass of the bodies apart, in all unknowns; less is NULL for none */
+typedef struct {
+  Mat K, less, M;
+} FreeMatrices;
+
+/* ritz.c - AX = M X, (K + less) X */
+PETSC_INTERN PetscErrorCode FreeMatricesMultiply(const FreeMatrices *bodies, Mat X, const Mat AX[2]);
+/*  makes room for n vectors, which the caller sets; measures and solves; columns first .. first + n - 1 of F
    become the first n modes of body b, zero elsewhere. Collective, results alike on all ranks */
-PETSC_INTERN PetscErrorCode FreeBasisCreate(Pencil bodies, const FreeBodies *of, PetscInt n, FreeBasis *basis);
-PETSC_INTERN PetscErrorCode FreeBasisSolve(const PencilMatrices *bodies, FreeBasis *basis);
+PETSC_INTERN PetscErrorCode FreeBasisCreate(const FreeBodies *of, Mat M, PetscInt n, FreeBasis *basis);
+PETSC_INTERN PetscErrorCode FreeBasisSolve(const FreeMatrices *bodies, FreeBasis *basis);
 PETSC_INTERN PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, PetscInt n, PetscInt first, Mat F);
 PETSC_INTERN PetscErrorCode FreeBasisDestroy(FreeBasis *basis);
 /* reduce.c - the modes of a body among its scaled vectors, of G and H [n][n]; G is overwritten. Not collective */
@@ -70,13 +77,23 @@ typedef struct {
 } FreeBodyModes;
 
 PETSC_INTERN PetscErrorCode FreeBodySolve(PetscInt n, PetscReal G[], const PetscReal H[], const FreeBodyModes *modes);
+/* One free mode among the bodies' */
+typedef struct {
+  PetscInt  column, body; /* column in F */
+  PetscReal kappa, error;
+  PetscBool rigid;
+} FoundMode;
+
+/* judge.c - kappa by Rayleigh's quotient and errors of the n columns of F, free modes phi with phi'M phi = 1, from what
+   is known of kappa; Z as of OperatorsGetDependents(). Collective */
+PETSC_INTERN PetscErrorCode FoundJudge(const FreeMatrices *bodies, Mat Z, Mat F, PetscInt n, FoundMode found[]);
 /* found.c - free modes from the modes found, without a solution: those below the highest that takes part in a mode that
    is unstable or named after a part; `free` is empty before. They
    follow body by body, c->found_of. Collective */
-PETSC_INTERN PetscErrorCode FreeModesTake(Modes modes, Pencil bodies, ModesComponents c, Modes free);
+PETSC_INTERN PetscErrorCode FreeModesTake(Modes modes, ModesComponents c, Modes free);
 
-/* bodies.c - bodies of the unknowns of a pencil whose pairs are open. Collective */
-PETSC_INTERN PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies *bodies);
+/* bodies.c - bodies of the unknowns of a pencil with pairs open, whose terms are there. Collective */
+PETSC_INTERN PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies **bodies);
 /* sums[b] += sum of a_u b_u over the unknowns of body b of this rank; a zero vector is NULL. Not collective */
 PETSC_INTERN PetscErrorCode FreeBodiesAddDot(const FreeBodies *bodies, Vec a, Vec b, PetscReal sums[]);
 /* names.c - numbers and names of the levels of each body; then new labels of the modes that are named after a part */

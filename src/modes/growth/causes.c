@@ -16,6 +16,7 @@
    the balance leaves. Modes of one eigenvalue have no shares of their own, and errors as large as these.
 */
 #include "modes/modesimpl.h"
+#include "base/events.h"
 
 #define CAUSES_SHOWN 3 /* of a mode */
 
@@ -74,23 +75,46 @@ static PetscReal SharesRest(PetscReal sigma, PetscInt n, const PetscReal growth[
   return rest;
 }
 
-/* Shares of mode i, whose growth becomes their sum */
-static PetscErrorCode ModeMeasureShares(Modes modes, PetscInt i, PetscInt n, ModeShares *s)
+/* Rest and error of the shares of mode i, whose growth becomes their sum */
+static PetscErrorCode ModeJudgeShares(Modes modes, PetscInt i, PetscInt n, ModeShares *s)
 {
   Mode     *m = &modes->mode[i];
   PetscReal largest;
 
   PetscFunctionBeginUser;
-  s->known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
-  if (!s->known) PetscFunctionReturn(0);
-  PetscCall(PencilMeasureCauses(modes->pencil, CMPLX(m->sigma, m->omega), modes->right.xr[i], modes->right.xi[i],
-                                s->growth, &s->energy));
   s->rest = SharesRest(m->sigma, n, s->growth, &largest);
   if (PetscAbsReal(s->rest) <= m->error) {
     m->sigma -= s->rest;
     s->rest = SharesRest(m->sigma, n, s->growth, &largest);
   }
   s->error = m->error + 2 * largest * ModeVectorError(modes, i) + PetscAbsReal(s->rest);
+  PetscFunctionReturn(0);
+}
+
+/* Shares of all modes with a frequency, n causes */
+static PetscErrorCode ModesMeasureShares(Modes modes, PetscInt n)
+{
+  PencilMode *some;
+  PetscReal  *energy;
+  PetscInt    n_some = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(modes->n, &some, modes->n, &energy));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const Mode *m = &modes->mode[i];
+
+    modes->shares[i].known = m->omega > 0 && !m->rigid ? PETSC_TRUE : PETSC_FALSE;
+    if (!modes->shares[i].known) continue;
+    modes->shares[i].growth = &modes->shares[0].growth[n_some * n];
+    some[n_some++]          = (PencilMode){m->sigma, m->omega, modes->right.xr[i], modes->right.xi[i]};
+  }
+  PetscCall(PencilMeasureCauses(modes->pencil, n_some, some, modes->shares[0].growth, energy));
+  for (PetscInt i = 0, k = 0; i < modes->n; i++) {
+    if (!modes->shares[i].known) continue;
+    modes->shares[i].energy = energy[k++];
+    PetscCall(ModeJudgeShares(modes, i, n, &modes->shares[i]));
+  }
+  PetscCall(PetscFree2(some, energy));
   PetscFunctionReturn(0);
 }
 
@@ -103,12 +127,11 @@ PetscErrorCode ModesBalance(Modes modes)
   if (modes->shares) PetscFunctionReturn(0);
   PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
   if (!n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(modes->n, &modes->shares));
+  PetscCall(EventBegin(EVENT_CAUSES));
+  PetscCall(PetscCalloc1(modes->n, &modes->shares));
   PetscCall(PetscMalloc1(modes->n * n, &modes->shares[0].growth));
-  for (PetscInt i = 0; i < modes->n; i++) {
-    modes->shares[i].growth = &modes->shares[0].growth[i * n];
-    PetscCall(ModeMeasureShares(modes, i, n, &modes->shares[i]));
-  }
+  PetscCall(ModesMeasureShares(modes, n));
+  PetscCall(EventEnd(EVENT_CAUSES));
   PetscFunctionReturn(0);
 }
 

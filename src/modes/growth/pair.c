@@ -5,6 +5,7 @@
    = 1. It is 1 where two modes merge.
 */
 #include "modes/modesimpl.h"
+#include "base/events.h"
 #include <complex.h>
 
 #define SHARED    1e-3 /* of the motion, at least, with a partner */
@@ -131,6 +132,7 @@ PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms)
   if (modes->mechanism) PetscFunctionReturn(0);
   PetscCall(PencilGetCauses(modes->pencil, &n, &cause));
   PetscCall(PetscCalloc1(modes->n, &modes->mechanism));
+  PetscCall(EventBegin(EVENT_CAUSES));
   for (PetscInt i = 0; i < modes->n; i++) {
     ModeMechanism *m = &modes->mechanism[i];
 
@@ -139,6 +141,7 @@ PetscErrorCode ModesGetMechanisms(Modes modes, const ModeMechanism **mechanisms)
     m->kind = MECHANISM_UNKNOWN;
     if (modes->left_spectrum.n) PetscCall(ModeFindMechanism(modes, i, m));
   }
+  PetscCall(EventEnd(EVENT_CAUSES));
   *mechanisms = modes->mechanism;
   PetscFunctionReturn(0);
 }

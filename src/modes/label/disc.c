@@ -175,14 +175,13 @@ static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc, PetscBool *is_disc)
+PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, Disc *disc, PetscBool *is_disc)
 {
   PetscReal inertia[9];
 
   PetscFunctionBeginUser;
   disc->comm        = comm;
   disc->has_contact = part->contact ? PETSC_TRUE : PETSC_FALSE;
-  disc->n_modes     = n_modes;
   PetscCall(DiscMoments(comm, part->n_vertices, part->x, part->mass, disc->centre, inertia));
   PetscCall(DiscFindAxis(inertia, disc->axis, is_disc));
   if (!*is_disc) PetscFunctionReturn(0);
@@ -202,7 +201,7 @@ PetscErrorCode DiscDestroy(Disc *disc)
   PetscCall(PetscFree2(disc->node, disc->weight));
   PetscCall(PetscFree(disc->basis));
   PetscCall(PetscFree(disc->gram));
-  PetscCall(PetscFree(disc->moved));
+  PetscCall(PetscFree2(disc->waiting, disc->waiting_from));
   PetscCall(PetscFree2(disc->rhs, disc->fit));
   PetscFunctionReturn(0);
 }

@@ -14,8 +14,9 @@ enum { DISC_AXIAL, DISC_RADIAL, DISC_TANGENTIAL, N_DISC_DIRECTIONS };
 enum { DISC_COS_RE, DISC_COS_IM, DISC_SIN_RE, DISC_SIN_IM, N_DISC_VALUES };
 
 #define DISC_SAMPLES 41 /* places at which profiles are read */
+#define DISC_WAITING 48 /* displacements that one product takes: the basis goes through the memory once for them */
 
-typedef struct {
+typedef struct _p_Disc {
   MPI_Comm   comm;
   PetscBool  has_contact;
   PetscReal  centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
@@ -27,10 +28,12 @@ typedef struct {
   PetscInt   n_nodes, n_modes;                 /* nodes of the disc on this rank; shapes to fit */
   PetscInt  *node;                             /* their local nodes */
   PetscReal *weight;                           /* nodal mass, kg */
-  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] */
+  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] times the root of the weight */
   PetscReal *gram;                             /* [DISC_TERMS][DISC_TERMS] */
-  PetscReal *moved;                            /* [N_DISC_DIRECTIONS][2][n_nodes] m: re, im of one shape, work */
-  PetscReal *rhs, *fit; /* [n_modes][N_DISC_DIRECTIONS][2][DISC_TERMS]: right-hand sides; coefficients */
+  PetscReal *rhs, *fit;    /* [n_modes][N_DISC_DIRECTIONS][2][DISC_TERMS]: right-hand sides; coefficients */
+  PetscInt   n_waiting;    /* of at most DISC_WAITING displacements of shapes, m times the root of kg: */
+  PetscReal *waiting;      /* [n_waiting][n_nodes] */
+  PetscInt  *waiting_from; /* [n_waiting] which right-hand sides they are to make */
 } Disc;
 
 /* A part that may be a disc */
@@ -42,14 +45,14 @@ typedef struct {
 } DiscPart;
 
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
-PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, PetscInt n_modes, Disc *disc,
-                                       PetscBool *is_disc);
+PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, Disc *disc, PetscBool *is_disc);
 /* label/fit.c - polar coordinates of a point, m and rad */
 PETSC_INTERN void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta);
 /* Place along the axis from the centre, m */
 PETSC_INTERN PetscReal DiscAlong(const Disc *disc, const PetscReal x[3]);
-/* Basis, normal equations, and room for the fit of all modes */
+/* Basis and normal equations; then, for each set of shapes anew, room for their fit */
 PETSC_INTERN PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[]);
+PETSC_INTERN PetscErrorCode DiscFitBegin(Disc *disc, PetscInt n_modes);
 /* Takes the displacements u[re, im][local nodes][3] of a shape for its right-hand sides, u[1] = NULL for a real one;
    adds their energy on this rank, all and out of plane, to energy */
 PETSC_INTERN PetscErrorCode DiscProject(Disc *disc, PetscInt mode, PetscReal *const u[2], PetscReal energy[2]);

@@ -38,45 +38,58 @@ static void DiscLegendre(const Disc *disc, PetscReal s, PetscReal p[DISC_POLYNOM
   for (int j = 2; j < DISC_POLYNOMIALS; j++) p[j] = ((2 * j - 1) * rho * p[j - 1] - (j - 1) * p[j - 2]) / j;
 }
 
-/* All terms at one point: for each m the cosine, then (m > 0) the sine, each times the polynomials */
-static void DiscTerms(const Disc *disc, PetscReal s, PetscReal theta, PetscReal terms[DISC_TERMS])
+/* All terms at one point times a scale: for each m the cosine, then (m > 0) the sine, each times the polynomials */
+static void DiscTerms(const Disc *disc, PetscReal s, PetscReal theta, PetscReal scale, PetscReal terms[DISC_TERMS])
 {
-  PetscReal p[DISC_POLYNOMIALS];
-  int       k = 0;
+  const PetscReal c1 = PetscCosReal(theta), s1 = PetscSinReal(theta);
+  PetscReal       p[DISC_POLYNOMIALS], cm = scale, sm = 0;
+  int             k = 0;
 
   DiscLegendre(disc, s, p);
   for (int m = 0; m < DISC_HARMONICS; m++) {
-    for (int j = 0; j < DISC_POLYNOMIALS; j++) terms[k++] = p[j] * PetscCosReal(m * theta);
-    for (int j = 0; j < DISC_POLYNOMIALS && m > 0; j++) terms[k++] = p[j] * PetscSinReal(m * theta);
+    const PetscReal next = cm * c1 - sm * s1; /* cos (m + 1) theta */
+
+    for (int j = 0; j < DISC_POLYNOMIALS; j++) terms[k++] = p[j] * cm;
+    for (int j = 0; j < DISC_POLYNOMIALS && m > 0; j++) terms[k++] = p[j] * sm;
+    sm = sm * c1 + cm * s1;
+    cm = next;
+  }
+}
+
+/* Every entry from the upper half. Coarse rings alias high harmonics: beyond half as many as a ring has columns G would
+   be singular */
+static void DiscGramFinish(PetscReal gram[])
+{
+  PetscReal trace = 0;
+
+  for (int k = 0; k < DISC_TERMS; k++) trace += gram[k * (DISC_TERMS + 1)];
+  for (int j = 0; j < DISC_TERMS; j++) {
+    for (int i = j + 1; i < DISC_TERMS; i++) gram[j * DISC_TERMS + i] = gram[i * DISC_TERMS + j];
+    gram[j * (DISC_TERMS + 1)] += REGULAR * trace / DISC_TERMS;
   }
 }
 
 /* gram = basis' W basis; basis is row-major, hence column-major transposed */
-static PetscErrorCode DiscGram(Disc *disc, const PetscReal x[])
+PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[])
 {
   const PetscBLASInt terms = DISC_TERMS;
   const PetscReal    one = 1, zero = 0;
   PetscBLASInt       n;
-  PetscReal         *scaled, r, theta;
+  PetscReal          r, theta;
 
   PetscFunctionBeginUser;
   PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
   PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &disc->basis));
-  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &scaled));
   PetscCall(PetscCalloc1(DISC_TERMS * DISC_TERMS, &disc->gram));
   for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    PetscReal *row = &disc->basis[i * DISC_TERMS];
-
     DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
     if (disc->is_drum) r = DiscAlong(disc, &x[3 * disc->node[i]]);
-    DiscTerms(disc, r, theta, row);
-    for (int k = 0; k < DISC_TERMS; k++) scaled[i * DISC_TERMS + k] = disc->weight[i] * row[k];
+    DiscTerms(disc, r, theta, PetscSqrtReal(disc->weight[i]), &disc->basis[i * DISC_TERMS]);
   }
   if (n)
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "T", &terms, &terms, &n, &one, disc->basis, &terms, scaled, &terms, &zero,
-                                        disc->gram, &terms));
-  PetscCall(PetscFree(scaled));
+    PetscCallBLAS("BLASsyrk", BLASsyrk_("U", "N", &terms, &n, &one, disc->basis, &terms, &zero, disc->gram, &terms));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->gram, DISC_TERMS * DISC_TERMS, MPIU_REAL, MPI_SUM, disc->comm));
+  DiscGramFinish(disc->gram);
   PetscFunctionReturn(0);
 }
 
@@ -86,52 +99,73 @@ static PetscInt DiscUnknowns(const Disc *disc)
   return disc->n_modes * N_DISC_DIRECTIONS * 2 * DISC_TERMS;
 }
 
-PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[])
+PetscErrorCode DiscFitBegin(Disc *disc, PetscInt n_modes)
 {
   PetscFunctionBeginUser;
-  PetscCall(DiscGram(disc, x));
-  PetscCall(PetscMalloc1(2 * N_DISC_DIRECTIONS * disc->n_nodes, &disc->moved));
+  PetscCall(PetscFree2(disc->waiting, disc->waiting_from));
+  PetscCall(PetscFree2(disc->rhs, disc->fit));
+  disc->n_modes   = n_modes;
+  disc->n_waiting = 0;
+  PetscCall(PetscMalloc2(DISC_WAITING * disc->n_nodes, &disc->waiting, DISC_WAITING, &disc->waiting_from));
   PetscCall(PetscCalloc2(DiscUnknowns(disc), &disc->rhs, DiscUnknowns(disc), &disc->fit));
   PetscFunctionReturn(0);
 }
 
-/* Displacement u of node i in the directions of the disc; its row of the basis has cos theta and sin theta (m = 1 times
-   P_0 = 1) */
+/* Right-hand sides of the displacements that wait */
+static PetscErrorCode DiscProduct(Disc *disc)
+{
+  const PetscBLASInt terms = DISC_TERMS;
+  const PetscReal    one = 1, zero = 0;
+  PetscReal         *products;
+  PetscBLASInt       n, columns;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
+  PetscCall(PetscBLASIntCast(disc->n_waiting, &columns));
+  disc->n_waiting = 0;
+  if (!n || !columns) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(columns * DISC_TERMS, &products));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &terms, &columns, &n, &one, disc->basis, &terms, disc->waiting, &n,
+                                      &zero, products, &terms));
+  for (PetscBLASInt k = 0; k < columns; k++)
+    PetscCall(PetscArraycpy(&disc->rhs[disc->waiting_from[k] * DISC_TERMS], &products[k * DISC_TERMS], DISC_TERMS));
+  PetscCall(PetscFree(products));
+  PetscFunctionReturn(0);
+}
+
+/* Displacement u of node i in the directions of the disc times the root of its weight w; its row of the basis begins
+   with w, w cos theta and w sin theta */
 static void DiscTurn(const Disc *disc, PetscInt i, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
 {
   const PetscReal *row = &disc->basis[i * DISC_TERMS];
-  const PetscReal  c = row[DISC_POLYNOMIALS], s = row[2 * DISC_POLYNOMIALS];
   const PetscReal  a = Vec3Dot(u, disc->e1), b = Vec3Dot(u, disc->e2);
+  const PetscReal  c = row[DISC_POLYNOMIALS], s = row[2 * DISC_POLYNOMIALS];
 
-  v[DISC_AXIAL]      = Vec3Dot(u, disc->axis);
+  v[DISC_AXIAL]      = row[0] * Vec3Dot(u, disc->axis);
   v[DISC_RADIAL]     = a * c + b * s;
   v[DISC_TANGENTIAL] = b * c - a * s;
 }
 
 PetscErrorCode DiscProject(Disc *disc, PetscInt mode, PetscReal *const u[2], PetscReal energy[2])
 {
-  const PetscBLASInt terms = DISC_TERMS, columns = 2 * N_DISC_DIRECTIONS;
-  const PetscReal    one = 1, zero = 0;
-  PetscReal         *rhs = &disc->rhs[mode * columns * DISC_TERMS], v[N_DISC_DIRECTIONS];
-  PetscBLASInt       n;
+  const PetscInt n = disc->n_nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(disc->moved, columns * n));
-  for (int part = 0; part < 2 && u[part]; part++)
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal w = disc->weight[i];
+  if (disc->n_waiting + 2 * N_DISC_DIRECTIONS > DISC_WAITING) PetscCall(DiscProduct(disc));
+  for (int part = 0; part < 2 && u[part]; part++) {
+    PetscReal *at = &disc->waiting[disc->n_waiting * n], v[N_DISC_DIRECTIONS];
 
+    for (PetscInt i = 0; i < n; i++) {
       DiscTurn(disc, i, &u[part][3 * disc->node[i]], v);
       for (int d = 0; d < N_DISC_DIRECTIONS; d++) {
-        disc->moved[(2 * d + part) * n + i] = w * v[d];
-        energy[0] += w * v[d] * v[d];
+        at[d * n + i] = v[d];
+        energy[0] += v[d] * v[d];
       }
-      energy[1] += w * v[DISC_AXIAL] * v[DISC_AXIAL];
+      energy[1] += v[DISC_AXIAL] * v[DISC_AXIAL];
     }
-  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &terms, &columns, &n, &one, disc->basis, &terms, disc->moved, &n, &zero,
-                                      rhs, &terms));
+    for (int d = 0; d < N_DISC_DIRECTIONS; d++)
+      disc->waiting_from[disc->n_waiting++] = (mode * N_DISC_DIRECTIONS + d) * 2 + part;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -150,14 +184,12 @@ static PetscErrorCode DiscSolveNormal(MPI_Comm comm, PetscBLASInt rows, PetscRea
 
 PetscErrorCode DiscSolve(Disc *disc)
 {
-  const PetscInt n     = DiscUnknowns(disc);
-  PetscReal      trace = 0, *A;
+  const PetscInt n = DiscUnknowns(disc);
+  PetscReal     *A;
 
   PetscFunctionBeginUser;
+  PetscCall(DiscProduct(disc));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->rhs, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, disc->comm));
-  for (int k = 0; k < DISC_TERMS; k++) trace += disc->gram[k * (DISC_TERMS + 1)];
-  /* coarse rings alias high harmonics: beyond half as many as a ring has columns G would be singular */
-  for (int k = 0; k < DISC_TERMS; k++) disc->gram[k * (DISC_TERMS + 1)] += REGULAR * trace / DISC_TERMS;
   PetscCall(PetscMalloc1(DISC_TERMS * DISC_TERMS, &A));
   PetscCall(PetscArraycpy(A, disc->gram, DISC_TERMS * DISC_TERMS));
   PetscCall(PetscArraycpy(disc->fit, disc->rhs, n));

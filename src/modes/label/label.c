@@ -36,7 +36,7 @@ typedef struct {
   PetscReal        *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
   PetscReal        *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
   PetscReal        *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
-  Disc              frame;
+  Disc             *frame;                     /* of the weights; NULL without a disc */
 } Labels;
 
 /* sum_v m_v a_v . b_v */
@@ -75,7 +75,7 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
   }
   at = 2 * (i * l->n_parts + l->disc);
   if (l->disc >= 0 && (l->share[at] != 0 || l->share[at + 1] != 0)) /* a free mode of another body does not move it */
-    PetscCall(DiscProject(&l->frame, i, (PetscReal *[2]){l->x[0], xi ? l->x[1] : NULL}, &l->energy[2 * i]));
+    PetscCall(DiscProject(l->frame, i, (PetscReal *[2]){l->x[0], xi ? l->x[1] : NULL}, &l->energy[2 * i]));
   PetscFunctionReturn(0);
 }
 
@@ -90,9 +90,9 @@ static PetscErrorCode LabelDisc(const Labels *l, PetscInt i, Mode *mode, double 
 
   PetscFunctionBeginUser;
   if (axial)
-    PetscCall(DiscName(&l->frame, i, name, sizeof(name), &fitted));
+    PetscCall(DiscName(l->frame, i, name, sizeof(name), &fitted));
   else
-    PetscCall(DiscNameInPlane(&l->frame, i, name, sizeof(name), &fitted));
+    PetscCall(DiscNameInPlane(l->frame, i, name, sizeof(name), &fitted));
   *none = !axial && !(fitted > DISC_EXPLAINED * energy[0]) ? PETSC_TRUE : PETSC_FALSE;
   if (*none) PetscFunctionReturn(0);
   PetscCall(PetscStrncpy(mode->label, name, sizeof(name)));
@@ -220,17 +220,27 @@ static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, 
   PetscBool same, found = PETSC_FALSE, *surface = NULL;
 
   PetscFunctionBeginUser;
+  l->frame = modes->weights->disc;
+  l->disc  = l->frame ? modes->weights->disc_part : -1;
+  if (modes->weights->has_disc) PetscFunctionReturn(0);
   l->disc = model || mesh->n_parts > 1 ? -1 : 0;
   PetscCall(LabelsNameDisc(modes, mesh, &l->disc));
   if (l->disc < 0) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(1, &l->frame));
   if (model) PetscCall(ContactGetCentre(contact, centre, &found));
   if (model) PetscCall(SurfacesMark(model, contact, l->n_vertices, &surface));
   PetscCall(DiscCreate(modes->comm,
-                       &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL, surface}, modes->n,
-                       &l->frame, &same));
+                       &(DiscPart){l->n_vertices, mesh->x, l->mass[l->disc], found ? centre : NULL, surface}, l->frame,
+                       &same));
   PetscCall(PetscFree(surface));
-  if (same && !model && mesh->n_parts == 1) PetscCall(PointsAreFlat(mesh, &l->frame, &same));
-  if (!same) l->disc = -1;
+  if (same && !model && mesh->n_parts == 1) PetscCall(PointsAreFlat(mesh, l->frame, &same));
+  if (!same) {
+    l->disc = -1;
+    PetscCall(DiscDestroy(l->frame));
+    PetscCall(PetscFree(l->frame));
+  }
+  modes->weights->disc      = l->frame;
+  modes->weights->disc_part = l->disc;
   PetscFunctionReturn(0);
 }
 
@@ -249,6 +259,8 @@ static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh 
                          3 * l->n_vertices, &l->y[1]));
   PetscCall(LabelsWeigh(modes, mesh, &l->mass));
   PetscCall(LabelsFindDisc(modes, model, contact, mesh, l));
+  modes->weights->has_disc = PETSC_TRUE;
+  if (l->frame) PetscCall(DiscFitBegin(l->frame, modes->n));
   PetscFunctionReturn(0);
 }
 
@@ -257,7 +269,6 @@ static PetscErrorCode LabelsDestroy(Labels *l)
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(l->share, l->energy));
   PetscCall(PetscFree4(l->x[0], l->x[1], l->y[0], l->y[1]));
-  PetscCall(DiscDestroy(&l->frame));
   PetscFunctionReturn(0);
 }
 
@@ -284,7 +295,7 @@ PetscErrorCode ModesLabel(Modes modes)
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, operators, i, &l));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.share, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, modes->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, l.energy, (PetscMPIInt)(2 * modes->n), MPIU_REAL, MPI_SUM, modes->comm));
-  if (l.disc >= 0) PetscCall(DiscSolve(&l.frame));
+  if (l.disc >= 0) PetscCall(DiscSolve(l.frame));
   PetscCall(PetscFree(modes->part_percent));
   PetscCall(PetscFree(modes->label_percent));
   PetscCall(PetscFree(modes->label_part));

@@ -3,6 +3,7 @@
    largest diagonal entry of the mass matrix among their directions.
 */
 #include "modes/modesimpl.h"
+#include "disc.h"
 
 /* Masses of the nodes of a cell (kg): equal ones, or the lumped ones of elements of second order */
 static PetscErrorCode CellMasses(const Element *element, const PetscReal x[], PetscReal density, PetscReal mass[])
@@ -101,6 +102,8 @@ PetscErrorCode LabelsForgetWeights(Modes modes)
   if (!modes->weights) PetscFunctionReturn(0);
   for (PetscInt part = 0; part < modes->weights->n; part++) PetscCall(PetscFree(modes->weights->mass[part]));
   PetscCall(PetscFree(modes->weights->mass));
+  if (modes->weights->disc) PetscCall(DiscDestroy(modes->weights->disc));
+  PetscCall(PetscFree(modes->weights->disc));
   PetscCall(PetscFree(modes->weights));
   PetscFunctionReturn(0);
 }

@@ -104,35 +104,84 @@ static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal
   return omega * re;
 }
 
-/* growth [causes], 1/s; their sum is sigma but for the residual of the eigenpair, over |D|. ui NULL for a real
-   vector; energy may be NULL. */
-PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscComplex lambda, Vec ur, Vec ui, PetscReal growth[],
-                                   PetscReal *energy)
+/* Modes whose shares are measured together: their vectors, of all unknowns and of those of the pencil */
+typedef struct {
+  PetscInt          n;
+  const PencilMode *mode;
+  CauseVector       u[CAUSES_BLOCK], q[CAUSES_BLOCK];
+  CauseBlock        block;
+  PetscReal        *growth; /* [n][causes] -sigma D, then 1/s */
+  PetscReal         D[CAUSES_BLOCK];
+} CauseModes;
+
+static PetscErrorCode CauseModesCreate(Pencil pencil, PetscInt n, const PencilMode mode[], PetscReal growth[],
+                                       CauseModes *m)
 {
-  const PetscReal sigma = creal(lambda), omega = cimag(lambda);
-  CauseVector     u = {{ur, ui}, NULL}, q;
-  PetscReal       form[2], D;
-  Mat             M;
+  PetscFunctionBeginUser;
+  *m = (CauseModes){.n = n, .mode = mode, .growth = growth};
+  for (PetscInt i = 0; i < n; i++) {
+    /* D vanishes with omega, and the imaginary part of the equation with it */
+    PetscCheck(mode[i].omega > 0, pencil->comm, PETSC_ERR_ARG_OUTOFRANGE,
+               "a real eigenvalue has no balance of this kind");
+    m->D[i] = 2 * mode[i].omega; /* u^H M u = 1 */
+    m->u[i] = (CauseVector){{mode[i].xr, mode[i].xi}, NULL};
+    PetscCall(VecDuplicate(mode[i].xr, &m->u[i].y));
+    PetscCall(VectorRestrict(pencil, &m->u[i], &m->q[i]));
+  }
+  PetscCall(CauseBlockCreate(n, m->u, &m->block));
+  PetscCall(PetscArrayzero(growth, n * pencil->n_causes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CauseModesDestroy(CauseModes *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->n; i++) {
+    PetscCall(VectorDestroy(&m->q[i]));
+    PetscCall(VecDestroy(&m->u[i].y));
+  }
+  PetscCall(CauseBlockDestroy(&m->block));
+  PetscFunctionReturn(0);
+}
+
+/* Adds what a term does to all modes: a large one by one product for all */
+static PetscErrorCode CauseModesAdd(Pencil pencil, const OperatorsTerm *term, CauseModes *m)
+{
+  const PetscBool exact = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       done  = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  /* D vanishes with omega, and the imaginary part of the equation with it */
-  PetscCheck(omega > 0, pencil->comm, PETSC_ERR_ARG_OUTOFRANGE, "a real eigenvalue has no balance of this kind");
-  PetscCall(PencilGetMass(pencil, &M));
-  PetscCall(VecDuplicate(ur, &u.y));
-  PetscCall(VectorRestrict(pencil, &u, &q));
-  PetscCall(VectorForm(&u, M, form));
-  D = 2 * omega * form[0];
-  PetscCall(PetscArrayzero(growth, pencil->n_causes));
-  for (PetscInt t = 0; t < pencil->causing.n; t++) {
-    const OperatorsTerm *term = &pencil->causing.term[t];
+  if (!exact && term->kind == OPERATORS_DAMPING) PetscCall(CauseBlockMultiply(&m->block, term->A, &done));
+  for (PetscInt i = 0; i < m->n; i++) {
+    PetscReal form[2];
 
-    PetscCall(VectorForm(term->constraint >= 0 ? &q : &u, term->A, form));
-    growth[term->cause_index] += TermShare(term, sigma, omega, form, &D);
+    if (!m->mode[i].xi && term->kind != OPERATORS_DAMPING && !exact) continue; /* Im q_t = 0 */
+    if (done)
+      PetscCall(CauseBlockForm(&m->block, i, form));
+    else
+      PetscCall(VectorForm(exact ? &m->q[i] : &m->u[i], term->A, form));
+    m->growth[i * pencil->n_causes + term->cause_index] +=
+      TermShare(term, m->mode[i].sigma, m->mode[i].omega, form, &m->D[i]);
   }
-  for (PetscInt i = 0; i < pencil->n_causes; i++) growth[i] /= -D;
-  if (energy) *energy = omega * D / 4;
-  PetscCall(VectorDestroy(&q));
-  PetscCall(VecDestroy(&u.y));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscInt n, const PencilMode mode[], PetscReal growth[],
+                                   PetscReal energy[])
+{
+  const PetscInt n_causes = pencil->n_causes;
+  CauseModes     m;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0; first < n; first += CAUSES_BLOCK) {
+    PetscCall(CauseModesCreate(pencil, PetscMin(CAUSES_BLOCK, n - first), &mode[first], &growth[first * n_causes], &m));
+    for (PetscInt t = 0; t < pencil->causing.n; t++) PetscCall(CauseModesAdd(pencil, &pencil->causing.term[t], &m));
+    for (PetscInt i = 0; i < m.n; i++) {
+      for (PetscInt k = 0; k < n_causes; k++) m.growth[i * n_causes + k] /= -m.D[i];
+      energy[first + i] = m.mode[i].omega * m.D[i] / 4;
+    }
+    PetscCall(CauseModesDestroy(&m));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -2,6 +2,7 @@
    Products of complex vectors, as pairs of real ones, with the real matrices of terms.
 */
 #include "products.h"
+#include "base/algebra/product.h"
 #include <complex.h>
 
 PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
@@ -16,6 +17,81 @@ PetscErrorCode VectorForm(const CauseVector *v, Mat A, PetscReal form[2])
     form[0] += PetscRealPart(d[k]);
     form[1] += k ? PetscRealPart(d[0]) : -PetscRealPart(d[1]);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CauseBlockCreate(PetscInt n, const CauseVector v[], CauseBlock *block)
+{
+  PetscFunctionBeginUser;
+  *block = (CauseBlock){.v = v};
+  for (PetscInt i = 0; i < n; i++) {
+    block->column[i] = block->n_columns;
+    block->n_columns += v[i].x[1] ? 2 : 1;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* X of the vectors, and room for A X */
+static PetscErrorCode CauseBlockFill(CauseBlock *block)
+{
+  const CauseVector *v = block->v;
+  PetscInt           n_own;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(v->x[0], &n_own));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)v->x[0]), n_own, PETSC_DECIDE, PETSC_DETERMINE,
+                           block->n_columns, NULL, &block->X));
+  for (PetscInt i = 0, k = 0; k < block->n_columns; i++)
+    for (int part = 0; part < 2 && v[i].x[part]; part++, k++) {
+      Vec column;
+
+      PetscCall(MatDenseGetColumnVecWrite(block->X, k, &column));
+      PetscCall(VecCopy(v[i].x[part], column));
+      PetscCall(MatDenseRestoreColumnVecWrite(block->X, k, &column));
+    }
+  PetscCall(MatDuplicate(block->X, MAT_DO_NOT_COPY_VALUES, &block->AX));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CauseBlockMultiply(CauseBlock *block, Mat A, PetscBool *done)
+{
+  MatInfo  info;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetInfo(A, MAT_GLOBAL_SUM, &info));
+  PetscCall(MatGetSize(A, &n, NULL));
+  *done = info.nz_used > n ? PETSC_TRUE : PETSC_FALSE;
+  if (!*done) PetscFunctionReturn(0);
+  if (!block->X) PetscCall(CauseBlockFill(block));
+  PetscCall(BlockMultiply(A, block->X, block->AX));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CauseBlockForm(const CauseBlock *block, PetscInt i, PetscReal form[2])
+{
+  const CauseVector *v    = &block->v[i];
+  PetscScalar        d[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  form[0] = form[1] = 0;
+  for (int k = 0; k < 2 && v->x[k]; k++) {
+    Vec product;
+
+    PetscCall(MatDenseGetColumnVecRead(block->AX, block->column[i] + k, &product));
+    PetscCall(VecMDot(product, v->x[1] ? 2 : 1, v->x, d));
+    PetscCall(MatDenseRestoreColumnVecRead(block->AX, block->column[i] + k, &product));
+    form[0] += PetscRealPart(d[k]);
+    form[1] += k ? PetscRealPart(d[0]) : -PetscRealPart(d[1]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CauseBlockDestroy(CauseBlock *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&block->X));
+  PetscCall(MatDestroy(&block->AX));
   PetscFunctionReturn(0);
 }
 

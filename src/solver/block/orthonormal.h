@@ -1,7 +1,7 @@
 /* Private to the solvers in modes/, sweep/ and frf/: spaces of many vectors, block by block */
 #pragma once
 
-#include <slepcbv.h>
+#include "base/algebra/product.h"
 
 /* H = X' A Y (A the identity where NULL) for the active columns of X and Y; on every rank, the caller destroys it */
 PETSC_INTERN PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H);
@@ -40,13 +40,3 @@ typedef struct {
    those that there are. Unlike BlockOrthonormalise() it resolves directions of any length. Collective; alike on all
    ranks. */
 PETSC_INTERN PetscErrorCode BlockFactorise(BV V, PetscInt n, Mat M, BV W, BlockFactors *factors);
-/* block/product.c - columns first, first + 1, ... of a sparse A as the dense X, zeros where A has no more */
-PETSC_INTERN PetscErrorCode BlockTakeColumns(Mat A, PetscInt first, Mat X);
-/* Y = A X of dense X and Y, which may be X */
-PETSC_INTERN PetscErrorCode BlockMultiply(Mat A, Mat X, Mat Y);
-/* Y[i] = A[i] X of n matrices, which costs less than one by one */
-PETSC_INTERN PetscErrorCode BlockMultiplyEach(PetscInt n, const Mat A[], Mat X, const Mat Y[]);
-/* The same of the active columns of X, into as many columns of Y for each matrix, one after the other */
-PETSC_INTERN PetscErrorCode BlockMultiplySideBySide(PetscInt n, const Mat A[], BV X, BV Y);
-/* Y = A X of the active columns of X and Y */
-PETSC_INTERN PetscErrorCode BlockMultiplyVectors(Mat A, BV X, BV Y);

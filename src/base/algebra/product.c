@@ -6,7 +6,7 @@
    order of MatMult().
 */
 #include "base/algebra/versions.h"
-#include "orthonormal.h"
+#include "product.h"
 
 #define BLOCK_WIDTH 32 /* columns side by side; or STRIP or LANES, where there are no more */
 #define STRIP       16
