@@ -133,8 +133,8 @@ static PetscErrorCode DiscProduct(Disc *disc)
   PetscFunctionReturn(0);
 }
 
-/* Displacement u of node i in the directions of the disc times the root of its weight w; its row of the basis begins
-   with w, w cos theta and w sin theta */
+/* Displacement u of node i in the directions of the disc times r, the root of its weight; its row of the basis begins
+   with r, r cos theta and r sin theta */
 static void DiscTurn(const Disc *disc, PetscInt i, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
 {
   const PetscReal *row = &disc->basis[i * DISC_TERMS];
