@@ -24,8 +24,11 @@
    from it the small problem of the pairs, w + W_mu l - kappa W w = G K_a^-1 f for contact displacements w = G u and
    forces l, closed by one of the laws per pair; a primal-dual active set (semismooth Newton: M. Hintermueller, K. Ito,
    K. Kunisch, SIAM J. Optim. 13, 2002; friction: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
-   kappa is only a device: it drops out of the solution. Where pressures are not linear, Newton's method goes on about
-   that active set, with tangents to the laws (pressure.c). Where the iteration does not settle with Coulomb's law,
+   kappa is only a device: it drops out of the solution. Beyond -static_dense rows the small problem is solved by GMRES,
+   one solution with K_a a step; where that takes longer than a factorisation, the bodies are factored anew with the
+   pairs at their status, one pattern and one analysis for all, which leaves GMRES a few steps (refactor.c). Where
+   pressures are not linear, Newton's method goes on about that active set, with tangents to the laws (pressure.c).
+   Where the iteration does not settle with Coulomb's law,
    continuation lowers a regularisation of it (soften.c); where that does not either, friction is raised in steps. Rigid
    motions that neither supports nor springs nor any pair resists are held at single unknowns,
    whose reactions vanish in equilibrium; u has no part of them.

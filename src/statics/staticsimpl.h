@@ -73,6 +73,9 @@ typedef struct {
   PetscReal stiffness; /* of a pin, N/m */
 } Hold;
 
+/* Factors of the bodies with the pairs at a status (pairs/refactor.c) */
+typedef struct _StatusFactor *StatusFactor;
+
 /* The factorisation of K_a = K + kappa G'G + pins, and W = kappa G K_a^-1 G', V = kappa G K_a^-1 S', by columns, on
    every rank; NULL where they would be too large */
 typedef struct {
@@ -83,8 +86,9 @@ typedef struct {
   Mat             Z, E;       /* OperatorsGetDependents() */
   Vec             reduced[2]; /* work where there is Z */
   PetscReal      *W, *V;      /* [rows][rows] by columns, of all ranks */
-  Vec             u, b;       /* work: all unknowns */
-  Vec             row;        /* work: rows */
+  StatusFactor    status;
+  Vec             u, b; /* work: all unknowns */
+  Vec             row;  /* work: rows */
 } Compliance;
 
 /* Rows and factorisation of a set of contacts that slide, and the point of the latter */
@@ -93,12 +97,6 @@ typedef struct {
   Compliance compliance; /* of these rows where both stand in struct _p_Statics */
   PetscReal *factored;   /* [n_parameters], or NULL */
 } StageRows;
-
-/* What the laws of the pairs ask of the small system: row i has l_i = sum_k P[k] z_(first + k) + p0, w_i alike */
-typedef struct {
-  PetscInt  first, d; /* rows of the pair, counted over all ranks */
-  PetscReal P[3], Q[3], p0, q0, slide;
-} LawRow;
 
 /* What the free motions r_1 .. r_m of the bodies alone do to each pair of all ranks: mu where it slides else 0, mu of
    Coulomb's law, then N r_j, T r_j, B r_j, [3][m] */
@@ -116,15 +114,6 @@ typedef struct {
 } Certificate;
 
 typedef enum { SMALL_GOOD, SMALL_SINGULAR, SMALL_UNSOLVED } SmallOutcome;
-
-/* w + W_mu l - W w = rhs with the laws */
-typedef struct {
-  const Compliance *compliance;
-  PetscReal         friction; /* factor of all friction coefficients */
-  const LawRow     *law;      /* [rows] */
-  const PetscReal  *rhs;      /* [rows] m */
-  PetscReal         rtol;     /* of GMRES, where the system is not dense */
-} SmallSystem;
 
 /* How the iteration ended; UNSOLVED by a GMRES that did not converge */
 typedef enum {
@@ -161,6 +150,8 @@ typedef struct {
   PetscBool         pressed;   /* an equilibrium without friction was found */
   PetscBool         passing;   /* the state is one on the way: whether bodies jam is asked at the end of it */
   PetscBool         tentative; /* laws are tangents of others: whether bodies jam is asked at the last ones alone */
+  PetscBool         far;       /* GMRES on K_a alone takes too long */
+  PetscBool         settled;   /* no status has changed */
   PetscBool         reversed;  /* the system of the last iteration has a determinant of the wrong sign */
 } Active;
 
@@ -298,13 +289,6 @@ PETSC_INTERN PetscErrorCode ComplianceGetRows(const Compliance *c, Vec u, PetscR
 PETSC_INTERN PetscErrorCode ComplianceAugment(Mat K, const PairRows *rows, PetscReal kappa, PetscBool closed_only,
                                               const ContactStatus status[], Mat *A);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *c);
-
-/* small.c - z [rows], from a guess that GMRES begins with, l and w of the small system; reversed = whether the
-   determinant is negative, dense ones only */
-PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal z[], PetscReal l[], PetscReal w[],
-                                       SmallOutcome *outcome, PetscBool *reversed);
-/* determinant.c - reversed for any: its sign by a sparse factorisation of bodies and pairs, counted in n_factored */
-PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscInt *n_factored, PetscBool *reversed);
 
 /* pivot.c - statuses of sliding pairs, or of all without friction, by complementary pivoting on the dense small
    system; found is false where there is no solution or none is found */

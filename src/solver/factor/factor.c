@@ -138,7 +138,7 @@ static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *
     PetscCall(PCFactorGetMatrix(pc, &F));
     PetscCall(MatMumpsGetInfog(F, 1, &info));
     PetscCall(MatMumpsGetInfog(F, 2, &extra));
-    if (si->inertia && !si->counts) PetscCall(MatMumpsGetInfog(F, 28, &n_null));
+    if ((si->inertia && !si->counts) || si->signs) PetscCall(MatMumpsGetInfog(F, 28, &n_null));
   }
   /* not PETSC_ERR_MEM, for which the message would be another */
   PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm,
@@ -159,7 +159,7 @@ static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *
 }
 
 /* Solver with MUMPS as default: ICNTL(14) extra workspace in percent, ICNTL(13) = 1 no ScaLAPACK at the root,
-   ICNTL(24) = 1 null pivots found. */
+   ICNTL(24) = 1 null pivots found, ICNTL(33) = 1 determinant. */
 static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
 {
   PC  pc;
@@ -173,12 +173,16 @@ static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PCSetType(pc, si->even ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(KSPSetFromOptions(si->ksp));
-  if (si->inertia || si->workspace) {
+  if (!si->signs) PetscCall(KSPSetFromOptions(si->ksp));
+  if (si->inertia || si->workspace || si->signs) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
   }
   if (si->workspace) PetscCall(MatMumpsSetIcntl(F, 14, si->workspace));
+  if (si->signs) {
+    PetscCall(MatMumpsSetIcntl(F, 24, 1));
+    PetscCall(MatMumpsSetIcntl(F, 33, 1));
+  }
   if (si->inertia) {
     PetscCall(MatMumpsSetIcntl(F, 13, 1)); /* MUMPS counts negative pivots of the root only without ScaLAPACK */
     PetscCall(MatMumpsSetIcntl(F, 24, 1)); /* null pivots are counted, INFOG(28), instead of an error */
@@ -231,7 +235,10 @@ PetscErrorCode ShiftInvertPrepare(const PencilMatrices *pencil, ShiftInvert *si)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FactorWantsSpace(Mat F, const char prefix[], PetscInt most, PetscInt *percent)
+/* The percentage of workspace beyond its estimate, of `most`, that MUMPS is to be given for another try, INFOG(1) = -8
+   or -9, as several ranks on small matrices and late pivots need; 0 for none: what -mat_mumps_icntl_14 says stays, and
+   where ICNTL(23) limits the memory MUMPS takes no notice of more */
+static PetscErrorCode FactorWantsSpace(Mat F, const char prefix[], PetscInt most, PetscInt *percent)
 {
   PetscInt  info, now, limit;
   PetscBool given;
@@ -285,5 +292,19 @@ PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, 
   PetscCall(ShiftInvertCheck(si, pc, singular));
   si->factored = *singular ? PETSC_FALSE : PETSC_TRUE;
   if (*singular) PetscCall(KSPDestroy(&si->ksp));
+  PetscFunctionReturn(0);
+}
+
+/* RINFOG(12) is the mantissa of the determinant; its exponent, INFOG(34), is not needed */
+PetscErrorCode ShiftInvertIsNegative(const ShiftInvert *si, PetscBool *negative)
+{
+  PetscReal mantissa;
+  PetscBool is_mumps;
+  Mat       F;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertGetFactors(si->ksp, &F, &is_mumps));
+  PetscCall(MatMumpsGetRinfog(F, 12, &mantissa));
+  *negative = mantissa < 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }

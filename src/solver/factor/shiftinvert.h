@@ -41,6 +41,8 @@ typedef struct ShiftInvert {
   Mat       product;
   PetscBool even;   /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves; /* its upper half will do, on one rank */
+  /* by MUMPS whatever solver the user has, with null pivots found and the sign of the determinant, LU */
+  PetscBool signs;
   double    solves; /* right-hand sides that are expected; 0: not known */
   /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
   PetscInt         workspace;
@@ -82,11 +84,9 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 /* Whether the factors are those of the symmetric part at this shift already, friction put on them or not */
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
-/* The percentage of workspace beyond its estimate, of `most`, that MUMPS is to be given for another try, INFOG(1) = -8
-   or -9, as several ranks on small matrices and late pivots need; 0 for none: what -mat_mumps_icntl_14 says stays, and
-   where ICNTL(23) limits the memory MUMPS takes no notice of more */
-PETSC_INTERN PetscErrorCode FactorWantsSpace(Mat F, const char prefix[], PetscInt most, PetscInt *percent);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
+/* factor.c - whether the determinant of the matrix factored is negative, where si->signs */
+PETSC_INTERN PetscErrorCode ShiftInvertIsNegative(const ShiftInvert *si, PetscBool *negative);
 /* release.c - gives up what si->release says, of the matrices that were factored. The symmetric one is a copy of the
    pattern of K: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and
    with RELEASE_PENCIL K goes: si->product makes products with it. K_even goes with friction, or with K. */

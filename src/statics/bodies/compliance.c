@@ -14,7 +14,7 @@
    tenth of the mean stiffness of a slave node against its neighbours along n, keeps both off zero (GMRES then takes a
    third of the steps that it takes with all of it).
 */
-#include "statics/staticsimpl.h"
+#include "statics/pairs/small.h"
 #include "base/gather.h"
 #include "operators/terms/terms.h"
 #include "solver/block/orthonormal.h"
@@ -205,6 +205,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscCall(MatDestroy(&pencil.M));
   PetscCall(MatCreateVecs(K, &c->u, &c->b));
   PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
+  PetscCall(StatusFactorCreate(c, &c->status));
   if (rows->n_all <= max_rows) PetscCall(ComplianceFormDense(c));
   PetscFunctionReturn(0);
 }
@@ -265,6 +266,7 @@ PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const Pe
 PetscErrorCode ComplianceDestroy(Compliance *c)
 {
   PetscFunctionBeginUser;
+  PetscCall(StatusFactorDestroy(&c->status));
   PetscCall(ShiftInvertDestroy(&c->inverse));
   PetscCall(HoldDestroy(&c->hold));
   PetscCall(VecDestroy(&c->u));

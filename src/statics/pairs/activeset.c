@@ -4,7 +4,7 @@
    ends exactly when no status changes. What is smaller than ACTIVE_ROUNDING of the largest displacement decides
    nothing.
 */
-#include "statics/staticsimpl.h"
+#include "statics/pairs/small.h"
 
 /* of the largest displacement, force or gap: rounding of w = G u and of the small system */
 #define ACTIVE_ROUNDING 1e-13
@@ -147,7 +147,15 @@ PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], P
     LawsShift(a, law);
   else
     LawsGuess(a, law, z);
-  PetscCall(SmallSolve(&(SmallSystem){a->compliance, a->friction, law, rhs, a->rtol}, z, l, w, outcome, &a->reversed));
+  PetscCall(SmallSolve(&(SmallSystem){.compliance = a->compliance,
+                                      .friction   = a->friction,
+                                      .law        = law,
+                                      .rhs        = rhs,
+                                      .rtol       = a->rtol,
+                                      .last       = a->settled,
+                                      .n_factored = &a->n_factored,
+                                      .far        = &a->far},
+                       z, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
@@ -273,6 +281,11 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
 }
 
 /* Without friction, and without any pair that has some, the determinant is positive (small.c): nothing to compute */
+static PetscBool ActiveMayReverse(const Active *a, PetscReal friction)
+{
+  return friction != 0 && (PairRowsCoulomb(a->rows) || a->rows->S) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *reversed)
 {
   Active  at = *a;
@@ -281,10 +294,12 @@ PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *revers
   PetscFunctionBeginUser;
   at.friction = friction;
   *reversed   = PETSC_FALSE;
-  if (friction == 0 || (!PairRowsCoulomb(a->rows) && !a->rows->S)) PetscFunctionReturn(0);
+  if (!ActiveMayReverse(a, friction)) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(a->rows->n, &law));
   LawsSet(&at, law);
-  PetscCall(SmallIsReversed(&(SmallSystem){a->compliance, friction, law, a->free, a->rtol}, &a->n_factored, reversed));
+  PetscCall(SmallIsReversed(
+    &(SmallSystem){.compliance = a->compliance, .friction = friction, .law = law, .n_factored = &a->n_factored},
+    reversed));
   PetscCall(PetscFree(law));
   PetscFunctionReturn(0);
 }
@@ -312,7 +327,9 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
     if (n_changed && !(sure && guard.linear)) PetscCall(RepeatFind(a, &seen, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
+    a->settled = !n_changed && !a->tentative && ActiveMayReverse(a, a->friction) ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, &small));
+    a->settled = PETSC_FALSE;
     if (small != SMALL_GOOD || repeats) {
       *outcome = repeats ? ACTIVE_REPEATS : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
       break;

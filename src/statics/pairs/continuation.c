@@ -6,7 +6,7 @@
    iteration; then all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with
    half the step after a failure.
    Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the wrong sign
-   (small.c, determinant.c) is none that can be reached from there, hence a failure too: on the way forces grow beyond
+   (small.c, refactor.c) is none that can be reached from there, hence a failure too: on the way forces grow beyond
    any bound, the bodies jam. So they do where the last equilibrium's pairs would have such a system with the whole
    friction.
 */
