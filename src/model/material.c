@@ -6,8 +6,8 @@
 #include "base/algebra/vec3.h"
 #include "kernels/element/orthotropic.h"
 
-#define NO_RADIUS 1e-8 /* of a cell's size */
-#define CARRIED   1e-8 /* of the mesh */
+#define NO_RADIUS 1e-8 /* of a cell's size: nearer to its centre the axis leaves no radial direction */
+#define CARRIED   1e-8 /* of the mesh, and of a unit vector: by how much axes that a sweep carries along may be off */
 
 /* From the axis to the centre of a cell, radius[3] (m); and how far its nodes are from their centre, m */
 static PetscErrorCode CellFindRadius(Model model, PetscInt c, const Anisotropy *a, PetscReal radius[3], PetscReal *size)
@@ -84,6 +84,9 @@ PetscErrorCode ModelCheckAxes(Model model)
   PetscFunctionReturn(0);
 }
 
+/* Whether sweeping a section carries the axes of its material along, so that all sections have one stencil. Along a
+   straight path fixed axes stay, and those of a cylinder along it; about an axis go those of a cylinder about it, and
+   transverse isotropy along it. */
 PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lines)
 {
   const Anisotropy *a     = &model->scene.parts[part].anisotropy;

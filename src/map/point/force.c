@@ -91,6 +91,7 @@ PetscReal MapForceLine(PetscInt n_records, PetscInt n, const PetscReal f[], Pets
   return ((PetscReal)best + (side[1] > side[0] ? 1 : -1) * (2 * a - 1) / (a + 1)) / ((PetscReal)n * dt);
 }
 
+/* A cycle: the last windows, all with changes of status, have the rms of the very last one within rtol */
 PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error)
 {
   const MapSample *s = &sample[n - 1];
@@ -104,7 +105,8 @@ PetscBool MapIsSettled(PetscInt n, const MapSample sample[], PetscReal rtol, Pet
   return *error <= rtol ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The last half of the windows, and the two halves of it */
+/* Chaos or a beat: the rms of the last half of the windows is known to rtol by its spread, and its two halves agree to
+   twice that, about the standard error of their difference */
 PetscBool MapIsSteady(PetscInt n, const MapSample sample[], PetscReal rtol, PetscReal *error)
 {
   const PetscInt   half = n - n / 2, part = half / 2;

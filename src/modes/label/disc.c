@@ -5,8 +5,10 @@
 #include "base/algebra/dense.h"
 #include "base/algebra/vec3.h"
 
-#define DISC_BINS    720 /* of the rim, to find gaps between columns of nodes */
-#define DISC_SECTORS 8   /* all of which a surface around the axis has nodes in */
+#define DISC_BINS    720  /* of the rim, to find gaps between columns of nodes */
+#define DISC_SECTORS 8    /* all of which a surface around the axis has nodes in */
+#define DISC_ROUND   0.05 /* of the largest second moment: two of a body of revolution differ by less, holes included */
+#define DISC_RIM     0.98 /* of the outer radius: nodes beyond it are on the rim */
 
 /* Centre (m) and second moments per mass, sum m d d' / sum m (m^2), over all ranks */
 static PetscErrorCode DiscMoments(MPI_Comm comm, PetscInt n, const PetscReal x[], const PetscReal mass[],
@@ -30,7 +32,7 @@ static PetscErrorCode DiscMoments(MPI_Comm comm, PetscInt n, const PetscReal x[]
   PetscFunctionReturn(0);
 }
 
-/* Axis = principal direction whose second moment differs from the other two; these must agree within 5 % */
+/* Axis = principal direction whose second moment differs from the other two; these must agree within DISC_ROUND */
 static PetscErrorCode DiscFindAxis(const PetscReal inertia[9], PetscReal axis[3], PetscBool *found)
 {
   PetscReal a[9], values[3];
@@ -40,7 +42,7 @@ static PetscErrorCode DiscFindAxis(const PetscReal inertia[9], PetscReal axis[3]
   PetscCall(PetscArraycpy(a, inertia, 9));
   PetscCall(DenseSymmetricEigen(3, a, NULL, values, NULL));
   k      = values[1] - values[0] > values[2] - values[1] ? 0 : 2;
-  *found = PetscAbsReal(values[1] - values[2 - k]) < 0.05 * values[2] ? PETSC_TRUE : PETSC_FALSE;
+  *found = PetscAbsReal(values[1] - values[2 - k]) < DISC_ROUND * values[2] ? PETSC_TRUE : PETSC_FALSE;
   for (int d = 0; d < 3; d++) axis[d] = a[3 * k + d];
   PetscFunctionReturn(0);
 }
@@ -164,7 +166,7 @@ static PetscErrorCode DiscResolution(Disc *disc, const PetscReal x[])
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < disc->n_nodes; i++) {
     DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
-    if (r > 0.98 * disc->r_outer) seen[(int)((theta + PETSC_PI) / (2 * PETSC_PI) * DISC_BINS) % DISC_BINS] = 1;
+    if (r > DISC_RIM * disc->r_outer) seen[(int)((theta + PETSC_PI) / (2 * PETSC_PI) * DISC_BINS) % DISC_BINS] = 1;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seen, DISC_BINS, MPI_INT, MPI_MAX, disc->comm));
   for (int a = 0; a < 2 * DISC_BINS; a++) {

@@ -1,5 +1,9 @@
 /*
-   Products of complex vectors, as pairs of real ones, with the real matrices of terms.
+   Products of complex vectors, as pairs of real ones x = x_0 + i x_1, with the real matrices of terms:
+
+      x^H A x = x_0'A x_0 + x_1'A x_1 + i (x_0'A x_1 - x_1'A x_0),   y'z = sum_kl i^(k + l) y_k'z_l
+
+   A real vector has no second part. The imaginary part of x^H A x comes from the skew part of A alone.
 */
 #include "products.h"
 #include "base/algebra/product.h"

@@ -15,6 +15,7 @@ void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scal
     BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
 }
 
+/* y = P'eta + W p of one port, m */
 PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
 {
   PetscReal y = 0;
@@ -142,8 +143,9 @@ static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const P
   }
 }
 
-/* lambda_{n+1} joins what the step has without it: z(dt), q_{n+1}, and where works are asked for the forces g on the
-   modes */
+/* lambda_{n+1} joins what the step has without it, by what the stepper made of it once: z(dt) += G lambda, q_{n+1} +=
+   R lambda, and where works are asked for the forces on the modes, g += P'lambda / 2 - Cm R lambda / dt, a half since
+   the mean force of the step counts */
 static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
 {
   const ReducedModel *model = s->model;

@@ -29,7 +29,8 @@ static PetscErrorCode JointSetRow(Bodies b, const ModelMean *mean, int j, Vec no
   PetscFunctionReturn(0);
 }
 
-/* The copies of the nodes of a motion on this rank */
+/* The copies of the nodes of a motion on this rank: owners mark theirs with 1, and the sum at shared nodes marks the
+   copies */
 static PetscErrorCode JointFindNodes(Bodies b, const ModelMean *mean, Vec nodal, BodyJoint *joint)
 {
   const PetscInt     n = b->layout.n_vertices;
@@ -139,6 +140,7 @@ PetscErrorCode JointsAdvance(Bodies b, PetscBool early, BodiesWork *w)
   PetscFunctionReturn(0);
 }
 
+/* ku += B'k B u, N, at nodes that this rank owns: springs alone, without dashpots */
 PetscErrorCode JointsAddForces(Bodies b, const PetscReal u[], PetscReal ku[])
 {
   PetscFunctionBeginUser;
