@@ -11,8 +11,8 @@
 #include "base/algebra/vec3.h"
 #include <petscblaslapack.h>
 
-#define REGULAR                                                                                                        \
-  1e-6 /* of the mean of G's diagonal, added to it: of no weight beside the harmonics that a ring resolves */
+/* of the mean of G's diagonal, added to it: of no weight beside the harmonics that a ring resolves */
+#define REGULAR 1e-6
 
 void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
 {
