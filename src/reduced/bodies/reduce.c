@@ -10,6 +10,7 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscInt n_own;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedCheckMemory(r));
   PetscCall(ReducedFindModes(r));
   PetscCall(ReducedSetPorts(r));
   PetscCall(ReducedSetPairs(r));

@@ -9,7 +9,6 @@
    V'R D X costs a second solution per column but no room for all of X.
 */
 #include "reduced/reducedimpl.h"
-#include "base/process/memory.h"
 #include "solver/block/orthonormal.h"
 
 /* Right-hand sides at once: the factors are read once for all of them. */
@@ -159,31 +158,6 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for dense matrices of the pairs, on each rank, that this machine does not hold, or PetscInt does not
-   count */
-static PetscErrorCode ResidualCheckMemory(const ReducedRun r, PetscBool damped)
-{
-  const double N = r->reduction.model.n_ports, n = 3 * (double)r->reduction.model.n_pairs,
-               copies = 2 + (damped ? 2 : 0) + (r->request.weighs ? 1 : 0);
-  const double gb =
-    8e-9 * (N * N + copies * n * n) * MemoryRanks(); /* W; of the stepper W, the laws', HW, and Cx, Mx */
-  PetscBool given;
-  double    fits[3];
-
-  PetscFunctionBeginUser;
-  fits[0] = 1e-3 * MemoryRoom(&given);
-  fits[1] = N * N < PETSC_MAX_INT ? 0 : -1;
-  fits[2] = -gb; /* machines may have other numbers of ranks */
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 3, MPI_DOUBLE, MPI_MIN, r->comm));
-  PetscCheck(-fits[2] <= fits[0] && fits[1] == 0, r->comm, PETSC_ERR_USER_INPUT,
-             "-dynamics_model reduced: the dense compliance of %" PetscInt_FMT
-             " pairs takes %.3g GB on a machine, more than %s (%.3g GB)%s; take a coarser contact, or "
-             "-dynamics_model full",
-             r->reduction.model.n_pairs, -fits[2], given ? "-squeal_memory" : "is free", fits[0],
-             fits[1] < 0 ? ", and has more entries than can be counted" : "");
-  PetscFunctionReturn(0);
-}
-
 /* Blocks end at the last port of a pair, since only those of pairs have Cm, Cx, Mx. W is whole on every rank; 2
    solutions per damped pair port, 3 with Mx. */
 PetscErrorCode ReducedSetResidual(ReducedRun r)
@@ -197,7 +171,6 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   form[0] = C;
-  PetscCall(ResidualCheckMemory(r, C ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PencilGetMatrices(r->reduction.bodies, &pencil));
   PetscCall(PencilGetMass(r->reduction.bodies, &form[1]));
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->reduction.progress, &r->reduction.inverse));

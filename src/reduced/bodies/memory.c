@@ -1,0 +1,46 @@
+/*
+   Memory of the dense matrices of the pairs, asked for before anything is computed. With n = 3 pairs, each is n^2
+   numbers of 8 bytes on every rank. W of the model and of the stepper, factors and borders of the contact laws, and
+   what the stepper is made from are 6 at once; with damping X'D X, what it drags and forces of it are 5 more; X'M X of
+   the weighed inertia is another.
+*/
+#include "reduced/reducedimpl.h"
+#include "base/process/memory.h"
+
+#define MEMORY_COPIES 6
+#define MEMORY_DAMPED 5
+
+/* GB of a machine that all its ranks want for n pairs */
+static double MemoryOfPairs(double n_pairs, int copies)
+{
+  return 8e-9 * copies * PetscSqr(3 * n_pairs) * MemoryRanks();
+}
+
+/* Machines may have other numbers of ranks, and other memory */
+PetscErrorCode ReducedCheckMemory(ReducedRun r)
+{
+  const ContactPair *pair;
+  PetscInt           n_local, n;
+  PetscBool          given;
+  double             fits[2]; /* GB to be had, and with the other sign those wanted */
+  int                copies = MEMORY_COPIES;
+  Mat                C;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(r->run.contact, &n_local, &n, &pair));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
+  if (C) copies += MEMORY_DAMPED;
+  if (r->request.weighs) copies++;
+  fits[0] = 1e-3 * MemoryRoom(&given);
+  fits[1] = -MemoryOfPairs((double)n, copies);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 2, MPI_DOUBLE, MPI_MIN, r->comm));
+  PetscCheck(
+    -fits[1] <= fits[0] && 9.1 * n * n < PETSC_MAX_INT, r->comm, PETSC_ERR_USER_INPUT,
+    "-dynamics_model reduced: dense matrices of %" PetscInt_FMT
+    " pairs take %.3g GB on a machine, and %s %.3g GB, room for some %d pairs: make the surface of fewer nodes "
+    "the first of -contact_surfaces, mesh it coarser, run fewer ranks on a machine, or take -dynamics_model "
+    "full",
+    n, -fits[1], given ? "-squeal_memory allows" : "there are free", fits[0],
+    (int)PetscMin(PetscSqrtReal(PETSC_MAX_INT / 9.1), n * PetscSqrtReal(fits[0] / -fits[1])));
+  PetscFunctionReturn(0);
+}
