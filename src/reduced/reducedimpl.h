@@ -186,8 +186,8 @@ PETSC_INTERN PetscErrorCode ReducedSetPorts(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding,
                                                PetscReal eigenvalue[2], ReducedState mode[2]);
 
-/* memory.c - raises the error for dense matrices of the pairs that a machine does not hold, before anything is computed.
-   Collective. */
+/* memory.c - raises the error for dense matrices of the pairs that a machine does not hold, before anything is
+   computed. Collective. */
 PETSC_INTERN PetscErrorCode ReducedCheckMemory(ReducedRun reduced);
 
 /* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same
