@@ -19,7 +19,7 @@
 /* modes, whose right vectors have tails enough: then left ones serve from FOUND_FAR on, and of complex vectors parts of
    FOUND_SMALL of the other */
 #define FOUND_MANY  48
-#define FOUND_FAR   1.1
+#define FOUND_FAR   1.3
 #define FOUND_SMALL 0.1
 #define FOUND_MOST  600 /* vectors; more are not worth it */
 

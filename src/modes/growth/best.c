@@ -73,7 +73,7 @@ static PetscReal NodeBound(const ModeEffects *e, EffectKind kind, PetscInt node)
     xx += PetscSqr(e->xr[i] - e->end[0][a]) + PetscSqr(e->xi[i] - e->end[1][a]);
     yy += PetscSqr(e->yr[i] - e->end[2][a]) + PetscSqr(e->yi[i] - e->end[3][a]);
   }
-  return cabs(e->factor[kind]) * PetscSqrtReal(xx * yy);
+  return e->strength[kind] * PetscSqrtReal(xx * yy);
 }
 
 /* Takes the change at a node where it is better than the best so far, or as good and earlier in place */
@@ -111,27 +111,40 @@ static void BestTurn(EffectBest *best)
   for (int a = 0; a < 3; a++) best->direction[a] = best->direction[a] == 0 ? 0 : -best->direction[a];
 }
 
-/* The same of this rank's nodes of each part, or of that or those asked for; seen [local nodes] is the last part that a
-   node was tried for */
-static PetscErrorCode BestOfParts(const ModeEffects *e, EffectKind kind, const EffectParts *of, PetscInt seen[],
-                                  EffectBest best[])
+/* The same of this rank's nodes of each part, or of that or those asked for */
+static PetscErrorCode BestOfParts(const ModeEffects *e, EffectKind kind, const EffectParts *of, EffectBest best[])
 {
-  const Mesh *mesh = e->mesh;
+  const PetscInt n_parts = e->mesh->n_parts;
 
   PetscFunctionBeginUser;
-  for (PetscInt node = 0; node < mesh->n_nodes; node++) seen[node] = -1;
-  PetscCall(PetscMemzero(best, (size_t)mesh->n_parts * sizeof(*best)));
-  for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const PetscInt part = mesh->cell_part[c];
-
+  PetscCall(PetscMemzero(best, (size_t)n_parts * sizeof(*best)));
+  for (PetscInt part = 0; part < n_parts; part++) {
     if (of && (part == of->part) != of->within) continue;
-    for (PetscInt k = mesh->cell_first[c]; k < mesh->cell_first[c + 1]; k++) {
-      const PetscInt node = mesh->cell_node[k];
-
-      if (seen[node] != part) PetscCall(BestTry(e, kind, node, &best[part]));
-      seen[node] = part;
-    }
+    for (PetscInt k = e->first[part]; k < e->first[part + 1]; k++) PetscCall(BestTry(e, kind, e->node[k], &best[part]));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EffectsListNodes(const Mesh *mesh, PetscInt **first, PetscInt **nodes)
+{
+  PetscInt *seen, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &seen));
+  PetscCall(PetscMalloc1(mesh->n_parts + 1, first));
+  PetscCall(PetscMalloc1(mesh->cell_first[mesh->n_cells], nodes));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) seen[i] = -1;
+  for (PetscInt part = 0; part < mesh->n_parts; part++) {
+    (*first)[part] = n;
+    for (PetscInt c = 0; c < mesh->n_cells; c++)
+      for (PetscInt k = mesh->cell_first[c]; mesh->cell_part[c] == part && k < mesh->cell_first[c + 1]; k++) {
+        if (seen[mesh->cell_node[k]] == part) continue;
+        seen[mesh->cell_node[k]] = part;
+        (*nodes)[n++]            = mesh->cell_node[k];
+      }
+  }
+  (*first)[mesh->n_parts] = n;
+  PetscCall(PetscFree(seen));
   PetscFunctionReturn(0);
 }
 
@@ -141,20 +154,19 @@ static PetscErrorCode PartsFindBest(MPI_Comm comm, const ModeEffects *e, EffectK
 {
   const PetscInt n_parts = e->mesh->n_parts;
   PetscMPIInt    size, bytes = (PetscMPIInt)((size_t)n_parts * sizeof(EffectBest));
-  PetscInt      *seen;
   EffectBest    *all;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(e->mesh->n_nodes, &seen, (PetscInt)size * n_parts, &all));
-  PetscCall(BestOfParts(e, kind, of, seen, best));
+  PetscCall(PetscMalloc1((PetscInt)size * n_parts, &all));
+  PetscCall(BestOfParts(e, kind, of, best));
   PetscCallMPI(MPI_Allgather(best, bytes, MPI_BYTE, all, bytes, MPI_BYTE, comm));
   for (PetscInt k = 0; k < n_parts; k++) {
     best[k] = all[k];
     for (PetscMPIInt r = 1; r < size; r++) best[k] = BestOf(&best[k], &all[r * n_parts + k], e->rounding);
     BestTurn(&best[k]);
   }
-  PetscCall(PetscFree2(seen, all));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 

@@ -49,6 +49,7 @@ static PetscErrorCode EffectsSet(Modes modes, Operators operators, PetscInt i, M
   e->factor[EFFECT_MASS]    = -lambda * lambda / slope;
   e->factor[EFFECT_SPRING]  = -1 / slope;
   e->factor[EFFECT_DASHPOT] = -lambda / slope;
+  for (int kind = 0; kind < N_EFFECTS; kind++) e->strength[kind] = cabs(e->factor[kind]);
   PetscFunctionReturn(0);
 }
 
@@ -172,6 +173,7 @@ static PetscErrorCode EffectsWriteAll(Modes modes, Operators operators, const Me
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(3 * mesh->n_nodes, &e.xr, 3 * mesh->n_nodes, &e.xi, 3 * mesh->n_nodes, &e.yr,
                          3 * mesh->n_nodes, &e.yi));
+  PetscCall(EffectsListNodes(mesh, &e.first, &e.node));
   for (PetscInt i = 0; i < modes->n; i++) {
     if (!modes->mode[i].unstable) continue;
     PetscCall(EffectsSet(modes, operators, i, &e));
@@ -180,6 +182,8 @@ static PetscErrorCode EffectsWriteAll(Modes modes, Operators operators, const Me
       PetscCall(EffectsWritePairs(modes, &e, (EffectKind)kind, table));
     if (field) PetscCall(EffectsWriteFields(modes, &e, i, field));
   }
+  PetscCall(PetscFree(e.first));
+  PetscCall(PetscFree(e.node));
   PetscCall(PetscFree4(e.xr, e.xi, e.yr, e.yi));
   PetscFunctionReturn(0);
 }

@@ -14,7 +14,9 @@ typedef struct {
   PetscReal   *xr, *xi, *yr, *yi;
   PetscReal    end[4][3];         /* the same at the other end of a spring or dashpot, zero: the ground */
   PetscComplex factor[N_EFFECTS]; /* d lambda / d change = factor d'y x'd along the direction d; of a mass its trace */
-  PetscReal    rounding;          /* effects differ by rounding less than this part of the largest one */
+  PetscReal    strength[N_EFFECTS]; /* |factor| */
+  PetscInt    *first, *node; /* [parts + 1], where the nodes of each part begin; those that cells of this rank have */
+  PetscReal    rounding;     /* effects differ by rounding less than this part of the largest one */
 } ModeEffects;
 
 /* The change of a kind that lowers the growth of a mode most on one part */
@@ -44,7 +46,8 @@ static inline void EffectAtNode(const ModeEffects *e, EffectKind kind, PetscInt 
     for (int b = 0; b < 3; b++) form[a][b] = e->factor[kind] * (y[a] * x[b] + y[b] * x[a]) / 2;
 }
 
-/* best.c - among the nodes of each part; best [n_parts]. Collective */
+/* best.c - first and node as above, which the caller frees; among the nodes of each part; best [n_parts]. Collective */
+PETSC_INTERN PetscErrorCode EffectsListNodes(const Mesh *mesh, PetscInt **first, PetscInt **nodes);
 PETSC_INTERN PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[]);
 /* The same between two nodes: from the best one of `part` to the ground, each end in turn moves to its best node, on
    `part` and on it too (`within`) or on others, until both stay. e->end is zero again. Collective */
