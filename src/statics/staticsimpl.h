@@ -173,6 +173,7 @@ typedef struct {
 typedef struct {
   PetscInt  step, interface;
   PetscReal time, depth, volume, work; /* s; largest of a pair, m; sum of A dg0, m^3; of friction, J */
+  PetscReal error;                     /* of the steps, in the depth of a pair, m */
   PetscReal force, pressure, change;   /* N; largest, Pa; largest change in the step, as a part of it */
   PetscInt  n_closed;
 } WearRow;

@@ -4,7 +4,8 @@
     wear.py stationary FOLDER            pressures of a pad that turns about z without tilting are as 1 / r where they rest
     wear.py book FOLDER RATE MU          volume = k / mu x work of friction at each step; V = sum A (what gap.csv says is worn)
     wear.py decay FOLDER DELTA RATE LAW [NUMBERS] --exponent A --steps N --time T --compliance C
-                                         an even pressure under a held displacement: each implicit step by scipy
+                                         an even pressure under a held displacement: each implicit step by scipy; the
+                                         error of the steps beside an integration without one
     wear.py depth FOLDER DEPTH           the run ends where the deepest pair has worn so far
 """
 
@@ -14,11 +15,13 @@ import math
 import sys
 from pathlib import Path
 
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 STATIONARY = 1e-3
 BOOK = 1e-12
 DECAY = 1e-9
+LARGE = 20  # times the true error of the steps
 
 
 def table(folder, name):
@@ -81,6 +84,16 @@ def decay(arguments):
         worst = max(worst, abs(float(row["pressure_pa"]) / p - 1), abs(float(row["depth_m"]) / worn - 1))
     print(f"pressure falls to {p:.6g} Pa")
     judge("steps beside scipy's", worst, DECAY)
+    most = 2 * (delta + arguments.most) / c
+
+    def rate(_, worn):
+        left = delta - worn[0]
+        return [arguments.rate * brentq(lambda p: closing(p) + c * p - left, 0, most, xtol=1e-300, rtol=1e-15) ** a]
+
+    exact = solve_ivp(rate, (0, arguments.time), [0], method="LSODA", rtol=1e-9, atol=1e-9 * delta).y[0, -1]
+    error, stated = abs(float(wear[-1]["depth_m"]) - exact), float(wear[-1]["depth_error_m"])
+    judge("error of the steps over the stated one", error / stated, 1)
+    judge("stated error of the steps over the true one", stated / error, LARGE)
 
 
 def main():

@@ -10,7 +10,12 @@
 
       V = sum A dg0,   E = sum |mu| lambda_n v dt,   V = (k_s + k_m) E / |mu|,
 
-   which wear.csv shows from gaps and areas, and from forces: V is no sum of forces. With -stages contacts wear in the
+   which wear.csv shows from gaps and areas, and from forces: V is no sum of forces. The error of the steps in the depth
+   of a pair is estimated by what the trapezoidal rule adds over the same pressures,
+
+      sum (W / 2) (p_n^a - p_(n+1)^a),
+
+   the first order of the error in dt; wear that gives pressure away makes the true one smaller with time. With -stages contacts wear in the
    last one, and the state is that of all stages once more with the worn gaps.
 */
 #include "statics/staticsimpl.h"
@@ -26,7 +31,7 @@ typedef struct {
   Active            *active;
   OperatorsWear     *wear;          /* [n_pairs] */
   PetscReal         *w, *force;     /* [n_pairs] W of the step, m / Pa^a; lambda_n before, N */
-  PetscReal         *slid;          /* [n_pairs] work of friction until now, J */
+  PetscReal         *slid, *error;  /* [n_pairs] until now: work of friction, J; error of the depth, m, signed */
   PetscReal          time, deepest; /* s; over all ranks, m */
 } Wearing;
 
@@ -121,6 +126,7 @@ static void WearAddPair(const Wearing *g, PetscInt p, PetscReal before, WearRow 
   const PetscReal force = g->force[p];
 
   row->depth = PetscMax(row->depth, g->s->worn[p]);
+  row->error = PetscMax(row->error, PetscAbsReal(g->error[p]));
   row->volume += area * g->s->worn[p];
   row->work += g->slid[p];
   row->force += force;
@@ -132,15 +138,17 @@ static void WearAddPair(const Wearing *g, PetscInt p, PetscReal before, WearRow 
 /* Makes a row one of all ranks */
 static PetscErrorCode WearShareRow(MPI_Comm comm, WearRow *row)
 {
-  PetscReal most[3] = {row->depth, row->pressure, row->change}, sum[3] = {row->volume, row->work, row->force};
+  PetscReal most[4] = {row->depth, row->pressure, row->change, row->error};
+  PetscReal sum[3]  = {row->volume, row->work, row->force};
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPIU_REAL, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &row->n_closed, 1, MPIU_INT, MPI_SUM, comm));
   row->depth    = most[0];
   row->pressure = most[1];
   row->change   = most[1] > 0 ? most[2] / most[1] : 0;
+  row->error    = most[3];
   row->volume   = sum[0];
   row->work     = sum[1];
   row->force    = sum[2];
@@ -164,6 +172,7 @@ static PetscErrorCode WearTake(Wearing *g, PetscInt step, PetscReal dt, PetscRea
     const PetscReal force = PetscMax(0, g->active->compliance->kappa * g->active->l[rows->first[p]]);
     const PetscReal grown = PairWorn(rows, p, force);
 
+    g->error[p] += (PairWorn(rows, p, g->force[p]) - grown) / 2;
     s->worn[p] += grown;
     rows->law[p].g0 += grown;
     g->force[p] = force;
@@ -212,6 +221,7 @@ static PetscErrorCode WearBegin(Wearing *g)
   PetscFunctionBeginUser;
   PetscCall(
     PetscMalloc4(rows->n_pairs, &g->wear, rows->n_pairs, &g->w, rows->n_pairs, &g->force, rows->n_pairs, &g->slid));
+  PetscCall(PetscCalloc1(rows->n_pairs, &g->error));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     PetscCall(OperatorsGetPairWear(s->operators, s->p, &rows->pair[p], &g->wear[p]));
     if (!rows->slides[rows->pair[p].interface]) g->wear[p].rate = 0;
@@ -245,6 +255,7 @@ PetscErrorCode StaticsWear(Statics s, PetscBool *worn)
   s->n_factored += active.n_factored;
   PetscCall(EquilibriumEnd(&active));
   PetscCall(PetscFree4(g.wear, g.w, g.force, g.slid));
+  PetscCall(PetscFree(g.error));
   PetscCall(PetscFree(active.l));
   PetscCall(VecDestroy(&active.u));
   PetscCall(VecDestroy(&active.f));
