@@ -24,13 +24,15 @@ static PetscErrorCode ScopeAddContacts(const Scope *s, QuantityRun *run)
 /* How it runs in time */
 static PetscErrorCode ScopeAddTime(const Scope *s, QuantityRun *run)
 {
-  PetscBool pairs, reduced;
+  PetscBool pairs, reduced, springs;
 
   PetscFunctionBeginUser;
   PetscCall(DynamicsNeedsPairs(s->dynamics, &pairs));
   PetscCall(ReducedIsAsked(s->reduced, &reduced));
+  PetscCall(ReducedHasSprings(s->reduced, &springs));
   if (pairs || reduced) run->does |= RUN_EQUILIBRIUM;
   run->does |= reduced ? RUN_REDUCED | RUN_FACTORS : RUN_MESH;
+  if (springs) run->does |= RUN_SPRINGS;
   PetscFunctionReturn(0);
 }
 

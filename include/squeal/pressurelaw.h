@@ -69,3 +69,29 @@ PetscErrorCode PressureAddChecksum(const PressureLaw *law, Checksum checksum);
 
 /*@ PressureDestroy - frees what a law owns. Not collective. @*/
 PetscErrorCode PressureDestroy(PressureLaw *law);
+
+/* The normal law of a pair, lambda_n = A P(c): a linear law has A = 1 and its k in N/m */
+typedef struct {
+  PressureLaw law;
+  PetscReal   area; /* m^2 */
+} PairSpring;
+
+/* c = closing + compliance lambda_n */
+typedef struct {
+  PetscReal closing, compliance; /* m, m/N */
+} SpringLine;
+
+/*@ SpringIsCurved, SpringOnset, SpringClosing, SpringForce - whether the law of a pair is not linear; the closing (m) at
+    which it begins, that at a force (N), the force at a closing. Not collective. @*/
+PetscBool SpringIsCurved(const PairSpring *spring);
+PetscReal SpringOnset(const PairSpring *spring);
+PetscReal SpringClosing(const PairSpring *spring, PetscReal force);
+PetscReal SpringForce(const PairSpring *spring, PetscReal closing);
+
+/*@ SpringTangent - the tangent of the law at a closing, rigid at the onset; a linear law itself. Not collective. @*/
+SpringLine SpringTangent(const PairSpring *spring, PetscReal closing);
+
+/*@ SpringNext - where Newton's method lays the next tangent, m: of a line laid at the closing `at` a force and a closing
+    came, two points on the law, of which the one nearer to `at` is taken, so that no steep law runs away. Not
+    collective. @*/
+PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing);

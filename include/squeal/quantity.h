@@ -56,6 +56,7 @@ typedef enum {
   RUN_PEP         = RUN_EQUILIBRIUM << 15, /* its PEP does */
   RUN_NAMED       = RUN_EQUILIBRIUM << 16, /* its unknowns are those of nodes of parts, of a mesh or -operators_nodes */
   RUN_WEARS       = RUN_EQUILIBRIUM << 17, /* a sweep over the time that contacts wear */
+  RUN_SPRINGS     = RUN_EQUILIBRIUM << 18, /* in time with penalty and pressure laws of the contacts */
 } RunBit;
 
 typedef struct {

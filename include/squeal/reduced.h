@@ -52,6 +52,7 @@
 #include <squeal/quantity.h>
 #include <squeal/dynamics.h>
 #include <squeal/modes.h>
+#include <squeal/pressurelaw.h>
 
 /* The error of the cut-off is told by what else is found on the modes below so many times it, of a transient, a cycle
    and a point of a map. 1.5 times may hold no further mode of a light body, and then tell a hundredth of the error:
@@ -72,6 +73,7 @@ typedef struct {
   PetscReal   *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
   PetscReal   *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
   PetscReal   *gap;      /* [n_pairs] g0, m, positive open */
+  PairSpring  *spring;   /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
   FrictionLaw *friction; /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
@@ -199,6 +201,9 @@ PetscErrorCode ReducedVisit(ReducedRun r, const QuantityVisitor *visitor);
 
 /*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
 PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
+
+/*@ ReducedHasSprings - whether penalty and pressure laws of the contacts are in series with the pairs. Not collective. @*/
+PetscErrorCode ReducedHasSprings(ReducedRun reduced, PetscBool *springs);
 
 /*@ ReducedIsCompared - whether a transient compares its eigenvalues with those of the mesh where there is a
    -modes_band. Not

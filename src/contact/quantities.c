@@ -34,8 +34,9 @@ static const char *ContactIdleSlip(const void *contact, const QuantityRun *run)
 
 static const char *ContactIdleLaw(const void *contact, const QuantityRun *run)
 {
-  return run->does & RUN_IN_TIME && ((const ContactInterface *)contact)->law != CONTACT_CONSTRAINT
-           ? "not used in time, where contact is exact: no penalty, no linearisation"
+  return run->does & RUN_IN_TIME && !(run->does & RUN_SPRINGS) &&
+             ((const ContactInterface *)contact)->law != CONTACT_CONSTRAINT
+           ? "not used in time without -dynamics_contact penalty: contact is exact"
            : NULL;
 }
 
@@ -105,10 +106,10 @@ static const Quantity interface[] = {
    "(auto)",
    NULL, QUANTITY_WORD, INTERFACE(discretization), .words = discretizations},
   {"-kn_per_area", "instead: normal stiffness per area of the slave (penalty)", "N/m^3", QUANTITY_REAL, INTERFACE(kn),
-   QUANTITY_OR_NONE, .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC,
+   QUANTITY_OR_NONE, .given = offsetof(ContactInterface, per_area), .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
    .unread = CONTACT_EXACT, .idle = ContactIdleArea, .varies = VARIES_LINEAR},
   {"-kn", "normal stiffness per pair (penalty), or: identify", "N/m", QUANTITY_TEXT, INTERFACE(kn_text), .text = "0",
-   QUANTITY_OR_NONE, .given = offsetof(ContactInterface, has_kn), .in = RUN_LINEAR | RUN_STATIC,
+   QUANTITY_OR_NONE, .given = offsetof(ContactInterface, has_kn), .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
    .unread = CONTACT_EXACT, .idle = ContactIdleStiffness, .varies = VARIES_LINEAR},
   {"-kt", "modes, holding by friction: stiffness along the surface of a pair that sticks", "N/m", QUANTITY_REAL,
    INTERFACE(kt), QUANTITY_POSITIVE, .given = offsetof(ContactInterface, has_kt), .in = RUN_LINEAR,

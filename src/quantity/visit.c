@@ -33,6 +33,7 @@ static const struct {
   {RUN_PEP, "eigenvalue problems that -pep_* solves"},
   {RUN_NAMED, "scenes with a mesh, and matrices with -operators_nodes"},
   {RUN_WEARS, "sweeps over wear_time"},
+  {RUN_SPRINGS, "-dynamics_contact penalty"},
 };
 
 const char *RunBitWords(unsigned i)

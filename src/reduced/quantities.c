@@ -18,11 +18,16 @@ static const char *ReducedIdleChosen(const void *reduced, const QuantityRun *run
   return r->request.cutoff > 0 ? "not used where -dynamics_cutoff says the cut-off" : ReducedIdle(r, run);
 }
 
+static const char *const contacts[] = {[PETSC_FALSE] = "exact", [PETSC_TRUE] = "penalty", NULL};
+
 static const Quantity rows[] = {
   {"-dynamics_model", "the mesh, or its bodies' modes and the pairs' compliance", NULL, QUANTITY_WORD,
    REDUCED_AT(request.asked), .words = models},
   {"-dynamics_cutoff", "of the modes of a reduced model; 0: 4 times the end of -modes_band, or 20 kHz", "Hz",
    QUANTITY_REAL, REDUCED_AT(request.cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
+  {"-dynamics_contact",
+   "of a reduced model: rigid surfaces, or surfaces that yield as -..._kn or -..._pressure_law of their contact says",
+   NULL, QUANTITY_WORD, REDUCED_AT(request.springs), .words = contacts, .idle = ReducedIdle},
   {"-dynamics_growth_rtol",
    "error of growth in -modes_band, or without it of all modes, for which a cut-off and a step are chosen", NULL,
    QUANTITY_REAL, REDUCED_AT(request.growth_rtol), .initial = 5e-3,

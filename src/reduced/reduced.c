@@ -30,6 +30,13 @@ PetscErrorCode ReducedIsAsked(ReducedRun r, PetscBool *asked)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedHasSprings(ReducedRun r, PetscBool *springs)
+{
+  PetscFunctionBeginUser;
+  *springs = r->request.asked && r->request.springs ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedIsCompared(ReducedRun r, PetscBool *compared)
 {
   PetscFunctionBeginUser;
@@ -51,6 +58,7 @@ PetscErrorCode ReducedPrepare(ReducedRun r, Results results)
   r->results = results;
   PetscCall(ReducedChooseCutoff(r));
   PetscCall(DynamicsGetRun(r->dynamics, results, BY, 1 / (2 * PETSC_PI * r->request.cutoff), &r->run));
+  if (r->run.from_static && !r->request.springs) PetscCall(DynamicsCheckExact(r->dynamics));
   PetscCall(ReducedRefuse(r));
   PetscCall(ExternalCountHits(r->run.external, &r->reduction.n_hits));
   PetscCall(ReducedSetStep(r, r->run.dt));

@@ -68,6 +68,7 @@ typedef struct {
   PetscReal  growth_rtol;
   PetscBool  has_rtol; /* somebody says so */
   PetscBool  weighs;   /* Mx too */
+  PetscBool  springs;  /* penalty and pressure laws of the contacts are in series with the pairs */
   PetscReal *p;        /* parameters of the operators, NULL: those of the scene */
   ReducedRun like;     /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
 } ReducedRequest;

@@ -79,6 +79,12 @@ static void WeightSet(ContactCompliance c)
   c->weight = 1 / PetscSqrtReal(PetscMax(1, largest));
 }
 
+void ComplianceSetScales(ContactCompliance c)
+{
+  StiffnessSet(c);
+  WeightSet(c);
+}
+
 PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance)
 {
   ContactCompliance c;
@@ -99,9 +105,9 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
                          &c->chord.border, 4 * n, &c->chord.want, 4 * n, &c->chord.next));
   PetscCall(PetscCalloc4(n, &c->chord.frame, 4 * n, &c->chord.b, 4 * n, &c->chord.s, 4 * n, &c->chord.z));
   PetscCall(PetscCalloc2(3 * n, &c->chord.x, 3 * n, &c->chord.f));
+  PetscCall(PetscCalloc1(3 * n, &c->slip));
   PetscCall(PetscMalloc2(3 * n * COMPLIANCE_MIXED, &c->chord.basis, 3 * n * COMPLIANCE_MIXED, &c->chord.step));
-  StiffnessSet(c);
-  WeightSet(c);
+  ComplianceSetScales(c);
   c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
   *compliance = c;
   PetscFunctionReturn(0);
@@ -178,16 +184,11 @@ static PetscErrorCode StepBegin(ContactCompliance c, const PetscReal q[], const 
   PetscFunctionReturn(0);
 }
 
-/* Forces and displacements out, statuses decided */
-static void StepEnd(ContactCompliance c, const PetscReal slip0[], PetscReal lambda[], PetscReal r[])
+/* Forces out, statuses decided */
+static void StepEnd(ContactCompliance c, PetscReal lambda[])
 {
   ComplianceChoose(c);
-  for (PetscInt p = 0; p < c->n; p++) {
-    for (PetscInt i = 0; i < 3; i++) {
-      lambda[3 * p + i] = c->kappa[p] * c->l[3 * p + i];
-      if (r) r[3 * p + i] = c->v[3 * p + i] + (i ? slip0[2 * p + i - 1] : 0);
-    }
-  }
+  for (PetscInt i = 0; i < 3 * c->n; i++) lambda[i] = c->kappa[i / 3] * c->l[i];
 }
 
 /* Adds the report of the step to that of all. The residual is relative to scale + noise / rtol, hence below rtol
@@ -211,8 +212,8 @@ static void StepReport(ContactCompliance c, const ComplianceMiss *miss)
   all->worst    = one->worst;
 }
 
-PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
-                                      PetscReal lambda[], PetscReal r[], ComplianceReport *report)
+PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                    PetscReal lambda[])
 {
   ComplianceMiss miss;
 
@@ -227,7 +228,22 @@ PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], 
   }
   if (ComplianceIsSolved(c, &miss)) PetscCall(ComplianceRefine(c, &miss));
   StepReport(c, &miss);
-  StepEnd(c, slip0, lambda, r);
+  StepEnd(c, lambda);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                      PetscReal lambda[], PetscReal r[], ComplianceReport *report)
+{
+  PetscFunctionBeginUser;
+  if (c->springs.law)
+    PetscCall(ComplianceSolveSprings(c, q, slip0, lambda));
+  else
+    PetscCall(ComplianceSolveLines(c, q, slip0, lambda));
+  for (PetscInt p = 0; p < c->n; p++) {
+    for (PetscInt i = 0; i < 3; i++) c->slip[3 * p + i] = c->v[3 * p + i] - (i ? 0 : ComplianceLineClosing(c, p));
+    for (PetscInt i = 0; i < 3 && r; i++) r[3 * p + i] = c->slip[3 * p + i] + (i ? slip0[2 * p + i - 1] : 0);
+  }
   if (report) *report = c->report;
   PetscFunctionReturn(0);
 }
@@ -242,7 +258,7 @@ PetscErrorCode ContactComplianceGetStatus(ContactCompliance c, const ContactStat
 PetscErrorCode ContactComplianceGetSlip(ContactCompliance c, const PetscReal **slip)
 {
   PetscFunctionBeginUser;
-  *slip = c->v;
+  *slip = c->slip;
   PetscFunctionReturn(0);
 }
 
@@ -269,6 +285,8 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(PetscFree2(c->chord.basis, c->chord.step));
   PetscCall(PetscFree6(c->chord.LU, c->chord.V, c->chord.S, c->chord.row, c->chord.at, c->chord.small));
   PetscCall(ComplianceDualDestroy(c));
+  PetscCall(ComplianceDestroySprings(c));
+  PetscCall(PetscFree(c->slip));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);
 }

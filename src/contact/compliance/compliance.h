@@ -10,7 +10,8 @@
       Coulomb   |lambda_T| <= mu lambda_n,  d = 0 (stick)  or  lambda_T = -mu lambda_n d / |d| (slip)
       mu        mu(|d| / dt) of the pair's law (frictionlaw.h), at the end of the step
 
-   with W (m/N) symmetric and positive semidefinite. A pair of normal stiffness k_n has 1 / k_n on its diagonal of W. A
+   with W (m/N) symmetric and positive semidefinite. With laws in series (spring.c) r_n + C(lambda_n) stands for r_n in
+   the normal law, C the closing of a pair's pressure law. A
    solution exists for any mu where W is definite; it need not be the only one: the one near the guess is looked for
    first. Friction that W couples with the normal may have none where W is singular (a wedge that jams).
 
@@ -31,6 +32,7 @@
 #include <petscsys.h>
 #include <squeal/contactstatus.h>
 #include <squeal/frictionlaw.h>
+#include <squeal/pressurelaw.h>
 
 typedef struct _p_ContactCompliance *ContactCompliance;
 
@@ -76,6 +78,9 @@ PETSC_INTERN PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance com
     collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance compliance, const FrictionLaw friction[],
                                                          PetscReal dt);
+
+/*@ ContactComplianceSetSprings - laws [n] in series with the pairs, copied; once. W is copied. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetSprings(ContactCompliance compliance, const PairSpring law[]);
 
 /*@ ContactComplianceSetTolerance - relative residual, 1e-12 unless set. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSetTolerance(ContactCompliance compliance, PetscReal rtol);

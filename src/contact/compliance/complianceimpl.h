@@ -53,34 +53,46 @@ typedef struct {
   PetscReal *dv, *force;   /* [3 n] m; V dv, N */
 } ComplianceDual;
 
+/* Laws in series with the pairs (spring.c) */
+typedef struct {
+  PairSpring *law;          /* [n], NULL where contact is exact */
+  PetscBool   curved, laid; /* some are not linear; lines are tangents at forces */
+  SpringLine *line;         /* [n] */
+  PetscReal  *at;           /* [n] closings at which the lines were tangents, m */
+  PetscReal  *W, *diagonal; /* [3 n][3 n] with the lines, m/N; [n] without, normal */
+  PetscReal  *q;            /* work: [3 n] */
+} ComplianceSprings;
+
 struct _p_ContactCompliance {
-  PetscInt         n;
-  const PetscReal *W;
-  PetscReal       *kappa;    /* N/m, [n] */
-  FrictionLaw     *friction; /* [n] */
-  PetscReal       *mu;       /* [n] at the stated speed */
-  PetscBool       *varies;   /* [n] with the slip speed */
-  PetscReal        weight;   /* a: statuses are decided by l - a v */
-  PetscReal        dt, rtol;
-  PetscReal       *free;    /* v without forces, [n][3] */
-  PetscReal       *l, *v;   /* now, [n][3] */
-  PetscReal       *l0, *v0; /* before a step of Newton's method */
-  PetscReal       *best;    /* l of the least residual, [n][3] */
-  PetscReal       *force;   /* work: forces or displacements, [n][3] */
-  PetscInt        *carries; /* work: columns of W with a force, [3 n] */
-  ContactStatus   *status;  /* [n] */
-  CoulombLaw      *law;     /* [n], of closed pairs, in the frame of each (linear.c) */
-  PetscReal       *slide;   /* e, [n][2], of pairs that slide */
-  PetscInt         n_closed, *closed;
-  PetscInt        *row;     /* first row of each closed pair in A, and after the last, [n + 1] */
-  PetscReal        blend;   /* t: (1 - t) W kappa + t I stands for W kappa */
-  PetscReal       *A, *rhs; /* [rows][rows] of closed pairs and a border, [rows] */
-  PetscBLASInt    *pivot;
-  PetscBool        exchanged; /* rows of A in its factors */
-  PetscInt         n_room;    /* rows that there is room for */
-  ComplianceChord  chord;
-  ComplianceDual   dual;
-  ComplianceReport report, totals;
+  PetscInt          n;
+  const PetscReal  *W;
+  PetscReal        *kappa;    /* N/m, [n] */
+  FrictionLaw      *friction; /* [n] */
+  PetscReal        *mu;       /* [n] at the stated speed */
+  PetscBool        *varies;   /* [n] with the slip speed */
+  PetscReal         weight;   /* a: statuses are decided by l - a v */
+  PetscReal         dt, rtol;
+  PetscReal        *free;    /* v without forces, [n][3] */
+  PetscReal        *l, *v;   /* now, [n][3] */
+  PetscReal        *l0, *v0; /* before a step of Newton's method */
+  PetscReal        *slip;    /* gaps and slips of the last step, m, [n][3] */
+  PetscReal        *best;    /* l of the least residual, [n][3] */
+  PetscReal        *force;   /* work: forces or displacements, [n][3] */
+  PetscInt         *carries; /* work: columns of W with a force, [3 n] */
+  ContactStatus    *status;  /* [n] */
+  CoulombLaw       *law;     /* [n], of closed pairs, in the frame of each (linear.c) */
+  PetscReal        *slide;   /* e, [n][2], of pairs that slide */
+  PetscInt          n_closed, *closed;
+  PetscInt         *row;     /* first row of each closed pair in A, and after the last, [n + 1] */
+  PetscReal         blend;   /* t: (1 - t) W kappa + t I stands for W kappa */
+  PetscReal        *A, *rhs; /* [rows][rows] of closed pairs and a border, [rows] */
+  PetscBLASInt     *pivot;
+  PetscBool         exchanged; /* rows of A in its factors */
+  PetscInt          n_room;    /* rows that there is room for */
+  ComplianceSprings springs;
+  ComplianceChord   chord;
+  ComplianceDual    dual;
+  ComplianceReport  report, totals;
 };
 
 /* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v;
@@ -119,6 +131,20 @@ PETSC_INTERN PetscErrorCode ComplianceChordRenew(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
 PETSC_INTERN PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[]);
+
+/* compliance.c - stiffness and weight of the pairs by W; one step on W as it is */
+PETSC_INTERN void           ComplianceSetScales(ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                                 PetscReal lambda[]);
+
+/* spring.c - a step with laws in series; the closing of a pair's line at l, m, 0 where contact is exact; tangents on the
+   diagonal of W, or the lines again; lines laid at closings [n], m */
+PETSC_INTERN PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                                   PetscReal lambda[]);
+PETSC_INTERN PetscReal      ComplianceLineClosing(const ContactCompliance c, PetscInt p);
+PETSC_INTERN void           ComplianceSetTangents(ContactCompliance c, PetscBool tangents);
+PETSC_INTERN PetscErrorCode ComplianceLayAt(ContactCompliance c, const PetscReal at[]);
+PETSC_INTERN PetscErrorCode ComplianceDestroySprings(ContactCompliance c);
 
 /* chord.c - Newton's method with factors of the steps before */
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);

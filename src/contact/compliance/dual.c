@@ -197,6 +197,7 @@ PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved)
 PetscErrorCode ComplianceDualDestroy(ContactCompliance c)
 {
   PetscFunctionBeginUser;
+  c->dual.tried = PETSC_FALSE;
   PetscCall(PetscFree(c->dual.V));
   PetscCall(PetscFree7(c->dual.at, c->dual.along, c->dual.test, c->dual.own, c->dual.x, c->dual.dv, c->dual.force));
   PetscFunctionReturn(0);

@@ -1,20 +1,24 @@
 /*
    What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept.
    The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
-   (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base.
+   (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a law in
+   series is not linear, the closings at which its lines were laid come first [n].
 */
 #include "complianceimpl.h"
 
 PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)
 {
-  const ComplianceChord *h = &c->chord;
+  const ComplianceChord *h       = &c->chord;
+  const PetscInt         n_lines = c->springs.laid ? c->n : 0;
   PetscReal             *to;
 
   PetscFunctionBeginUser;
-  *n = h->exists ? 1 + h->m + 4 * c->n + h->n_columns : 0;
+  *n = n_lines + (h->exists ? 1 + h->m + 4 * c->n + h->n_columns : 0);
   PetscCall(PetscMalloc1(*n, values));
   to = *values;
-  if (!*n) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(to, c->springs.at, n_lines));
+  to += n_lines;
+  if (*n == n_lines) PetscFunctionReturn(0);
   *to++ = (PetscReal)h->m;
   for (PetscInt i = 0; i < h->m; i++) *to++ = (PetscReal)h->index[i];
   PetscCall(PetscArraycpy(to, (const PetscReal *)h->frame, 4 * c->n));
@@ -31,8 +35,14 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   PetscInt         n_columns;
 
   PetscFunctionBeginUser;
-  h->exists = PETSC_FALSE;
-  if (!n) PetscFunctionReturn(0);
+  h->exists       = PETSC_FALSE;
+  c->springs.laid = PETSC_FALSE;
+  if (n && c->springs.curved) {
+    PetscCall(ComplianceLayAt(c, values));
+    values += c->n;
+    n -= c->n;
+  }
+  if (n <= 0) PetscFunctionReturn(0);
   h->m      = (PetscInt)values[0];
   n_columns = n - 1 - h->m - 4 * c->n;
   PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 4 * c->n, PETSC_COMM_SELF,

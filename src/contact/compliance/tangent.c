@@ -19,7 +19,9 @@ static PetscErrorCode TangentFactor(ContactCompliance c)
   PetscCall(PetscArraycpy(c->l0, c->l, 3 * c->n));
   PetscCall(PetscArraycpy(c->v0, c->v, 3 * c->n));
   ComplianceLinearise(c);
+  ComplianceSetTangents(c, PETSC_TRUE);
   PetscCall(ComplianceAssemble(c, 0));
+  ComplianceSetTangents(c, PETSC_FALSE);
   PetscCall(ComplianceFactor(c, c->row[c->n_closed], &singular));
   PetscCall(PetscArraycpy(c->l, c->l0, 3 * c->n));
   PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n));

@@ -31,4 +31,4 @@ PETSC_INTERN PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], 
 #define PRESSURE_PARAMETER(j)                                                                                          \
   .at = offsetof(PressureLaw, parameter) + (j) * sizeof(PetscReal), .size = sizeof(PetscReal)
 /* Who reads it, and who varies it */
-#define PRESSURE_READ .in = RUN_LINEAR | RUN_STATIC, .unread = PRESSURE_EXACT, .varies = VARIES_LINEAR
+#define PRESSURE_READ .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS, .unread = PRESSURE_EXACT, .varies = VARIES_LINEAR

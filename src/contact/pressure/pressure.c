@@ -71,7 +71,7 @@ static PetscErrorCode PressuresVisit(const char name[], PressureOptions *read, c
                                           QUANTITY_WORD,
                                           .size   = sizeof(chosen),
                                           .words  = word,
-                                          .in     = RUN_LINEAR | RUN_STATIC,
+                                          .in     = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
                                           .unread = PRESSURE_EXACT};
   char           title[160], why[160];
 

@@ -54,10 +54,10 @@ static PetscReal TableClosing(const PressureLaw *law, PetscReal p)
 static const Quantity table_rows[] = {
   {"-pressure_table", "closing, pressure, closing, pressure, ..., both ascending, the first pressure 0", "m, Pa",
    QUANTITY_MANY, .at = offsetof(PressureLaw, point), .size = sizeof(PetscReal *),
-   .count = offsetof(PressureLaw, n_points), .room = PRESSURE_ROOM, .in = RUN_LINEAR | RUN_STATIC,
+   .count = offsetof(PressureLaw, n_points), .room = PRESSURE_ROOM, .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
    .unread = PRESSURE_EXACT},
   {"-pressure_file", "or a file with closing,pressure in each line", NULL, QUANTITY_PATH, .path = "file",
-   .at = offsetof(PressureOptions, file), .size = PETSC_MAX_PATH_LEN, .in = RUN_LINEAR | RUN_STATIC,
+   .at = offsetof(PressureOptions, file), .size = PETSC_MAX_PATH_LEN, .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
    .unread = PRESSURE_EXACT},
 };
 

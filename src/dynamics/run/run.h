@@ -36,6 +36,10 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
+/* DynamicsCheckExact - raises the error for contacts with a penalty law, which a start in the sliding state has and exact
+   contact has not. Collective. */
+PETSC_INTERN PetscErrorCode DynamicsCheckExact(Dynamics dynamics);
+
 /* DynamicsSetEndless - the caller takes the scene and the step, and integrates nothing from a beginning to an end: none
    is asked for, and the run's is 0. Not collective. */
 PETSC_INTERN PetscErrorCode DynamicsSetEndless(Dynamics dynamics);

@@ -43,10 +43,21 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
     for (PetscInt i = 0; i < scene->n_motions; i++) PetscCall(StartCheckAbsent(d, scene->motions[i].name, ramps[r]));
     for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r]));
   }
-  for (PetscInt i = 0; i < n; i++)
-    PetscCheck(interfaces[i].law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
-               "-%s_law penalty: -dynamics_start static needs -%s_law constraint, the law of the dynamics",
-               interfaces[i].name, interfaces[i].name);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DynamicsCheckExact(Dynamics d)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d->n_interfaces; i++) {
+    const ContactInterface *c = &d->interfaces[i];
+
+    PetscCheck(
+      c->law == CONTACT_CONSTRAINT, d->comm, PETSC_ERR_USER_INPUT,
+      "-%s_law penalty: -dynamics_start static needs -%s_law constraint, the law of the dynamics, or a reduced "
+      "model with -dynamics_contact penalty",
+      c->name, c->name);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -216,6 +227,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     Vec displacement;
 
     PetscCall(DynamicsCheckStatic(d));
+    PetscCall(DynamicsCheckExact(d));
     PetscCall(StartCheckGaps(d));
     PetscCall(StaticsCheckLasting(d->statics));
     PetscCall(StaticsSolve(d->statics, NULL));

@@ -18,6 +18,9 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
   PetscCall(PetscMalloc2(n, &to->gap, n, &to->friction));
   PetscCall(PetscArraycpy(to->gap, from->gap, n));
   PetscCall(PetscArraycpy(to->friction, from->friction, n));
+  if (!from->spring) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &to->spring));
+  PetscCall(PetscArraycpy(to->spring, from->spring, n));
   PetscFunctionReturn(0);
 }
 
@@ -32,6 +35,7 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscCall(PetscFree(model->Cx));
   PetscCall(PetscFree(model->Mx));
   PetscCall(PetscFree2(model->gap, model->friction));
+  PetscCall(PetscFree(model->spring));
   PetscFunctionReturn(0);
 }
 

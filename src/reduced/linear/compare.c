@@ -21,7 +21,8 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
   for (PetscInt i = 0; i < r->run.n_interfaces && !*why; i++) {
     const ContactInterface *c = &r->run.interfaces[i];
 
-    if (c->law != CONTACT_CONSTRAINT) *why = "the penalty law of the modes is not exact contact";
+    if (c->law != CONTACT_CONSTRAINT && !r->request.springs)
+      *why = "the penalty law of the modes is not exact contact; -dynamics_contact penalty has it in time too";
     if (!c->slides && FrictionExists(&c->friction)) *why = "nothing says along what the contact slides";
     if (!c->damping && FrictionVaries(&c->friction)) *why = "friction that depends on a speed which is not given";
   }

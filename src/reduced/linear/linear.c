@@ -1,7 +1,7 @@
 /*
    The reduced model about steady sliding: pairs that are closed stay so and slide along t, so that their forces are
    lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of
-   these and S = (N W E)^-1 N P, without damping lambda_n = -S eta. With it, to first order in the damping of the
+   these and S = (N W E)^-1 N P, N W E plus 1 / k_n of a law in series at its force, without damping lambda_n = -S eta. With it, to first order in the damping of the
    residual,
 
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
@@ -27,9 +27,18 @@ typedef struct {
   PetscReal          *S, *T; /* [m][n] */
 } ClosedPairs;
 
+/* 1 / k_n, m/N, at the pair's force, N, or at none */
+static PetscReal ClosedYield(const ClosedPairs *c, PetscInt i, const PetscReal lambda_n[])
+{
+  const PairSpring *spring = &c->model->spring[c->pair[i]];
+
+  return SpringTangent(spring, SpringClosing(spring, lambda_n ? lambda_n[c->pair[i]] : 0)).compliance;
+}
+
 /* A = N W E [n][n] of the closed pairs, A_ij = W_(n i, n j) - mu_j W_(n i, t j), m/N, and its LU factors; mu of
    steady sliding. */
-static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool closed[], ClosedPairs *c)
+static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                   ClosedPairs *c)
 {
   const PetscInt N = model->n_ports;
   PetscInt       n = 0;
@@ -48,6 +57,7 @@ static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool cl
 
       c->A[i + n * j] = w[0] - FrictionSteady(&model->friction[c->pair[j]]) * w[N];
     }
+  for (PetscInt i = 0; i < n && model->spring; i++) c->A[i + n * i] += ClosedYield(c, i, lambda_n);
   if (!n) PetscFunctionReturn(0);
   PetscCall(DenseFactor(n, c->A, c->pivot, &singular));
   PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
@@ -248,7 +258,7 @@ static PetscErrorCode LineariseAbout(const ReducedModel *model, const PetscBool 
   ClosedPairs    c;
 
   PetscFunctionBeginUser;
-  PetscCall(ClosedCreate(model, closed, &c));
+  PetscCall(ClosedCreate(model, closed, lambda_n, &c));
   PetscCall(PetscCalloc2(m * m, &K, m * m, &C));
   PetscCall(ClosedFill(&c, lambda_n, K, C));
   if (inertia) PetscCall(ClosedDivideByMass(&c, K, C));
@@ -317,7 +327,7 @@ PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState 
     closed[i]   = sliding->status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
     lambda_n[i] = sliding->p[3 * i];
   }
-  PetscCall(ClosedCreate(model, closed, &c));
+  PetscCall(ClosedCreate(model, closed, lambda_n, &c));
   PetscCall(ClosedFill(&c, lambda_n, K, C));
   PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, R));
   for (PetscInt k = 0; k < n; k++)

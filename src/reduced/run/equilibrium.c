@@ -4,11 +4,13 @@
 
       Omega^2 eta - P'E lambda_n = P_l' f,      N P eta + N W E lambda_n = -g0 - N W_l f,
 
-   with the set of closed pairs that has no tension and no penetration.
+   with the set of closed pairs that has no tension and no penetration. A law in series with a pair is a line, c = o + s
+   lambda_n: o adds to the gap, s to the diagonal; lines of laws that are not linear are laid anew until they are tangents.
 */
 #include "reduced/reducedimpl.h"
 
-#define EQUILIBRIUM_MAX_IT 100
+#define EQUILIBRIUM_MAX_IT  100
+#define EQUILIBRIUM_SETTLED 1e-10 /* of the largest closing */
 /* Of the highest omega^2, on modes that are rigid: a body that nothing holds along some direction would make the
    system singular. */
 #define EQUILIBRIUM_HOLD 1e-12
@@ -18,6 +20,8 @@ typedef struct {
   const ReducedModel *model;
   const PetscReal    *loads;
   PetscInt            n, *pair; /* closed ones */
+  SpringLine         *line;     /* [n_pairs] */
+  PetscReal          *at;       /* [n_pairs] closings at which they are tangents, m */
   PetscReal          *A, *x;    /* [m + n]^2, [m + n] */
   PetscBLASInt       *pivot;
 } SlidingSystem;
@@ -40,7 +44,7 @@ static void SlidingSystemFill(SlidingSystem *s)
     const PetscInt   port = 3 * s->pair[j];
     const PetscReal *P = &model->P[m * port], mu = FrictionSteady(&model->friction[s->pair[j]]);
 
-    s->x[m + j] = -model->gap[s->pair[j]];
+    s->x[m + j] = -model->gap[s->pair[j]] - s->line[s->pair[j]].closing;
     for (PetscInt l = 0; l < model->n_loads; l++) s->x[m + j] -= model->W[port + N * (first + l)] * s->loads[l];
     for (PetscInt k = 0; k < m; k++) {
       s->A[k + size * (m + j)] = -(P[k] - mu * P[m + k]);
@@ -51,6 +55,7 @@ static void SlidingSystemFill(SlidingSystem *s)
 
       s->A[m + i + size * (m + j)] = w[0] - mu * w[N];
     }
+    s->A[(size + 1) * (m + j)] += s->line[s->pair[j]].compliance;
   }
 }
 
@@ -79,7 +84,7 @@ static void SlidingSystemChoose(SlidingSystem *s, ReducedState *state, PetscBool
   s->n  = 0;
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     const PetscBool was = state->status[i] == CONTACT_SLIP;
-    const PetscBool is  = was ? state->p[3 * i] > 0 : model->gap[i] + state->y[3 * i] < 0;
+    const PetscBool is  = was ? state->p[3 * i] > 0 : model->gap[i] + s->line[i].closing + state->y[3 * i] < 0;
 
     if (is != was) *same = PETSC_FALSE;
     if (is) s->pair[s->n++] = i;
@@ -87,34 +92,80 @@ static void SlidingSystemChoose(SlidingSystem *s, ReducedState *state, PetscBool
   }
 }
 
-/* From all pairs closed, by sets: pairs in tension open, open ones that penetrate close, until none changes. Not
+/* From the closed pairs there are, by sets: pairs in tension open, open ones that penetrate close, until none changes. Not
    found: no pair is left, the system is singular, or sets repeat (EQUILIBRIUM_MAX_IT), as they may with large mu. */
-PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loads[], ReducedState *state,
-                                  PetscBool *found)
+static PetscErrorCode SlidingSystemSolve(SlidingSystem *s, ReducedState *state, PetscBool *found)
 {
-  const PetscInt most     = model->m + model->n_pairs;
-  SlidingSystem  s        = {.model = model, .loads = loads, .n = model->n_pairs};
+  const PetscInt m        = s->model->m;
   PetscBool      singular = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(model->n_pairs, &s.pair, most * most, &s.A, most, &s.x, most, &s.pivot));
-  for (PetscInt i = 0; i < model->n_pairs; i++) {
-    s.pair[i]        = i;
-    state->status[i] = CONTACT_SLIP;
-  }
   *found = PETSC_FALSE;
-  for (PetscInt it = 0; it < EQUILIBRIUM_MAX_IT && !*found && s.n && !singular; it++) {
-    SlidingSystemFill(&s);
-    PetscCall(DenseFactor(model->m + s.n, s.A, s.pivot, &singular));
+  for (PetscInt it = 0; it < EQUILIBRIUM_MAX_IT && !*found && s->n; it++) {
+    SlidingSystemFill(s);
+    PetscCall(DenseFactor(m + s->n, s->A, s->pivot, &singular));
     if (singular) break;
-    PetscCall(DenseSolve(model->m + s.n, s.A, s.pivot, PETSC_FALSE, 1, s.x));
-    SlidingSystemTake(&s, state);
-    SlidingSystemChoose(&s, state, found);
+    PetscCall(DenseSolve(m + s->n, s->A, s->pivot, PETSC_FALSE, 1, s->x));
+    SlidingSystemTake(s, state);
+    SlidingSystemChoose(s, state, found);
   }
+  PetscFunctionReturn(0);
+}
+
+/* Lines laid anew at the forces and closings found; settled where all had them already, to EQUILIBRIUM_SETTLED */
+static void SlidingSystemLay(SlidingSystem *s, const ReducedState *state, PetscBool *settled)
+{
+  const ReducedModel *model = s->model;
+  PetscReal           most = 0, miss = 0;
+
+  for (PetscInt i = 0; i < model->n_pairs && model->spring; i++) {
+    const PairSpring *law     = &model->spring[i];
+    const PetscReal   force   = PetscMax(0, state->p[3 * i]);
+    const PetscReal   closing = -model->gap[i] - state->y[3 * i];
+
+    if (!SpringIsCurved(law)) continue;
+    most       = PetscMax(most, SpringClosing(law, force) - SpringOnset(law));
+    miss       = PetscMax(miss, PetscAbsReal(PetscMax(closing, SpringOnset(law)) - SpringClosing(law, force)));
+    s->at[i]   = SpringNext(law, s->at[i], force, closing);
+    s->line[i] = SpringTangent(law, s->at[i]);
+  }
+  *settled = miss <= EQUILIBRIUM_SETTLED * most ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* All pairs closed, lines at the onsets of their laws */
+static void SlidingSystemBegin(SlidingSystem *s, ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+
+  s->n = model->n_pairs;
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    s->pair[i]       = i;
+    state->status[i] = CONTACT_SLIP;
+    s->at[i]         = model->spring ? SpringOnset(&model->spring[i]) : 0;
+    s->line[i]       = model->spring ? SpringTangent(&model->spring[i], s->at[i]) : (SpringLine){0, 0};
+  }
+}
+
+PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loads[], ReducedState *state,
+                                  PetscBool *found)
+{
+  const PetscInt n = model->n_pairs, most = model->m + n;
+  SlidingSystem  s       = {.model = model, .loads = loads};
+  PetscBool      settled = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc6(n, &s.pair, n, &s.line, n, &s.at, most * most, &s.A, most, &s.x, most, &s.pivot));
+  SlidingSystemBegin(&s, state);
+  *found = PETSC_TRUE;
+  for (PetscInt it = 0; it < EQUILIBRIUM_MAX_IT && *found && !settled; it++) {
+    PetscCall(SlidingSystemSolve(&s, state, found));
+    SlidingSystemLay(&s, state, &settled);
+  }
+  if (!settled) *found = PETSC_FALSE;
   for (PetscInt k = 0; k < model->m; k++) state->rate[k] = 0;
   PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
   PetscCall(PetscArraycpy(state->q, state->p, 3 * model->n_pairs));
   state->time = 0;
-  PetscCall(PetscFree4(s.pair, s.A, s.x, s.pivot));
+  PetscCall(PetscFree6(s.pair, s.line, s.at, s.A, s.x, s.pivot));
   PetscFunctionReturn(0);
 }

@@ -67,6 +67,7 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
   PetscCall(GatherRecords(r->comm, n_local, sizeof(*local), local, NULL, &r->reduction.pair));
   PetscCall(ReducedCheckHeld(r));
   PetscCall(PetscCalloc2(n, &r->reduction.model.gap, n, &r->reduction.model.friction));
+  if (r->request.springs) PetscCall(PetscMalloc1(n, &r->reduction.model.spring));
   PetscCall(PetscCalloc2(n, &r->motion.pairs, r->run.n_interfaces, &r->motion.sums));
   PetscCall(ReducedFindSize(r, &size));
   for (PetscInt i = 0; i < n; i++) {
@@ -80,6 +81,10 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
     r->reduction.model.gap[i]      = PetscMax(0, pair->gap);
     r->reduction.model.friction[i] = FrictionAt(&c->friction, pair->speed);
     r->motion.pairs[i].gap         = r->reduction.model.gap[i];
+    if (!r->request.springs) continue;
+    r->reduction.model.spring[i] = (PairSpring){c->pressure, pair->area};
+    if (PressureIsLinear(&c->pressure))
+      r->reduction.model.spring[i] = (PairSpring){PressureLinear(ContactPairStiffness(c, pair, &c->pressure, 0)), 1};
   }
   PetscFunctionReturn(0);
 }
@@ -127,6 +132,14 @@ static void SumsTake(ReducedRun r, PetscInt k, ContactSums *sums)
   sums->residual = PetscMax(sums->residual, r->motion.report.residual);
 }
 
+/* Of the law in series with a pair, m */
+static PetscReal PairClosing(ReducedRun r, PetscInt i)
+{
+  const PairSpring *spring = r->reduction.model.spring;
+
+  return spring ? SpringClosing(&spring[i], r->motion.pairs[i].lambda_n) : 0;
+}
+
 /* Residuals of the laws at t_{n+1}; the worst of the run is kept. On each rank alone, since all have all pairs. */
 static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
 {
@@ -142,7 +155,8 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
     const PetscReal  mu   = FrictionMu(&r->reduction.model.friction[i], hypot(slip[0], slip[1]) / dt);
 
     judged[i] = (ContactJudged){
-      &r->motion.pairs[i], mu, 0, r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area), PETSC_FALSE};
+      &r->motion.pairs[i], mu, PairClosing(r, i), r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),
+      PETSC_FALSE};
     for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(r->motion.state.y[3 * i + d]));
   }
   PetscCall(ContactJudge(PETSC_COMM_SELF, n, judged, displacement, &now));

@@ -195,6 +195,7 @@ static PetscErrorCode StartLaws(ReducedRun r)
   }
   PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
   PetscCall(ContactComplianceSetFriction(laws, model->friction, r->motion.dt));
+  if (model->spring) PetscCall(ContactComplianceSetSprings(laws, model->spring));
   PetscCall(ContactComplianceSolve(laws, q, slip0, r->motion.state.p, NULL, &solved));
   PetscCheck(solved.converged, r->comm, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at the start: residual %.2e of pair %" PetscInt_FMT,

@@ -234,6 +234,7 @@ static PetscErrorCode StepperSetLaws(ReducedStepper s)
     "the compliance of the contact pairs is not positive semidefinite: rounding of a -dynamics_cutoff that leaves too "
     "little above it; take a lower one");
   PetscCall(ContactComplianceSetFriction(s->laws, model->friction, s->dt));
+  if (model->spring) PetscCall(ContactComplianceSetSprings(s->laws, model->spring));
   PetscCall(ContactComplianceSetTolerance(s->laws, s->rtol));
   PetscFunctionReturn(0);
 }

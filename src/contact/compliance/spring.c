@@ -1,0 +1,191 @@
+/*
+   Pairs whose normal law is a spring in series (pressurelaw.h): the surfaces come together by the closing C(lambda_n),
+
+      0 <= lambda_n,  0 <= r_n + C(lambda_n),  lambda_n (r_n + C) = 0.
+
+   A line C ~ o + s lambda_n has s on the diagonal of W, and o in the displacement without forces. A linear law is one
+   line. Another law is a line through its own point at the forces of the iterate before, whose s stays from step to step
+   as long as that converges fast, by SPRING_FAST each time; where not, all lines become tangents: Newton's method.
+*/
+#include "complianceimpl.h"
+
+#define SPRING_SETTLED 1e-13 /* of the largest force, or of the largest closing beyond the onset */
+#define SPRING_ROUNDED 1e-9  /* no better after one more iteration: what rounding of r leaves */
+#define SPRING_FAST    0.3
+#define SPRING_MAX_IT  100
+
+/* W with the compliances of the lines on its diagonal; scales, and nothing of what was factored before */
+static PetscErrorCode SpringsSetDiagonal(ContactCompliance c)
+{
+  const PetscInt N = 3 * c->n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscInt i = 3 * p * (N + 1);
+
+    c->springs.W[i] = c->springs.diagonal[p] + c->springs.line[p].compliance;
+  }
+  PetscCall(ComplianceDualDestroy(c));
+  ComplianceSetScales(c);
+  c->chord.exists = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Tangents at the closings springs.at */
+static PetscErrorCode SpringsLay(ContactCompliance c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) c->springs.line[p] = SpringTangent(&c->springs.law[p], c->springs.at[p]);
+  PetscCall(SpringsSetDiagonal(c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSetSprings(ContactCompliance c, const PairSpring law[])
+{
+  const PetscInt N = 3 * c->n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc5(N * N, &c->springs.W, c->n, &c->springs.law, c->n, &c->springs.line, c->n, &c->springs.at,
+                         c->n, &c->springs.diagonal));
+  PetscCall(PetscArraycpy(c->springs.W, c->W, N * N));
+  PetscCall(PetscArraycpy(c->springs.law, law, c->n));
+  c->W = c->springs.W;
+  for (PetscInt p = 0; p < c->n; p++) {
+    c->springs.diagonal[p] = c->W[3 * p * (N + 1)];
+    c->springs.at[p]       = SpringOnset(&law[p]);
+    if (SpringIsCurved(&law[p])) c->springs.curved = PETSC_TRUE;
+  }
+  PetscCall(PetscMalloc1(N, &c->springs.q));
+  PetscCall(SpringsLay(c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceDestroySprings(ContactCompliance c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(c->springs.W, c->springs.law, c->springs.line, c->springs.at, c->springs.diagonal));
+  PetscCall(PetscFree(c->springs.q));
+  PetscFunctionReturn(0);
+}
+
+PetscReal ComplianceLineClosing(const ContactCompliance c, PetscInt p)
+{
+  const SpringLine *line = &c->springs.line[p];
+
+  return c->springs.law ? line->closing + line->compliance * c->kappa[p] * c->l[3 * p] : 0;
+}
+
+/* How far a pair is off its law: as a force or as a closing, whichever is less, of the largest. v_n = r_n + o */
+static PetscReal SpringMiss(const ContactCompliance c, PetscInt p, const PetscReal size[2])
+{
+  const PairSpring *law     = &c->springs.law[p];
+  const PetscReal   now     = c->kappa[p] * c->l[3 * p];
+  const PetscReal   at      = now > 0 ? ComplianceLineClosing(c, p) : c->springs.line[p].closing - c->v[3 * p];
+  const PetscReal   force   = PetscAbsReal(now - SpringForce(law, at));
+  const PetscReal   closing = PetscAbsReal(PetscMax(at, SpringOnset(law)) - SpringClosing(law, now));
+
+  return force == 0 || closing == 0 ? 0 : PetscMin(force / size[0], closing / size[1]);
+}
+
+static PetscReal SpringsMeasure(const ContactCompliance c)
+{
+  PetscReal size[2] = {0, 0}, miss = 0;
+
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal now = c->kappa[p] * c->l[3 * p];
+
+    size[0] = PetscMax(size[0], now);
+    size[1] = PetscMax(size[1], SpringClosing(&c->springs.law[p], now) - SpringOnset(&c->springs.law[p]));
+  }
+  for (PetscInt p = 0; p < c->n; p++) miss = PetscMax(miss, SpringMiss(c, p, size));
+  return miss;
+}
+
+/* The line through the law at a force, as steep as before */
+static void SpringShift(const PairSpring *law, PetscReal force, SpringLine *line)
+{
+  line->closing = SpringClosing(law, force) - line->compliance * force;
+}
+
+/* Lines through the laws at the present forces, as steep as before; or tangents, at the points that Newton's method
+   takes */
+static PetscErrorCode SpringsMove(ContactCompliance c, PetscBool tangents)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PairSpring *law   = &c->springs.law[p];
+    SpringLine       *line  = &c->springs.line[p];
+    const PetscReal   force = PetscMax(0, c->kappa[p] * c->l[3 * p]);
+    const PetscReal   at    = force > 0 ? ComplianceLineClosing(c, p) : line->closing - c->v[3 * p];
+
+    if (tangents)
+      c->springs.at[p] = SpringNext(law, c->springs.at[p], force, at);
+    else
+      SpringShift(law, force, line);
+  }
+  if (tangents) PetscCall(SpringsLay(c));
+  PetscFunctionReturn(0);
+}
+
+/* Lines through the guess of the forces, at first tangents there: so that a step is told by its state alone */
+static PetscErrorCode SpringsBegin(ContactCompliance c, const PetscReal lambda[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal force = PetscMax(0, lambda[3 * p]);
+
+    if (c->springs.laid)
+      SpringShift(&c->springs.law[p], force, &c->springs.line[p]);
+    else
+      c->springs.at[p] = SpringClosing(&c->springs.law[p], force);
+  }
+  if (!c->springs.laid) PetscCall(SpringsLay(c));
+  c->springs.laid = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                      PetscReal lambda[])
+{
+  PetscReal before = PETSC_MAX_REAL, miss = PETSC_MAX_REAL;
+  PetscInt  iterations = 0;
+
+  PetscFunctionBeginUser;
+  if (c->springs.curved) PetscCall(SpringsBegin(c, lambda));
+  for (PetscInt it = 0; it < SPRING_MAX_IT; it++) {
+    for (PetscInt i = 0; i < 3 * c->n; i++) c->springs.q[i] = q[i] + (i % 3 ? 0 : c->springs.line[i / 3].closing);
+    PetscCall(ComplianceSolveLines(c, c->springs.q, slip0, lambda));
+    iterations += c->report.iterations;
+    if (!c->springs.curved || !c->report.converged) break;
+    miss = SpringsMeasure(c);
+    if (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2)) break;
+    PetscCall(SpringsMove(c, miss > SPRING_FAST * before ? PETSC_TRUE : PETSC_FALSE));
+    before = miss;
+  }
+  c->report.iterations = iterations;
+  if (c->springs.curved && miss > SPRING_ROUNDED) c->report.converged = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+void ComplianceSetTangents(ContactCompliance c, PetscBool tangents)
+{
+  const PetscInt N = 3 * c->n;
+
+  for (PetscInt p = 0; p < c->n && c->springs.curved; p++) {
+    const PairSpring *law   = &c->springs.law[p];
+    const PetscReal   force = PetscMax(0, c->kappa[p] * c->l[3 * p]);
+    const SpringLine  line  = tangents ? SpringTangent(law, SpringClosing(law, force)) : c->springs.line[p];
+
+    c->springs.W[3 * p * (N + 1)] = c->springs.diagonal[p] + line.compliance;
+  }
+}
+
+PetscErrorCode ComplianceLayAt(ContactCompliance c, const PetscReal at[])
+{
+  PetscFunctionBeginUser;
+  if (!c->springs.curved) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(c->springs.at, at, c->n));
+  c->springs.laid = PETSC_TRUE;
+  PetscCall(SpringsLay(c));
+  PetscFunctionReturn(0);
+}

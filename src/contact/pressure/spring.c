@@ -1,0 +1,49 @@
+/*
+   The normal law of one pair (pressurelaw.h): lambda_n = A P(c), N, over the closing c, m, and lines through it,
+
+      c = o + s lambda_n,   the tangent at the closing c_0:   s = 1 / (A P'(c_0)),   o = c_0 - s A P(c_0).
+
+   P' may vanish at the onset: the line there is rigid, s = 0. One whose force is too small to tell s stays finite.
+*/
+#include <squeal/contact.h>
+
+PetscBool SpringIsCurved(const PairSpring *spring)
+{
+  return PressureIsLinear(&spring->law) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+PetscReal SpringOnset(const PairSpring *spring)
+{
+  return PressureOnset(&spring->law);
+}
+
+PetscReal SpringClosing(const PairSpring *spring, PetscReal force)
+{
+  return PressureClosing(&spring->law, force / spring->area);
+}
+
+PetscReal SpringForce(const PairSpring *spring, PetscReal closing)
+{
+  return spring->area * PressureAt(&spring->law, closing);
+}
+
+SpringLine SpringTangent(const PairSpring *spring, PetscReal closing)
+{
+  const PetscReal onset = SpringOnset(spring), slope = spring->area * PressureSlope(&spring->law, closing);
+  SpringLine      line = {onset, 0};
+
+  if (!SpringIsCurved(spring)) return (SpringLine){0, 1 / (spring->area * PressureSlope(&spring->law, 0))};
+  if (closing <= onset || slope <= 0) return line;
+  line.compliance = 1 / slope;
+  line.closing    = closing - line.compliance * SpringForce(spring, closing);
+  return line;
+}
+
+PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing)
+{
+  const PetscReal onset = SpringOnset(spring), pressing = SpringClosing(spring, force);
+
+  if (force <= 0) return PetscMax(closing, onset);
+  if (at <= onset) return pressing;
+  return PetscAbsReal(closing - at) < PetscAbsReal(pressing - at) ? PetscMax(closing, onset) : pressing;
+}
