@@ -311,6 +311,9 @@ PetscErrorCode ContactGrow(Contact contact, PetscInt rows, PetscBool closed[]);
 PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
                                PetscReal lambda_n);
 
+/*@ ContactPairSpring - the law of that pair as a force over the closing. Not collective. @*/
+PairSpring ContactPairSpring(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law);
+
 /*@ ContactPairClosing - the closing of that pair, m: 0 for exact contact, the law's onset where it carries nothing. Not
     collective. @*/
 PetscReal ContactPairClosing(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,

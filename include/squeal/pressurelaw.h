@@ -70,10 +70,10 @@ PetscErrorCode PressureAddChecksum(const PressureLaw *law, Checksum checksum);
 /*@ PressureDestroy - frees what a law owns. Not collective. @*/
 PetscErrorCode PressureDestroy(PressureLaw *law);
 
-/* The normal law of a pair, lambda_n = A P(c): a linear law has A = 1 and its k in N/m */
+/* The normal law of a pair, lambda_n = A P(c); a stiffness k per pair, N/m, is p = k c on A = 1 */
 typedef struct {
   PressureLaw law;
-  PetscReal   area; /* m^2 */
+  PetscReal   area; /* m^2, or 1 */
 } PairSpring;
 
 /* c = closing + compliance lambda_n */

@@ -391,6 +391,11 @@ PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactP
   return PressureSlope(law, ContactPairClosing(interface, pair, law, lambda_n)) * PairArea(interface, pair);
 }
 
+PairSpring ContactPairSpring(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law)
+{
+  return (PairSpring){*law, PairArea(interface, pair)};
+}
+
 PetscReal ContactPairClosing(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
                              PetscReal lambda_n)
 {

@@ -60,7 +60,8 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
   const PetscInt     n = r->reduction.model.n_pairs;
   const ContactPair *local;
   PetscInt           n_local, n_all;
-  PetscReal          size;
+  PetscReal          size, mu;
+  PressureLaw        law;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n_all, &local));
@@ -82,9 +83,8 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
     r->reduction.model.friction[i] = FrictionAt(&c->friction, pair->speed);
     r->motion.pairs[i].gap         = r->reduction.model.gap[i];
     if (!r->request.springs) continue;
-    r->reduction.model.spring[i] = (PairSpring){c->pressure, pair->area};
-    if (PressureIsLinear(&c->pressure))
-      r->reduction.model.spring[i] = (PairSpring){PressureLinear(ContactPairStiffness(c, pair, &c->pressure, 0)), 1};
+    PetscCall(OperatorsGetInterface(r->run.operators, r->request.p, pair->interface, &mu, &law));
+    r->reduction.model.spring[i] = ContactPairSpring(c, pair, &law);
   }
   PetscFunctionReturn(0);
 }
