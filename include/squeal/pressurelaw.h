@@ -34,6 +34,9 @@ PetscReal PressureSlope(const PressureLaw *law, PetscReal c);
 /*@ PressureClosing - the closing (m) at a pressure (Pa); the onset for none. Not collective. @*/
 PetscReal PressureClosing(const PressureLaw *law, PetscReal p);
 
+/*@ PressureEnergy - the energy that a closing (m) stores, int P dc, J/m^2. Not collective. @*/
+PetscReal PressureEnergy(const PressureLaw *law, PetscReal c);
+
 /*@ PressureGetParameters - number of parameters and their rows, -pressure_c0, of laws of this kind (borrowed). Not
     collective. @*/
 PetscInt PressureGetParameters(const PressureLaw *law, const Quantity **rows);
@@ -82,11 +85,12 @@ typedef struct {
 } SpringLine;
 
 /*@ SpringIsCurved, SpringOnset, SpringClosing, SpringForce - whether the law of a pair is not linear; the closing (m) at
-    which it begins, that at a force (N), the force at a closing. Not collective. @*/
+    which it begins, that at a force (N), the force at a closing. SpringEnergy - stored at a force, J. Not collective. @*/
 PetscBool SpringIsCurved(const PairSpring *spring);
 PetscReal SpringOnset(const PairSpring *spring);
 PetscReal SpringClosing(const PairSpring *spring, PetscReal force);
 PetscReal SpringForce(const PairSpring *spring, PetscReal closing);
+PetscReal SpringEnergy(const PairSpring *spring, PetscReal force);
 
 /*@ SpringTangent - the tangent of the law at a closing, rigid at the onset; a linear law itself. Not collective. @*/
 SpringLine SpringTangent(const PairSpring *spring, PetscReal closing);

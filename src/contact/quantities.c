@@ -29,7 +29,7 @@ static const char *ContactIdleSlip(const void *contact, const QuantityRun *run)
                                                                                 : NULL;
 }
 
-#define CONTACT_EXACT  ", whose contact is exact: no penalty, no linearisation"
+#define CONTACT_EXACT  ", whose contact is exact; a reduced model has the law with -dynamics_contact penalty"
 #define CONTACT_STEADY "not used by -analysis static: the loads tell the forces, and nothing moves"
 
 static const char *ContactIdleLaw(const void *contact, const QuantityRun *run)

@@ -10,14 +10,19 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
-    PetscReal way;
-    PetscBool turning;
+    const ContactInterface *c = &r->run.interfaces[i];
+    PetscReal               way;
+    PetscBool               turning;
 
     PetscCall(ContactProjectorGetWay(r->run.projector, i, (const PetscReal[]){0, 1}, &way, &turning));
     PetscCheck(!turning, r->comm, PETSC_ERR_SUP,
                "-%s_kinematics turning: a reduced model keeps the pairs of the mesh, and no body can turn under the "
                "other; take prescribed sliding, or -dynamics_model full",
-               r->run.interfaces[i].name);
+               c->name);
+    PetscCheck(
+      !r->request.springs || !c->identify, r->comm, PETSC_ERR_USER_INPUT,
+      "-%s_kn identify: -dynamics_contact penalty needs a number, N/m; -analysis modes prints the one that it finds",
+      c->name);
   }
   PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP,
              "motion %s: a reduced model knows no prescribed motions; -dynamics_model full does",

@@ -95,7 +95,7 @@ static PetscErrorCode SceneCreate(const Nodes *nodes, External *external)
 }
 
 /* f = -K u of the springs; strain = 1/2 u_next' K u */
-static PetscReal SpringForce(const Nodes *nodes, const PetscReal u[], const PetscReal u_next[], PetscReal f[])
+static PetscReal SpringsPull(const Nodes *nodes, const PetscReal u[], const PetscReal u_next[], PetscReal f[])
 {
   PetscReal x[2][3], y[2][3], pull[3], strain = 0;
 
@@ -135,7 +135,7 @@ static PetscErrorCode Step(const Nodes *nodes, External external, PetscInt n, St
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(before, s->v, N));
-  (void)SpringForce(nodes, s->u, s->u, s->f);
+  (void)SpringsPull(nodes, s->u, s->u, s->f);
   PetscCall(ExternalAdvance(external, &(ExternalStep){t, DT, s->u, s->v, s->f}, &power));
   if (n > 1) s->external += DT / 2 * power.old;
   if (n > 1) {
@@ -153,7 +153,7 @@ static PetscErrorCode Step(const Nodes *nodes, External external, PetscInt n, St
   if (n > 0) s->contact += DT / 2 * (Dot(contact, before) + Dot(contact, s->v));
   s->kinetic = 0;
   for (int i = 0; i < N; i++) s->kinetic += 0.5 * nodes->mass[i] * s->v[i] * s->v[i];
-  s->strain = SpringForce(nodes, s->u, next, s->f);
+  s->strain = SpringsPull(nodes, s->u, next, s->f);
   if (n == 0) s->start = s->kinetic + s->strain;
   PetscCall(PetscArraycpy(s->u, next, N));
   PetscFunctionReturn(0);

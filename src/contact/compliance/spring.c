@@ -5,7 +5,8 @@
 
    A line C ~ o + s lambda_n has s on the diagonal of W, and o in the displacement without forces. A linear law is one
    line. Another law is a line through its own point at the forces of the iterate before, whose s stays from step to step
-   as long as that converges fast, by SPRING_FAST each time; where not, all lines become tangents: Newton's method.
+   as long as that converges fast, by SPRING_FAST each time; where not, lines are tangents from then on in this step:
+   Newton's method.
 */
 #include "complianceimpl.h"
 
@@ -149,6 +150,7 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
 {
   PetscReal before = PETSC_MAX_REAL, miss = PETSC_MAX_REAL;
   PetscInt  iterations = 0;
+  PetscBool tangents   = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (c->springs.curved) PetscCall(SpringsBegin(c, lambda));
@@ -159,7 +161,8 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
     if (!c->springs.curved || !c->report.converged) break;
     miss = SpringsMeasure(c);
     if (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2)) break;
-    PetscCall(SpringsMove(c, miss > SPRING_FAST * before ? PETSC_TRUE : PETSC_FALSE));
+    if (miss > SPRING_FAST * before) tangents = PETSC_TRUE;
+    PetscCall(SpringsMove(c, tangents));
     before = miss;
   }
   c->report.iterations = iterations;

@@ -5,7 +5,7 @@
       P(c)  = p0 / (e - 1) x (e^x - 1),                    c > -c0,
       P'(c) = p0 / (c0 (e - 1)) (e^x - 1 + x e^x).
 
-   Its inverse solves x (e^x - 1) = y, y = (e - 1) p / p0, as F(x) = log x + log(e^x - 1) - log y = 0: F is concave and
+   and the energy p0 c0 / (e - 1) (x e^x - e^x + 1 - x^2 / 2). Its inverse solves x (e^x - 1) = y, y = (e - 1) p / p0, as F(x) = log x + log(e^x - 1) - log y = 0: F is concave and
    rises, so that Newton's method climbs without a step too long from the lower bound log(1 + sqrt y).
    Source: Abaqus Analysis User's Guide, "Contact pressure-overclosure relationships", softened contact.
 */
@@ -49,6 +49,13 @@ static PetscReal ExponentialClosing(const PressureLaw *law, PetscReal p)
   return law->parameter[EXPONENTIAL_C0] * (x - 1);
 }
 
+static PetscReal ExponentialEnergy(const PressureLaw *law, PetscReal c)
+{
+  const PetscReal c0 = law->parameter[EXPONENTIAL_C0], x = c / c0 + 1;
+
+  return law->parameter[EXPONENTIAL_P0] * c0 / expm1(1.) * (x * exp(x) - expm1(x) - 0.5 * x * x);
+}
+
 static const Quantity exponential_rows[] = {
   {"-pressure_c0", "clearance at which the pressure begins", "m", QUANTITY_REAL, PRESSURE_PARAMETER(EXPONENTIAL_C0),
    QUANTITY_OR_NONE, PRESSURE_READ},
@@ -63,4 +70,5 @@ static const PressureKind exponential_pressure = {.name     = "exponential",
                                                   .onset    = ExponentialOnset,
                                                   .pressure = ExponentialPressure,
                                                   .slope    = ExponentialSlope,
-                                                  .closing  = ExponentialClosing};
+                                                  .closing  = ExponentialClosing,
+                                                  .energy   = ExponentialEnergy};

@@ -13,6 +13,7 @@ typedef struct {
   PetscReal (*pressure)(const PressureLaw *law, PetscReal c);
   PetscReal (*slope)(const PressureLaw *law, PetscReal c); /* also at the onset */
   PetscReal (*closing)(const PressureLaw *law, PetscReal p);
+  PetscReal (*energy)(const PressureLaw *law, PetscReal c); /* int P dc from the onset on, J/m^2 */
 } PressureKind;
 
 /* What options say: a law, and the file of its points */
@@ -25,7 +26,7 @@ typedef struct {
 PETSC_INTERN PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], const char file[], PressureLaw *law);
 
 #define PRESSURE_ROOM  2000 /* numbers of a table, at most */
-#define PRESSURE_EXACT ", whose contact is exact: no penalty, no linearisation"
+#define PRESSURE_EXACT ", whose contact is exact; a reduced model has the law with -dynamics_contact penalty"
 
 /* Where parameter j lies */
 #define PRESSURE_PARAMETER(j)                                                                                          \

@@ -25,10 +25,16 @@ static PetscReal LinearClosing(const PressureLaw *law, PetscReal p)
   return p / law->parameter[0];
 }
 
+static PetscReal LinearEnergy(const PressureLaw *law, PetscReal c)
+{
+  return 0.5 * law->parameter[0] * c * c;
+}
+
 static const PressureKind linear_pressure = {.name     = "linear",
                                              .n        = 0,
                                              .n_rows   = 0,
                                              .onset    = LinearOnset,
                                              .pressure = LinearPressure,
                                              .slope    = LinearSlope,
-                                             .closing  = LinearClosing};
+                                             .closing  = LinearClosing,
+                                             .energy   = LinearEnergy};

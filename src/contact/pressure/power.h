@@ -34,6 +34,13 @@ static PetscReal PowerClosing(const PressureLaw *law, PetscReal p)
   return pow(p / law->parameter[POWER_K], 1 / law->parameter[POWER_M]);
 }
 
+static PetscReal PowerEnergy(const PressureLaw *law, PetscReal c)
+{
+  const PetscReal m = law->parameter[POWER_M];
+
+  return law->parameter[POWER_K] * PetscPowReal(c, m + 1) / (m + 1);
+}
+
 static const Quantity power_rows[] = {
   {"-pressure_k", "pressure at a closing of 1 m", "Pa/m^m", QUANTITY_REAL, PRESSURE_PARAMETER(POWER_K),
    QUANTITY_OR_NONE, PRESSURE_READ},
@@ -48,4 +55,5 @@ static const PressureKind power_pressure = {.name     = "power",
                                             .onset    = PowerOnset,
                                             .pressure = PowerPressure,
                                             .slope    = PowerSlope,
-                                            .closing  = PowerClosing};
+                                            .closing  = PowerClosing,
+                                            .energy   = PowerEnergy};

@@ -48,6 +48,11 @@ PetscReal PressureClosing(const PressureLaw *law, PetscReal p)
   return p > 0 ? PressureKindOf(law)->closing(law, p) : PressureOnset(law);
 }
 
+PetscReal PressureEnergy(const PressureLaw *law, PetscReal c)
+{
+  return c > PressureOnset(law) && !PetscIsInfReal(c) ? PressureKindOf(law)->energy(law, c) : 0;
+}
+
 PetscInt PressureGetParameters(const PressureLaw *law, const Quantity **rows)
 {
   *rows = PressureKindOf(law)->row;

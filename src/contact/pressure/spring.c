@@ -27,6 +27,11 @@ PetscReal SpringForce(const PairSpring *spring, PetscReal closing)
   return spring->area * PressureAt(&spring->law, closing);
 }
 
+PetscReal SpringEnergy(const PairSpring *spring, PetscReal force)
+{
+  return force > 0 ? spring->area * PressureEnergy(&spring->law, SpringClosing(spring, force)) : 0;
+}
+
 SpringLine SpringTangent(const PairSpring *spring, PetscReal closing)
 {
   const PetscReal onset = SpringOnset(spring), slope = spring->area * PressureSlope(&spring->law, closing);

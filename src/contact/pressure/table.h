@@ -51,6 +51,15 @@ static PetscReal TableClosing(const PressureLaw *law, PetscReal p)
   return at[0] + (at[2] - at[0]) * ((p - at[1]) / (at[3] - at[1]));
 }
 
+static PetscReal TableEnergy(const PressureLaw *law, PetscReal c)
+{
+  const PetscReal *at     = TableFind(law, 0, c);
+  PetscReal        energy = 0;
+
+  for (const PetscReal *i = law->point; i < at; i += 2) energy += 0.5 * (i[1] + i[3]) * (i[2] - i[0]);
+  return energy + 0.5 * (at[1] + TablePressure(law, c)) * (c - at[0]);
+}
+
 static const Quantity table_rows[] = {
   {"-pressure_table", "closing, pressure, closing, pressure, ..., both ascending, the first pressure 0", "m, Pa",
    QUANTITY_MANY, .at = offsetof(PressureLaw, point), .size = sizeof(PetscReal *),
@@ -67,4 +76,5 @@ static const PressureKind table_pressure = {.name     = "table",
                                             .onset    = TableOnset,
                                             .pressure = TablePressure,
                                             .slope    = TableSlope,
-                                            .closing  = TableClosing};
+                                            .closing  = TableClosing,
+                                            .energy   = TableEnergy};

@@ -55,7 +55,7 @@ static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[],
   return sum;
 }
 
-/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, J: the blocks of W of pairs, of others,
+/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, and that of laws in series, J: the blocks of W of pairs, of others,
    and, once, between both. */
 void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
 {
@@ -67,6 +67,8 @@ void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *
     *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
   }
   *strain += 0.5 * SymmetricForm(n, model->n_ports, model->W, s->q);
+  for (PetscInt i = 0; i < model->n_pairs && model->spring; i++)
+    *strain += SpringEnergy(&model->spring[i], s->p[3 * i]);
   *strain += 0.5 * SymmetricForm(n_others, model->n_ports, &model->W[(model->n_ports + 1) * n], &s->p[n]);
   for (PetscInt j = n; j < model->n_ports; j++)
     for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
@@ -239,6 +241,14 @@ static PetscReal FrictionHeat(const PetscReal p[2], const PetscReal last[2], con
   return size > 0 ? -0.5 * (1 + hypot(last[0], last[1]) / size) * (p[0] * s[0] + p[1] * s[1]) : 0;
 }
 
+/* What the law in series with a pair has taken up in a step, J: contact gives the bodies what is not from there */
+static PetscReal StepperStored(const ReducedModel *model, PetscInt i, const ReducedState *state)
+{
+  const PairSpring *spring = model->spring;
+
+  return spring ? SpringEnergy(&spring[i], state->p[3 * i]) - SpringEnergy(&spring[i], state->last[3 * i]) : 0;
+}
+
 /* Works of the pairs with the mean forces, J, and their slip; y becomes that at t_{n+1} */
 static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport *report)
 {
@@ -253,7 +263,7 @@ static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport 
       state->y[3 * i + d] = y;
     }
     for (int d = 0; d < 2; d++) report->slip[2 * i + d] = slip[d];
-    report->contact[i]  = mean[0] * dy[0];
+    report->contact[i]  = mean[0] * dy[0] + StepperStored(s->model, i, state);
     report->friction[i] = mean[1] * dy[1] + mean[2] * dy[2];
     if (!report->works) continue;
     report->heat[i] = FrictionHeat(&state->p[3 * i + 1], &state->last[3 * i + 1], slip);
