@@ -202,7 +202,8 @@ PetscErrorCode ReducedVisit(ReducedRun r, const QuantityVisitor *visitor);
 /*@ ReducedIsAsked - whether the options ask for it. Not collective. @*/
 PetscErrorCode ReducedIsAsked(ReducedRun reduced, PetscBool *asked);
 
-/*@ ReducedHasSprings - whether penalty and pressure laws of the contacts are in series with the pairs. Not collective. @*/
+/*@ ReducedHasSprings - whether penalty and pressure laws of the contacts are in series with the pairs. Not
+    collective. @*/
 PetscErrorCode ReducedHasSprings(ReducedRun reduced, PetscBool *springs);
 
 /*@ ReducedIsCompared - whether a transient compares its eigenvalues with those of the mesh where there is a
