@@ -85,6 +85,11 @@ static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatri
   const PetscReal    s       = si->shift;
 
   PetscFunctionBeginUser;
+  if (si->signs) { /* the caller's own, at shift 0: no copy */
+    PetscCall(PetscObjectReference((PetscObject)K));
+    *A = K;
+    PetscFunctionReturn(0);
+  }
   if (in_place) {
     PetscCall(KSPGetOperators(si->ksp, A, NULL));
     PetscCall(PetscObjectReference((PetscObject)*A));

@@ -41,7 +41,8 @@ typedef struct ShiftInvert {
   Mat       product;
   PetscBool even;   /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves; /* its upper half will do, on one rank */
-  /* by MUMPS whatever solver the user has, with null pivots found and the sign of the determinant, LU */
+  /* K itself is factored, by MUMPS whatever solver the user has, with null pivots found and the sign of the
+     determinant, LU */
   PetscBool signs;
   double    solves; /* right-hand sides that are expected; 0: not known */
   /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */

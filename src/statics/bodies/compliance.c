@@ -203,6 +203,7 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
   PetscCall(MatDestroy(&pencil.K));
   PetscCall(MatDestroy(&pencil.M));
+  PetscCall(MatDestroy(&c->inverse.term[0])); /* which is factored once, from a copy */
   PetscCall(MatCreateVecs(K, &c->u, &c->b));
   PetscCall(MatCreateVecs(rows->G, NULL, &c->row));
   PetscCall(StatusFactorCreate(c, &c->status));

@@ -194,7 +194,7 @@ static PetscErrorCode StatusFactorForm(StatusFactor f)
 PetscErrorCode StatusFactorSet(StatusFactor f, const SmallSystem *s, PetscBool *singular)
 {
   const PairRows *rows   = f->compliance->rows;
-  PencilMatrices  pencil = {.symmetric = f->symmetric, .M = f->compliance->inverse.term[2]};
+  PencilMatrices  pencil = {.symmetric = f->symmetric};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
