@@ -16,6 +16,7 @@ typedef struct {
   PetscReal beyond;                     /* that along the surface, of a node beyond the border of the master, m */
   PetscBool slides;                     /* the slip has a part in the tangent plane */
   PetscInt  node;                       /* local */
+  PetscInt  place;                      /* of mortar: in the split surface of the slave (mortar/split.c) */
   PetscReal normal[3];                  /* of the slave there, times area, m^2 */
 } ContactPairFoot;
 
@@ -61,6 +62,12 @@ PETSC_INTERN PetscErrorCode ContactCoverAreas(Contact contact, PetscInt interfac
    it; e[2] is the face's normal at its middle, the origin */
 PETSC_INTERN PetscBool ContactFacetFaces(const ContactFacet *facet, const double e[3][3], const double origin[3],
                                          PetscReal size, PetscReal tolerance);
+/* pairfoot.c - weights, directions and gap of a pair at a foot */
+PETSC_INTERN void ContactPairTakeFoot(const ContactInterface *c, const ContactSurface *surface, const ContactFoot *foot,
+                                      ContactPair *pair, ContactPairFoot *at);
+/* mortar/split.c - a pair for each side of the slave nodes at folds, from the first on; normals of the master at its
+   folds. Collective. */
+PETSC_INTERN PetscErrorCode ContactMortarSplit(Contact contact, PetscInt interface, PetscInt first);
 /* mortar/mortar.c - sides, areas over the master (0 for none) and gaps of the pairs from the first on, which are those
    of all slave nodes of the interface and have their feet. Collective. */
 PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first);

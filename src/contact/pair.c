@@ -13,32 +13,6 @@
   "contact %s: the nodes of %s that touch %s lie on its border, and none of their faces lies over it; give two of "    \
   "-%s_surfaces that lie over each other"
 
-/* Weights, directions, speed (m/s) and gap (m). Along a rotation the speed is |w x (x - c)| in the tangent plane, which
-   differs from pair to pair; a direction that is given has the speed of the options everywhere. across = |sum_i w_i
-   a_i| (m^2, or without unit on facets of second order) is the divisor of the tilt (surface/tilt.c). A gap below 1e-9
-   of the facet's size is rounding of the coordinates, and 0. */
-static void PairSetFoot(const ContactInterface *c, const ContactFacet *facet, const ContactFoot *foot,
-                        ContactPair *pair, ContactPairFoot *at)
-{
-  PetscReal along[3], e[3][3], a[3] = {0, 0, 0}, speed;
-
-  ContactSlideAlong(c, pair->x, along);
-  at->facet = foot->facet;
-  speed     = ContactBasis(facet, foot->natural, along, at->weight, e);
-  for (int i = 0; i < facet->n; i++)
-    for (int d = 0; d < 3 && at->weight[i] != 0; d++) a[d] += at->weight[i] * facet->across[i][d];
-  for (int d = 0; d < 3; d++) {
-    pair->n[d] = e[0][d];
-    pair->t[d] = e[1][d];
-    pair->b[d] = e[2][d];
-  }
-  pair->speed = Vec3Dot(c->rotation, c->rotation) > 0 ? speed : speed > 0 ? c->speed : 0;
-  at->slides  = speed > 0 ? PETSC_TRUE : PETSC_FALSE;
-  at->across  = Vec3Length(a);
-  pair->gap   = ContactGap(facet, at->weight, e[0], pair->x);
-  if (PetscAbsReal(pair->gap) < 1e-9 * facet->size) pair->gap = 0;
-}
-
 /* What fails, over all ranks: the largest distance of a pair along the normal (m) and where; of the slaves beyond the
    border of the master the farthest, and the nearest (its distance along the surface and in all, and where); whether a
    slip vanished; area over the master of faces without any pair (m^2, complete on every rank); slaves that are nodes of
@@ -73,18 +47,6 @@ static void PairOff(const ContactPairFoot *foot, const PetscReal x[3], PairFailu
   failure->nearest[0] = foot->beyond;
   failure->nearest[1] = foot->distance;
   for (int d = 0; d < 3; d++) failure->nearest_x[d] = x[d];
-}
-
-/* The foot of the slave node of a pair */
-static void FootPair(const ContactInterface *c, const ContactSurface *surface, ContactPair *pair, ContactPairFoot *at)
-{
-  ContactFoot foot;
-
-  ContactFootFind(surface, pair->x, &foot);
-  at->facet    = foot.facet;
-  at->distance = foot.distance;
-  at->beyond   = foot.across;
-  if (foot.facet >= 0) PairSetFoot(c, &surface->facet[foot.facet], &foot, pair, at);
 }
 
 /* Keeps what fails of a pair */
@@ -141,12 +103,14 @@ static PetscErrorCode FootPairs(Contact contact, PetscInt interface, const Conta
     const PetscInt   v    = vertex[i];
     ContactPair     *pair = &contact->pairs[contact->n_pairs];
     ContactPairFoot *foot = &contact->feet[contact->n_pairs++];
+    ContactFoot      found;
 
     *pair = (ContactPair){.interface = interface, .vertex = mesh->number[v], .area = Vec3Length(&normals[3 * v])};
     *foot = (ContactPairFoot){.node = v};
     PetscCall(PetscArraycpy(pair->x, &mesh->x[3 * v], 3));
     PetscCall(PetscArraycpy(foot->normal, &normals[3 * v], 3));
-    FootPair(c, surface, pair, foot);
+    ContactFootFind(surface, pair->x, &found);
+    ContactPairTakeFoot(c, surface, &found, pair, foot);
   }
   PetscCall(PetscFree(vertex));
   PetscCall(PetscFree(normals));
@@ -198,6 +162,7 @@ static PetscErrorCode DiscretizationChoose(Contact contact, PetscInt interface, 
   PetscFunctionBeginUser;
   if (told == CONTACT_AUTO) PetscCall(ContactMeshesMatch(contact, interface, first, &match));
   contact->mortar[interface] = match ? PETSC_FALSE : PETSC_TRUE;
+  if (!match) PetscCall(ContactMortarSplit(contact, interface, first));
   PetscFunctionReturn(0);
 }
 

@@ -147,6 +147,7 @@ PetscErrorCode MortarIntegrate(Mortar *mortar, PetscInt f, MortarFacet *facet)
     const ContactFacet *master = &mortar->master->facet[mortar->near.facet[i]];
 
     if (!ContactFacetFaces(master, (const double(*)[3])e, origin, 2 * size, mortar->tolerance)) continue;
+    if (-Vec3Dot(master->normal, e[2]) < mortar->facing) continue;
     SegmentFacetMake(master->n, (const double(*)[3])master->x, (const double(*)[3])e, origin, &m);
     PetscCall(BlockAdd(mortar, &s, e[2], mortar->near.facet[i], &m, facet));
   }

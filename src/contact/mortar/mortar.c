@@ -32,7 +32,10 @@ static PetscErrorCode MeansFind(MortarPairs *m)
   for (PetscInt p = 0; p < m->n_pairs; p++) {
     PetscInt at;
 
-    PetscCall(PetscFindInt(m->pair[p].vertex, slave->n_nodes, slave->vertex, &at));
+    if (m->feet)
+      at = m->feet[p].place;
+    else
+      PetscCall(PetscFindInt(m->pair[p].vertex, slave->n_sorted, slave->vertex, &at));
     PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a pair's slave node is no node of the slave surface");
     m->of[at]       = p;
     m->node[p]      = at;
@@ -155,6 +158,7 @@ PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const
   PetscCall(MortarCreate(slave, master, tolerance, &m->mortar));
   PetscCall(MortarBorderCreate(slave, &m->border));
   m->border.out = m->out;
+  if (m->folds) m->mortar.facing = MORTAR_FOLD;
   PetscCall(MeansFind(m));
   PetscCall(FacetsTake(m));
   PetscCall(MortarBorderDecide(comm, m->of, &m->border));
@@ -206,11 +210,13 @@ PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt 
   const ContactInterface *c     = &contact->interfaces[interface];
   ContactSurface          slave = {0};
   const ContactSurface   *master;
-  MortarPairs             m = {.pair = &contact->pairs[first], .n_pairs = contact->n_pairs - first};
+  MortarPairs m = {.pair = &contact->pairs[first], .n_pairs = contact->n_pairs - first, .feet = &contact->feet[first]};
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetSurface(contact, interface, &master));
   PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
+  PetscCall(MortarSplitSlave(&slave));
+  m.folds = master->folds || slave.n_nodes > slave.n_sorted ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(MortarPairsMake(contact->comm, &slave, master, c->tolerance, &m));
   contact->sides[interface] = m.sides;
   PetscCall(MeansAlone(contact, interface, &m));

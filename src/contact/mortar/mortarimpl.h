@@ -4,6 +4,8 @@
 #include "contact/contactimpl.h"
 #include "kernels/contact/segment.h"
 
+/* of 40 degrees, less rounding: a regular polygon of nine sides has no fold */
+#define MORTAR_FOLD  (0.76604444311897801 + 1e-6)
 #define MORTAR_RULES 9 /* of the triangle, by their points along a side */
 
 /* C of a facet of the slave with one of the master, m^2 */
@@ -19,6 +21,7 @@ typedef struct {
   PetscReal (*point[MORTAR_RULES + 1])[3];
   SegmentRule      rule[MORTAR_RULES + 1]; /* n points along a side, exact to degree 2 n - 1 */
   ContactFacetList near;
+  PetscReal        facing;   /* least cosine between a facet's normal and the reverse of one under it; 0 but at folds */
   PetscInt         n_failed; /* segments that could not be mapped */
 } Mortar;
 
@@ -88,24 +91,28 @@ typedef struct {
 
 /* The pairs of an interface, or of a tie, as they are made */
 typedef struct {
-  Mortar       mortar;
-  MortarFacet  facet;
-  MortarBorder border;
-  ContactPair *pair;            /* [n_pairs] */
-  PetscInt     n_pairs;         /* of all slave nodes of this rank */
-  PetscInt    *of;              /* [slave nodes] their pairs, -1 for none on this rank */
-  PetscInt    *node;            /* [n_pairs] their slave nodes */
-  PetscReal   *own;             /* [n_pairs] D of the node itself, m^2 */
-  PetscReal (*off)[3];          /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
-  PetscInt         n_bare;      /* pairs with D_p <= 0 */
-  const PetscBool *out;         /* MortarBorder */
-  PetscInt         direction;   /* of a tie: along which its equations are */
-  PetscInt         lost;        /* of a tie: a facet over a free master without any pair near it, -1 for none */
-  ContactPairNode *sides, *end; /* nodes of the sides, and where they end; the caller frees them */
-  MortarEntries    under;       /* int phi_p N_l dA at the nodes of the master */
-  MortarEntries    taken;       /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
+  Mortar                 mortar;
+  MortarFacet            facet;
+  MortarBorder           border;
+  ContactPair           *pair;    /* [n_pairs] */
+  const ContactPairFoot *feet;    /* [n_pairs] of a contact, which tell places; NULL of a tie */
+  PetscInt               n_pairs; /* of all slave nodes of this rank */
+  PetscInt              *of;      /* [slave nodes] their pairs, -1 for none on this rank */
+  PetscInt              *node;    /* [n_pairs] their places in the slave's surface */
+  PetscReal             *own;     /* [n_pairs] D of the node itself, m^2 */
+  PetscReal (*off)[3];            /* [n_pairs] sum_l int phi_p N_l dA (x_l - x_p), m^3 */
+  PetscInt         n_bare;        /* pairs with D_p <= 0 */
+  const PetscBool *out;           /* MortarBorder */
+  PetscBool        folds;         /* facets must look at each other within 40 degrees (split.c) */
+  PetscInt         direction;     /* of a tie: along which its equations are */
+  PetscInt         lost;          /* of a tie: a facet over a free master without any pair near it, -1 for none */
+  ContactPairNode *sides, *end;   /* nodes of the sides, and where they end; the caller frees them */
+  MortarEntries    under;         /* int phi_p N_l dA at the nodes of the master */
+  MortarEntries    taken;         /* c_pk D_k of nodes without pairs, by their places in the slave's surface */
 } MortarPairs;
 
+/* split.c - gives nodes of a slave at folds a place for each side, the others after those of all nodes */
+PETSC_INTERN PetscErrorCode MortarSplitSlave(ContactSurface *s);
 /* mortar.c - areas and sides of the pairs, whose nodes are m->sides; pair, n_pairs, out and direction are set.
    Collective. */
 PETSC_INTERN PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const ContactSurface *master,

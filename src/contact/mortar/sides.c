@@ -144,7 +144,7 @@ PetscErrorCode MortarOffset(const MortarPairs *m, PetscInt p, PetscReal offset[3
     const PetscReal *x;
     PetscInt         at;
 
-    PetscCall(PetscFindInt(pair->slave[k].number, slave->n_nodes, slave->vertex, &at));
+    PetscCall(PetscFindInt(pair->slave[k].number, slave->n_sorted, slave->vertex, &at));
     x = MortarBorderPlace(&m->border, at);
     for (int d = 0; d < 3; d++) offset[d] += pair->slave[k].weight * (x[d] - pair->x[d]);
   }

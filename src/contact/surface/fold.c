@@ -1,7 +1,8 @@
 /*
    Folds of a master. The normal of a pair is a mean over the facets around the nodes under it (surface.h). On a smooth
    surface it leans from the facet's own normal by half the angle between facets at most; at a fold, an edge of a body
-   in the set, it points half way round the edge, and the pair with it. A pair's lean is
+   in the set, it points half way round the edge, and the pair with it. Pairs
+   of mortar contact do not (mortar/split.c). A pair's lean is
 
       cos(lean) = n . m,   m = sum_i w_i m_i / |sum_i w_i m_i|
 

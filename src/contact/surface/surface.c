@@ -102,7 +102,7 @@ static int FacetCompare(const void *left, const void *right)
 
 /* Size and normal; flat where the facet's own normal and that of the surface differ from it by rounding alone (1e-13
    of unit vectors) at all nodes. On a flat facet n is one vector, and the foot is linear or bilinear in x. */
-static void FacetMeasure(ContactFacet *f)
+void ContactFacetMeasure(ContactFacet *f)
 {
   const FacetShape *shape = FacetShapeOf(f->n);
 
@@ -151,10 +151,11 @@ PetscErrorCode ContactSurfaceCreate(Contact contact, const char set[], ContactSu
   PetscCall(PetscFree(local));
   if (s->n_facets) qsort(s->facet, (size_t)s->n_facets, sizeof(ContactFacet), FacetCompare);
   for (PetscInt f = 0; f < s->n_facets; f++) {
-    FacetMeasure(&s->facet[f]);
+    ContactFacetMeasure(&s->facet[f]);
     s->size += s->facet[f].size / (PetscReal)s->n_facets;
   }
   PetscCall(SurfaceSetNodes(s));
+  s->n_sorted = s->n_nodes;
   PetscCall(SurfaceSetNeighbours(s));
   PetscCall(ContactBoxesBuild(s));
   PetscFunctionReturn(0);

@@ -41,8 +41,10 @@ typedef struct {
   ContactFacet *facet;
   ContactBox   *box;              /* at rest */
   PetscInt      n_nodes, *vertex; /* global numbers of the nodes, ascending */
-  PetscReal     size;             /* mean of the facets, m */
-  PetscReal     overhang;         /* largest distance beyond the border of a slave that faces it, m; 0: CONTACT_EDGE */
+  PetscInt      n_sorted; /* of these, where nodes at folds have places for each side after them (mortar/split.c) */
+  PetscBool     folds;    /* of a master: its normals are of one side of them each (mortar/split.c) */
+  PetscReal     size;     /* mean of the facets, m */
+  PetscReal     overhang; /* largest distance beyond the border of a slave that faces it, m; 0: CONTACT_EDGE */
 } ContactSurface;
 
 /* The surface as it lies */
@@ -101,6 +103,8 @@ static inline PetscReal ContactFacetMiddle(const ContactFacet *f, int d)
 
 /* surface.c - facets of a set on this rank, node[] being global numbers, without neighbours; the caller frees them */
 PETSC_INTERN PetscErrorCode ContactFacetsLocal(Model model, const char set[], PetscInt *n, ContactFacet **facets);
+/* surface.c - size, normal and flatness of a facet, from its places and a_i */
+PETSC_INTERN void ContactFacetMeasure(ContactFacet *f);
 /* surface.c - surface of the master of an interface, made when it is asked for first (borrowed). Collective. */
 PETSC_INTERN PetscErrorCode ContactGetSurface(Contact contact, PetscInt interface, const ContactSurface **surface);
 /* surface.c - any surface, into one that is all 0. Collective. */
