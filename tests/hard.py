@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes pencils whose eigenvalues are known exactly: K + mu H = Q B Q', M = I or Q D Q', with Q a Hadamard matrix over a power of two, so
-that no entry is rounded.
+that no entry is rounded, and C = M / 4.
 
     hard.py FOLDER    folders defective, three, doublets, equal, stiff, each with K.bin, M.bin, H.bin, and exact.csv of growth_rad_s,
                       omega_rad_s of those eigenvalues that oscillate
@@ -51,7 +51,7 @@ def main():
         N = numpy.zeros((n, n))
         for place, value in friction.items():
             N[place] = value
-        for file, matrix in (("K", Q @ numpy.diag(diagonal) @ Q.T), ("M", numpy.eye(n)), ("H", Q @ N @ Q.T)):
+        for file, matrix in (("K", Q @ numpy.diag(diagonal) @ Q.T), ("M", numpy.eye(n)), ("H", Q @ N @ Q.T), ("C", numpy.eye(n) / 4)):
             write_matrix(folder / f"{file}.bin", scipy.sparse.csr_matrix(matrix))
         with (folder / "exact.csv").open("w", newline="") as file:
             table = csv.writer(file)

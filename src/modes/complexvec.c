@@ -2,6 +2,7 @@
    Products of complex vectors with real matrices; see complexvec.h.
 */
 #include "complexvec.h"
+#include "solver/block/orthonormal.h"
 
 PetscErrorCode ComplexVecDot(ComplexVec x, ComplexVec z, PetscComplex *dot)
 {
@@ -55,5 +56,32 @@ PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambd
   PetscFunctionBeginUser;
   PetscCall(ComplexVecMult(pencil->M, x, z));
   if (pencil->C && cabs(lambda) > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, work, z));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SpectrumMultiply(const Spectrum *s, PetscInt first, PetscInt n, PetscInt n_matrices, const Mat A[],
+                                Mat AX[])
+{
+  PetscInt n_local, n_columns = n, column = 0;
+  Mat      X;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = first; i < first + n; i++) n_columns += s->xi[i] ? 1 : 0;
+  PetscCall(MatGetLocalSize(A[0], &n_local, NULL));
+  PetscCall(
+    MatCreateDense(PetscObjectComm((PetscObject)A[0]), n_local, PETSC_DECIDE, PETSC_DETERMINE, n_columns, NULL, &X));
+  for (PetscInt i = first; i < first + n; i++)
+    for (int part = 0; part < 2; part++) {
+      const Vec from = part ? s->xi[i] : s->xr[i];
+      Vec       to;
+
+      if (!from) continue;
+      PetscCall(MatDenseGetColumnVecWrite(X, column, &to));
+      PetscCall(VecCopy(from, to));
+      PetscCall(MatDenseRestoreColumnVecWrite(X, column++, &to));
+    }
+  for (PetscInt i = 0; i < n_matrices; i++) PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &AX[i]));
+  PetscCall(BlockMultiplyEach(n_matrices, A, X, AX));
+  PetscCall(MatDestroy(&X));
   PetscFunctionReturn(0);
 }

@@ -4,12 +4,11 @@
       backward error   |Q x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|)
       condition        |x|_M |y|_M / |y^T D x|
       error            |y^T Q x| / |y^T Q' x|, first order in the residual, and what rounding in K does, ROUNDINGS
-      times:
-                       in its entries, in products with it, and in its factors
+                       times: in its entries, in products with it, and in its factors; of a pair that is close to
+                       defective, whose condition has no limit, that of its plane (defect.c)
    (F. Tisseur, Lin. Alg. Appl. 309, 2000, for the quadratic problem.)
 */
 #include "complexvec.h"
-#include "solver/block/orthonormal.h"
 
 #define QUALITY_BLOCK    16   /* modes whose products are made at once */
 #define QUALITY_BACKWARD 1e-6 /* largest backward error that is a solution */
@@ -48,35 +47,6 @@ static PetscErrorCode ComplexVecSquare(ComplexVec x, ComplexVec z, PetscReal *sq
   PetscFunctionReturn(0);
 }
 
-/* Each A times the vectors of modes first .. first + n - 1, by columns: the real part, and the imaginary one where
-   there is one */
-static PetscErrorCode QualityMultiply(const Spectrum *s, PetscInt first, PetscInt n, PetscInt n_matrices, const Mat A[],
-                                      Mat AX[])
-{
-  PetscInt n_local, n_columns = n, column = 0;
-  Mat      X;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = first; i < first + n; i++) n_columns += s->xi[i] ? 1 : 0;
-  PetscCall(MatGetLocalSize(A[0], &n_local, NULL));
-  PetscCall(
-    MatCreateDense(PetscObjectComm((PetscObject)A[0]), n_local, PETSC_DECIDE, PETSC_DETERMINE, n_columns, NULL, &X));
-  for (PetscInt i = first; i < first + n; i++)
-    for (int part = 0; part < 2; part++) {
-      const Vec from = part ? s->xi[i] : s->xr[i];
-      Vec       to;
-
-      if (!from) continue;
-      PetscCall(MatDenseGetColumnVecWrite(X, column, &to));
-      PetscCall(VecCopy(from, to));
-      PetscCall(MatDenseRestoreColumnVecWrite(X, column++, &to));
-    }
-  for (PetscInt i = 0; i < n_matrices; i++) PetscCall(MatDuplicate(X, MAT_DO_NOT_COPY_VALUES, &AX[i]));
-  PetscCall(BlockMultiplyEach(n_matrices, A, X, AX));
-  PetscCall(MatDestroy(&X));
-  PetscFunctionReturn(0);
-}
-
 /* The products of a block of modes */
 static PetscErrorCode QualityBegin(const Modes modes, Quality *q, PetscInt first, PetscInt n)
 {
@@ -84,10 +54,10 @@ static PetscErrorCode QualityBegin(const Modes modes, Quality *q, PetscInt first
   Mat       AX[3] = {NULL, NULL, NULL};
 
   PetscFunctionBeginUser;
-  PetscCall(QualityMultiply(&modes->right, first, n, A[2] ? 3 : 2, A, AX));
+  PetscCall(SpectrumMultiply(&modes->right, first, n, A[2] ? 3 : 2, A, AX));
   q->KX = AX[0], q->MX = AX[1], q->CX = AX[2];
   if (modes->left_spectrum.n && q->M == q->pencil->M)
-    PetscCall(QualityMultiply(&modes->left_spectrum, first, n, 1, &q->M, &q->MY));
+    PetscCall(SpectrumMultiply(&modes->left_spectrum, first, n, 1, &q->M, &q->MY));
   q->next[0] = q->next[1] = 0;
   PetscFunctionReturn(0);
 }
@@ -275,6 +245,37 @@ static PetscErrorCode ModeCheck(Modes modes, const Mode *mode, PetscReal freq)
   PetscFunctionReturn(0);
 }
 
+/* Measures the plane of a pair, of vectors v = x, y, where the condition, of norms in the pencil's own M, is large;
+   QualityResidual() has left Q x in z and D x in Mx */
+static PetscErrorCode QualityFindDefect(Quality *q, PetscComplex lambda, const ComplexVec v[2], PetscReal y_Dx,
+                                        PetscReal norm[2], Defect *defect)
+{
+  PetscFunctionBeginUser;
+  *defect = (Defect){.near = PETSC_FALSE};
+  if (!v[1].r) PetscFunctionReturn(0);
+  if (q->M != q->pencil->M) {
+    PetscCall(ComplexVecMult(q->pencil->M, v[1], q->Cx));
+    PetscCall(ComplexVecSquare(v[0], q->Mx, &norm[0]));
+    PetscCall(ComplexVecSquare(v[1], q->Cx, &norm[1]));
+    for (int k = 0; k < 2; k++) norm[k] = PetscSqrtReal(PetscAbsReal(norm[k]));
+  }
+  if (DefectIsNear(norm[0] * norm[1] / y_Dx)) PetscCall(DefectMeasure(q->pencil, lambda, v, q->z, q->Cx, defect));
+  PetscFunctionReturn(0);
+}
+
+/* Error of lambda^2; noise is that of x with |x|_M = 1 */
+static PetscReal QualitySquare(const Modes modes, PetscInt i, const QualityProducts *p, Defect *defect,
+                               const PetscReal norm[2], PetscReal noise)
+{
+  const PetscReal product = norm[0] * norm[1], rounding = ROUNDINGS * noise;
+  const PetscReal condition = p->y_Dx > 0 ? product / p->y_Dx : PETSC_MAX_REAL;
+
+  defect->along = defect->along / (norm[0] * norm[0]) + rounding;
+  defect->departure /= product;
+  return DefectError(&modes->right, i, defect, rounding + p->y_Qx / product,
+                     rounding * PetscMax(1, condition) + p->y_Qx / product * condition);
+}
+
 /* Condition, error, and what follows from them; the vectors become vectors of all unknowns with M-norm one */
 static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
 {
@@ -283,31 +284,32 @@ static PetscErrorCode QualityMeasureMode(Modes modes, Quality *q, PetscInt i)
   const PetscBool    has_left = left->n ? PETSC_TRUE : PETSC_FALSE;
   const PetscComplex lambda   = SpectrumLambda(right, i);
   const ComplexVec x = {right->xr[i], right->xi[i]}, y = {has_left ? left->xr[i] : NULL, has_left ? left->xi[i] : NULL};
-  PetscReal        size = cabs(lambda), norm_x, norm_y = 1, noise, square, amplified = 1;
+  PetscReal        size = cabs(lambda), norm[2] = {1, 1}, noise, square, amplified = 1;
   QualityProducts  p = {.y_Dx = 1};
+  Defect           defect;
   ModesLimit       limit;
 
   PetscFunctionBeginUser;
-  PetscCall(QualityNext(q, x, y, &norm_x, &norm_y));
+  PetscCall(QualityNext(q, x, y, &norm[0], &norm[1]));
   PetscCall(QualityNoise(q, x, &noise));
   if (cimag(lambda) == 0 && q->pencil->C) PetscCall(QualityIsSlowing(q, size, x, noise, &mode->slowing));
   PetscCall(QualityResidual(q, lambda, x, y, &p));
-  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm_x));
-  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm_y));
-  modes->residual[i]   = QUALITY_CONSISTENT * p.residual / norm_x;
+  PetscCall(QualityFindDefect(q, lambda, (ComplexVec[2]){x, y}, p.y_Dx, norm, &defect));
+  PetscCall(QualityFinish(q, modes->pencil, PETSC_FALSE, &right->xr[i], &right->xi[i], &norm[0]));
+  if (has_left) PetscCall(QualityFinish(q, modes->pencil, PETSC_TRUE, &left->xr[i], &left->xi[i], &norm[1]));
+  modes->residual[i]   = QUALITY_CONSISTENT * p.residual / norm[0];
   mode->backward_error = p.backward;
   mode->sigma          = creal(lambda);
   mode->omega          = cimag(lambda);
-  mode->product[0]     = creal(p.product) / (norm_x * norm_y);
-  mode->product[1]     = cimag(p.product) / (norm_x * norm_y);
-  mode->condition      = !has_left ? NAN : p.y_Dx > 0 ? norm_x * norm_y / p.y_Dx : INFINITY;
-  noise /= norm_x * norm_x;
+  mode->product[0]     = creal(p.product) / (norm[0] * norm[1]);
+  mode->product[1]     = cimag(p.product) / (norm[0] * norm[1]);
+  mode->condition      = !has_left ? NAN : p.y_Dx > 0 ? norm[0] * norm[1] / p.y_Dx : INFINITY;
+  noise /= norm[0] * norm[0];
   /* error of lambda^2: of a double eigenvalue, whose condition has no limit, the root of rounding */
   if (has_left && isfinite(mode->condition)) amplified = PetscMax(1, mode->condition);
-  square = PetscMin(amplified, QUALITY_DOUBLE) * PetscMax(noise, has_left ? p.y_Qx / (norm_x * norm_y) : 0);
-  noise *= amplified;
+  square      = PetscMin(amplified, QUALITY_DOUBLE) * PetscMax(noise, has_left ? p.y_Qx / (norm[0] * norm[1]) : 0);
   mode->rigid = size * size <= QUALITY_NOISE * square ? PETSC_TRUE : PETSC_FALSE;
-  square      = ROUNDINGS * noise + (has_left && p.y_Dx > 0 ? p.y_Qx / p.y_Dx : 0);
+  square      = has_left ? QualitySquare(modes, i, &p, &defect, norm, noise) : ROUNDINGS * noise;
   mode->error = mode->rigid ? PetscSqrtReal(size * size + square) : square / (2 * size);
   if (mode->rigid) mode->sigma = mode->omega = 0;
   if (mode->rigid) mode->slowing = PETSC_FALSE;

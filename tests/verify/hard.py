@@ -4,6 +4,9 @@
     hard.py eigenvalues RESULTS EXACT.csv F   true errors of modes.csv below F Hz over stated ones, error_hz; exact eigenvalues by
                                               tests/hard.py; all must be there, and none twice; as of any solution
                                               one in a hundred may be beyond, by three times at most
+    hard.py pair RESULTS MU DAMPING           the two modes of tests/hard.py's pencil `defective` at MU, C = DAMPING M: true errors
+                                              within the stated ones, these within a hundred times the true ones or what a
+                                              relative change of 2.2e-16 of K does, the root of it at a defective pair
     hard.py matrices RESULTS SAVED            true errors over stated ones, on the matrices of -operators_save: as many modes as
                                               LAPACK has, refined in extended precision
     hard.py nearly RESULTS F                  distance of F, Hz, from the mode that may be it, over its stated error
@@ -63,6 +66,32 @@ def eigenvalues(results, exact, top):
     print(f"{len(found)} eigenvalues, errors up to {error.max():.1e} rad/s, stated up to {stated.max():.1e}, "
           f"{(ratio > 1).sum()} beyond what is stated; worst over that")
     return judge(ratio.max(), 3 if len(found) >= 100 and (ratio > 1).mean() <= 0.01 else 1)
+
+
+def pair(results, mu, damping):
+    """(lambda + c / 2)^2 = z, z = c^2 / 4 - kappa, kappa = 4096 -+ d, d^2 = 256 - mu^2, the roots of (kappa - 4080) (kappa - 4112) +
+    mu^2. With z = a + i b and q^2 = (|z| - a) / 2 the upper root is b / (2 q) + i q; in 50 digits."""
+    from decimal import Decimal, getcontext
+    getcontext().prec = 50
+    half, square, exact = Decimal(float(damping)) / 2, 256 - Decimal(float(mu))**2, []
+    for d in (abs(square).sqrt(), -abs(square).sqrt()):
+        a, b = half**2 - 4096 - (d if square > 0 else 0), d if square < 0 else 0
+        q = (((a * a + b * b).sqrt() - a) / 2).sqrt()
+        exact.append((b / (2 * q) - half, q))
+    turn = 2 * Decimal("3.14159265358979323846264338327950288419716939937510")
+    table = [row for row in rows(Path(results) / "modes.csv") if row["freq_hz"] < 14]
+    if len(table) != 2:
+        print(f"{len(table)} modes, must be 2")
+        return 1
+    worst, loose = 0, 0
+    for row in table:
+        value, stated = (Decimal(row["growth_rad_s"]), turn * Decimal(row["freq_hz"])), 2 * math.pi * row["error_hz"]
+        true = min(math.hypot(*(float(x - y) for x, y in zip(value, each))) for each in exact)
+        change = min(math.sqrt(32 * 4096 * 2.2e-16), 4096 * 2.2e-16 * row["condition"]) / 128
+        worst, loose = max(worst, true / stated), max(loose, stated / max(true, change))
+        print(f"{row['freq_hz']:.9g} Hz: true {true:.1e}, stated {stated:.1e} rad/s, change {change:.1e}, condition {row['condition']:.1e}")
+    print(f"stated over the larger of true and change: {loose:.3g}, allowed 100; true over stated:")
+    return judge(worst, 1) or loose > 100
 
 
 def matrices(results, saved):
