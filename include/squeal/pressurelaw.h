@@ -84,8 +84,9 @@ typedef struct {
   PetscReal closing, compliance; /* m, m/N */
 } SpringLine;
 
-/*@ SpringIsCurved, SpringOnset, SpringClosing, SpringForce - whether the law of a pair is not linear; the closing (m) at
-    which it begins, that at a force (N), the force at a closing. SpringEnergy - stored at a force, J. Not collective. @*/
+/*@ SpringIsCurved, SpringOnset, SpringClosing, SpringForce - whether the law of a pair is not linear; the closing (m)
+    at which it begins, that at a force (N), the force at a closing. SpringEnergy - stored at a force, J. Not
+    collective. @*/
 PetscBool SpringIsCurved(const PairSpring *spring);
 PetscReal SpringOnset(const PairSpring *spring);
 PetscReal SpringClosing(const PairSpring *spring, PetscReal force);
@@ -95,7 +96,7 @@ PetscReal SpringEnergy(const PairSpring *spring, PetscReal force);
 /*@ SpringTangent - the tangent of the law at a closing, rigid at the onset; a linear law itself. Not collective. @*/
 SpringLine SpringTangent(const PairSpring *spring, PetscReal closing);
 
-/*@ SpringNext - where Newton's method lays the next tangent, m: of a line laid at the closing `at` a force and a closing
-    came, two points on the law, of which the one nearer to `at` is taken, so that no steep law runs away. Not
+/*@ SpringNext - where Newton's method lays the next tangent, m: of a line laid at the closing `at` a force and a
+    closing came, two points on the law, of which the one nearer to `at` is taken, so that no steep law runs away. Not
     collective. @*/
 PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing);

@@ -342,27 +342,3 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
     contact->pairs[p].force = c->force * contact->pairs[p].area / area;
   PetscFunctionReturn(0);
 }
-
-/* Area (m^2) on which the pressure of a law acts; of a stiffness per pair 1, its pressure is a force */
-static PetscReal PairArea(const ContactInterface *interface, const ContactPair *pair)
-{
-  return interface->per_area || !PressureIsLinear(&interface->pressure) ? pair->area : 1;
-}
-
-/* The law is an argument, not that of the interface, since a sweep varies it */
-PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
-                               PetscReal lambda_n)
-{
-  return PressureSlope(law, ContactPairClosing(interface, pair, law, lambda_n)) * PairArea(interface, pair);
-}
-
-PairSpring ContactPairSpring(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law)
-{
-  return (PairSpring){*law, PairArea(interface, pair)};
-}
-
-PetscReal ContactPairClosing(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
-                             PetscReal lambda_n)
-{
-  return PressureClosing(law, lambda_n / PairArea(interface, pair));
-}

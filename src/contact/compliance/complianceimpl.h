@@ -132,13 +132,13 @@ PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt 
 PETSC_INTERN PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[]);
 
-/* compliance.c - stiffness and weight of the pairs by W; one step on W as it is */
+/* step.c - stiffness and weight of the pairs by W; one step on W as it is */
 PETSC_INTERN void           ComplianceSetScales(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                                  PetscReal lambda[]);
 
-/* spring.c - a step with laws in series; the closing of a pair's line at l, m, 0 where contact is exact; tangents on the
-   diagonal of W, or the lines again; lines laid at closings [n], m */
+/* spring.c - a step with laws in series; the closing of a pair's line at l, m, 0 where contact is exact; tangents on
+   the diagonal of W, or the lines again; lines laid at closings [n], m */
 PETSC_INTERN PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                                    PetscReal lambda[]);
 PETSC_INTERN PetscReal      ComplianceLineClosing(const ContactCompliance c, PetscInt p);

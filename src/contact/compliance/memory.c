@@ -1,9 +1,8 @@
 /*
    What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept.
    The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
-   (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a law in
-   series is not linear, the closings at which its lines were laid come first [n].
-*/
+   (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a
+   law in series is not linear, the closings at which its lines were laid come first [n]. */
 #include "complianceimpl.h"
 
 PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)

@@ -4,10 +4,9 @@
       0 <= lambda_n,  0 <= r_n + C(lambda_n),  lambda_n (r_n + C) = 0.
 
    A line C ~ o + s lambda_n has s on the diagonal of W, and o in the displacement without forces. A linear law is one
-   line. Another law is a line through its own point at the forces of the iterate before, whose s stays from step to step
-   as long as that converges fast, by SPRING_FAST each time; where not, lines are tangents from then on in this step:
-   Newton's method.
-*/
+   line. Another law is a line through its own point at the forces of the iterate before, whose s stays from step to
+   step as long as that converges fast, by SPRING_FAST each time; where not, lines are tangents from then on in this
+   step: Newton's method. */
 #include "complianceimpl.h"
 
 #define SPRING_SETTLED 1e-13 /* of the largest force, or of the largest closing beyond the onset */

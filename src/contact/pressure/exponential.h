@@ -5,10 +5,10 @@
       P(c)  = p0 / (e - 1) x (e^x - 1),                    c > -c0,
       P'(c) = p0 / (c0 (e - 1)) (e^x - 1 + x e^x).
 
-   and the energy p0 c0 / (e - 1) (x e^x - e^x + 1 - x^2 / 2). Its inverse solves x (e^x - 1) = y, y = (e - 1) p / p0, as F(x) = log x + log(e^x - 1) - log y = 0: F is concave and
-   rises, so that Newton's method climbs without a step too long from the lower bound log(1 + sqrt y).
-   Source: Abaqus Analysis User's Guide, "Contact pressure-overclosure relationships", softened contact.
-*/
+   and the energy p0 c0 / (e - 1) (x e^x - e^x + 1 - x^2 / 2). Its inverse solves x (e^x - 1) = y, y = (e - 1) p / p0,
+   as F(x) = log x + log(e^x - 1) - log y = 0: F is concave and rises, so that Newton's method climbs without a step
+   too long from the lower bound log(1 + sqrt y). Source: Abaqus Analysis User's Guide, "Contact pressure-overclosure
+   relationships", softened contact. */
 #pragma once
 
 #include "kind.h"

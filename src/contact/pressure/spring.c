@@ -52,3 +52,27 @@ PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, Pe
   if (at <= onset) return pressing;
   return PetscAbsReal(closing - at) < PetscAbsReal(pressing - at) ? PetscMax(closing, onset) : pressing;
 }
+
+/* Area (m^2) on which the pressure of a law acts; of a stiffness per pair 1, its pressure is a force */
+static PetscReal PairArea(const ContactInterface *interface, const ContactPair *pair)
+{
+  return interface->per_area || !PressureIsLinear(&interface->pressure) ? pair->area : 1;
+}
+
+/* The law is an argument, not that of the interface, since a sweep varies it */
+PetscReal ContactPairStiffness(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
+                               PetscReal lambda_n)
+{
+  return PressureSlope(law, ContactPairClosing(interface, pair, law, lambda_n)) * PairArea(interface, pair);
+}
+
+PairSpring ContactPairSpring(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law)
+{
+  return (PairSpring){*law, PairArea(interface, pair)};
+}
+
+PetscReal ContactPairClosing(const ContactInterface *interface, const ContactPair *pair, const PressureLaw *law,
+                             PetscReal lambda_n)
+{
+  return PressureClosing(law, lambda_n / PairArea(interface, pair));
+}

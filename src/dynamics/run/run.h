@@ -36,8 +36,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
-/* DynamicsCheckExact - raises the error for contacts with a penalty law, which a start in the sliding state has and exact
-   contact has not. Collective. */
+/* DynamicsCheckExact - raises the error for contacts with a penalty law, which a start in the sliding state has and
+   exact contact has not. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckExact(Dynamics dynamics);
 
 /* DynamicsSetEndless - the caller takes the scene and the step, and integrates nothing from a beginning to an end: none

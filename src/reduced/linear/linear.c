@@ -1,8 +1,8 @@
 /*
    The reduced model about steady sliding: pairs that are closed stay so and slide along t, so that their forces are
    lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of
-   these and S = (N W E)^-1 N P, N W E plus 1 / k_n of a law in series at its force, without damping lambda_n = -S eta. With it, to first order in the damping of the
-   residual,
+   these and S = (N W E)^-1 N P, N W E plus 1 / k_n of a law in series at its force, without damping lambda_n = -S
+   eta. With damping, to first order in that of the residual,
 
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.

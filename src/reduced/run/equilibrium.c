@@ -5,8 +5,8 @@
       Omega^2 eta - P'E lambda_n = P_l' f,      N P eta + N W E lambda_n = -g0 - N W_l f,
 
    with the set of closed pairs that has no tension and no penetration. A law in series with a pair is a line, c = o + s
-   lambda_n: o adds to the gap, s to the diagonal; lines of laws that are not linear are laid anew until they are tangents.
-*/
+   lambda_n: o adds to the gap, s to the diagonal; lines of laws that are not linear are laid anew until they are
+   tangents. */
 #include "reduced/reducedimpl.h"
 
 #define EQUILIBRIUM_MAX_IT  100
@@ -92,8 +92,9 @@ static void SlidingSystemChoose(SlidingSystem *s, ReducedState *state, PetscBool
   }
 }
 
-/* From the closed pairs there are, by sets: pairs in tension open, open ones that penetrate close, until none changes. Not
-   found: no pair is left, the system is singular, or sets repeat (EQUILIBRIUM_MAX_IT), as they may with large mu. */
+/* From the closed pairs there are, by sets: pairs in tension open, open ones that penetrate close, until none
+   changes. Not found: no pair is left, the system is singular, or sets repeat (EQUILIBRIUM_MAX_IT), as they may with
+   large mu. */
 static PetscErrorCode SlidingSystemSolve(SlidingSystem *s, ReducedState *state, PetscBool *found)
 {
   const PetscInt m        = s->model->m;

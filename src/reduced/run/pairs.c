@@ -133,7 +133,7 @@ static void SumsTake(ReducedRun r, PetscInt k, ContactSums *sums)
 }
 
 /* Of the law in series with a pair, m */
-static PetscReal PairClosing(ReducedRun r, PetscInt i)
+static PetscReal StateClosing(ReducedRun r, PetscInt i)
 {
   const PairSpring *spring = r->reduction.model.spring;
 
@@ -155,7 +155,7 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
     const PetscReal  mu   = FrictionMu(&r->reduction.model.friction[i], hypot(slip[0], slip[1]) / dt);
 
     judged[i] = (ContactJudged){
-      &r->motion.pairs[i], mu, PairClosing(r, i), r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),
+      &r->motion.pairs[i], mu, StateClosing(r, i), r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),
       PETSC_FALSE};
     for (int d = 0; d < 3; d++) displacement = PetscMax(displacement, PetscAbsReal(r->motion.state.y[3 * i + d]));
   }

@@ -55,8 +55,8 @@ static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[],
   return sum;
 }
 
-/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, and that of laws in series, J: the blocks of W of pairs, of others,
-   and, once, between both. */
+/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, and that of laws in series, J: the blocks
+   of W of pairs, of others, and, once, between both. */
 void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
 {
   const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;

@@ -15,9 +15,8 @@
 
       sum (W / 2) (p_n^a - p_(n+1)^a),
 
-   the first order of the error in dt; wear that gives pressure away makes the true one smaller with time. With -stages contacts wear in the
-   last one, and the state is that of all stages once more with the worn gaps.
-*/
+   the first order of the error in dt; wear that gives pressure away makes the true one smaller with time. With
+   -stages contacts wear in the last one, and the state is that of all stages once more with the worn gaps. */
 #include "statics/staticsimpl.h"
 
 #define DEPTH_STEPS 100 /* trials of the last step, to end at -wear_depth to DEPTH_RTOL of it */
