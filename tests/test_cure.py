@@ -6,6 +6,7 @@ eigenvalues. Breaks when a direction, a unit or a node is mixed up, a set is cal
 
 import csv
 import math
+import os
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "tests/verify"))
 from changes import Brake  # noqa: E402
+from test_report import Page  # noqa: E402
 
 SCENE = """
 rig: {disc: {elements: "8,24,1"}, pad: {elements: "4,4,2"}, beam: {elements: 10}}
@@ -56,6 +58,25 @@ def check_set(folder, rows, what):
     return [f"{what}: growth"] if off or (count == 0) != (value.real <= LIMIT * abs(value)) else []
 
 
+def check_page(folder, sets):
+    """The sets that leave none unstable on the page of scripts/report, in g and N s/m; none where modes.csv is newer; faults."""
+    def table():
+        subprocess.run([sys.executable, SOURCE / "scripts/report", "out"], cwd=folder, check=True, capture_output=True)
+        page = Page(folder / "out/report.html")
+        found = [e["id"] for e in page.elements if e.get("id", "").endswith("-cures-table")]
+        return page.table(found[0]) if found else []
+
+    calm = [row for own in list(sets.values())[:10] for row in own if own[0]["n_unstable"] == "0"]
+    factor = {"mass": 1e3, "spring": 1e-3, "dashpot": 1}
+    shown = table()
+    right = len(shown) == len(calm) > 0 and all(
+        math.isclose(float(cell["amount"]), factor[row["change"].removeprefix("relative_")] * float(row["amount"]), rel_tol=1e-9)
+        and (cell["set"], cell["part"]) == (row["set"], row["part"]) for cell, row in zip(shown, calm))
+    now = (folder / "out/cure/cure.csv").stat().st_mtime
+    os.utime(folder / "out/modes.csv", (now + 10, now + 10))
+    return [] if right and not table() else [f"page: {shown}"]
+
+
 def main(squeal):
     faults = []
     with tempfile.TemporaryDirectory() as name:
@@ -75,6 +96,7 @@ def main(squeal):
         pair = next(own for own in sets.values() if len(own) == 2)
         for own, what in ((sets[1], "the cheapest"), (pair, "a pair"), (sets[max(sets)], "the worst")):
             faults += check_set(folder, own, what)
+        faults += check_page(folder, sets)
         for words, said in ((["none"], "none/scene.yaml: no such file"),
                             (["out", "--changes", "glue"], f"must be of {', '.join(OPTION)}"),
                             (["out", "--price", "mass=-1"], "a positive number"), (["out", "--parts", "wheel"], "has no mass"),
