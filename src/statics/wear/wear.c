@@ -199,11 +199,16 @@ static PetscErrorCode WearRun(Wearing *g, PetscReal time)
   const PetscReal dt     = time / (PetscReal)g->options->steps;
   PetscReal       change = PETSC_MAX_REAL;
   PetscBool       ends   = PETSC_FALSE;
+  char            after[96];
 
   PetscFunctionBeginUser;
   for (PetscInt step = 1; step <= g->options->steps && !ends; step++) {
     PetscReal taken = dt;
 
+    PetscCall(PetscSNPrintf(after, sizeof(after), " in step %" PetscInt_FMT " of the wear, after %.6g s", step,
+                            (double)g->time));
+    PetscCall(StaticsPlace(g->s, g->active->place, sizeof(g->active->place)));
+    PetscCall(PetscStrlcat(g->active->place, after, sizeof(g->active->place)));
     PetscCall(WearStep(g, &taken, &ends));
     PetscCall(WearTake(g, step, taken, &change));
     if (g->options->settled > 0 && change <= g->options->settled) ends = PETSC_TRUE;
