@@ -36,7 +36,7 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
   char dense[96] = "";
 
   PetscFunctionBeginUser;
-  if (!a->compliance->W && outcome != ACTIVE_JAMMED)
+  if (!a->compliance->W && a->rows->n_all <= STATICS_MOST_DENSE && outcome != ACTIVE_JAMMED)
     PetscCall(
       PetscSNPrintf(dense, sizeof(dense), ", or raise -static_dense to %" PetscInt_FMT " rows", a->rows->n_all));
   PetscCall(PetscSNPrintf(text, size, how[outcome], a->max_it));

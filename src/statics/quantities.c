@@ -1,7 +1,6 @@
 /* Options of the statics. Rows that modes read about a sliding state alone change no equilibrium */
 #include "staticsimpl.h"
 
-#define STATICS_MOST_DENSE 20000
 #define STATICS_AT(member) QUANTITY_AT(struct _p_Statics, member)
 
 static const Quantity rows[] = {

@@ -6,6 +6,9 @@
 #include "kernels/contact/coulomb.h"
 #include "solver/factor/shiftinvert.h"
 
+/* Most rows of -static_dense */
+#define STATICS_MOST_DENSE 20000
+
 /* A stage of the loading: what begins in it, by name, and what acts at its end */
 typedef struct {
   char      *name; /* NULL of the one in which all acts */

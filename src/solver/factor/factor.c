@@ -178,7 +178,10 @@ static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PCSetType(pc, si->even ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  if (!si->signs) PetscCall(KSPSetFromOptions(si->ksp));
+  if (si->signs)
+    PetscCall(MatSetOptionsPrefixFactor(A, "st_"));
+  else
+    PetscCall(KSPSetFromOptions(si->ksp));
   if (si->inertia || si->workspace || si->signs) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
