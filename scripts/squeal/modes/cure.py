@@ -163,7 +163,8 @@ class Cure:
         worst, became = max(rows, key=lambda row: row["growth_rad_s"]), {}
         for row in rows:
             became[row["before"]] = max(row["growth_rad_s"], became.get(row["before"], row["growth_rad_s"]))
-        return Trial(changes, sum(row["state"] == "unstable" for row in rows), worst["growth_rad_s"], TWO_PI * worst["error_hz"],
+        count = sum(row["state"] in ("unstable", "uncertain") for row in rows)
+        return Trial(changes, count, worst["growth_rad_s"], TWO_PI * worst["error_hz"],
                      worst["freq_hz"], became)
 
     def trials(self):

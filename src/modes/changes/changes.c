@@ -5,6 +5,8 @@
 
 #define CHANGE_ZERO 1e-5 /* of the highest frequency: where there are rigid modes what is lower is one of them */
 
+#define CHANGE_UNSURE 0.01 /* of an eigenvalue: a larger error tells little of its growth */
+
 /* Modes are listed in the band, or from the lowest to the highest that was found; where some are rigid, from above
    them */
 static ChangeRange RangeOf(const Modes modes)
@@ -43,7 +45,11 @@ static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRan
   for (PetscInt k = 0; k < changed->n; k++) {
     ChangedMode *m = &changed->mode[k];
 
-    m->state = ModesLimitJudge(&limit, creal(m->lambda), cimag(m->lambda), m->error);
+    m->state     = ModesLimitJudge(&limit, creal(m->lambda), cimag(m->lambda), m->error);
+    m->uncertain = m->state != MODE_UNSTABLE && m->error > CHANGE_UNSURE * cabs(m->lambda) &&
+                       ModesLimitJudge(&limit, creal(m->lambda) + m->error, cimag(m->lambda), 0) == MODE_UNSTABLE
+                     ? PETSC_TRUE
+                     : PETSC_FALSE;
   }
   PetscCall(ChangeDestroyTerms(n, &terms));
   PetscFunctionReturn(0);
@@ -79,14 +85,15 @@ PetscErrorCode ModesFindChanges(Modes modes)
   PetscFunctionReturn(0);
 }
 
-/* Index of the mode that grows most, -1 where there is none, and how many are unstable */
-static PetscInt ChangedWorst(const struct _p_ModesChanged *changed, PetscInt *n_unstable)
+/* Index of the mode that grows most, -1 where there is none, and how many are unstable, and how many uncertain */
+static PetscInt ChangedWorst(const struct _p_ModesChanged *changed, PetscInt *n_unstable, PetscInt *n_uncertain)
 {
   PetscInt worst = -1;
 
-  *n_unstable = 0;
+  *n_unstable = *n_uncertain = 0;
   for (PetscInt k = 0; k < changed->n; k++) {
     *n_unstable += changed->mode[k].state == MODE_UNSTABLE;
+    *n_uncertain += changed->mode[k].uncertain;
     if (worst < 0 || creal(changed->mode[k].lambda) > creal(changed->mode[worst].lambda)) worst = k;
   }
   return worst;
@@ -98,8 +105,8 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
   for (PetscInt i = 0; i < modes->n_changes && modes->changed; i++) {
     const struct _p_ModesChanged *changed = &modes->changed[i];
     const ModesChange             change  = &modes->change[i];
-    PetscInt                      n_unstable;
-    const PetscInt                worst = ChangedWorst(changed, &n_unstable);
+    PetscInt                      n_unstable, n_uncertain;
+    const PetscInt                worst = ChangedWorst(changed, &n_unstable, &n_uncertain);
 
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "with %s%s%s", change->name, change->with[0] ? " and " : "", change->with));
@@ -112,6 +119,9 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
       PetscCall(PetscViewerASCIIPrintf(viewer, "; largest growth %.5g 1/s, error %.1e, at %.6g Hz",
                                        (double)creal(changed->mode[worst].lambda), (double)changed->mode[worst].error,
                                        (double)(cimag(changed->mode[worst].lambda) / (2 * PETSC_PI))));
+    if (n_uncertain)
+      PetscCall(
+        PetscViewerASCIIPrintf(viewer, "; %" PetscInt_FMT " uncertain, unstable within their errors", n_uncertain));
     if (changed->n_left_out)
       PetscCall(
         PetscViewerASCIIPrintf(viewer, "; %" PetscInt_FMT " left out, with errors of their size", changed->n_left_out));
@@ -135,7 +145,8 @@ PetscErrorCode ChangesWrite(Modes modes, Results results)
       PetscCall(ResultsTableRow(table, "%s,%d,%.15g,%.15g,%.15g,%.3g,%s,%d,%.4g", modes->change[i].name, (int)k + 1,
                                 (double)(cimag(m->lambda) / (2 * PETSC_PI)), (double)creal(m->lambda),
                                 (double)(-creal(m->lambda) / cabs(m->lambda) + 0), (double)(m->error / (2 * PETSC_PI)),
-                                ModeStateName(m->state), (int)m->before + 1, (double)m->overlap));
+                                m->uncertain ? "uncertain" : ModeStateName(m->state), (int)m->before + 1,
+                                (double)m->overlap));
     }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);

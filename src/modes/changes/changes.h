@@ -33,6 +33,7 @@ typedef struct {
   PetscInt     before;  /* index of that mode */
   PetscReal    overlap; /* 0 to 1 */
   ModeState    state;
+  PetscBool    uncertain; /* the error is large, and within it the mode may be unstable */
 } ChangedMode;
 
 /* Those in the band, in order of frequency */
