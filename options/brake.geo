@@ -3,12 +3,14 @@
 //   gmsh -3 -format msh41 -setnumber size 14 options/brake.geo
 //
 // size: length of the edges, mm, from which all else follows: 14, 6.5, 3.4 give about 50,000, 200,000, 1,000,000 unknowns.
-// turn: least number of edges around a hole, 10 by default. With -setnumber alone 1 the file has the disc only.
+// turn: least number of edges around a hole, 10 by default. With -setnumber alone 1 the file has the disc only, with
+// -setnumber match 1 the disc has the pads' faces in its mesh.
 // The disc turns about z. Its friction ring lies at |z| < 6, its hat points to +z, where the fingers are; the piston is
 // at -z, the pads are at +x. Bodies that touch share no nodes, but each lining is bonded to its back plate.
 
 SetFactory("OpenCASCADE");
-DefineConstant[ size = {14, Name "size"}, turn = {10, Name "turn"}, alone = {0, Name "alone"} ];
+DefineConstant[ size = {14, Name "size"}, turn = {10, Name "turn"}, alone = {0, Name "alone"},
+  match = {0, Name "match"} ];
 
 // Disc: a profile that turns about z, less five holes for bolts
 xz[] = {34,40,  34,33,  64,33,  70,27,  70,-6,  140,-6,  140,6,  83,6,  77,12,  77,34,  71,40};
@@ -62,6 +64,22 @@ pin[0] = newv; Cylinder(pin[0]) = {127, -88, -70, 0, 0, 40, 8};
 pin[1] = newv; Cylinder(pin[1]) = {127, 88, -70, 0, 0, 40, 8};
 caliper[] = BooleanDifference{ Volume{cut[0]}; Delete; }{ Volume{gap, bore, pin[]}; Delete; };
 
+// The linings' faces, and with match copies of them in the disc, which have the same triangles
+For i In {0:1}
+  z = i ? 6 : -6;
+  rub~{i}[] = Surface In BoundingBox{80, -80, z - 0.01, 150, 80, z + 0.01};
+EndFor
+If(match)
+  copy[] = Translate {0, 0, 0} { Duplicata { Surface{rub_0[0], rub_1[0]}; } };
+  BooleanFragments{ Volume{disc[]}; Delete; }{ Surface{copy[]}; Delete; }
+  For i In {0:1}
+    z = i ? 6 : -6;
+    copy[] = Surface In BoundingBox{80, -80, z - 0.01, 150, 80, z + 0.01};
+    copy[] -= {rub~{i}[]};
+    Periodic Surface {copy[0]} = {rub~{i}[0]} Translate {0, 0, 0};
+  EndFor
+EndIf
+
 // Names, by boxes that hold one thing each
 e = 0.01;
 Physical Volume("disc") = disc[];
@@ -74,7 +92,6 @@ Physical Volume("outer_plate") = Volume In BoundingBox{80, -80, 16 - e, 150, 80,
 Physical Volume("caliper") = caliper[];
 For i In {0:1}
   z = i ? 6 : -6;
-  rub~{i}[] = Surface In BoundingBox{80, -80, z - e, 150, 80, z + e};
   ring~{i}[] = Surface In BoundingBox{-141, -141, z - e, 141, 141, z + e};
   ring~{i}[] -= {rub~{i}[]};
   z = i ? 19 : -19;
