@@ -58,6 +58,23 @@ def check_set(folder, rows, what):
     return [f"{what}: growth"] if off or (count == 0) != (value.real <= LIMIT * abs(value)) else []
 
 
+def check_parameters(folder, said):
+    """The first parameter that is said, by the largest of -growth / slope over the unstable modes; faults."""
+    def rows(name):
+        with (folder / "out" / name).open(newline="") as table:
+            return list(csv.DictReader(table))
+
+    growth = {row["mode"]: float(row["growth_rad_s"]) for row in rows("modes.csv") if row["unstable"] == "1"}
+    needed = {}
+    for row in rows("modes_sensitivities.csv"):
+        slope = float(row["growth_rad_s_per_percent"])
+        if row["mode"] in growth:
+            needed.setdefault(row["parameter"], []).append(-growth[row["mode"]] / slope if slope else math.inf)
+    one_way = {name: max(own, key=abs) for name, own in needed.items() if min(own) * max(own) > 0 and max(map(abs, own)) < 100}
+    name = min(one_way, key=lambda name: abs(one_way[name]))
+    return [] if f"  {name} by {one_way[name]:+.3g} % would stop all" in said.splitlines()[0] else [f"parameters: {name}, {one_way}"]
+
+
 def check_page(folder, sets):
     """The sets that leave none unstable on the page of scripts/report, in g and N s/m; none where modes.csv is newer; faults."""
     def table():
@@ -83,11 +100,12 @@ def main(squeal):
         folder = Path(name)
         (folder / "small.yaml").write_text(SCENE)
         subprocess.run([squeal, "-options_file", SOURCE / "options/massi2005.yaml", "-options_file", "small.yaml", "-output_dir", "out",
-                        "-operators_save", "matrices"], cwd=folder, check=True, capture_output=True)
+                        "-operators_save", "matrices", "-modes_sensitivities"], cwd=folder, check=True, capture_output=True)
         done = call(folder, "out", "--program", squeal, "--most", "dashpot=12,mass=60", "--tries", "12")
         print(done.stdout + done.stderr)
         with (folder / "out/cure/cure.csv").open(newline="") as table:
             rows = list(csv.DictReader(table))
+        faults += check_parameters(folder, done.stdout)
         sets = {}
         for row in rows:
             sets.setdefault(int(row["set"]), []).append(row)

@@ -167,6 +167,19 @@ class Cure:
         return Trial(changes, count, worst["growth_rad_s"], TWO_PI * worst["error_hz"],
                      worst["freq_hz"], became)
 
+    def parameters(self):
+        """Of each parameter the percent by which it would have to change for all unstable modes to stop, if the first order held, the
+        smallest first; none without modes_sensitivities.csv."""
+        path, slopes, modes = self.args.results / "modes_sensitivities.csv", {}, {row["mode"] for row in self.unstable}
+        if not path.exists():
+            return []
+        for row in read_table(path, {"mode": int, "parameter": str, "growth_rad_s_per_percent": float}):
+            if row["mode"] in modes:
+                slopes.setdefault(row["parameter"], []).append((self.growth[row["mode"]], row["growth_rad_s_per_percent"]))
+        found = {name: [-growth / slope for growth, slope in own] for name, own in slopes.items() if all(slope for _, slope in own)}
+        return sorted(((max(own, key=abs), name) for name, own in found.items() if min(own) * max(own) > 0),
+                      key=lambda entry: abs(entry[0]))
+
     def trials(self):
         """Single changes, then sets of two where too few of them do, then of three where none does."""
         singles = self.candidates()

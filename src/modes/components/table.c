@@ -133,10 +133,10 @@ PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer)
       part      = ContributionGet(c, i, at / c->bodies.n, b, scale);
       left -= part.share;
       most = PetscMax(most, PetscAbsReal(part.share));
-      PetscCall(PetscViewerASCIIPrintf(viewer, " %s %s %.3g %%,", c->bodies.name[b], c->free[at].name,
-                                       (double)(100 * part.share)));
+      PetscCall(PetscViewerASCIIPrintf(viewer, " %.3g %% %s %s,", (double)(100 * part.share), c->bodies.name[b],
+                                       c->free[at].name));
     }
-    PetscCall(PetscViewerASCIIPrintf(viewer, " others %.3g %%", (double)(100 * left)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %.3g %% others", (double)(100 * left)));
     PetscCall(ModeViewTwin(modes, i, viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
     if (most > 1) large = PETSC_TRUE;
