@@ -6,6 +6,7 @@
 PetscErrorCode ReducedRefuse(ReducedRun r)
 {
   const ModelScene *scene;
+  PetscBool         laws = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
@@ -24,6 +25,12 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
       "-%s_kn identify: -dynamics_contact penalty needs a number, N/m; -analysis modes prints the one that it finds",
       c->name);
   }
+  for (PetscInt i = 0; i < r->run.n_interfaces; i++)
+    if (r->run.interfaces[i].law == CONTACT_PENALTY) laws = PETSC_TRUE;
+  PetscCheck(
+    laws || !r->request.springs || !r->run.n_interfaces, r->comm, PETSC_ERR_USER_INPUT,
+    "-dynamics_contact penalty: no contact has a law, all are -..._law constraint; give one -..._kn_per_area or "
+    "-..._pressure_law, or leave it out");
   PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP,
              "motion %s: a reduced model knows no prescribed motions; -dynamics_model full does",
              scene->n_motions ? scene->motions[0].name : "");

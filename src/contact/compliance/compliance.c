@@ -118,6 +118,7 @@ PetscErrorCode ContactComplianceSolve(ContactCompliance c, const PetscReal q[], 
     PetscCall(ComplianceSolveSprings(c, q, slip0, lambda));
   else
     PetscCall(ComplianceSolveLines(c, q, slip0, lambda));
+  ComplianceReportStep(c);
   for (PetscInt p = 0; p < c->n; p++) {
     for (PetscInt i = 0; i < 3; i++) c->slip[3 * p + i] = c->v[3 * p + i] - (i ? 0 : ComplianceLineClosing(c, p));
     for (PetscInt i = 0; i < 3 && r; i++) r[3 * p + i] = c->slip[3 * p + i] + (i ? slip0[2 * p + i - 1] : 0);

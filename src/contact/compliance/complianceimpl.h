@@ -132,10 +132,13 @@ PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt 
 PETSC_INTERN PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[]);
 
-/* step.c - stiffness and weight of the pairs by W; one step on W as it is */
+/* step.c - stiffness and weight of the pairs by W; one step on W as it is; adds the report of a step to that of all,
+   whose route is the last resort that any step took */
 PETSC_INTERN void           ComplianceSetScales(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                                  PetscReal lambda[]);
+
+PETSC_INTERN void ComplianceReportStep(ContactCompliance c);
 
 /* spring.c - a step with laws in series; the closing of a pair's line at l, m, 0 where contact is exact; tangents on
    the diagonal of W, or the lines again; lines laid at closings [n], m */

@@ -37,11 +37,14 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   h->exists       = PETSC_FALSE;
   c->springs.laid = PETSC_FALSE;
   if (n && c->springs.curved) {
+    PetscCheck(n >= c->n, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+               "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs",
+               n, c->n);
     PetscCall(ComplianceLayAt(c, values));
     values += c->n;
     n -= c->n;
   }
-  if (n <= 0) PetscFunctionReturn(0);
+  if (!n) PetscFunctionReturn(0);
   h->m      = (PetscInt)values[0];
   n_columns = n - 1 - h->m - 4 * c->n;
   PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 4 * c->n, PETSC_COMM_SELF,

@@ -147,16 +147,18 @@ static PetscErrorCode SpringsBegin(ContactCompliance c, const PetscReal lambda[]
 PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                       PetscReal lambda[])
 {
-  PetscReal before = PETSC_MAX_REAL, miss = PETSC_MAX_REAL;
-  PetscInt  iterations = 0;
-  PetscBool tangents   = PETSC_FALSE;
+  PetscReal        before = PETSC_MAX_REAL, miss = PETSC_MAX_REAL;
+  ComplianceReport sum      = {.steps = 1};
+  PetscBool        tangents = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (c->springs.curved) PetscCall(SpringsBegin(c, lambda));
   for (PetscInt it = 0; it < SPRING_MAX_IT; it++) {
     for (PetscInt i = 0; i < 3 * c->n; i++) c->springs.q[i] = q[i] + (i % 3 ? 0 : c->springs.line[i / 3].closing);
     PetscCall(ComplianceSolveLines(c, c->springs.q, slip0, lambda));
-    iterations += c->report.iterations;
+    sum.iterations += c->report.iterations;
+    sum.factors += c->report.factors;
+    sum.route = PetscMax(sum.route, c->report.route);
     if (!c->springs.curved || !c->report.converged) break;
     miss = SpringsMeasure(c);
     if (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2)) break;
@@ -164,7 +166,9 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
     PetscCall(SpringsMove(c, tangents));
     before = miss;
   }
-  c->report.iterations = iterations;
+  c->report.iterations = sum.iterations;
+  c->report.factors    = sum.factors;
+  c->report.route      = sum.route;
   if (c->springs.curved && miss > SPRING_ROUNDED) c->report.converged = PETSC_FALSE;
   PetscFunctionReturn(0);
 }

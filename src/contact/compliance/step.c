@@ -85,15 +85,18 @@ static void StepEnd(ContactCompliance c, PetscReal lambda[])
   for (PetscInt i = 0; i < 3 * c->n; i++) lambda[i] = c->kappa[i / 3] * c->l[i];
 }
 
-/* Adds the report of the step to that of all. The residual is relative to scale + noise / rtol, hence below rtol
-   exactly where ComplianceIsSolved() says so. The route of all is the last resort that any step took. */
-static void StepReport(ContactCompliance c, const ComplianceMiss *miss)
+/* The residual is relative to scale + noise / rtol, hence below rtol exactly where ComplianceIsSolved() says so */
+static void StepJudge(ContactCompliance c, const ComplianceMiss *miss)
+{
+  c->report.converged = ComplianceIsSolved(c, miss);
+  c->report.residual  = miss->largest > 0 ? miss->largest / (miss->scale + miss->noise / c->rtol) : 0;
+  c->report.worst     = miss->worst;
+}
+
+void ComplianceReportStep(ContactCompliance c)
 {
   ComplianceReport *one = &c->report, *all = &c->totals;
 
-  one->converged = ComplianceIsSolved(c, miss);
-  one->residual  = miss->largest > 0 ? miss->largest / (miss->scale + miss->noise / c->rtol) : 0;
-  one->worst     = miss->worst;
   one->routes[one->route]++;
   all->converged = one->converged && all->converged ? PETSC_TRUE : PETSC_FALSE;
   all->route     = PetscMax(all->route, one->route);
@@ -121,7 +124,7 @@ PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], co
     if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, &miss));
   }
   if (ComplianceIsSolved(c, &miss)) PetscCall(ComplianceRefine(c, &miss));
-  StepReport(c, &miss);
+  StepJudge(c, &miss);
   StepEnd(c, lambda);
   PetscFunctionReturn(0);
 }

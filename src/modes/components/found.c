@@ -274,7 +274,13 @@ PetscErrorCode FreeModesTake(Modes modes, ModesComponents c, Modes free)
   PetscCall(PetscMalloc1(modes->n, &v));
   PetscCall(VectorsCount(modes, v, &n));
   free->weights = modes->weights; /* which stay those of modes */
-  if (n <= FOUND_MOST) PetscCall(FoundSolve(modes, n, v, c, free));
+  if (n <= FOUND_MOST)
+    PetscCall(FoundSolve(modes, n, v, c, free));
+  else
+    PetscCall(PetscPrintf(modes->comm,
+                          "free modes of the bodies are not found from these modes, which have %" PetscInt_FMT
+                          " vectors, more than %d: parts are named alone; take a narrower -modes_band\n",
+                          n, FOUND_MOST));
   free->weights = NULL;
   PetscCall(PetscFree(v));
   PetscFunctionReturn(0);

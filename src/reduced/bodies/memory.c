@@ -2,7 +2,7 @@
    Memory of the dense matrices of the pairs, asked for before anything is computed. With n = 3 pairs, each is n^2
    numbers of 8 bytes on every rank. W of the model and of the stepper, factors and borders of the contact laws, and
    what the stepper is made from are 6 at once; with damping X'D X, what it drags and forces of it are 5 more; X'M X of
-   the weighed inertia is another.
+   the weighed inertia is another, and so is the compliance with laws in series.
 */
 #include "reduced/reducedimpl.h"
 #include "base/process/memory.h"
@@ -31,6 +31,7 @@ PetscErrorCode ReducedCheckMemory(ReducedRun r)
   PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   if (C) copies += MEMORY_DAMPED;
   if (r->request.weighs) copies++;
+  if (r->request.springs) copies++;
   fits[0] = 1e-3 * MemoryRoom(&given);
   fits[1] = -MemoryOfPairs((double)n, copies);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fits, 2, MPI_DOUBLE, MPI_MIN, r->comm));
