@@ -6,7 +6,6 @@
 #include "base/events.h"
 #include "base/process/memory.h"
 #include "solver/block/krylov.h"
-#include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
@@ -15,7 +14,6 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   PetscCall(PetscCalloc1(1, modes));
   (*modes)->comm = comm;
   PetscCall(QuantitiesInit(&modes_quantities, *modes));
-  PetscCall(OrderingRegister());
   PetscCall(BlockKrylovRegister());
   PetscFunctionReturn(0);
 }

@@ -27,6 +27,7 @@ static PetscErrorCode AnalysisGetOrdering(Mat A, PetscBool symmetric, IS *row, I
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)A), &size));
   if (size == 1 && !symmetric) PetscCall(PetscStrncpy(type, ORDERING_METIS, sizeof(type)));
   PetscCall(PetscOptionsGetString(NULL, "st_", "-pc_factor_mat_ordering_type", type, sizeof(type), NULL));
+  PetscCall(OrderingRegister());
   PetscCall(MatGetOrdering(A, type, row, column));
   PetscFunctionReturn(0);
 }
