@@ -6,6 +6,7 @@
 #include "base/events.h"
 #include "base/process/memory.h"
 #include "solver/block/krylov.h"
+#include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
@@ -14,6 +15,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   PetscCall(PetscCalloc1(1, modes));
   (*modes)->comm = comm;
   PetscCall(QuantitiesInit(&modes_quantities, *modes));
+  PetscCall(OrderingRegister()); /* for -st_pc_factor_mat_ordering_type metis */
   PetscCall(BlockKrylovRegister());
   PetscFunctionReturn(0);
 }
