@@ -164,7 +164,8 @@ typedef struct {
   ContactDiscretization discretization;
   PetscBool             mortar;             /* what that comes to */
   PetscBool             free;               /* these stay free, else they are an error */
-  PetscInt              n, n_common, n_far; /* nodes that follow, are nodes of both, are too far off, over all ranks */
+  PetscInt              n_slaves;           /* nodes of the slave, over all ranks as those below */
+  PetscInt              n, n_common, n_far; /* of these, nodes that follow, are nodes of both, are too far off */
   /* of those that follow, nodes beyond the border of the master by more than 5 % of a facet */
   PetscInt  n_beyond;
   PetscInt  n_off;          /* of mortar: nodes that stay free, since no or little master lies under them */

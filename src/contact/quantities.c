@@ -143,6 +143,15 @@ static const Quantity interface[] = {
   {"-wear_exponent", "exponent of the pressure in wear", NULL, QUANTITY_REAL, INTERFACE(wear_exponent), .initial = 1,
    QUANTITY_POSITIVE, .in = RUN_STATIC | RUN_SLIDING, .idle = ContactIdleExponent},
 };
+
+static const char *TieIdleFar(const void *tie, const QuantityRun *run)
+{
+  (void)run;
+  return ((const ContactTie *)tie)->discretization == CONTACT_MORTAR
+           ? "not used with -@discretization mortar, which leaves out nodes beside the master by itself"
+           : NULL;
+}
+
 static const Quantity tie[] = {
   {"-surfaces", "slave,master: a set whose nodes follow, and a surface", NULL, QUANTITY_NAMES, SURFACES(ContactTie),
    .required = PETSC_TRUE, .why = "two names, slave,master"},
@@ -152,8 +161,10 @@ static const Quantity tie[] = {
    "each node of the slave follows its foot; means of both surfaces are one (mortar); or where not all meshes match "
    "(auto)",
    NULL, QUANTITY_WORD, TIE(discretization), .words = discretizations},
-  {"-far", "nodes farther off are an error, or stay free (not over the master by mortar)", NULL, QUANTITY_WORD,
-   TIE(free), .words = fars},
+  {"-far",
+   "nodes farther off are an error, or stay free; with mortar, chosen by auto too, those beside the master always stay "
+   "free, and others are an error",
+   NULL, QUANTITY_WORD, TIE(free), .words = fars, .idle = TieIdleFar},
 };
 
 static const QuantityTable ties          = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};

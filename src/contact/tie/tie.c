@@ -39,10 +39,11 @@ PetscErrorCode TieCheckNames(MPI_Comm comm, void *owner, void *record)
   PetscFunctionReturn(0);
 }
 
-/* What fails over all ranks: the farthest node and where it is; a direction that a support holds of the slave alone */
+/* Nodes that are too far off: how many of this rank, and the farthest, m */
 typedef struct {
-  PetscReal distance, x[3], held, held_x[3];
-} TieFailure;
+  PetscInt  n;
+  PetscReal distance, x[3];
+} TieFar;
 
 /* Takes a place that is worse than those before */
 static void FailureTake(PetscReal value, const PetscReal x[3], PetscReal *worst, PetscReal where[3])
@@ -120,8 +121,8 @@ typedef struct {
   const Mesh    *mesh;
   ContactTie     tie; /* with the counts of this rank */
   ContactSurface master;
-  PetscBool      mortar; /* nodes beyond the border of the master do not matter */
-  TieFailure     failure;
+  TieFar         far, beside;     /* over the master; beyond its border, which mortar leaves out */
+  PetscReal      held, held_x[3]; /* 1 where a support holds the slave alone, and there, m */
 } TieWork;
 
 /* The longest arm that is allowed on a facet, m */
@@ -161,9 +162,10 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link, ContactLinkNo
   facet = foot.facet < 0 ? NULL : &work->master.facet[foot.facet];
   if (facet) foot.distance = FootGetArm(facet, &foot, link->x, arm);
   if (!facet || foot.distance > TieReach(tie, facet)) {
-    if (facet && foot.across > 0 && work->mortar) return;
-    tie->n_far++;
-    FailureTake(foot.distance, link->x, &work->failure.distance, work->failure.x);
+    TieFar *far = facet && foot.across > 0 ? &work->beside : &work->far;
+
+    far->n++;
+    FailureTake(foot.distance, link->x, &far->distance, far->x);
     return;
   }
   link->n_master = LinkSetMaster(&work->master, &foot, arm, master);
@@ -175,26 +177,32 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link, ContactLinkNo
   tie->n++;
   tie->offset = PetscMax(tie->offset, foot.distance);
   TieLookBeyond(facet, &foot, arm, tie);
-  FailureTake(LinkDropHeld(link, master) ? 1 : 0, link->x, &work->failure.held, work->failure.held_x);
+  FailureTake(LinkDropHeld(link, master) ? 1 : 0, link->x, &work->held, work->held_x);
 }
 
-/* Raises the errors of one tie, whose counts are those of all ranks */
-static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure *failure)
+/* Raises the error for nodes that are too far off, from counts of all ranks */
+static PetscErrorCode TieCheckFar(MPI_Comm comm, const ContactTie *tie, TieFar *far)
 {
-  const PetscInt all       = tie->mortar ? tie->n + tie->n_off : tie->n + tie->n_common + tie->n_far;
-  char           words[64] = "(5 % of a facet)";
+  char words[64] = "(5 % of a facet)", node[256] = "";
 
   PetscFunctionBeginUser;
+  if (tie->n_far == 0 || (tie->free && !tie->mortar && tie->n + tie->n_common)) PetscFunctionReturn(0);
   if (tie->distance > 0) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g m", (double)tie->distance));
-  PetscCall(ContactShareWorst(comm, &failure->distance, failure->x));
-  PetscCall(ContactShareWorst(comm, &failure->held, failure->held_x));
-  PetscCheck(
-    tie->n_far == 0 || (tie->free && !tie->mortar && tie->n + tie->n_common), comm, PETSC_ERR_USER_INPUT,
-    "tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
-    " nodes of %s are farther from %s than -%s_distance %s; the one at %.6g, %.6g, %.6g m is %.6g m away; give a "
-    "larger one, a set of the nodes that touch, or -%s_%s",
-    tie->name, tie->n_far, all, tie->slave, tie->master, tie->name, words, (double)failure->x[0], (double)failure->x[1],
-    (double)failure->x[2], (double)failure->distance, tie->name, tie->mortar ? "discretization node" : "far free");
+  if (tie->mortar) PetscCall(PetscSNPrintf(node, sizeof(node), "-%s_discretization node with ", tie->name));
+  PetscCall(ContactShareWorst(comm, &far->distance, far->x));
+  SETERRQ(comm, PETSC_ERR_USER_INPUT,
+          "tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
+          " nodes of %s are farther from %s than -%s_distance %s; the one at %.6g, %.6g, %.6g m is %.6g m away; give a "
+          "larger one, a set of the nodes that touch, or %s-%s_far free",
+          tie->name, tie->n_far, tie->n_slaves, tie->slave, tie->master, tie->name, words, (double)far->x[0],
+          (double)far->x[1], (double)far->x[2], (double)far->distance, node, tie->name);
+}
+
+/* Raises the other errors of one tie, whose counts are those of all ranks */
+static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieWork *work)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactShareWorst(comm, &work->held, work->held_x));
   PetscCheck(tie->n || !tie->mortar || tie->n_common, comm, PETSC_ERR_USER_INPUT,
              "tie %s glues nothing: no face of %s lies over %s; give two of -%s_surfaces that do", tie->name,
              tie->slave, tie->master, tie->name);
@@ -203,16 +211,11 @@ static PetscErrorCode TieCheck(MPI_Comm comm, const ContactTie *tie, TieFailure 
              " nodes of %s are nodes of %s as well; leave it out, or give each body "
              "nodes of its own there",
              tie->name, tie->n_common, tie->slave, tie->master);
-  PetscCheck(failure->held == 0, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(work->held == 0, comm, PETSC_ERR_USER_INPUT,
              "tie %s: a support or motion holds the node of %s at %.6g, %.6g, %.6g m in a direction in which the nodes "
              "of %s beside it are free: let it hold both, or swap -%s_surfaces",
-             tie->name, tie->slave, (double)failure->held_x[0], (double)failure->held_x[1], (double)failure->held_x[2],
+             tie->name, tie->slave, (double)work->held_x[0], (double)work->held_x[1], (double)work->held_x[2],
              tie->master, tie->name);
-  if (tie->n_far)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "squeal: warning: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
-                           " nodes of %s are too far off %s, and stay free\n",
-                           tie->name, tie->n_far, all, tie->slave, tie->master));
   PetscFunctionReturn(0);
 }
 
@@ -244,6 +247,7 @@ static PetscErrorCode LinksMake(Contact contact, PetscInt t, TieWork *work)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetOwnedNodes(contact->model, work->tie.slave, &n, &vertex));
+  work->tie.n_slaves = n;
   PetscCall(PetscRealloc(sizeof(ContactLink) * (size_t)(contact->n_links + n), &contact->links));
   PetscCall(PetscMalloc1(CONTACT_MAX_MASTER * n, &master));
   contact->followed[t] = master;
@@ -262,31 +266,29 @@ static PetscErrorCode LinksMake(Contact contact, PetscInt t, TieWork *work)
 /* Puts mortar links in the place of those from the first on */
 static PetscErrorCode LinksReplace(Contact contact, PetscInt t, PetscInt first, TieWork *work)
 {
-  TieWork again = {.mesh = work->mesh, .tie = contact->ties[t], .master = work->master, .mortar = PETSC_TRUE};
-
   PetscFunctionBeginUser;
   PetscCall(PetscFree(contact->followed[t]));
   contact->n_links = first;
-  PetscCall(LinksMake(contact, t, &again)); /* of nodes that are too far off */
-  PetscCall(PetscFree(contact->followed[t]));
-  contact->n_links   = first;
-  *work              = again;
-  work->failure.held = 0;
+  work->held       = 0;
   work->tie.n = work->tie.n_beyond = 0;
   work->tie.offset = work->tie.beyond = 0;
-  contact->ties[t].mortar             = PETSC_TRUE;
-  PetscCall(ContactGlue(contact, t, &work->master, &work->tie, &work->failure.held, work->failure.held_x));
+  PetscCall(ContactGlue(contact, t, &work->master, &work->tie, &work->held, work->held_x));
   PetscFunctionReturn(0);
 }
 
-/* What was chosen, and which nodes are beside the master */
+/* What was chosen, and which nodes stay free or lie beside the master */
 static PetscErrorCode TieTell(MPI_Comm comm, const ContactTie *tie)
 {
-  const PetscInt all = tie->n + tie->n_common + tie->n_far + tie->n_off;
-
   PetscFunctionBeginUser;
+  if (tie->n_far)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "squeal: warning: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT
+                           " nodes of %s are too far off %s, and stay free\n",
+                           tie->name, tie->n_far, tie->n_slaves, tie->slave, tie->master));
   if (tie->discretization == CONTACT_AUTO && tie->mortar)
     PetscCall(PetscPrintf(comm, "tie %s: meshes do not match: mortar\n", tie->name));
+  if (tie->mortar && tie->free)
+    PetscCall(PetscPrintf(comm, "note: tie %s: -%s_far free is not used by mortar\n", tie->name, tie->name));
   if (tie->n_beyond)
     PetscCall(PetscPrintf(comm,
                           "note: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT " nodes lie beyond the border of %s, the "
@@ -296,7 +298,43 @@ static PetscErrorCode TieTell(MPI_Comm comm, const ContactTie *tie)
     PetscCall(PetscPrintf(comm,
                           "note: tie %s: %" PetscInt_FMT " of %" PetscInt_FMT " nodes of %s have no or little of %s "
                           "under them, and stay free\n",
-                          tie->name, tie->n_off, all, tie->slave, tie->master));
+                          tie->name, tie->n_off, tie->n_slaves, tie->slave, tie->master));
+  PetscFunctionReturn(0);
+}
+
+/* Chooses feet or mortar: auto by whether the meshes match, which the links to feet tell, those from the first on.
+   Mortar needs a slave that is a surface. */
+static PetscErrorCode TieChoose(Contact contact, PetscInt t, PetscInt first, const ContactSurface *master)
+{
+  ContactTie *tie   = &contact->ties[t];
+  PetscBool   match = tie->discretization == CONTACT_NODE ? PETSC_TRUE : PETSC_FALSE;
+  ModelFaces  faces;
+
+  PetscFunctionBeginUser;
+  if (tie->discretization == CONTACT_AUTO) PetscCall(ContactTieMatches(contact, t, first, master, &match));
+  tie->mortar = match ? PETSC_FALSE : PETSC_TRUE;
+  if (match) PetscFunctionReturn(0);
+  PetscCall(ModelGetSetFaces(contact->model, tie->slave, &faces)); /* raises the error for one that is none */
+  PetscCall(ModelFacesDestroy(&faces));
+  PetscFunctionReturn(0);
+}
+
+/* The nodes that are too far off by what ties */
+static void TieCountFar(PetscBool mortar, TieWork *work)
+{
+  work->tie.n_far = work->far.n;
+  if (mortar) return;
+  work->tie.n_far += work->beside.n;
+  FailureTake(work->beside.distance, work->beside.x, &work->far.distance, work->far.x);
+}
+
+/* Sums what a tie has over all ranks */
+static PetscErrorCode TieShare(MPI_Comm comm, const TieWork *work, ContactTie *tie)
+{
+  PetscFunctionBeginUser;
+  /* n_slaves, n, n_common, n_far, n_beyond, n_off, then offset, beyond, stand one after the other in ContactTie */
+  PetscCallMPI(MPI_Allreduce(&work->tie.n_slaves, &tie->n_slaves, 6, MPIU_INT, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(&work->tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, comm));
   PetscFunctionReturn(0);
 }
 
@@ -304,21 +342,23 @@ static PetscErrorCode TieTell(MPI_Comm comm, const ContactTie *tie)
 static PetscErrorCode TieSetUp(Contact contact, PetscInt t)
 {
   ContactTie    *tie   = &contact->ties[t];
-  TieWork        work  = {.tie = *tie, .mortar = tie->discretization == CONTACT_MORTAR ? PETSC_TRUE : PETSC_FALSE};
+  TieWork        work  = {.tie = *tie};
   const PetscInt first = contact->n_links;
-  PetscBool      match = tie->discretization == CONTACT_NODE ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(contact->model, &work.mesh));
   PetscCall(ContactSurfaceCreate(contact, tie->master, &work.master));
   PetscCall(LinksMake(contact, t, &work));
-  if (tie->discretization == CONTACT_AUTO) PetscCall(ContactTieMatches(contact, t, first, &work.master, &match));
-  if (!match) PetscCall(LinksReplace(contact, t, first, &work));
+  PetscCall(TieChoose(contact, t, first, &work.master));
+  TieCountFar(tie->mortar, &work);
+  PetscCall(TieShare(contact->comm, &work, tie));
+  PetscCall(TieCheckFar(contact->comm, tie, &work.far));
+  if (tie->mortar) {
+    PetscCall(LinksReplace(contact, t, first, &work));
+    PetscCall(TieShare(contact->comm, &work, tie));
+  }
   PetscCall(ContactSurfaceDestroy(&work.master));
-  /* n, n_common, n_far, n_beyond and n_off, then offset and beyond, stand one after the other in ContactTie */
-  PetscCallMPI(MPI_Allreduce(&work.tie.n, &tie->n, 5, MPIU_INT, MPI_SUM, contact->comm));
-  PetscCallMPI(MPI_Allreduce(&work.tie.offset, &tie->offset, 2, MPIU_REAL, MPI_MAX, contact->comm));
-  PetscCall(TieCheck(contact->comm, tie, &work.failure));
+  PetscCall(TieCheck(contact->comm, tie, &work));
   PetscCall(TieTell(contact->comm, tie));
   PetscCall(TieCheckMotions(contact, tie, tie->slave));
   PetscCall(TieCheckMotions(contact, tie, tie->master));
