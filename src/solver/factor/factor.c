@@ -85,7 +85,7 @@ static PetscErrorCode ShiftInvertMatrix(const ShiftInvert *si, const PencilMatri
   const PetscReal    s       = si->shift;
 
   PetscFunctionBeginUser;
-  if (si->signs) { /* the caller's own, at shift 0: no copy */
+  if (si->bare) { /* the caller's own, at shift 0: no copy */
     PetscCall(PetscObjectReference((PetscObject)K));
     *A = K;
     PetscFunctionReturn(0);
@@ -143,7 +143,7 @@ static PetscErrorCode ShiftInvertCheck(const ShiftInvert *si, PC pc, PetscBool *
     PetscCall(PCFactorGetMatrix(pc, &F));
     PetscCall(MatMumpsGetInfog(F, 1, &info));
     PetscCall(MatMumpsGetInfog(F, 2, &extra));
-    if ((si->inertia && !si->counts) || si->signs) PetscCall(MatMumpsGetInfog(F, 28, &n_null));
+    if ((si->inertia && !si->counts) || si->bare) PetscCall(MatMumpsGetInfog(F, 28, &n_null));
   }
   /* not PETSC_ERR_MEM, for which the message would be another */
   PetscCheck(info != -8 && info != -9 && info != -14 && info != -15 && info != -17 && info != -20, comm,
@@ -178,16 +178,16 @@ static PetscErrorCode ShiftInvertCreateSolver(ShiftInvert *si, Mat A)
   PetscCall(KSPGetPC(si->ksp, &pc));
   PetscCall(PCSetType(pc, si->even ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  if (si->signs)
+  if (si->bare)
     PetscCall(MatSetOptionsPrefixFactor(A, "st_"));
   else
     PetscCall(KSPSetFromOptions(si->ksp));
-  if (si->inertia || si->workspace || si->signs) {
+  if (si->inertia || si->workspace || si->bare) {
     PetscCall(PCFactorSetUpMatSolverType(pc));
     PetscCall(PCFactorGetMatrix(pc, &F));
   }
   if (si->workspace) PetscCall(MatMumpsSetIcntl(F, 14, si->workspace));
-  if (si->signs) {
+  if (si->bare) {
     PetscCall(MatMumpsSetIcntl(F, 24, 1));
     PetscCall(MatMumpsSetIcntl(F, 33, 1));
   }

@@ -41,9 +41,9 @@ typedef struct ShiftInvert {
   Mat       product;
   PetscBool even;   /* the matrix that is factored is symmetric: LDL' */
   PetscBool halves; /* its upper half will do, on one rank */
-  /* K itself is factored, by MUMPS whatever solver the user has, with null pivots found and the sign of the
-     determinant, LU */
-  PetscBool signs;
+  /* K itself is factored, at shift 0 and without a copy; by MUMPS whatever st_ksp_ and st_pc_ say; with null pivots and
+     the sign of the determinant found */
+  PetscBool bare;
   double    solves; /* right-hand sides that are expected; 0: not known */
   /* of MUMPS beyond its estimate, percent; 0: its own choice, which is raised where it fails */
   PetscInt         workspace;
@@ -86,7 +86,7 @@ PETSC_INTERN PetscErrorCode ShiftInvertKeepsPattern(const ShiftInvert *si, const
 PETSC_INTERN PetscErrorCode ShiftInvertStands(const PencilMatrices *pencil, PetscReal shift, const ShiftInvert *si,
                                               PetscBool *stands);
 PETSC_INTERN PetscErrorCode ShiftInvertFactor(const PencilMatrices *pencil, ShiftInvert *si, PetscBool *singular);
-/* factor.c - whether the determinant of the matrix factored is negative, where si->signs */
+/* factor.c - whether the determinant of the matrix factored is negative, where si->bare */
 PETSC_INTERN PetscErrorCode ShiftInvertIsNegative(const ShiftInvert *si, PetscBool *negative);
 /* release.c - gives up what si->release says, of the matrices that were factored. The symmetric one is a copy of the
    pattern of K: products with it are made from K, M and the pairs then. Where it is but the upper half it stays, and

@@ -280,12 +280,13 @@ static PetscErrorCode Damp(Active *a, const PetscReal l0[], const PetscReal w0[]
   PetscFunctionReturn(0);
 }
 
-/* Without friction, and without any pair that has some, the determinant is positive (small.c): nothing to compute */
+/* Whether the determinant may be negative: without friction, or where no pair has some, it is positive (small.c) */
 static PetscBool ActiveMayReverse(const Active *a, PetscReal friction)
 {
   return friction != 0 && (PairRowsCoulomb(a->rows) || a->rows->S) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Whether the determinant is negative at the present statuses, with a factor of friction that may be another one */
 PetscErrorCode ActiveIsReversed(Active *a, PetscReal friction, PetscBool *reversed)
 {
   Active  at = *a;

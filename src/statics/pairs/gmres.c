@@ -8,10 +8,14 @@
 
 #define GMRES_ENOUGH  1e-10 /* of GMRES that gets no farther; refinement of the whole does the rest */
 #define GMRES_RESTART 300
-/* solves that a factorisation costs: flops of LDL' over entries, and by how much a solve's flops are slower */
-#define GMRES_SLOW   16.0
-#define GMRES_TRIED  20 /* least and most solves before the bodies are factored anew */
-#define GMRES_TRIALS 200
+/* LU takes GMRES_LU times the flops of LDL'; a solve takes GMRES_FLOPS per entry of LDL', which are GMRES_SLOW times
+   slower than those of a factorisation */
+#define GMRES_LU    2.0
+#define GMRES_FLOPS 4.0
+#define GMRES_SLOW  8.0
+/* least and most solves before the bodies are factored anew */
+#define GMRES_LEAST 20
+#define GMRES_MOST  200
 
 /* The matrix-free system, and work [rows] */
 typedef struct {
@@ -111,17 +115,24 @@ static PetscErrorCode SmallRunGMRES(SmallShell *s, Mat A, Vec b, Vec z, GMRESRun
   PetscFunctionReturn(0);
 }
 
-/* Solves that cost as much as an LU factorisation; LDL' has `flops`, of which each solve takes 4 a entry */
+/* Solves that cost as much as LU: GMRES_LU flops / (GMRES_SLOW GMRES_FLOPS entries), both of LDL' */
 static PetscInt SmallTrialSolves(const Compliance *c)
 {
   const FactorCost *cost = &c->inverse.cost;
 
-  if (cost->entries <= 0) return GMRES_TRIALS; /* not known */
-  return (PetscInt)PetscMin(GMRES_TRIALS, PetscMax(GMRES_TRIED, cost->flops / (GMRES_SLOW * cost->entries)));
+  if (cost->entries <= 0) return GMRES_MOST; /* not known */
+  return (PetscInt)PetscMin(GMRES_MOST,
+                            PetscMax(GMRES_LEAST, GMRES_LU * cost->flops / (GMRES_SLOW * GMRES_FLOPS * cost->entries)));
+}
+
+static PetscBool GMRESSuffices(const GMRESRun *run)
+{
+  return run->converged || run->left <= GMRES_ENOUGH ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* With the factors that stand, where no more rows have another law than GMRES may take steps; without, unless that
-   has taken more solves than a factorisation costs before; else with new ones. A step with factors takes two solves. */
+   has taken more solves than a factorisation costs before; else with new ones, or for longer with those that stand
+   where they are of these very laws. A step with factors takes two solves. */
 static PetscErrorCode SmallTryGMRES(SmallShell *s, Mat A, Vec b, Vec z, SmallOutcome *outcome)
 {
   const Compliance *c        = s->system->compliance;
@@ -140,13 +151,13 @@ static PetscErrorCode SmallTryGMRES(SmallShell *s, Mat A, Vec b, Vec z, SmallOut
     PetscCall(SmallRunGMRES(s, A, b, z, &run));
     *s->system->far = (PetscBool)!run.converged;
   }
-  if (!run.converged) {
-    PetscCall(StatusFactorSet(c->status, s->system, &singular));
+  if (!GMRESSuffices(&run)) {
+    if (!d.same) PetscCall(StatusFactorSet(c->status, s->system, &singular));
     run.factor = c->status;
     run.steps  = trials;
     if (!singular) PetscCall(SmallRunGMRES(s, A, b, z, &run));
   }
-  *outcome = singular ? SMALL_SINGULAR : run.converged || run.left <= GMRES_ENOUGH ? SMALL_GOOD : SMALL_UNSOLVED;
+  *outcome = singular ? SMALL_SINGULAR : GMRESSuffices(&run) ? SMALL_GOOD : SMALL_UNSOLVED;
   PetscFunctionReturn(0);
 }
 

@@ -24,7 +24,7 @@
 #define REFACTOR_YIELD 1e-5
 /* change of X over X from which on the law of a pair is another one */
 #define REFACTOR_OTHER 0.5
-/* the same, up to which the determinant is that of the factors */
+/* the same, up to which the factors and their determinant are those of the law */
 #define REFACTOR_SAME 1e-6
 
 struct _StatusFactor {
@@ -117,7 +117,7 @@ static PetscReal LawChange(PetscInt d, const PetscReal X[], const PetscReal Y[])
 PetscErrorCode StatusFactorCompare(StatusFactor f, const SmallSystem *s, FactorDistance *d)
 {
   const PairRows *rows = f->compliance->rows;
-  PetscReal       X[9] = {0}, unused[9];
+  PetscReal       X[9] = {0}, unused[9], largest = 0;
 
   PetscFunctionBeginUser;
   *d = (FactorDistance){.stands = f->stands};
@@ -128,11 +128,12 @@ PetscErrorCode StatusFactorCompare(StatusFactor f, const SmallSystem *s, FactorD
     PetscCall(LawCondense(&s->law[first], X, unused));
     change = LawChange(rows->law[p].d, &f->X[3 * first], X);
     d->n_other += change > REFACTOR_OTHER ? rows->law[p].d : 0;
-    d->change = PetscMax(d->change, change);
-    d->change = PetscMax(d->change, PetscAbsReal(s->friction * s->law[first].slide - f->slide[first]));
+    largest = PetscMax(largest, change);
+    largest = PetscMax(largest, PetscAbsReal(s->friction * s->law[first].slide - f->slide[first]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_other, 1, MPIU_INT, MPI_SUM, rows->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->change, 1, MPIU_REAL, MPI_MAX, rows->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, rows->comm));
+  d->same = f->stands && largest <= REFACTOR_SAME ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -204,10 +205,10 @@ PetscErrorCode StatusFactorSet(StatusFactor f, const SmallSystem *s, PetscBool *
     f->slide[i] = s->friction * s->law[i].slide;
   }
   PetscCall(StatusFactorForm(f));
-  pencil.K         = f->K;
-  f->inverse.comm  = rows->comm;
-  f->inverse.even  = f->symmetric;
-  f->inverse.signs = PETSC_TRUE;
+  pencil.K        = f->K;
+  f->inverse.comm = rows->comm;
+  f->inverse.even = f->symmetric;
+  f->inverse.bare = PETSC_TRUE;
   PetscCall(ShiftInvertFactor(&pencil, &f->inverse, singular));
   f->stands = *singular ? PETSC_FALSE : PETSC_TRUE;
   (*s->n_factored)++;
@@ -222,7 +223,7 @@ PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
 
   PetscFunctionBeginUser;
   PetscCall(StatusFactorCompare(f, s, &d));
-  if (!d.stands || d.change > REFACTOR_SAME) PetscCall(StatusFactorSet(f, s, &singular));
+  if (!d.same) PetscCall(StatusFactorSet(f, s, &singular));
   *reversed = PETSC_FALSE;
   if (!singular) PetscCall(ShiftInvertIsNegative(&f->inverse, reversed));
   PetscFunctionReturn(0);

@@ -49,8 +49,8 @@ PETSC_INTERN PetscErrorCode SmallSolveSparse(const SmallSystem *system, PetscRea
    a slight compliance of rigid pairs. Collective. */
 typedef struct {
   PetscBool stands;  /* there are factors */
+  PetscBool same;    /* and they are of these laws */
   PetscInt  n_other; /* rows of pairs with another law, over all ranks */
-  PetscReal change;  /* largest of a law, relative */
 } FactorDistance;
 PETSC_INTERN PetscErrorCode StatusFactorCreate(const Compliance *c, StatusFactor *factor);
 PETSC_INTERN PetscErrorCode StatusFactorSet(StatusFactor factor, const SmallSystem *system, PetscBool *singular);
