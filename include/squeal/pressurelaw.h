@@ -96,7 +96,11 @@ PetscReal SpringEnergy(const PairSpring *spring, PetscReal force);
 /*@ SpringTangent - the tangent of the law at a closing, rigid at the onset; a linear law itself. Not collective. @*/
 SpringLine SpringTangent(const PairSpring *spring, PetscReal closing);
 
-/*@ SpringNext - where Newton's method lays the next tangent, m: of a line laid at the closing `at` a force and a
-    closing came, two points on the law, of which the one nearer to `at` is taken, so that no steep law runs away. Not
-    collective. @*/
+/*@ TangentNext - where Newton's method lays the next tangent of a law that stiffens, m: of one laid at the closing
+    `at` came a force, at which the law has the closing `pressing`, and a closing: two points on the law, of which the
+    one nearer to `at` is taken, so that no steep law runs away. At the onset the force tells. Not collective. @*/
+PetscReal TangentNext(PetscReal onset, PetscReal at, PetscReal pressing, PetscReal closing);
+
+/*@ SpringNext - the same of the law of a pair, with the force in place of its closing; one without force is at its
+    closing. Not collective. @*/
 PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing);

@@ -44,13 +44,17 @@ SpringLine SpringTangent(const PairSpring *spring, PetscReal closing)
   return line;
 }
 
-PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing)
+PetscReal TangentNext(PetscReal onset, PetscReal at, PetscReal pressing, PetscReal closing)
 {
-  const PetscReal onset = SpringOnset(spring), pressing = SpringClosing(spring, force);
-
-  if (force <= 0) return PetscMax(closing, onset);
   if (at <= onset) return pressing;
   return PetscAbsReal(closing - at) < PetscAbsReal(pressing - at) ? PetscMax(closing, onset) : pressing;
+}
+
+PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing)
+{
+  const PetscReal onset = SpringOnset(spring);
+
+  return force > 0 ? TangentNext(onset, at, SpringClosing(spring, force), closing) : PetscMax(closing, onset);
 }
 
 /* Area (m^2) on which the pressure of a law acts; of a stiffness per pair 1, its pressure is a force */

@@ -73,12 +73,10 @@ static PetscErrorCode PressuresMeasure(const Active *a, PetscReal *residual)
 static PetscReal PairNext(const Active *a, PetscInt p)
 {
   const PetscReal at = a->rows->closing[p], onset = PairOnset(a->rows, p);
-  const PairNow   now      = PairSee(a, p);
-  const PetscReal pressing = PairClosing(a->rows, p, now.force);
+  const PairNow   now = PairSee(a, p);
 
   if (a->status[p] == CONTACT_OPEN) return PetscMax(now.closing, onset);
-  if (at <= onset) return pressing;
-  return PetscAbsReal(now.closing - at) < PetscAbsReal(pressing - at) ? PetscMax(now.closing, onset) : pressing;
+  return TangentNext(onset, at, PairClosing(a->rows, p, now.force), now.closing);
 }
 
 /* Tangents at the points found, or, where exact contact jams or leaves a motion, with the stiffness kappa from the
