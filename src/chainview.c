@@ -106,7 +106,8 @@ static PetscErrorCode ChainPrintRows(MPI_Comm comm, Chain *chain, HelpKind kind,
   PetscCall(PetscPrintf(comm,
                         "PETSc's and SLEPc's own, such as -ts_max_time, -ts_dt, -eps_*, -pep_*, -st_*, -log_view, "
                         "-options_file%s\n",
-                        kind == HELP_ALL ? ", as they print them:" : ": squeal -help_all"));
+                        kind == HELP_ALL ? ", as they print them, a viewer as ascii alone (also binary, draw, socket):"
+                                         : ": squeal -help_all"));
   PetscFunctionReturn(0);
 }
 
@@ -127,5 +128,6 @@ PetscErrorCode ChainHelp(MPI_Comm comm, PetscBool *asked)
   PetscCall(HelpShowLibraries(PETSC_TRUE));
   PetscCall(ChainCreate(comm, &again));
   PetscCall(ChainDestroy(&again));
+  PetscCall(HelpShowLibraries(PETSC_FALSE));
   PetscFunctionReturn(0);
 }

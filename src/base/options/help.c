@@ -104,6 +104,64 @@ void HelpRename(int argc, char *argv[])
     if (!strcmp(argv[i], "-help")) argv[i] = list;
 }
 
+/* Names shown so far, and the title that waits for the first line under it, where each name is shown once */
+static struct {
+  PetscErrorCode (*print)(FILE *, const char[], va_list);
+  PetscOptionsHelpPrinted shown;
+  char                    title[512];
+  PetscBool               inside, skip; /* a line has begun; its name was shown before */
+} once;
+
+static PetscErrorCode HelpPrint(FILE *file, const char format[], ...)
+{
+  va_list list;
+
+  PetscFunctionBeginUser;
+  va_start(list, format);
+  PetscCall((*once.print)(file, format, list));
+  va_end(list);
+  PetscFunctionReturn(0);
+}
+
+/* In place of PetscVFPrintf: solvers of one kind print the same names again, and viewers a line for each of their
+   types. A line begins with blanks and the dash of its name and may come in pieces. */
+static PetscErrorCode HelpPrintOnce(FILE *file, const char format[], va_list list)
+{
+  char      text[8192], name[HELP_MAX_NAME];
+  size_t    length = 0, blanks;
+  PetscBool begins;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscVSNPrintf(text, sizeof(text), format, &length, list));
+  PetscCall(PetscStrlen(text, &length));
+  blanks = strspn(text, " ");
+  begins = text[0] == ' ' && text[blanks] == '-' ? PETSC_TRUE : PETSC_FALSE;
+  if (!once.inside && !begins) {
+    if (text[0] == '-') once.title[0] = '\0';
+    PetscCall(PetscStrlcat(once.title, text, sizeof(once.title)));
+    PetscFunctionReturn(0);
+  }
+  if (begins) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "%.*s", (int)strcspn(text + blanks, " :"), text + blanks));
+    PetscCall(PetscOptionsHelpPrintedCheck(once.shown, "", name, &once.skip));
+    if (!once.skip) PetscCall(HelpPrint(file, "%s", once.title));
+    if (!once.skip) once.title[0] = '\0';
+  }
+  if (!once.skip) PetscCall(HelpPrint(file, "%s", text));
+  once.inside = text[length - 1] != '\n' ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Until HelpShowLibraries() is off again */
+static PetscErrorCode HelpBeginOnce(void)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHelpPrintedCreate(&once.shown));
+  once.print    = PetscVFPrintf;
+  PetscVFPrintf = HelpPrintOnce;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode HelpShowLibraries(PetscBool on)
 {
   PetscFunctionBeginUser;
@@ -112,6 +170,8 @@ PetscErrorCode HelpShowLibraries(PetscBool on)
   else
     PetscCall(PetscOptionsClearValue(NULL, "-help"));
   PetscCall(PetscOptionsHelpPrintedDestroy(&PetscOptionsHelpPrintedSingleton));
+  if (!on) PetscVFPrintf = once.print;
+  if (!on) PetscCall(PetscOptionsHelpPrintedDestroy(&once.shown));
   PetscFunctionReturn(0);
 }
 
@@ -148,6 +208,7 @@ PetscErrorCode HelpBegin(HelpKind *kind, PetscBool *example)
   if (*kind == HELP_NONE) PetscFunctionReturn(0); /* to look for an option would make it one that is read */
   PetscCall(SceneIsGiven(&given));
   *example = given ? PETSC_FALSE : PETSC_TRUE;
+  if (*kind == HELP_ALL) PetscCall(HelpBeginOnce());
   if (*example) PetscCall(PetscOptionsInsertString(NULL, names_of_all));
   PetscFunctionReturn(0);
 }

@@ -13,7 +13,8 @@ PETSC_INTERN void HelpRename(int argc, char *argv[]);
 typedef enum { HELP_NONE, HELP_LIST, HELP_ALL, HELP_JSON } HelpKind;
 /* Which of them is given, so that a scene need not be complete */
 PETSC_INTERN PetscErrorCode HelpIsAsked(HelpKind *kind);
-/* The same; where no scene is given, options of one with a name in each list */
+/* The same; where no scene is given, options of one with a name in each list. With -help_all each name is
+   shown once until HelpShowLibraries() is off */
 PETSC_INTERN PetscErrorCode HelpBegin(HelpKind *kind, PetscBool *example);
 /* Whether objects of PETSc and SLEPc that read their options from now on print them */
 PETSC_INTERN PetscErrorCode HelpShowLibraries(PetscBool on);
