@@ -101,6 +101,15 @@ SpringLine SpringTangent(const PairSpring *spring, PetscReal closing);
     one nearer to `at` is taken, so that no steep law runs away. At the onset the force tells. Not collective. @*/
 PetscReal TangentNext(PetscReal onset, PetscReal at, PetscReal pressing, PetscReal closing);
 
-/*@ SpringNext - the same of the law of a pair, with the force in place of its closing; one without force is at its
-    closing. Not collective. @*/
-PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing);
+/* What a solver on lines found of a pair: a force, N, not negative, and a closing, m */
+typedef struct {
+  PetscReal force, closing;
+} SpringPoint;
+
+/*@ SpringsMiss - how far the points [n] are off the laws: as a force or as a closing, whichever is less, of the largest
+    force, and of the largest closing beyond its onset. Not collective. @*/
+PetscReal SpringsMiss(PetscInt n, const PairSpring law[], const SpringPoint point[]);
+
+/*@ SpringsLay - the next tangents of the laws [n], of the points that the lines before, laid at the closings `at`, led
+    to: TangentNext(); one without force is at its closing. Not collective. @*/
+void SpringsLay(PetscInt n, const PairSpring law[], const SpringPoint point[], PetscReal at[], SpringLine line[]);

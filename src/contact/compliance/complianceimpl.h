@@ -55,12 +55,13 @@ typedef struct {
 
 /* Laws in series with the pairs (spring.c) */
 typedef struct {
-  PairSpring *law;          /* [n], NULL where contact is exact */
-  PetscBool   curved, laid; /* some are not linear; lines are tangents at forces */
-  SpringLine *line;         /* [n] */
-  PetscReal  *at;           /* [n] closings at which the lines were tangents, m */
-  PetscReal  *W, *diagonal; /* [3 n][3 n] with the lines, m/N; [n] without, normal */
-  PetscReal  *q;            /* work: [3 n] */
+  PairSpring  *law;          /* [n], NULL where contact is exact */
+  PetscBool    curved, laid; /* some are not linear; lines are tangents at forces */
+  SpringLine  *line;         /* [n] */
+  PetscReal   *at;           /* [n] closings at which the lines were tangents, m */
+  SpringPoint *point;        /* [n] */
+  PetscReal   *W, *diagonal; /* [3 n][3 n] with the lines, m/N; [n] without, normal */
+  PetscReal   *q;            /* work: [3 n] */
 } ComplianceSprings;
 
 struct _p_ContactCompliance {

@@ -32,7 +32,7 @@ static PetscErrorCode SpringsSetDiagonal(ContactCompliance c)
 }
 
 /* Tangents at the closings springs.at */
-static PetscErrorCode SpringsLay(ContactCompliance c)
+static PetscErrorCode SpringsSetTangents(ContactCompliance c)
 {
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < c->n; p++) c->springs.line[p] = SpringTangent(&c->springs.law[p], c->springs.at[p]);
@@ -45,8 +45,8 @@ PetscErrorCode ContactComplianceSetSprings(ContactCompliance c, const PairSpring
   const PetscInt N = 3 * c->n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc5(N * N, &c->springs.W, c->n, &c->springs.law, c->n, &c->springs.line, c->n, &c->springs.at,
-                         c->n, &c->springs.diagonal));
+  PetscCall(PetscMalloc6(N * N, &c->springs.W, c->n, &c->springs.law, c->n, &c->springs.line, c->n, &c->springs.at,
+                         c->n, &c->springs.diagonal, c->n, &c->springs.point));
   PetscCall(PetscArraycpy(c->springs.W, c->W, N * N));
   PetscCall(PetscArraycpy(c->springs.law, law, c->n));
   c->W = c->springs.W;
@@ -56,14 +56,15 @@ PetscErrorCode ContactComplianceSetSprings(ContactCompliance c, const PairSpring
     if (SpringIsCurved(&law[p])) c->springs.curved = PETSC_TRUE;
   }
   PetscCall(PetscMalloc1(N, &c->springs.q));
-  PetscCall(SpringsLay(c));
+  PetscCall(SpringsSetTangents(c));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ComplianceDestroySprings(ContactCompliance c)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(c->springs.W, c->springs.law, c->springs.line, c->springs.at, c->springs.diagonal));
+  PetscCall(
+    PetscFree6(c->springs.W, c->springs.law, c->springs.line, c->springs.at, c->springs.diagonal, c->springs.point));
   PetscCall(PetscFree(c->springs.q));
   PetscFunctionReturn(0);
 }
@@ -75,30 +76,15 @@ PetscReal ComplianceLineClosing(const ContactCompliance c, PetscInt p)
   return c->springs.law ? line->closing + line->compliance * c->kappa[p] * c->l[3 * p] : 0;
 }
 
-/* How far a pair is off its law: as a force or as a closing, whichever is less, of the largest. v_n = r_n + o */
-static PetscReal SpringMiss(const ContactCompliance c, PetscInt p, const PetscReal size[2])
+/* What the lines led to: v_n = r_n + o */
+static void SpringsTake(ContactCompliance c)
 {
-  const PairSpring *law     = &c->springs.law[p];
-  const PetscReal   now     = c->kappa[p] * c->l[3 * p];
-  const PetscReal   at      = now > 0 ? ComplianceLineClosing(c, p) : c->springs.line[p].closing - c->v[3 * p];
-  const PetscReal   force   = PetscAbsReal(now - SpringForce(law, at));
-  const PetscReal   closing = PetscAbsReal(PetscMax(at, SpringOnset(law)) - SpringClosing(law, now));
-
-  return force == 0 || closing == 0 ? 0 : PetscMin(force / size[0], closing / size[1]);
-}
-
-static PetscReal SpringsMeasure(const ContactCompliance c)
-{
-  PetscReal size[2] = {0, 0}, miss = 0;
-
   for (PetscInt p = 0; p < c->n; p++) {
-    const PetscReal now = c->kappa[p] * c->l[3 * p];
+    SpringPoint *point = &c->springs.point[p];
 
-    size[0] = PetscMax(size[0], now);
-    size[1] = PetscMax(size[1], SpringClosing(&c->springs.law[p], now) - SpringOnset(&c->springs.law[p]));
+    point->force   = PetscMax(0, c->kappa[p] * c->l[3 * p]);
+    point->closing = point->force > 0 ? ComplianceLineClosing(c, p) : c->springs.line[p].closing - c->v[3 * p];
   }
-  for (PetscInt p = 0; p < c->n; p++) miss = PetscMax(miss, SpringMiss(c, p, size));
-  return miss;
 }
 
 /* The line through the law at a force, as steep as before */
@@ -111,19 +97,14 @@ static void SpringShift(const PairSpring *law, PetscReal force, SpringLine *line
    takes */
 static PetscErrorCode SpringsMove(ContactCompliance c, PetscBool tangents)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < c->n; p++) {
-    const PairSpring *law   = &c->springs.law[p];
-    SpringLine       *line  = &c->springs.line[p];
-    const PetscReal   force = PetscMax(0, c->kappa[p] * c->l[3 * p]);
-    const PetscReal   at    = force > 0 ? ComplianceLineClosing(c, p) : line->closing - c->v[3 * p];
+  ComplianceSprings *s = &c->springs;
 
-    if (tangents)
-      c->springs.at[p] = SpringNext(law, c->springs.at[p], force, at);
-    else
-      SpringShift(law, force, line);
-  }
-  if (tangents) PetscCall(SpringsLay(c));
+  PetscFunctionBeginUser;
+  if (tangents) {
+    SpringsLay(c->n, s->law, s->point, s->at, s->line);
+    PetscCall(SpringsSetDiagonal(c));
+  } else
+    for (PetscInt p = 0; p < c->n; p++) SpringShift(&s->law[p], s->point[p].force, &s->line[p]);
   PetscFunctionReturn(0);
 }
 
@@ -139,7 +120,7 @@ static PetscErrorCode SpringsBegin(ContactCompliance c, const PetscReal lambda[]
     else
       c->springs.at[p] = SpringClosing(&c->springs.law[p], force);
   }
-  if (!c->springs.laid) PetscCall(SpringsLay(c));
+  if (!c->springs.laid) PetscCall(SpringsSetTangents(c));
   c->springs.laid = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -160,7 +141,8 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
     sum.factors += c->report.factors;
     sum.route = PetscMax(sum.route, c->report.route);
     if (!c->springs.curved || !c->report.converged) break;
-    miss = SpringsMeasure(c);
+    SpringsTake(c);
+    miss = SpringsMiss(c->n, c->springs.law, c->springs.point);
     if (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2)) break;
     if (miss > SPRING_FAST * before) tangents = PETSC_TRUE;
     PetscCall(SpringsMove(c, tangents));
@@ -192,6 +174,6 @@ PetscErrorCode ComplianceLayAt(ContactCompliance c, const PetscReal at[])
   if (!c->springs.curved) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(c->springs.at, at, c->n));
   c->springs.laid = PETSC_TRUE;
-  PetscCall(SpringsLay(c));
+  PetscCall(SpringsSetTangents(c));
   PetscFunctionReturn(0);
 }

@@ -50,11 +50,32 @@ PetscReal TangentNext(PetscReal onset, PetscReal at, PetscReal pressing, PetscRe
   return PetscAbsReal(closing - at) < PetscAbsReal(pressing - at) ? PetscMax(closing, onset) : pressing;
 }
 
-PetscReal SpringNext(const PairSpring *spring, PetscReal at, PetscReal force, PetscReal closing)
+PetscReal SpringsMiss(PetscInt n, const PairSpring law[], const SpringPoint point[])
 {
-  const PetscReal onset = SpringOnset(spring);
+  PetscReal size[2] = {0, 0}, miss = 0;
 
-  return force > 0 ? TangentNext(onset, at, SpringClosing(spring, force), closing) : PetscMax(closing, onset);
+  for (PetscInt p = 0; p < n; p++) {
+    size[0] = PetscMax(size[0], point[p].force);
+    size[1] = PetscMax(size[1], SpringClosing(&law[p], point[p].force) - SpringOnset(&law[p]));
+  }
+  for (PetscInt p = 0; p < n; p++) {
+    const PetscReal force   = PetscAbsReal(point[p].force - SpringForce(&law[p], point[p].closing));
+    const PetscReal onset   = SpringOnset(&law[p]);
+    const PetscReal closing = PetscAbsReal(PetscMax(point[p].closing, onset) - SpringClosing(&law[p], point[p].force));
+
+    if (force != 0 && closing != 0) miss = PetscMax(miss, PetscMin(force / size[0], closing / size[1]));
+  }
+  return miss;
+}
+
+void SpringsLay(PetscInt n, const PairSpring law[], const SpringPoint point[], PetscReal at[], SpringLine line[])
+{
+  for (PetscInt p = 0; p < n; p++) {
+    const PetscReal onset = SpringOnset(&law[p]), force = point[p].force, closing = point[p].closing;
+
+    at[p]   = force > 0 ? TangentNext(onset, at[p], SpringClosing(&law[p], force), closing) : PetscMax(closing, onset);
+    line[p] = SpringTangent(&law[p], at[p]);
+  }
 }
 
 /* Area (m^2) on which the pressure of a law acts; of a stiffness per pair 1, its pressure is a force */

@@ -10,7 +10,7 @@
 #include "reduced/reducedimpl.h"
 
 #define EQUILIBRIUM_MAX_IT  100
-#define EQUILIBRIUM_SETTLED 1e-10 /* of the largest closing */
+#define EQUILIBRIUM_SETTLED 1e-11 /* of the largest force or closing */
 /* Of the highest omega^2, on modes that are rigid: a body that nothing holds along some direction would make the
    system singular. */
 #define EQUILIBRIUM_HOLD 1e-12
@@ -21,6 +21,7 @@ typedef struct {
   const PetscReal    *loads;
   PetscInt            n, *pair; /* closed ones */
   SpringLine         *line;     /* [n_pairs] */
+  SpringPoint        *point;    /* [n_pairs] */
   PetscReal          *at;       /* [n_pairs] closings at which they are tangents, m */
   PetscReal          *A, *x;    /* [m + n]^2, [m + n] */
   PetscBLASInt       *pivot;
@@ -117,20 +118,13 @@ static PetscErrorCode SlidingSystemSolve(SlidingSystem *s, ReducedState *state, 
 static void SlidingSystemLay(SlidingSystem *s, const ReducedState *state, PetscBool *settled)
 {
   const ReducedModel *model = s->model;
-  PetscReal           most = 0, miss = 0;
 
-  for (PetscInt i = 0; i < model->n_pairs && model->spring; i++) {
-    const PairSpring *law     = &model->spring[i];
-    const PetscReal   force   = PetscMax(0, state->p[3 * i]);
-    const PetscReal   closing = -model->gap[i] - state->y[3 * i];
-
-    if (!SpringIsCurved(law)) continue;
-    most       = PetscMax(most, SpringClosing(law, force) - SpringOnset(law));
-    miss       = PetscMax(miss, PetscAbsReal(PetscMax(closing, SpringOnset(law)) - SpringClosing(law, force)));
-    s->at[i]   = SpringNext(law, s->at[i], force, closing);
-    s->line[i] = SpringTangent(law, s->at[i]);
-  }
-  *settled = miss <= EQUILIBRIUM_SETTLED * most ? PETSC_TRUE : PETSC_FALSE;
+  *settled = PETSC_TRUE;
+  if (!model->spring) return;
+  for (PetscInt i = 0; i < model->n_pairs; i++)
+    s->point[i] = (SpringPoint){PetscMax(0, state->p[3 * i]), -model->gap[i] - state->y[3 * i]};
+  if (SpringsMiss(model->n_pairs, model->spring, s->point) > EQUILIBRIUM_SETTLED) *settled = PETSC_FALSE;
+  SpringsLay(model->n_pairs, model->spring, s->point, s->at, s->line);
 }
 
 /* All pairs closed, lines at the onsets of their laws */
@@ -155,7 +149,7 @@ PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loa
   PetscBool      settled = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc6(n, &s.pair, n, &s.line, n, &s.at, most * most, &s.A, most, &s.x, most, &s.pivot));
+  PetscCall(PetscMalloc7(n, &s.pair, n, &s.line, n, &s.point, n, &s.at, most * most, &s.A, most, &s.x, most, &s.pivot));
   SlidingSystemBegin(&s, state);
   *found = PETSC_TRUE;
   for (PetscInt it = 0; it < EQUILIBRIUM_MAX_IT && *found && !settled; it++) {
@@ -167,6 +161,6 @@ PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loa
   PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
   PetscCall(PetscArraycpy(state->q, state->p, 3 * model->n_pairs));
   state->time = 0;
-  PetscCall(PetscFree6(s.pair, s.line, s.at, s.A, s.x, s.pivot));
+  PetscCall(PetscFree7(s.pair, s.line, s.point, s.at, s.A, s.x, s.pivot));
   PetscFunctionReturn(0);
 }
