@@ -84,13 +84,11 @@ typedef struct {
   PetscReal closing, compliance; /* m, m/N */
 } SpringLine;
 
-/*@ SpringIsCurved, SpringOnset, SpringClosing, SpringForce - whether the law of a pair is not linear; the closing (m)
-    at which it begins, that at a force (N), the force at a closing. SpringEnergy - stored at a force, J. Not
-    collective. @*/
+/*@ SpringIsCurved, SpringOnset, SpringClosing - whether the law of a pair is not linear; the closing (m) at which it
+    begins, that at a force (N). SpringEnergy - stored at a force, J. Not collective. @*/
 PetscBool SpringIsCurved(const PairSpring *spring);
 PetscReal SpringOnset(const PairSpring *spring);
 PetscReal SpringClosing(const PairSpring *spring, PetscReal force);
-PetscReal SpringForce(const PairSpring *spring, PetscReal closing);
 PetscReal SpringEnergy(const PairSpring *spring, PetscReal force);
 
 /*@ SpringTangent - the tangent of the law at a closing, rigid at the onset; a linear law itself. Not collective. @*/

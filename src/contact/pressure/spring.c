@@ -22,7 +22,7 @@ PetscReal SpringClosing(const PairSpring *spring, PetscReal force)
   return PressureClosing(&spring->law, force / spring->area);
 }
 
-PetscReal SpringForce(const PairSpring *spring, PetscReal closing)
+static PetscReal SpringForce(const PairSpring *spring, PetscReal closing)
 {
   return spring->area * PressureAt(&spring->law, closing);
 }
