@@ -20,9 +20,12 @@ typedef struct {
    three about them. */
 typedef struct {
   char     *name, *set[2]; /* set[1] is empty for the ground */
-  PetscBool is_point, has_at;
+  PetscBool is_point, has_at, has_at_b, has_axis[2];
   PetscBool rigid;        /* the set moves as one rigid body, and the point with it; else it moves freely */
   PetscReal at[3];        /* place of the motions, m; after ModelSetUp() */
+  PetscReal at_b[3];      /* that of set b where it has one of its own, m */
+  PetscReal axis[2][3];   /* of a bushing, as they are given: the axes of its motions, else x, y, z */
+  PetscReal frame[9];     /* its rows: the axes of the motions q; after ModelSetUp() */
   PetscReal stiffness[6]; /* N/m; N m/rad */
   PetscReal viscosity[6]; /* N s/m; N m s/rad */
   PetscReal mass;         /* kg */

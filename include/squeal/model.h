@@ -108,8 +108,9 @@ typedef struct {
   PrescribedMotion *motions;
   Probe            *probes;
   Circle           *circles;
-  PetscReal         loss_frequency; /* Hz, of the loss factors; 0: not given */
-  PetscReal         gravity[3];     /* m/s^2 */
+  PetscReal         loss_frequency;                /* Hz, of the loss factors; 0: not given */
+  PetscReal         gravity[3];                    /* m/s^2 */
+  char              equations[PETSC_MAX_PATH_LEN]; /* file of -model_equations; empty without */
 } ModelScene;
 
 /*@

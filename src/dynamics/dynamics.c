@@ -127,6 +127,8 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
   PetscCall(ContactGetTies(d->contact, &n_ties, &tie));
+  PetscCheck(!scene->equations[0], d->comm, PETSC_ERR_SUP,
+             "-model_equations is not supported in time on the mesh: take -dynamics_model reduced");
   PetscCheck(!n_ties || d->b == 0.5, d->comm, PETSC_ERR_SUP,
              "-ts_central_b %.6g is not supported with tie %s: take 0.5", (double)d->b, n_ties ? tie[0].name : "");
   for (PetscInt i = 0; i < scene->n_points && d->b != 0.5; i++)

@@ -126,6 +126,8 @@ static PetscErrorCode JointAddChecksum(Model model, const Joint *j, Checksum c)
     if (j->set[k][0]) PetscCall(ModelAddSetChecksum(model, j->set[k], PETSC_FALSE, c));
   PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){j->has_at, j->rigid}));
   if (j->has_at) PetscCall(ChecksumAddReals(c, 3, j->at)); /* else a sum over ranks, whose rounding is no difference */
+  if (j->has_at_b) PetscCall(ChecksumAddReals(c, 3, j->at_b));
+  if (j->has_axis[0]) PetscCall(ChecksumAddReals(c, 9, j->frame));
   PetscCall(ChecksumAddReals(c, 6, j->stiffness));
   PetscCall(ChecksumAddReals(c, 6, j->viscosity));
   PetscCall(ChecksumAddReals(c, 1, &j->mass));
@@ -148,6 +150,8 @@ PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum 
   for (PetscInt i = 0; i < s->n_dashpots; i++) PetscCall(GroundedAddChecksum(model, "dashpot", &s->dashpots[i], c));
   for (PetscInt i = 0; i < s->n_joints; i++) PetscCall(JointAddChecksum(model, &s->joints[i], c));
   for (PetscInt i = 0; i < s->n_points; i++) PetscCall(JointAddChecksum(model, &s->points[i], c));
+  if (s->equations[0]) PetscCall(ChecksumSetPart(c, "-model_equations"));
+  if (s->equations[0]) PetscCall(ChecksumAddString(c, s->equations));
   PetscFunctionReturn(0);
 }
 

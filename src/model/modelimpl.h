@@ -105,16 +105,16 @@ PETSC_INTERN PetscErrorCode CircleCheck(MPI_Comm comm, void *owner, void *circle
 
 /* A set whose mean motion is asked for, where it was asked for, and the sign that it counts with */
 typedef struct {
-  const char *owner, *option, *set; /* -owner_option set */
-  const char *turns;                /* what asks for the rotations, such as -tip_inertia; empty for nothing */
-  PetscReal   sign;
+  const char      *owner, *option, *set; /* -owner_option set */
+  const char      *turns;                /* what asks for the rotations, such as -tip_inertia; empty for nothing */
+  PetscReal        sign;
+  const PetscReal *at; /* place, m */
 } ModelMeanWish;
 
-/* mean.c - the middle of a set, m; the sum of the mean motions of sets about a place (m), each with its sign.
+/* mean.c - the middle of a set, m; the sum of the mean motions of sets, each about its place, with its sign.
    Collective. Errors: PETSC_ERR_USER_INPUT for a rotation of nodes on one line. */
 PETSC_INTERN PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3]);
-PETSC_INTERN PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[],
-                                       const PetscReal at[3], ModelMean *mean);
+PETSC_INTERN PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[], ModelMean *mean);
 PETSC_INTERN PetscErrorCode MeanDestroy(ModelMean *mean);
 
 /* mean.c - eigenvalues, ascending, and -vectors [3][3] of a symmetric matrix xx, yy, zz, xy, xz, yz */

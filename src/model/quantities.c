@@ -74,6 +74,9 @@ static const Quantity model[] = {
   {"-model_gravity", "acceleration of gravity in x,y,z", "m/s^2", QUANTITY_REALS, MODEL(scene.gravity), LOADS},
   {"-model_loss_frequency", "where the loss factors of the parts are exact", "Hz", QUANTITY_REAL,
    MODEL(scene.loss_frequency), .given = offsetof(struct _p_Model, has_loss)},
+  {"-model_equations",
+   "linear equations between displacements of nodes: a table equation,x_m,y_m,z_m,direction,coefficient", NULL,
+   QUANTITY_PATH, MODEL(scene.equations), .path = "file"},
 };
 
 const QuantityTable model_quantities = TABLE("Model", model, .in = 0);
@@ -168,6 +171,12 @@ static const Quantity dashpot[] = {
 static const Quantity joint[] = {
   {"-a", "named set of one side", NULL, QUANTITY_NAME, JOINT(set[0]), .required = PETSC_TRUE, .why = SET_WANTED},
   {"-b", "named set of the other side; default the ground", NULL, QUANTITY_NAME, JOINT(set[1])},
+  {"-at_b", "place of the motions of side b, where it is another one", "m", QUANTITY_REALS, JOINT(at_b),
+   .given = offsetof(Joint, has_at_b)},
+  {"-axis_1", "direction of its x; default that of space", NULL, QUANTITY_REALS, JOINT(axis[0]),
+   .given = offsetof(Joint, has_axis[0])},
+  {"-axis_2", "direction of its y, of which what is along x is taken off; default any", NULL, QUANTITY_REALS,
+   JOINT(axis[1]), .given = offsetof(Joint, has_axis[1])},
   HOLDERS,
 };
 static const Quantity point[] = {

@@ -124,12 +124,14 @@ PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 /* joint.c - which local nodes belong to a part; the caller frees them */
 PETSC_INTERN PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, PetscBool **on);
 
-/* joint.c, dependents.c - raise an error for a point with mass, or joined rigidly, and for a tie, on a part that spins.
+/* joint.c, dependents.c, equations.c - raise an error for a point with mass, or joined rigidly, for a tie, and for
+   equations, on a part that spins.
    Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, PetscInt part);
+PETSC_INTERN PetscErrorCode OperatorsCheckSpinningEquations(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
 
-/* dependents.c - Z and E of points that are joined rigidly and of ties, where matrices are made; raises an error where
+/* dependents.c - Z and E of points that are joined rigidly, of ties and of equations, where matrices are made; raises an error where
    two of them claim one node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCreateDependents(Operators operators);
 

@@ -6,7 +6,8 @@
     verify/joint.py bar MODES TOLERANCE MASS ELEMENTS
 
 Two rigid bars as of mesh.py bars (100 x 10 x 10 mm, the second behind a gap of 20 mm), 7800 and 3900 kg/m^3, and joints
-"side a/side b/place/three stiffnesses and three about the axes", sides left, right, ground; points are joints of mass:
+"side a/side b/place/three stiffnesses and three about the axes[/axis 1/axis 2[/place of b]]", sides left, right, ground;
+points are joints of mass:
 "left/mass/place/mass and six of inertia". Every frequency but the zeros must be there.
 
 The first bar clamped at its start, 200 GPa, no lateral strain, with a mass at its end: bending by Timoshenko's equations,
@@ -39,6 +40,15 @@ def motion(side, place):
     return q
 
 
+def frame(first="1,0,0", second="0,1,0"):
+    """Rows: the axes of a joint, the second by Gram-Schmidt."""
+    x, y = (np.array([float(v) for v in text.split(",")]) for text in (first, second))
+    x /= np.linalg.norm(x)
+    y -= x * (x @ y)
+    y /= np.linalg.norm(y)
+    return np.array([x, y, np.cross(x, y)])
+
+
 def bodies(joints):
     """Frequencies, Hz."""
     K, M = np.zeros((12, 12)), np.zeros((12, 12))
@@ -46,7 +56,7 @@ def bodies(joints):
         mass = DENSITY[side] * SIZE.prod()
         M[6 * i:6 * i + 6, 6 * i:6 * i + 6] = np.diag([mass] * 3 + list(mass / 12 * ((SIZE**2).sum() - SIZE**2)))
     for joint in joints:
-        a, b, place, values = joint.split("/")
+        a, b, place, values, *more = joint.split("/")
         place, values = (np.array([float(x) for x in text.split(",")]) for text in (place, values))
         if b == "mass":
             q = motion(a, place)
@@ -55,8 +65,9 @@ def bodies(joints):
             W[:3, :3], W[3:, 3:] = m * np.eye(3), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
             M += q.T @ W @ q
         else:
-            q = motion(a, place) - motion(b, place)
-            K += q.T @ np.diag(values) @ q
+            axes, other = frame(*more[:2]), np.array([float(x) for x in more[2].split(",")]) if more[2:] else place
+            q = motion(a, place) - motion(b, other)
+            K += q.T @ np.kron(np.eye(2), axes).T @ np.diag(values) @ np.kron(np.eye(2), axes) @ q
     L = np.linalg.cholesky(M)
     eigenvalues = np.linalg.eigvalsh(np.linalg.solve(L, np.linalg.solve(L, K).T))
     return np.sqrt(np.maximum(0, eigenvalues)) / (2 * np.pi)

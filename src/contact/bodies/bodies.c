@@ -322,10 +322,12 @@ static PetscErrorCode SayTouches(const BodyGraph *b)
 
 PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms)
 {
-  BodyGraph b = {.contact = contact};
+  BodyGraph         b = {.contact = contact};
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  if (terms) PetscFunctionReturn(0); /* matrices of another program may join anything */
+  PetscCall(ModelGetScene(contact->model, &scene));
+  if (terms || scene->equations[0]) PetscFunctionReturn(0); /* which may join anything */
   PetscCall(ModelGetMesh(contact->model, &b.mesh));
   PetscCall(ModelGetBodies(contact->model, &b.n, &b.body));
   if (b.n > 1) {

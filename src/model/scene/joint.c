@@ -5,8 +5,11 @@
 
       K += B' diag(k) B,     C += B' diag(c) B,     M += B' diag(m, m, m, J) B,
 
-   which is exact for rigid motions: B u is the motion of the point, and a bushing does not resist where both of its
+   in axes of its own where it has them, which is exact for rigid motions: B u is the motion of the point, and a bushing does not resist where both of its
    sides move as one rigid body. J is the inertia about x_0, where the centre of mass is.
+
+   The motion of set b may be taken at a place of its own, as that of a spring between two nodes is. The joint then
+   resists turns of both sides as one body.
 
    The nodes of a set that is joined rigidly move as one rigid body (operators/points/rigid.c).
 
@@ -14,7 +17,9 @@
    negative and none exceeds the sum of the two others.
 */
 #include "model/modelimpl.h"
+#include "base/algebra/vec3.h"
 
+#define AXES_PARALLEL    1e-6 /* sine of the angle between axis 1 and 2 below which they are one */
 #define INERTIA_ROUNDING 1e-9 /* of the largest principal moment */
 #define MAX_OPTION       256
 
@@ -26,12 +31,43 @@ static PetscBool JointIsGiven(PetscInt n, const PetscReal value[])
   return PETSC_FALSE;
 }
 
+/* The axes of a bushing, orthonormal rows */
+static PetscErrorCode JointFrame(MPI_Comm comm, Joint *joint)
+{
+  PetscReal *const x = joint->frame, *const y = &joint->frame[3];
+  int least = 0;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 9; i++) joint->frame[i] = i % 4 == 0;
+  PetscCheck(joint->has_axis[0] || !joint->has_axis[1], comm, PETSC_ERR_USER_INPUT,
+             "-%s_axis_2 needs -%s_axis_1, the direction of its x", joint->name, joint->name);
+  if (!joint->has_axis[0]) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(x, joint->axis[0], 3));
+  PetscCheck(Vec3Normalise(x) > 0, comm, PETSC_ERR_USER_INPUT, "-%s_axis_1 0,0,0 is no direction", joint->name);
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(x[d]) < PetscAbsReal(x[least])) least = d;
+  for (int d = 0; d < 3; d++) y[d] = joint->has_axis[1] ? joint->axis[1][d] : d == least;
+  PetscCheck(Vec3Normalise(y) > 0, comm, PETSC_ERR_USER_INPUT, "-%s_axis_2 0,0,0 is no direction", joint->name);
+  {
+    const PetscReal along = Vec3Dot(x, y);
+
+    for (int d = 0; d < 3; d++) y[d] -= along * x[d];
+  }
+  PetscCheck(Vec3Normalise(y) > AXES_PARALLEL, comm, PETSC_ERR_USER_INPUT, "-%s_axis_1 and -%s_axis_2 are parallel",
+             joint->name, joint->name);
+  Vec3Cross(x, y, &joint->frame[6]);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode JointCheck(MPI_Comm comm, void *owner, void *record)
 {
-  const Joint *joint = record;
+  Joint *joint = record;
 
   PetscFunctionBeginUser;
   (void)owner;
+  PetscCall(JointFrame(comm, joint));
+  PetscCheck(!joint->has_at_b || joint->set[1][0], comm, PETSC_ERR_USER_INPUT,
+             "-%s_at_b does nothing without -%s_b, the other side", joint->name, joint->name);
   PetscCheck(strcmp(joint->set[0], joint->set[1]), comm, PETSC_ERR_USER_INPUT,
              "-%s_a and -%s_b both name %s: a bushing joins two sets, or one and the ground", joint->name, joint->name,
              joint->set[0]);
@@ -50,6 +86,7 @@ PetscErrorCode PointCheck(MPI_Comm comm, void *owner, void *record)
   PetscFunctionBeginUser;
   (void)owner;
   joint->is_point = PETSC_TRUE;
+  PetscCall(JointFrame(comm, joint));
   if (!joint->set[1]) PetscCall(PetscStrallocpy("", &joint->set[1]));
   PetscCheck(!n || n == 3 || n == 6, comm, PETSC_ERR_USER_INPUT,
              "-%s_inertia has %" PetscInt_FMT " values; give xx,yy,zz or xx,yy,zz,xy,xz,yz (kg m^2)", joint->name, n);
@@ -123,6 +160,17 @@ static PetscErrorCode JointCheckFree(Model model, const Joint *joint)
   PetscFunctionReturn(0);
 }
 
+/* Motions in the axes of the joint, in the place of those of space */
+static void JointTurn(Joint *joint)
+{
+  for (PetscInt i = 0; i < 6 * joint->mean.n; i++) {
+    PetscReal *q = &joint->mean.b[3 * i], turned[3];
+
+    for (int k = 0; k < 3; k++) turned[k] = Vec3Dot(&joint->frame[3 * k], q);
+    for (int k = 0; k < 3; k++) q[k] = turned[k];
+  }
+}
+
 /* The place and the six motions of one joint */
 static PetscErrorCode JointSetUp(Model model, Joint *joint)
 {
@@ -140,12 +188,14 @@ static PetscErrorCode JointSetUp(Model model, Joint *joint)
     "that acts on it",
     joint->name, joint->name, joint->name, joint->name, joint->name, joint->name);
   for (PetscInt k = 0; k < n; k++) {
-    wish[k] = (ModelMeanWish){joint->name, joint->is_point ? "set" : k ? "b" : "a", joint->set[k], turns, k ? -1 : 1};
+    wish[k] = (ModelMeanWish){joint->name, joint->is_point ? "set" : k ? "b" : "a",       joint->set[k], turns,
+                              k ? -1 : 1,  k && joint->has_at_b ? joint->at_b : joint->at};
     if (joint->has_at) continue;
     PetscCall(MeanFindMiddle(model, &wish[k], middle));
     for (int d = 0; d < 3; d++) joint->at[d] += middle[d] / (PetscReal)n;
   }
-  PetscCall(MeanCreate(model, n, wish, joint->at, &joint->mean));
+  PetscCall(MeanCreate(model, n, wish, &joint->mean));
+  JointTurn(joint);
   PetscCall(JointCheckFree(model, joint));
   PetscFunctionReturn(0);
 }

@@ -142,15 +142,14 @@ PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[], const PetscReal at[3],
-                          ModelMean *mean)
+PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[], ModelMean *mean)
 {
   const PetscInt n = model->mesh.n_nodes;
   PetscReal(*b)[3][6], middle[3];
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &b));
-  for (PetscInt k = 0; k < n_wishes; k++) PetscCall(MeanVisit(model, &wish[k], at, middle, b));
+  for (PetscInt k = 0; k < n_wishes; k++) PetscCall(MeanVisit(model, &wish[k], wish[k].at, middle, b));
   mean->n = 0;
   for (int fill = 0; fill < 2; fill++) {
     for (PetscInt v = 0, i = 0; v < n; v++) {

@@ -1,6 +1,7 @@
 /*
-   Displacements that follow others: the nodes of points that are joined rigidly (rigid.c) and the slaves of ties
-   (contact/tie/tie.c). With D the rows of the followers and E the injection of all others, q = E'u,
+   Displacements that follow others: the nodes of points that are joined rigidly (rigid.c), the slaves of ties
+   (contact/tie/tie.c) and what stands first in an equation (equations.c). With D the rows of the followers and E the
+   injection of all others, q = E'u,
 
       u = D u + E q = Z q,   Z = E + D E + D^2 E + ...,
 
@@ -29,21 +30,22 @@ static PetscErrorCode LinkAddRows(const ContactLink *link, PetscInt by, Dependen
   PetscFunctionReturn(0);
 }
 
-/* What follows what, of points, then of ties */
-static PetscErrorCode DependentsAddRows(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+/* What follows what, of points, of ties, then of equations */
+static PetscErrorCode DependentsAddRows(Operators o, const Leaders *by, Dependents *d)
 {
   const ContactLink *link;
   PetscInt           n;
 
   PetscFunctionBeginUser;
-  for (PetscInt s = 0; s < n_sets; s++) PetscCall(RigidAddRows(&set[s], s, d));
+  for (PetscInt s = 0; s < by->n_sets; s++) PetscCall(RigidAddRows(&by->set[s], s, d));
   PetscCall(ContactGetLinks(o->contact, &n, &link));
-  for (PetscInt l = 0; l < n; l++) PetscCall(LinkAddRows(&link[l], n_sets + link[l].tie, d));
+  for (PetscInt l = 0; l < n; l++) PetscCall(LinkAddRows(&link[l], by->n_sets + link[l].tie, d));
+  PetscCall(EquationsAddRows(&by->equations, d->n_lists - 1, d));
   PetscFunctionReturn(0);
 }
 
 /* Raises the error for a node that two lists claim */
-static PetscErrorCode DependentsCheck(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+static PetscErrorCode DependentsCheck(Operators o, const Leaders *by, Dependents *d)
 {
   const ContactTie *tie;
   PetscInt          n, a, b;
@@ -52,14 +54,21 @@ static PetscErrorCode DependentsCheck(Operators o, PetscInt n_sets, const RigidS
   PetscCall(ContactGetTies(o->contact, &n, &tie));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->conflict, 1, MPIU_INT, MPI_MAX, o->comm));
   if (d->conflict < 0) PetscFunctionReturn(0);
-  a = d->conflict / d->n_lists - n_sets;
-  b = d->conflict % d->n_lists - n_sets;
+  PetscCheck(
+    d->conflict % d->n_lists < by->n_sets + n, o->comm, PETSC_ERR_USER_INPUT,
+    "-model_equations: a displacement that stands first in an equation follows already, %s: let another one of "
+    "the equation stand first",
+    d->conflict / d->n_lists < by->n_sets       ? "by a point that is joined rigidly"
+    : d->conflict / d->n_lists < by->n_sets + n ? "by a tie"
+                                                : "by another equation");
+  a = d->conflict / d->n_lists - by->n_sets;
+  b = d->conflict % d->n_lists - by->n_sets;
   PetscCheck(b >= 0, o->comm, PETSC_ERR_USER_INPUT,
              "two points that are joined rigidly have nodes in common: join the whole to one of them");
   PetscCheck(a >= 0, o->comm, PETSC_ERR_USER_INPUT,
              "tie %s: nodes of %s are joined rigidly to point %s as well, and can follow one alone: swap -%s_surfaces, "
              "or name sets without common nodes",
-             tie[b].name, tie[b].slave, set[a + n_sets].point->name, tie[b].name);
+             tie[b].name, tie[b].slave, by->set[a + by->n_sets].point->name, tie[b].name);
   SETERRQ(
     o->comm, PETSC_ERR_USER_INPUT,
     "ties %s and %s: nodes of %s and %s are the same, and can follow one surface alone: swap the -surfaces of one, or "
@@ -165,24 +174,26 @@ static PetscErrorCode DependentsSum(Operators o, const Dependents *d)
 }
 
 /* In words, who is there */
-static PetscErrorCode DependentsName(Operators o, PetscInt n_sets, const RigidSet set[])
+static PetscErrorCode DependentsName(Operators o, const Leaders *by)
 {
   const ContactTie *tie;
   PetscInt          n;
   char              ties[80] = "", points[80] = "";
+  const PetscInt    n_sets = by->n_sets;
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetTies(o->contact, &n, &tie));
   if (n) PetscCall(PetscSNPrintf(ties, sizeof(ties), "-ties %s%s", tie[0].name, n > 1 ? " and others" : ""));
   if (n_sets)
-    PetscCall(PetscSNPrintf(points, sizeof(points), "-points joined rigidly (%s%s)", set[0].point->name,
+    PetscCall(PetscSNPrintf(points, sizeof(points), "-points joined rigidly (%s%s)", by->set[0].point->name,
                             n_sets > 1 ? " and others" : ""));
-  PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "%s%s%s", ties, n && n_sets ? " or " : "", points));
+  PetscCall(PetscSNPrintf(o->dependent, sizeof(o->dependent), "%s%s%s%s%s", ties, n && n_sets ? " or " : "", points,
+                          (n || n_sets) && by->equations.n ? " or " : "", by->equations.n ? "-model_equations" : ""));
   PetscFunctionReturn(0);
 }
 
 /* Counts the rows, and checks that no two claim one */
-static PetscErrorCode DependentsCount(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+static PetscErrorCode DependentsCount(Operators o, const Leaders *by, Dependents *d)
 {
   const Mesh *mesh;
 
@@ -194,18 +205,18 @@ static PetscErrorCode DependentsCount(Operators o, PetscInt n_sets, const RigidS
   d->follows = o->follows;
   PetscCall(PetscCalloc2(d->n, &d->by, d->n, &d->count));
   for (PetscInt i = 0; i < d->n; i++) d->by[i] = -1;
-  PetscCall(DependentsAddRows(o, n_sets, set, d));
-  PetscCall(DependentsCheck(o, n_sets, set, d));
+  PetscCall(DependentsAddRows(o, by, d));
+  PetscCall(DependentsCheck(o, by, d));
   PetscFunctionReturn(0);
 }
 
 /* Z and E from the rows, once they are counted */
-static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const RigidSet set[], Dependents *d)
+static PetscErrorCode DependentsResolve(Operators o, const Leaders *by, Dependents *d)
 {
   PetscFunctionBeginUser;
-  PetscCall(DependentsName(o, n_sets, set));
+  PetscCall(DependentsName(o, by));
   PetscCall(DependentsCreate(o, d));
-  PetscCall(DependentsAddRows(o, n_sets, set, d));
+  PetscCall(DependentsAddRows(o, by, d));
   PetscCall(MatAssemblyBegin(d->D, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(d->D, MAT_FINAL_ASSEMBLY));
   PetscCall(DependentsCheckChains(o, d));
@@ -218,20 +229,22 @@ static PetscErrorCode DependentsResolve(Operators o, PetscInt n_sets, const Rigi
 PetscErrorCode OperatorsCreateDependents(Operators o)
 {
   const ContactTie *tie;
-  RigidSet         *set;
-  PetscInt          n_sets, n_ties;
+  Leaders           by;
+  PetscInt          n_ties;
 
   PetscFunctionBeginUser;
-  PetscCall(RigidSetsCreate(o, &n_sets, &set));
+  PetscCall(RigidSetsCreate(o, &by.n_sets, &by.set));
+  PetscCall(EquationsCreate(o, &by.equations));
   PetscCall(ContactGetTies(o->contact, &n_ties, &tie));
-  if (n_sets + n_ties) {
-    Dependents d = {.n_lists = n_sets + n_ties, .conflict = -1};
+  if (by.n_sets + n_ties + by.equations.n) {
+    Dependents d = {.n_lists = by.n_sets + n_ties + (by.equations.n > 0), .conflict = -1};
 
-    PetscCall(DependentsCount(o, n_sets, set, &d));
-    if (!o->omit) PetscCall(DependentsResolve(o, n_sets, set, &d));
+    PetscCall(DependentsCount(o, &by, &d));
+    if (!o->omit) PetscCall(DependentsResolve(o, &by, &d));
     PetscCall(PetscFree2(d.by, d.count));
   }
-  PetscCall(RigidSetsDestroy(n_sets, set));
+  PetscCall(RigidSetsDestroy(by.n_sets, by.set));
+  PetscCall(EquationsDestroy(&by.equations));
   PetscFunctionReturn(0);
 }
 

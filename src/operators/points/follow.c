@@ -28,7 +28,7 @@ PetscErrorCode DependentsFollow(Dependents *d, PetscInt unknown, PetscInt n, con
     if (!d->D)
       d->count[i]++;
     else
-      PetscCall(MatSetValue(d->D, unknown, column[k], value[k], INSERT_VALUES));
+      PetscCall(MatSetValue(d->D, unknown, column[k], value[k], ADD_VALUES));
   }
   PetscFunctionReturn(0);
 }

@@ -150,17 +150,18 @@ static PetscErrorCode ReactionsFindJoints(Statics s, Vec displacement)
   PetscCall(VecGetArrayRead(displacement, &u));
   for (PetscInt i = 0; i < scene->n_joints + scene->n_points; i++) {
     const Joint *joint = i < scene->n_joints ? &scene->joints[i] : &scene->points[i - scene->n_joints];
-    PetscReal    q[6], k[6], c[6], m;
+    PetscReal    q[6], k[6], c[6], m, force[3];
 
     PetscCall(OperatorsGetJoint(s->operators, s->p, i, k, c, &m));
     if (k[0] + k[1] + k[2] + k[3] + k[4] + k[5] == 0) continue;
     PetscCall(ModelGetMeanMotion(s->model, &joint->mean, u, q));
-    for (int d = 0; d < 3; d++) q[d] *= -k[d];
+    for (int d = 0; d < 3; d++) q[d] *= -k[d], force[d] = 0;
+    for (int d = 0; d < 9; d++) force[d % 3] += joint->frame[d] * q[d / 3];
     PetscCall(ReactionAdd(s, joint->name,
                           joint->is_point    ? "point"
                           : joint->set[1][0] ? "bushing on a"
                                              : "bushing",
-                          q, NULL));
+                          force, NULL));
   }
   PetscCall(VecRestoreArrayRead(displacement, &u));
   PetscFunctionReturn(0);
