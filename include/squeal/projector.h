@@ -124,7 +124,7 @@ PetscErrorCode ContactProjectorStart(ContactProjector projector, PetscReal t, co
                                      const ContactState states[]);
 
 /*@ ContactProjectorGetActive - nodes that may come into contact at this step: indices into the nodes, [n] (borrowed
-    until the next ContactProject()). Not collective. @*/
+    until the next ContactProject()). Errors: those of the step before. Collective. @*/
 PetscErrorCode ContactProjectorGetActive(ContactProjector projector, PetscInt *n, const PetscInt **active);
 
 /*@

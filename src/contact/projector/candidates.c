@@ -9,7 +9,7 @@
 
    A slave then has not yet left its candidates at the next step, since it moves by far less than half a facet in one.
    Nodes that are no candidates are unseen in between, so that a few of each master, the outermost ones along the
-   axes, are always active and stand for them.
+   axes, are always active and stand for them; but where no slave travels, since no search comes then.
 */
 #include "projectorimpl.h"
 #include "base/events.h"
@@ -17,14 +17,15 @@
 /* mean sizes of the facets: larger ones have more candidates and active nodes a step, smaller ones more searches */
 #define MARGIN 1.0
 
-/* The outermost nodes of a surface along each axis are active, and the nodes of live facets */
-static void MasterActivate(const ProjectorMaster *m, const ProjectorNodes *nodes, PetscBool is_active[])
+/* The nodes of live facets are active, and the outermost nodes of a surface along each axis where slaves travel */
+static void MasterActivate(const ProjectorMaster *m, const ProjectorNodes *nodes, PetscBool stays,
+                           PetscBool is_active[])
 {
   const ContactSurface *s = m->surface;
 
   for (PetscInt f = 0; f < s->n_facets; f++)
     for (int i = 0; i < s->facet[f].n && m->live[f]; i++) is_active[m->node[s->facet[f].node[i]]] = PETSC_TRUE;
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < 3 && !stays; d++) {
     PetscInt low = m->node[0], high = m->node[0];
 
     for (PetscInt i = 1; i < s->n_nodes; i++) {
@@ -76,7 +77,8 @@ PetscErrorCode ProjectorSearch(ContactProjector p, PetscReal t, PetscReal reach,
   p->candidates.n = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) PetscCall(CandidatesFind(p, k, reach, u));
   p->first_candidate[p->n_pairs] = p->candidates.n;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) MasterActivate(&p->master[i], &p->nodes, p->is_active);
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    MasterActivate(&p->master[i], &p->nodes, SlidingStays(&p->sliding[i]), p->is_active);
   for (PetscInt i = 0; i < p->n_interfaces; i++) MasterSee(&p->master[i], p->is_active);
   PetscCall(PetscArraycpy(p->u_search, u, 3 * p->share.n_nodes));
   p->t_search = t;

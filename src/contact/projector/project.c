@@ -175,13 +175,29 @@ INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
   return q[0];
 }
 
+/* Sum of the sizes of the terms of a relative velocity, m/s */
+INTO_VERSIONS PetscReal RowSize(const ProjectorRow *row, const PetscReal v[])
+{
+  const PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]],
+                  *d = &v[3 * row->node[3]], *s = &v[3 * row->node[4]], *w = row->weight;
+  PetscReal sum = 0;
+
+  for (int i = 0; i < 3; i++)
+    sum +=
+      (PetscAbsReal(s[i]) + PetscAbsReal(row->offset[i])) + ((PetscAbsReal(w[0] * a[i]) + PetscAbsReal(w[1] * b[i])) +
+                                                             (PetscAbsReal(w[2] * c[i]) + PetscAbsReal(w[3] * d[i])));
+  return sum;
+}
+
 /* Rounding of the relative velocity of a pair as an impulse, N s: NOISE eps mass times the sum of the terms' sizes
    (m/s) */
 INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
 {
   const ProjectorPair *pair = &p->pair[k];
+  const ProjectorRow  *row  = &p->row[k];
   PetscReal            sum  = 0;
 
+  if (row->mass > 0) return NOISE * PETSC_MACHINE_EPSILON * row->mass * RowSize(row, p->nodes.v);
   for (int d = 0; d < 3; d++) {
     sum += PetscAbsReal(p->nodes.v[3 * pair->slave + d]) + PetscAbsReal(pair->offset[d]);
     for (int i = 0; i < 4; i++) sum += PetscAbsReal(pair->weight[i] * p->nodes.v[3 * pair->node[i] + d]);

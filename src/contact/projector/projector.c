@@ -3,9 +3,9 @@
    which solves all pairs (project.c), and the forces come back. Whether the next step begins with a search comes with
    them, so that all ranks know it; for that step all nodes are active.
 
-   One rank solves since Gauss-Seidel is sequential, and its order of pairs must not hang on the ranks. Contact is
-   some per cent of a step; beside it the exchange of two messages is the cost. Errors are raised by all ranks, from
-   what the root says in `head`.
+   One rank solves since Gauss-Seidel is sequential, and its order of pairs must not hang on the ranks. The others go on
+   meanwhile: a rank without active nodes needs no forces, and begins the next step. All ranks look at what the root
+   says in `head` when they ask for the active nodes of the next step, or for sums: errors are raised there, by all.
 */
 #include "projectorimpl.h"
 
@@ -16,8 +16,9 @@ PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *project
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, projector));
-  (*projector)->contact      = contact;
-  (*projector)->n_interfaces = contact->n_interfaces;
+  (*projector)->contact       = contact;
+  (*projector)->share.request = MPI_REQUEST_NULL;
+  (*projector)->n_interfaces  = contact->n_interfaces;
   PetscCall(QuantitiesInit(&projector_quantities, *projector));
   PetscFunctionReturn(0);
 }
@@ -128,14 +129,6 @@ PetscErrorCode ContactProjectorSetMass(ContactProjector p, const PetscReal minv[
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactProjectorGetActive(ContactProjector p, PetscInt *n, const PetscInt **active)
-{
-  PetscFunctionBeginUser;
-  *n      = p->share.n_active;
-  *active = p->share.active;
-  PetscFunctionReturn(0);
-}
-
 /* Whether any slave may come to another place on its master */
 static PetscBool ProjectorTravels(const ContactProjector p)
 {
@@ -178,26 +171,50 @@ static PetscErrorCode ProjectorAdvance(ContactProjector p, PetscBool search_next
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ProjectorFinish(ContactProjector p)
+{
+  const double time = (double)p->last.time;
+  PetscReal    head[SHARE_HEAD];
+
+  PetscFunctionBeginUser;
+  if (!p->under_way) PetscFunctionReturn(0);
+  p->under_way = PETSC_FALSE;
+  PetscCall(ShareReturnEnd(&p->share, head));
+  PetscCheck(!PetscIsNanReal(head[HEAD_RESIDUAL]), p->share.comm, PETSC_ERR_FP,
+             "velocities at the contact surfaces are no numbers at %.6g s", time);
+  PetscCheck(head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
+             "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, "
+             "%.6g, %.6g m; "
+             "raise -projector_max_it %" PetscInt_FMT,
+             time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
+             (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
+  PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const PetscReal u[],
                               const PetscReal before[], const PetscReal v[], PetscReal force[])
 {
   PetscReal head[SHARE_HEAD] = {0};
 
   PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p));
   p->last = *step;
   PetscCall(ShareGather(&p->share, 3, (const PetscReal *const[]){u, before, v},
                         (PetscReal *const[]){p->nodes.u, p->nodes.before, p->nodes.v}));
   PetscCall(RootProject(p, step, head));
-  PetscCall(ShareReturn(&p->share, p->nodes.force, head, force));
-  PetscCheck(!PetscIsNanReal(head[HEAD_RESIDUAL]), p->share.comm, PETSC_ERR_FP,
-             "velocities at the contact surfaces are no numbers at %.6g s", (double)step->time);
-  PetscCheck(head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
-             "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, "
-             "%.6g, %.6g m; "
-             "raise -projector_max_it %" PetscInt_FMT,
-             (double)step->time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS],
-             (double)head[HEAD_X], (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
-  PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(ShareReturnBegin(&p->share, p->nodes.force, head));
+  p->under_way = PETSC_TRUE;
+  PetscCall(ShareGetForces(&p->share, force));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetActive(ContactProjector p, PetscInt *n, const PetscInt **active)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p));
+  *n      = p->share.n_active;
+  *active = p->share.active;
   PetscFunctionReturn(0);
 }
 
@@ -224,6 +241,7 @@ PetscErrorCode ContactProjectorMark(ContactProjector p)
 PetscErrorCode ContactProjectorGetSums(ContactProjector p, PetscInt interface, ContactSums *sums)
 {
   PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p));
   PetscCheck(interface >= 0 && interface < p->n_interfaces, p->share.comm, PETSC_ERR_ARG_OUTOFRANGE,
              "interface %" PetscInt_FMT " must lie between 0 and %" PetscInt_FMT, interface, p->n_interfaces - 1);
   *sums = p->sums[interface];
@@ -262,6 +280,7 @@ PetscErrorCode ContactProjectorDestroy(ContactProjector *projector)
 {
   PetscFunctionBeginUser;
   if (!*projector) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Wait(&(*projector)->share.request, MPI_STATUS_IGNORE));
   PetscCall(ProjectorDestroySurfaces(*projector));
   PetscCall(PetscFree(*projector));
   PetscFunctionReturn(0);

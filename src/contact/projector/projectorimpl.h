@@ -93,6 +93,7 @@ typedef struct {
   PetscMPIInt *n_send, *send, *n_back, *back; /* counts and places of the messages, numbers */
   PetscInt    *send_node, *back_node;         /* nodes in the order of the messages */
   PetscReal   *buffer[2];                     /* of this rank, and of the root */
+  MPI_Request  request;                       /* of the message back */
 } ProjectorShare;
 
 #define PROJECTOR_DEEPEST 1e-3 /* sizes of a facet: a slave deeper below is not taken up */
@@ -148,6 +149,7 @@ struct _p_ContactProjector {
   /* on all ranks */
   PetscReal   noise;       /* rounding of its forces, N; on the root */
   ContactStep last;        /* the step made */
+  PetscBool   under_way;   /* its head has not been looked at */
   PetscBool   search_next; /* all nodes are active, and the next step begins with a search */
 };
 
@@ -183,16 +185,23 @@ static inline PetscInt ShareNode(const ProjectorShare *share, PetscInt i)
 PETSC_INTERN PetscErrorCode ProjectorSetUpSurfaces(ContactProjector projector);
 PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector);
 
+/* projector.c - how the step under way ended: raises its errors, and lists the active nodes of the next
+   one. Collective. */
+PETSC_INTERN PetscErrorCode ProjectorFinish(ContactProjector projector);
+
 /* share.c - the exchange between the root and all ranks; is_active [n_nodes] is read on the root, NULL on all ranks for
    all */
 PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share);
 PETSC_INTERN PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[]);
-/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root, and forces from there with
-   head[SHARE_HEAD] */
+/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root */
 PETSC_INTERN PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[],
                                         PetscReal *const root[]);
-PETSC_INTERN PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD],
-                                        PetscReal local[]);
+/* share.c - forces [n_nodes][3] and head of the root set out to all ranks; the forces of the active nodes, for which a
+   rank without any does not wait; the head, the same on all ranks: what is decided by it is decided alike */
+PETSC_INTERN PetscErrorCode ShareReturnBegin(ProjectorShare *share, const PetscReal root[],
+                                             const PetscReal head[SHARE_HEAD]);
+PETSC_INTERN PetscErrorCode ShareGetForces(ProjectorShare *share, PetscReal local[]);
+PETSC_INTERN PetscErrorCode ShareReturnEnd(ProjectorShare *share, PetscReal head[SHARE_HEAD]);
 static inline PetscInt      ShareCountSent(const ProjectorShare *share)
 {
   return share->send[share->size - 1] + share->n_send[share->size - 1];

@@ -20,6 +20,7 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   PetscReal *v;
 
   PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p));
   *n = MemoryLength(p);
   PetscCall(PetscMalloc1(*n, values));
   v    = *values;

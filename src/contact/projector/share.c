@@ -2,7 +2,8 @@
    Exchange between the ranks that have nodes of contact surfaces and the root that solves the contact. Every rank knows
    which nodes each rank has and owns, so that the lists of a message are made without talking; the owner of a node
    sends its values, and all that have it receive its force, hence the same bits. Two collective messages a step, of the
-   active nodes alone.
+   active nodes alone. A rank without such nodes waits for neither: it needs the head of the second one, not the forces,
+   and only when it looks for the active nodes of the next step.
 */
 #include "projectorimpl.h"
 #include "base/gather.h"
@@ -78,13 +79,12 @@ static void ShareUnpack(const ProjectorShare *share, PetscInt n, const PetscReal
       for (int d = 0; d < 3; d++) root[k][3 * share->send_node[i] + d] = message[3 * (n * i + k) + d];
 }
 
-PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
+/* The nodes that this rank owns among the active ones; their number */
+static PetscMPIInt SharePackOwn(const ProjectorShare *share, PetscInt n, const PetscReal *const local[],
+                                PetscReal message[])
 {
-  const MPI_Datatype record  = share->record[n - 1];
-  PetscReal         *message = share->buffer[0];
-  PetscMPIInt        n_own   = 0;
+  PetscMPIInt n_own = 0;
 
-  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < share->n_active; i++) {
     const PetscInt at = 3 * share->active[i];
 
@@ -93,12 +93,25 @@ PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *c
       for (int d = 0; d < 3; d++) message[3 * (n * n_own + k) + d] = local[k][at + d];
     n_own++;
   }
-  if (share->size > 1) {
-    PetscCallMPI(MPI_Gatherv(message, n_own, record, share->buffer[1], share->n_send, share->send, record, share->root,
-                             share->comm));
-    message = share->buffer[1];
+  return n_own;
+}
+
+PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[], PetscReal *const root[])
+{
+  const MPI_Datatype record = share->record[n - 1];
+  PetscMPIInt        n_own;
+
+  PetscFunctionBeginUser;
+  if (share->size == 1) {
+    for (PetscInt i = 0; i < share->n_active; i++)
+      for (PetscInt k = 0; k < n; k++)
+        for (int d = 0; d < 3; d++) root[k][3 * share->send_node[i] + d] = local[k][3 * share->active[i] + d];
+    PetscFunctionReturn(0);
   }
-  if (share->rank == share->root) ShareUnpack(share, n, message, root);
+  n_own = SharePackOwn(share, n, local, share->buffer[0]);
+  PetscCallMPI(MPI_Gatherv(share->buffer[0], n_own, record, share->buffer[1], share->n_send, share->send, record,
+                           share->root, share->comm));
+  if (share->rank == share->root) ShareUnpack(share, n, share->buffer[1], root);
   PetscFunctionReturn(0);
 }
 
@@ -117,17 +130,33 @@ static void SharePack(const ProjectorShare *share, const PetscReal root[], const
   }
 }
 
-/* Every rank gets the same head: what is decided by it is decided alike */
-PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal root[], PetscReal head[SHARE_HEAD], PetscReal local[])
+PetscErrorCode ShareReturnBegin(ProjectorShare *share, const PetscReal root[], const PetscReal head[SHARE_HEAD])
 {
   PetscReal *message = share->buffer[0];
 
   PetscFunctionBeginUser;
   if (share->rank == share->root) SharePack(share, root, head, share->size > 1 ? share->buffer[1] : message);
   if (share->size > 1)
-    PetscCallMPI(MPI_Scatterv(share->buffer[1], share->n_back, share->back, MPIU_REAL, message,
-                              share->n_back[share->rank], MPIU_REAL, share->root, share->comm));
-  for (int k = 0; k < SHARE_HEAD; k++) head[k] = *message++;
+    PetscCallMPI(MPI_Iscatterv(share->buffer[1], share->n_back, share->back, MPIU_REAL, message,
+                               share->n_back[share->rank], MPIU_REAL, share->root, share->comm, &share->request));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShareReturnEnd(ProjectorShare *share, PetscReal head[SHARE_HEAD])
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Wait(&share->request, MPI_STATUS_IGNORE));
+  for (int k = 0; k < SHARE_HEAD; k++) head[k] = share->buffer[0][k];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ShareGetForces(ProjectorShare *share, PetscReal local[])
+{
+  const PetscReal *message = &share->buffer[0][SHARE_HEAD];
+
+  PetscFunctionBeginUser;
+  if (!share->n_active) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Wait(&share->request, MPI_STATUS_IGNORE));
   for (PetscInt i = 0; i < share->n_active; i++)
     for (int d = 0; d < 3; d++) local[3 * share->active[i] + d] = *message++;
   PetscFunctionReturn(0);

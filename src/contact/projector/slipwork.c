@@ -96,6 +96,7 @@ PetscErrorCode ContactProjectorGetSlipWork(ContactProjector p, const PetscReal u
   SlipStep        step = {.u0 = p->nodes.u, .dt = p->last.dt, .kick = p->last.kick};
 
   PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p));
   *work = (ContactSlipWork){.done = 0};
   if (root) PetscCall(PetscCalloc1(3 * p->share.n_nodes, &u1));
   PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){u}, (PetscReal *const[]){u1}));

@@ -26,6 +26,9 @@ typedef struct {
 /* together.c - makes the cells at the contact a cluster, unless they are more than a rank's share. Collective. */
 PETSC_INTERN PetscErrorCode TogetherFind(Model model, PetscInt n_ranks, Clusters *clusters);
 
+/* together.c - flags the cells at the contact; at_contact [cells] on the rank of the mesh */
+PETSC_INTERN PetscErrorCode TogetherFlag(Model model, PetscBool at_contact[]);
+
 /* slabs.c - makes the slabs of swept bodies clusters, and bodies that fit on a rank whole ones; the costs of cells.
    Collective. */
 PETSC_INTERN PetscErrorCode SlabsFind(Model model, PetscInt n_ranks, Clusters *clusters, Slabs *slabs);

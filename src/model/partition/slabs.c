@@ -19,6 +19,10 @@
    shorter, hence vectorise less well, and blocks of a sparse matrix take 50 to 60 ns (bound by memory) */
 enum { COST_TURNED = 2, COST_ALONG = 3, COST_GENERAL = 8 };
 
+/* Cost of a pair, about 190 ns, of which a cell at the contact has one or so: the rank that solves them all does that
+   while the others go on (contact/projector/projector.c) */
+#define COST_CONTACT 28
+
 /* Bodies of the undistributed mesh */
 typedef struct {
   PetscInt     n, *of_vertex, *of_cell;
@@ -32,6 +36,20 @@ static PetscErrorCode BodyListDestroy(BodyList *bodies)
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < bodies->n; b++) PetscCall(ModelDestroyLines(&bodies->lines[b]));
   PetscCall(PetscFree4(bodies->of_cell, bodies->cost, bodies->whole, bodies->lines));
+  PetscFunctionReturn(0);
+}
+
+/* Adds the cost of the pairs to the cells at the contact of swept bodies that stay whole */
+static PetscErrorCode ContactAddCost(Model model, const BodyList *bodies, Clusters *clusters)
+{
+  PetscBool *at_contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(clusters->n_cells, &at_contact));
+  PetscCall(TogetherFlag(model, at_contact));
+  for (PetscInt c = 0; c < clusters->n_cells; c++)
+    if (at_contact[c] && bodies->whole[bodies->of_cell[c]]) clusters->cost[c] += COST_CONTACT;
+  PetscCall(PetscFree(at_contact));
   PetscFunctionReturn(0);
 }
 
@@ -133,6 +151,7 @@ static PetscErrorCode BodiesCluster(Model model, PetscInt n_ranks, BodyList *bod
   PetscCall(CellsCentres(model, clusters->n_cells, slabs->centre));
   PetscCall(BodyListCreate(model, clusters, bodies));
   PetscCall(BodyListChooseWhole(n_ranks, bodies));
+  PetscCall(ContactAddCost(model, bodies, clusters));
   for (PetscInt b = 0; b < bodies->n; b++) {
     if (bodies->lines[b] && !bodies->whole[b]) PetscCall(ChainAdd(model, bodies, b, node, clusters, slabs));
     if (!bodies->whole[b]) continue;

@@ -119,14 +119,14 @@ static PetscErrorCode FlagCellsOfSet(DM dm, PetscInt n_sets, char *const sets[],
   PetscFunctionReturn(0);
 }
 
-/* Flags the cells at the contact; at_contact [cells] */
-static PetscErrorCode FlagContact(DM dm, PetscInt n_sets, char *const sets[], PetscBool at_contact[])
+PetscErrorCode TogetherFlag(Model model, PetscBool at_contact[])
 {
-  TogetherBox boxes[MODEL_MAX_NAMES];
+  TogetherBox    boxes[MODEL_MAX_NAMES];
+  const PetscInt n = model->n_together;
 
   PetscFunctionBeginUser;
-  for (PetscInt s = 0; s < n_sets; s++) PetscCall(SetBox(dm, sets[s], &boxes[s]));
-  for (PetscInt s = 0; s < n_sets; s++) PetscCall(FlagCellsOfSet(dm, n_sets, sets, s, boxes, at_contact));
+  for (PetscInt s = 0; s < n; s++) PetscCall(SetBox(model->dm, model->together[s], &boxes[s]));
+  for (PetscInt s = 0; s < n; s++) PetscCall(FlagCellsOfSet(model->dm, n, model->together, s, boxes, at_contact));
   PetscFunctionReturn(0);
 }
 
@@ -137,7 +137,7 @@ PetscErrorCode TogetherFind(Model model, PetscInt n_ranks, Clusters *clusters)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(clusters->n_cells, &at_contact));
-  if (clusters->n_cells) PetscCall(FlagContact(model->dm, model->n_together, model->together, at_contact));
+  if (clusters->n_cells) PetscCall(TogetherFlag(model, at_contact));
   for (PetscInt c = 0; c < clusters->n_cells; c++) n_contact += at_contact[c] ? 1 : 0;
   if (n_contact && n_contact * n_ranks <= clusters->n_cells) {
     for (PetscInt c = 0; c < clusters->n_cells; c++) clusters->of_cell[c] = at_contact[c] ? 0 : -1;
