@@ -131,8 +131,8 @@ PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, Pets
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningEquations(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
 
-/* dependents.c - Z and E of points that are joined rigidly, of ties and of equations, where matrices are made; raises an
-   error where two of them claim one node. Collective. */
+/* dependents.c - Z and E of points that are joined rigidly, of ties and of equations, where matrices are made; raises
+   an error where two of them claim one node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCreateDependents(Operators operators);
 
 /* pattern.c - empty matrices of all unknowns, preallocated for the couplings of the cells of one part: K of all

@@ -5,8 +5,9 @@
 
       K += B' diag(k) B,     C += B' diag(c) B,     M += B' diag(m, m, m, J) B,
 
-   in axes of its own where it has them, which is exact for rigid motions: B u is the motion of the point, and a bushing
-   does not resist where both of its sides move as one rigid body. J is the inertia about x_0, where the centre of mass is.
+   in axes of its own where it has them, which is exact for rigid motions: B u is the motion of the point, and a
+   bushing does not resist where both of its sides move as one rigid body. J is the inertia about x_0, where the centre
+   of mass is.
 
    The motion of set b may be taken at a place of its own, as that of a spring between two nodes is. The joint then
    resists turns of both sides as one body.

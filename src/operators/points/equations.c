@@ -22,9 +22,10 @@
 #define EQUATION_CHUNK 1000000
 #define NOT_FOUND      PETSC_MIN_INT
 
-enum { COLUMN_EQUATION, COLUMN_X, COLUMN_DIRECTION = 4, COLUMN_COEFFICIENT, COLUMN_PART, N_COLUMNS };
+enum { EQUATION_NUMBER, EQUATION_X, EQUATION_DIRECTION = 4, EQUATION_COEFFICIENT, EQUATION_PART, N_EQUATION_COLUMNS };
 
-static const char *const columns[N_COLUMNS] = {"equation", "x_m", "y_m", "z_m", "direction", "coefficient", "part"};
+static const char *const equation_columns[N_EQUATION_COLUMNS] = {"equation",  "x_m",         "y_m", "z_m",
+                                                                 "direction", "coefficient", "part"};
 
 /* A line, on all ranks */
 typedef struct {
@@ -33,9 +34,9 @@ typedef struct {
 } EquationLine;
 
 /* Index of the part that a line names, -1 for none; a fault where there is no such part */
-static PetscInt LinePart(Csv *csv, const Mesh *mesh)
+static PetscInt EquationPart(Csv *csv, const Mesh *mesh)
 {
-  const char *word = CsvWord(csv, COLUMN_PART);
+  const char *word = CsvWord(csv, EQUATION_PART);
 
   if (!word || !word[0]) return -1;
   for (PetscInt i = 0; i < mesh->n_parts; i++)
@@ -45,13 +46,13 @@ static PetscInt LinePart(Csv *csv, const Mesh *mesh)
   return -1;
 }
 
-static void LineRead(Csv *csv, const Mesh *mesh, EquationLine *line)
+static void EquationRead(Csv *csv, const Mesh *mesh, EquationLine *line)
 {
-  line->equation  = (PetscInt)CsvReal(csv, COLUMN_EQUATION, PETSC_TRUE);
-  line->direction = (PetscInt)CsvReal(csv, COLUMN_DIRECTION, PETSC_TRUE) - 1;
-  for (int d = 0; d < 3; d++) line->x[d] = CsvReal(csv, COLUMN_X + d, PETSC_FALSE);
-  line->coefficient = CsvReal(csv, COLUMN_COEFFICIENT, PETSC_FALSE);
-  line->part        = LinePart(csv, mesh);
+  line->equation  = (PetscInt)CsvReal(csv, EQUATION_NUMBER, PETSC_TRUE);
+  line->direction = (PetscInt)CsvReal(csv, EQUATION_DIRECTION, PETSC_TRUE) - 1;
+  for (int d = 0; d < 3; d++) line->x[d] = CsvReal(csv, EQUATION_X + d, PETSC_FALSE);
+  line->coefficient = CsvReal(csv, EQUATION_COEFFICIENT, PETSC_FALSE);
+  line->part        = EquationPart(csv, mesh);
   if (!csv->fault[0] && (line->direction < 0 || line->direction > 2))
     (void)snprintf(csv->fault, sizeof(csv->fault), "line %d: direction %d must be 1, 2 or 3 (x, y, z)", (int)csv->line,
                    (int)line->direction + 1);
@@ -79,13 +80,13 @@ static PetscErrorCode EquationsReadFile(Csv *csv, const char file[], const Mesh 
   PetscInt room = 0;
 
   PetscFunctionBeginUser;
-  CsvOpen(csv, file, N_COLUMNS, columns, COLUMN_PART);
+  CsvOpen(csv, file, N_EQUATION_COLUMNS, equation_columns, EQUATION_PART);
   while (CsvNext(csv)) {
     if (*n == room) {
       room = PetscMax(1024, 2 * room);
       PetscCall(PetscRealloc((size_t)room * sizeof(EquationLine), line));
     }
-    LineRead(csv, mesh, &(*line)[(*n)++]);
+    EquationRead(csv, mesh, &(*line)[(*n)++]);
   }
   CsvClose(csv);
   if (!csv->fault[0]) EquationsCheckLines(csv, *n, *line);
@@ -131,7 +132,7 @@ static PetscErrorCode MeshSize(MPI_Comm comm, const Mesh *mesh, PetscReal *size)
 }
 
 /* [n_parts][n_nodes] which nodes this rank's cells of each part have */
-static PetscErrorCode PartsMark(const Mesh *mesh, PetscBool **on)
+static PetscErrorCode NodesMarkParts(const Mesh *mesh, PetscBool **on)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_parts * mesh->n_nodes, on));
@@ -141,27 +142,36 @@ static PetscErrorCode PartsMark(const Mesh *mesh, PetscBool **on)
   PetscFunctionReturn(0);
 }
 
+/* Nodes of this rank in ascending x */
+typedef struct {
+  const Mesh *mesh;
+  PetscInt   *order; /* [n_nodes] */
+  PetscReal  *x;     /* [n_nodes] of them, in this order */
+  PetscBool  *on;    /* [n_parts][n_nodes] which nodes each part has */
+  PetscReal   near;  /* m */
+} NodeSearch;
+
 /* The node of a line among those of this rank, and others near it: the largest number, the largest of their negative,
    and its unknown, -1 where it is held */
-static void LineFind(const EquationLine *line, const Mesh *mesh, const PetscReal x[], const PetscInt order[],
-                     const PetscBool on[], PetscReal near, PetscInt found[3])
+static void EquationFindNode(const NodeSearch *s, const EquationLine *line, PetscInt found[4])
 {
-  PetscInt begin = 0, end = mesh->n_nodes;
+  const Mesh *mesh  = s->mesh;
+  PetscInt    begin = 0, end = mesh->n_nodes;
 
   while (begin < end) {
     const PetscInt middle = begin + (end - begin) / 2;
 
-    if (x[middle] < line->x[0] - near)
+    if (s->x[middle] < line->x[0] - s->near)
       begin = middle + 1;
     else
       end = middle;
   }
-  for (; begin < mesh->n_nodes && x[begin] <= line->x[0] + near; begin++) {
-    const PetscInt   v    = order[begin];
+  for (; begin < mesh->n_nodes && s->x[begin] <= line->x[0] + s->near; begin++) {
+    const PetscInt   v    = s->order[begin];
     const PetscReal *at   = &mesh->x[3 * v];
     const PetscReal  away = PetscMax(PetscAbsReal(at[1] - line->x[1]), PetscAbsReal(at[2] - line->x[2]));
 
-    if (away > near || (line->part >= 0 && !on[line->part * mesh->n_nodes + v])) continue;
+    if (away > s->near || (line->part >= 0 && !s->on[line->part * mesh->n_nodes + v])) continue;
     found[0] = PetscMax(found[0], mesh->number[v]);
     found[1] = PetscMax(found[1], -mesh->number[v]);
     found[2] = mesh->unknown[3 * v + line->direction];
@@ -171,8 +181,8 @@ static void LineFind(const EquationLine *line, const Mesh *mesh, const PetscReal
 
 /* Raises the error for a line at no node, at several or at one that a motion moves, and for the first one where it is
    held */
-static PetscErrorCode LineCheck(MPI_Comm comm, const char file[], const EquationLine *line, PetscBool first,
-                                const PetscInt found[4])
+static PetscErrorCode EquationCheckNode(MPI_Comm comm, const char file[], const EquationLine *line, PetscBool first,
+                                        const PetscInt found[4])
 {
   const PetscReal *x = line->x;
 
@@ -199,25 +209,25 @@ static PetscErrorCode LineCheck(MPI_Comm comm, const char file[], const Equation
 static PetscErrorCode EquationsFind(MPI_Comm comm, const char file[], const Mesh *mesh, PetscInt n,
                                     const EquationLine line[], PetscInt found[])
 {
-  PetscReal *x, size;
-  PetscInt  *order;
-  PetscBool *on;
+  NodeSearch s = {.mesh = mesh};
 
   PetscFunctionBeginUser;
-  PetscCall(MeshSize(comm, mesh, &size));
-  PetscCall(PartsMark(mesh, &on));
-  PetscCall(PetscMalloc2(mesh->n_nodes, &x, mesh->n_nodes, &order));
-  for (PetscInt v = 0; v < mesh->n_nodes; v++) x[v] = mesh->x[3 * v], order[v] = v;
-  PetscCall(PetscSortRealWithArrayInt(mesh->n_nodes, x, order));
+  PetscCall(MeshSize(comm, mesh, &s.near));
+  s.near *= EQUATION_NEAR;
+  PetscCall(NodesMarkParts(mesh, &s.on));
+  PetscCall(PetscMalloc2(mesh->n_nodes, &s.x, mesh->n_nodes, &s.order));
+  for (PetscInt v = 0; v < mesh->n_nodes; v++) s.x[v] = mesh->x[3 * v], s.order[v] = v;
+  PetscCall(PetscSortRealWithArrayInt(mesh->n_nodes, s.x, s.order));
   for (PetscInt i = 0; i < 4 * n; i++) found[i] = NOT_FOUND;
-  for (PetscInt i = 0; i < n; i++) LineFind(&line[i], mesh, x, order, on, EQUATION_NEAR * size, &found[4 * i]);
+  for (PetscInt i = 0; i < n; i++) EquationFindNode(&s, &line[i], &found[4 * i]);
   for (PetscInt i = 0; i < 4 * n; i += EQUATION_CHUNK)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found[i], (PetscMPIInt)PetscMin(EQUATION_CHUNK, 4 * n - i), MPIU_INT,
                                MPI_MAX, comm));
   for (PetscInt i = 0; i < n; i++)
-    PetscCall(LineCheck(comm, file, &line[i], i == 0 || line[i].equation != line[i - 1].equation, &found[4 * i]));
-  PetscCall(PetscFree2(x, order));
-  PetscCall(PetscFree(on));
+    PetscCall(
+      EquationCheckNode(comm, file, &line[i], i == 0 || line[i].equation != line[i - 1].equation, &found[4 * i]));
+  PetscCall(PetscFree2(s.x, s.order));
+  PetscCall(PetscFree(s.on));
   PetscFunctionReturn(0);
 }
 
