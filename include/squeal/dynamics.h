@@ -10,10 +10,8 @@
 
    Energy ledger, J, of the half steps: kinetic 1/2 v'Mv, strain 1/2 u_{n+1}'K u_n; their change is the work of external
    forces, contact, friction, damping, and for b > 1/2 of the integrator. What is left over is energy_error_j: rounding.
-   It closes with any forces, since the works are those of the forces that acted. Where it is asked for, steps are
-   looked at by second paths, which are in the view and in transient.csv, the worst so far: K u of the kernels beside
-   that of the elements, work of friction beside mu N on the way slid by the nodes' places, change of momentum beside
-   the sum of what acts.
+   It closes with any forces, since the works are those of the forces that acted: that these obey their laws is tested
+   from places of nodes and forces of pairs (tests/verify/laws.py).
 */
 #pragma once
 

@@ -43,7 +43,6 @@ typedef struct {
   PetscReal contact_work;  /* of the normal forces on the velocities of the nodes since the start, J */
   PetscReal friction_work; /* of friction on the velocities of the nodes, J: what it feeds less what it takes */
   PetscReal heat;          /* dissipated by slip, with the sliding velocity, J, >= 0 */
-  PetscReal heat_before;   /* that before the last step */
   PetscReal residual;      /* natural map, relative to the largest impulse, worst step since the start */
   PetscReal sweeps, checks, steps;  /* since the start: of Gauss-Seidel, looks at all pairs, steps */
   PetscReal marked;                 /* value of `steps` at the mark, 0 for never */
@@ -56,16 +55,6 @@ typedef struct {
     whether they differ from these, and by how many pairs. Not collective. @*/
 void ContactSumsMark(ContactSums *sums);
 void ContactSumsCompare(ContactSums *sums);
-
-/* Friction in one step by a second path: slip from places, the law's coefficient from the interface (slipwork.c) */
-typedef struct {
-  PetscReal done, law; /* sums of lambda_T . s and mu lambda_n |s| over the closed pairs, J */
-  PetscReal miss,
-    size; /* sum of what the two differ by beyond rounding, of mu lambda_n and the largest motion of a node, J */
-  PetscReal over, normal;     /* sums of |lambda_T| - mu lambda_n where that is positive, and of lambda_n, N */
-  PetscReal heat, dissipated; /* in the step, and what the sums were given for it, J */
-  PetscReal noise;            /* rounding of these, J */
-} ContactSlipWork;
 
 /*@ ContactProjectorCreate - for all interfaces; after ContactSetFromOptions(). Collective. @*/
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector);
@@ -101,14 +90,6 @@ PetscErrorCode ContactProjectorGetDelay(ContactProjector projector, PetscInt int
 /*@ ContactProjectorGetNodes - local nodes (from 0) of contact surfaces on this rank, copies included, [n]
     (borrowed). Not collective. @*/
 PetscErrorCode ContactProjectorGetNodes(ContactProjector projector, PetscInt *n, const PetscInt **vertex);
-
-/* Arms of contact forces that act at one place on both bodies: of the undeformed ones where places on the master are
-   those of undeformed bodies, present ones where slaves travel; unknown where a master moves in a frame of its own, or
-   for both kinds */
-typedef enum { CONTACT_ARMS_UNDEFORMED, CONTACT_ARMS_PRESENT, CONTACT_ARMS_UNKNOWN } ContactArms;
-
-/*@ ContactProjectorGetArms - of the forces of all interfaces. Not collective. @*/
-PetscErrorCode ContactProjectorGetArms(ContactProjector projector, ContactArms *arms);
 
 /*@ ContactProjectorSetMass - 1/mass of every node and direction, [n][3], 0 where held. Collective. @*/
 PetscErrorCode ContactProjectorSetMass(ContactProjector projector, const PetscReal minv[]);
@@ -157,11 +138,6 @@ PetscErrorCode ContactProjectorMark(ContactProjector projector);
 
 /*@ ContactProjectorGetSums - sums of interface i, over all ranks. Collective. @*/
 PetscErrorCode ContactProjectorGetSums(ContactProjector projector, PetscInt interface, ContactSums *sums);
-
-/*@ ContactProjectorGetSlipWork - friction of the step that ContactProject() has made, at the displacements u [nodes][3]
-   (m) at
-    its end, read at the active nodes. Collective. @*/
-PetscErrorCode ContactProjectorGetSlipWork(ContactProjector projector, const PetscReal u[], ContactSlipWork *work);
 
 /*@ ContactProjectorGetKKT - residuals of the laws in the last step. Collective. @*/
 PetscErrorCode ContactProjectorGetKKT(ContactProjector projector, ContactKKT *kkt);

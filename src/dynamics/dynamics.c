@@ -191,7 +191,6 @@ static PetscErrorCode DynamicsAfterStep(TS ts)
   PetscCall(TSGetApplicationContext(ts, &d));
   PetscCall(TSGetStepNumber(ts, &n));
   d->n_steps++;
-  PetscCall(DynamicsLookEnd(d));
   if (n % STOP_INTERVAL == 0) {
     stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPIU_BOOL, MPI_LOR, d->comm));

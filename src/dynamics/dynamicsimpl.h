@@ -8,7 +8,6 @@
 #include "dynamics/external/external.h"
 #include "dynamics/history/history.h"
 #include "dynamics/central/tscentral.h"
-#include "dynamics/run/laws.h"
 #include "dynamics/run/run.h"
 
 #define FILTERS_MOST 256 /* modes of -dynamics_filters_modes */
@@ -64,7 +63,6 @@ struct _p_Dynamics {
   DynamicsSurface surface;
   ContactSums    *sums; /* [interfaces] */
   LedgerAccount   ledger;
-  Laws            laws;
   const Mesh     *mesh;
   CriticalStep    critical;
   Checksum        scene; /* for checkpoints; NULL until one is met */
@@ -86,18 +84,6 @@ PETSC_INTERN PetscErrorCode DynamicsFitEnd(Dynamics dynamics, PetscReal *dt, Pet
 /* forces.c - callbacks of the TS: forces, contact, and what is recorded when they are complete */
 PETSC_INTERN PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx);
 PETSC_INTERN PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx);
-
-/* laws.c - second paths of a step that is due: begins with the forces f of the bodies; f with the loads; all forces;
-   the step is made. Collective. */
-typedef struct {
-  const PetscReal *u, *v, *f, *f_old; /* state vectors: u_n, v_{n-1/2}, f_n and f_{n-1}; f_old NULL for b = 1/2 */
-} LawsArrays;
-
-PETSC_INTERN PetscErrorCode DynamicsLookBegin(Dynamics dynamics, const CentralStep *step, const PetscReal u[],
-                                              const PetscReal f[]);
-PETSC_INTERN PetscErrorCode DynamicsLookAtLoads(Dynamics dynamics, PetscReal time, const PetscReal f[]);
-PETSC_INTERN PetscErrorCode DynamicsLookAtForces(Dynamics dynamics, const CentralStep *step, const LawsArrays *arrays);
-PETSC_INTERN PetscErrorCode DynamicsLookEnd(Dynamics dynamics);
 
 /* criticalstep.c - the critical steps of the bodies */
 PETSC_INTERN PetscErrorCode DynamicsFindCriticalStep(Dynamics dynamics);

@@ -107,7 +107,6 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
   PetscCall(EventEnd(EVENT_BODIES_ADVANCE));
   if (PetscIsInfOrNanReal(sums.kinetic)) PetscCall(DynamicsComplainNaN(d, &a));
   LedgerAddBodies(&d->ledger.part, &sums, step->dt_old);
-  PetscCall(DynamicsLookBegin(d, step, a.u, a.f));
   if (d->projector) {
     PetscCall(ContactProjectorGetActive(d->projector, &n_active, &active));
     SurfaceGet(&d->surface, d->layout, n_active, active, a.v, d->surface.before);
@@ -116,7 +115,6 @@ PetscErrorCode DynamicsForce(TS ts, const CentralStep *step, void *ctx)
   PetscCall(ExternalAdvance(d->external, &(ExternalStep){step->time, step->dt, a.u, a.v, a.f}, &power));
   PetscCall(EventEnd(EVENT_EXTERNAL));
   LedgerAddExternal(&d->ledger.part, &power, step->dt_old);
-  PetscCall(DynamicsLookAtLoads(d, step->time, a.f));
   PetscCall(BodiesAddInertia(d->bodies, a.f));
   PetscCall(DynamicsMarkImpulse(d));
   PetscCall(ForceArraysRestore(&a));
@@ -177,7 +175,6 @@ static PetscErrorCode DynamicsAddContact(Dynamics d, const ForceArrays *a, Petsc
   SurfaceGet(s, d->layout, n, active, a->u, s->u);
   SurfacePredict(s, d->layout, a, n, active);
   if (balanced) *predicted = PetscMax(*predicted, SurfaceEnergy(s, d->layout, n, active, a->minv));
-  if (d->laws.now) PetscCall(PetscArrayzero(s->force, 3 * s->n));
   PetscCall(ContactProject(d->projector, &contact, s->u, s->before, s->v, s->force));
   for (PetscInt i = 0; i < n; i++) LayoutAdd(d->layout, s->vertex[active[i]], &s->force[3 * active[i]], a->f);
   PetscCall(EventEnd(EVENT_PROJECT));
@@ -241,12 +238,11 @@ PetscErrorCode DynamicsConstrain(TS ts, const CentralStep *step, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(TSGetStepNumber(ts, &n));
   due      = HistoryIsDue(d->history, step->time, step->dt);
-  balanced = due || d->ended || d->laws.now || n <= 1 || n % CHECK_INTERVAL == 0 ? PETSC_TRUE : PETSC_FALSE;
+  balanced = due || d->ended || n <= 1 || n % CHECK_INTERVAL == 0 ? PETSC_TRUE : PETSC_FALSE;
   if (balanced) PetscCall(DynamicsBalance(d, step, n));
   PetscCall(ForceArraysGet(d, step, &a));
   if (d->projector) PetscCall(DynamicsAddContact(d, &a, balanced));
   PetscCall(ExternalFinish(d->external, step->dt, a.f));
-  PetscCall(DynamicsLookAtForces(d, step, &(LawsArrays){a.u, a.v, a.f, a.f_old}));
   if (a.f_old) LedgerAddIntegrator(&d->ledger.part, d->b, DynamicsIntegratorPower(d->layout, &a), PETSC_FALSE, 0);
   if (due) PetscCall(DynamicsRecord(d, &a, n));
   PetscCall(ForceArraysRestore(&a));

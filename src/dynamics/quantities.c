@@ -63,8 +63,6 @@ static const Quantity rows[] = {
    DYNAMICS_AT(view_kkt), .in = RUN_HISTORY},
   {"-dynamics_checkpoint_interval", "steps between checkpoints, 0 for none", NULL, QUANTITY_INT,
    DYNAMICS_AT(checkpoint_interval), QUANTITY_NOT_NEGATIVE, .why = "a number of steps", .in = RUN_HISTORY},
-  {"-dynamics_check_interval", "steps between looks at the laws by second paths, the last one too; 0 for none", NULL,
-   QUANTITY_INT, DYNAMICS_AT(laws.interval), QUANTITY_NOT_NEGATIVE, .why = "a number of steps", .in = RUN_HISTORY},
   {"-dynamics_restart", "go on from the checkpoint in the output folder", NULL, QUANTITY_BOOL, DYNAMICS_AT(restart),
    .in = RUN_HISTORY},
 };

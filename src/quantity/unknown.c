@@ -19,6 +19,7 @@ static const struct {
   {"loss_frequency", "give -model_loss_frequency"},
   {"statics_view", "give -static_view"},
   {"projector_rtol", "leave it out: the laws of contact in time hold to 1e-10"},
+  {"dynamics_check_interval", "leave it out: tests check the laws from contact_pairs.csv and snapshots of every step"},
   {"modes_groups", "leave it out: all ranks share each shift of -modes_shifts"},
 };
 

@@ -143,7 +143,6 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   ReducedDrive drive;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedLookBegin(r));
   PetscCall(ReducedDriveSet(r, &drive));
   for (PetscInt i = 0; i < r->run.n_interfaces && drive.kick; i++) ContactSumsMark(&r->motion.sums[i]);
   PetscCall(ReducedStep(r->motion.stepper, &drive, &r->motion.state, &r->motion.report));
@@ -154,7 +153,6 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
   r->motion.ledger.part.external += r->motion.report.external;
   r->motion.ledger.part.damping += r->motion.report.damping;
   PetscCall(ReducedTakePairs(r, PETSC_TRUE));
-  PetscCall(ReducedLookEnd(r));
   if (r->request.verify) PetscCall(ReducedKeepForce(r));
   PetscFunctionReturn(0);
 }

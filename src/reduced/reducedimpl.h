@@ -103,7 +103,6 @@ typedef struct {
   ContactState  *pairs; /* [n_pairs] */
   ContactSums   *sums;  /* [interfaces] */
   LedgerAccount  ledger;
-  PetscReal     *place; /* [3 n_pairs] displacements of the pairs before a step that is looked at, m; NULL else */
   PetscReal     *loads, *sliding, *kick; /* [n_loads], [n_pairs], [m] */
   PetscReal     *acceleration, *shown;   /* [m] eta'', [n_ports] q and loads */
   PetscReal     *p_rate;                 /* [2][n_ports] N/s of what is shown, at t_n, and its mean in the last step */
@@ -257,10 +256,6 @@ PETSC_INTERN PetscErrorCode ReducedVerifyView(ReducedRun reduced, PetscViewer vi
 /* record.c - ledger, rows, fields of t_n */
 PETSC_INTERN PetscErrorCode ReducedRecord(ReducedRun reduced, PetscBool first);
 PETSC_INTERN void           ReducedSetShown(ReducedRun reduced, PetscBool start);
-
-/* laws.c - friction of a step by a second path: where it is due, before and after the step */
-PETSC_INTERN PetscErrorCode ReducedLookBegin(ReducedRun reduced);
-PETSC_INTERN PetscErrorCode ReducedLookEnd(ReducedRun reduced);
 
 /* keep.c - checkpoints; the stepper is made from the model that is read back */
 PETSC_INTERN PetscErrorCode ReducedKeep(ReducedRun reduced);

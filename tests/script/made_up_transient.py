@@ -21,7 +21,7 @@ DIAMETERS, PAIRS = 4, 121
 PROBE = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2")
 COLUMNS = ("time_s,normal_force_n,friction_force_n,n_closed,n_stick,kinetic_j,strain_j,external_work_j,friction_work_j,"
            "contact_work_j,damping_work_j,energy_error_j,integrator_work_j,friction_heat_j,n_open,projector_residual,"
-           "projector_sweeps,looks,stiffness_error,friction_error,momentum_error,moment_error").split(",")
+           "projector_sweeps").split(",")
 
 
 class Transient:

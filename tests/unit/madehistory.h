@@ -19,10 +19,8 @@
   "-probes tip,foot -tip_at 1.1,0.9,2 -tip_part high -foot_at 0,0,0 "
 
 static const PetscReal made_x[] = {0, 0.5, 1}, made_y[] = {0, 1}, made_low[] = {0, 1}, made_high[] = {1.5, 2};
-static const Box       made_boxes[] = {
-        {"low",  {3, 2, 2}, {made_x, made_y, made_low},  0, 0, 0},
-        {"high", {3, 2, 2}, {made_x, made_y, made_high}, 0, 0, 0}
-};
+static const Box       made_boxes[] = {{"low", {3, 2, 2}, {made_x, made_y, made_low}, 0, 0, 0},
+                                       {"high", {3, 2, 2}, {made_x, made_y, made_high}, 0, 0, 0}};
 
 typedef struct {
   Model            model;
@@ -104,12 +102,10 @@ static inline void MadeState(Made *m, PetscInt n, const Ledger *ledger, HistoryS
 /* Records step n with energies and contact sums that depend on n alone */
 static inline PetscErrorCode MadeRecord(Made *m, History history, PetscInt n)
 {
-  const Ledger ledger = {
-    n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0, {11, 12, 13, 14, 15, 0}
-  };
+  const Ledger      ledger = {n + 0.25, 2, 3, 4, 5, 6, 7, 8, 0, 9, 10, 0};
   const ContactSums sums[] = {
     {.n = {1, 2, 3}, .normal = 100 + n, .friction = 20, .residual = 1e-11, .sweeps = 3 * n * n, .steps = n},
-    {.n = {4, 5, 6}, .normal = 0.5,     .friction = 7,  .residual = 2e-11, .sweeps = 5 * n * n, .steps = n},
+    {.n = {4, 5, 6}, .normal = 0.5, .friction = 7, .residual = 2e-11, .sweeps = 5 * n * n, .steps = n},
   };
   HistoryState state;
 

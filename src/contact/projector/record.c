@@ -111,7 +111,6 @@ static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence
   for (int i = 0; i < CONTACT_N_STATUS; i++) sums->n[i] = 0;
   for (int d = 0; d < 3; d++) sums->force[d] = 0;
   sums->normal = sums->friction = 0;
-  sums->heat_before             = sums->heat;
   sums->residual                = PetscMax(sums->residual, convergence->residual);
   sums->sweeps += (PetscReal)convergence->sweeps;
   sums->checks += (PetscReal)convergence->checks;

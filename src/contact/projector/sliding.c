@@ -94,20 +94,6 @@ PetscErrorCode ContactProjectorGetDelay(ContactProjector p, PetscInt interface, 
   PetscFunctionReturn(0);
 }
 
-/* Without interfaces *arms stays as the caller set it */
-PetscErrorCode ContactProjectorGetArms(ContactProjector p, ContactArms *arms)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    const ContactArms mine = p->sliding[i].turning          ? CONTACT_ARMS_UNKNOWN
-                             : SlidingStays(&p->sliding[i]) ? CONTACT_ARMS_UNDEFORMED
-                                                            : CONTACT_ARMS_PRESENT;
-
-    *arms = i == 0 || mine == *arms ? mine : CONTACT_ARMS_UNKNOWN;
-  }
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer)
 {
   PetscFunctionBeginUser;

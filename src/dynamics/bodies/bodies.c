@@ -185,9 +185,8 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
   PetscFunctionReturn(0);
 }
 
-/* K u by another way than the kernels that are checked by it, and free of the rounding that u of a body far off has
-   in them */
-PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], PetscReal ku[])
+/* K u by another way than the kernels, free of the rounding that u of a body far off has in them */
+static PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], PetscReal ku[])
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(ku, b->layout.n));
@@ -209,16 +208,6 @@ PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[]
     for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
   }
   PetscCall(BodiesGetElementForces(b, u, ku));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BodiesGetGroundForces(Bodies b, const PetscReal u[], PetscReal g[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(g, b->layout.n));
-  PointsAddForces(b, u, g);
-  PetscCall(JointsAddForces(b, u, g));
-  for (PetscInt i = 0; i < b->layout.n && b->damped; i++) g[i] += b->layout.damping[i];
   PetscFunctionReturn(0);
 }
 

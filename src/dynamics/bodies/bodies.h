@@ -111,24 +111,14 @@ PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
 /*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);
 
-/*@ BodiesGetElementForces - ku = K u of this rank's cells alone, element by element relative to the first node of each,
-   springs,
-    bushings and points included, N: what the kernels should have. Collective. @*/
-PetscErrorCode BodiesGetElementForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
-
-/*@ BodiesSetState - ku = K u anew as of BodiesGetElementForces(), and
-    the damping forces of v for the sums of the next BodiesAdvance(). Collective. @*/
+/*@ BodiesSetState - ku = K u of this rank's cells alone, N, element by element relative to the first node of each,
+    springs, bushings and points included, and the damping forces of v for the sums of the next BodiesAdvance().
+    Collective. @*/
 PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscReal v[], PetscReal ku[]);
 
 /*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared nodes; the sums use ku before. dt = 0 leaves
     ku as it is (first step). The exchange of shared nodes overlaps with the work on the others. Collective. @*/
 PetscErrorCode BodiesAdvance(Bodies bodies, const BodiesStep *step, BodiesSums *sums);
-
-/*@ BodiesGetGroundForces - forces K u + C v of this rank's springs, dashpots, bushings and points, and of the damping
-   of the bodies
-    as the last BodiesAdvance() had it, into g [layout n], N: what does not sum to zero within the bodies. Collective.
-    @*/
-PetscErrorCode BodiesGetGroundForces(Bodies bodies, const PetscReal u[], PetscReal g[]);
 
 /*@ BodiesGetElementBound - largest omega^2 (1/s^2) of any single element with its own lumped mass, with stiffness
     K_e + s C_e (and of springs and dashpots with their nodes), an upper bound of the assembled one. Collective. @*/

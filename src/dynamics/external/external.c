@@ -73,32 +73,6 @@ PetscErrorCode ExternalAdvance(External external, const ExternalStep *step, Exte
   PetscFunctionReturn(0);
 }
 
-/* What the scene says of the loads, N, for a check of what was assembled: weight, loads at time t, impulses over
-   dt. Not known with inertial forces of frames, nor with the weight of points. Collective. */
-PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal force[3], PetscBool *known)
-{
-  const ModelScene *scene;
-  const Layout     *layout = external->layout;
-  PetscReal         mass   = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(external->model, &scene));
-  for (PetscInt i = 0; i < layout->n_vertices; i++)
-    if (layout->owned[i] && layout->at[i] >= 0) mass += layout->total[layout->at[i]];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mass, 1, MPIU_REAL, MPI_SUM, external->comm));
-  for (int d = 0; d < 3; d++) {
-    force[d] = mass * external->gravity[d];
-    for (PetscInt i = 0; i < external->n_loads; i++)
-      force[d] += RampValue(&external->loads[i].ramp, time) * scene->loads[i].force[d];
-    for (PetscInt i = 0; i < external->n_acting; i++)
-      force[d] += external->impulses[i].last[0] * external->impulses[i].impulse[d];
-  }
-  *known = external->n_frames == 0 ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt i = 0; i < scene->n_points; i++)
-    if (JointIsMassive(&scene->points[i]) && external->weight) *known = PETSC_FALSE;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[])
 {
   PetscFunctionBeginUser;

@@ -79,12 +79,6 @@ PETSC_INTERN PetscErrorCode ExternalAdvance(External external, const ExternalSte
    it follows the power of the drives. Not collective. */
 PETSC_INTERN PetscErrorCode ExternalFinish(External external, PetscReal dt, const PetscReal f[]);
 
-/* ExternalGetResultant - of loads, weight and impulses of the step that ExternalAdvance() began, N, by what the scene
-   says of them, not by their nodes; known = false where parts turn or points have a weight, which it does not know.
-   Collective. */
-PETSC_INTERN PetscErrorCode ExternalGetResultant(External external, PetscReal time, PetscReal force[3],
-                                                 PetscBool *known);
-
 /* A blow: place of its node, m; momentum, N s; the time t_n of the step in which it acted, s, 0 before
    that and without ExternalSetUp() */
 typedef struct {

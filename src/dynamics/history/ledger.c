@@ -12,8 +12,7 @@
 
 /* of the throughput: rounding of 1e6 steps is far below, a step beyond the critical one above it soon */
 #define LEDGER_RTOL 1e-6
-#define LEDGER_MADE 0.1  /* of the energy that others give: what contact may make of nothing within the steps */
-#define LAWS_MOST   1e-3 /* an error beyond is no rounding: the run ends */
+#define LEDGER_MADE 0.1 /* of the energy that others give: what contact may make of nothing within the steps */
 
 /* Kinetic and strain energy are states, J; damping takes dt (v'd)/2 with v of both ends of the step, half of it
    with d of the step before. */
@@ -90,12 +89,6 @@ PetscErrorCode LedgerClose(MPI_Comm comm, LedgerAccount *account, PetscInt n, co
   PetscFunctionReturn(0);
 }
 
-/* Whether step n is a multiple of the interval; of 0 none is */
-PetscBool LedgerIsLooked(PetscInt n, PetscInt interval)
-{
-  return interval > 0 && n > 0 && n % interval == 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
 /* Four checks, in this order: numbers; what is left over; damping that gives energy; and the sum of the kinetic
    energy at the half step and u_{n}'K u_{n-1} / 2. The last may be negative, down to -kinetic omega^2 dt^2 / 4 of a
    mode of omega: at a fraction x of the critical step at least (1 - x^2) of the kinetic energy remains, of which
@@ -143,25 +136,5 @@ PetscErrorCode LedgerJudgeContact(MPI_Comm comm, const Ledger *l, PetscInt step,
              "%" PetscInt_FMT ", %.6g s: pairs that open within steps make energy; take a smaller -ts_dt, or "
              "-dynamics_model full",
              (double)l->contact, (double)others, step, (double)time);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt step, PetscReal time)
-{
-  const struct {
-    const char *name;
-    PetscReal   error;
-  } law[]   = {{"work of friction", laws->friction},
-               {"change of momentum", laws->momentum},
-               {"K u of the kernels", laws->stiffness}};
-  int worst = 0;
-
-  PetscFunctionBeginUser;
-  for (int k = 1; k < (int)PETSC_STATIC_ARRAY_LENGTH(law); k++)
-    if (law[k].error > law[worst].error) worst = k;
-  PetscCheck(law[worst].error <= LAWS_MOST, comm, PETSC_ERR_PLIB,
-             "%s is not what a second path says: off by %.3g of it in step %" PetscInt_FMT
-             ", %.6g s; -dynamics_check_interval 0 looks no more",
-             law[worst].name, (double)law[worst].error, step, (double)time);
   PetscFunctionReturn(0);
 }

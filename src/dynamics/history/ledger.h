@@ -6,27 +6,16 @@
 #include "dynamics/external/external.h"
 #include <squeal/projector.h>
 
-/* What the balance of energy cannot see, since it closes with any forces: the worst so far of what laws.h looks at,
-   relative */
-typedef struct {
-  PetscReal looks;            /* steps looked at */
-  PetscReal stiffness;        /* K u kept by the kernels beside that of the elements */
-  PetscReal friction;         /* work of friction beside Coulomb's law on the slip by places */
-  PetscReal momentum, moment; /* change of the momenta beside the sum of what acts */
-  PetscReal friction_alone;   /* 1 of a reduced model, where only that is looked at */
-} LedgerLaws;
-
 /* Over all ranks */
 typedef struct {
-  PetscReal  kinetic, strain;             /* present */
-  PetscReal  external, friction, contact; /* works on the bodies since the start */
-  PetscReal  damping, integrator;         /* likewise; negative takes energy away */
-  PetscReal  heat;                        /* dissipated by slip, >= 0 */
-  PetscReal  start;                       /* kinetic + strain at the first half step */
-  PetscReal  error;                       /* kinetic + strain - start - works */
-  PetscReal  throughput;                  /* the largest of all the above so far, that errors are relative to */
-  PetscReal  predicted; /* what contact took within one step, at most: rounding of it is left where nothing moves */
-  LedgerLaws laws;
+  PetscReal kinetic, strain;             /* present */
+  PetscReal external, friction, contact; /* works on the bodies since the start */
+  PetscReal damping, integrator;         /* likewise; negative takes energy away */
+  PetscReal heat;                        /* dissipated by slip, >= 0 */
+  PetscReal start;                       /* kinetic + strain at the first half step */
+  PetscReal error;                       /* kinetic + strain - start - works */
+  PetscReal throughput;                  /* the largest of all the above so far, that errors are relative to */
+  PetscReal predicted; /* what contact took within one step, at most: rounding of it is left where nothing moves */
 } Ledger;
 
 /* This rank's part, gathered step by step: works since the start; reals alone */
@@ -48,9 +37,6 @@ typedef struct {
   LedgerPart   part;
   LedgerOrigin origin;
 } LedgerAccount;
-
-/* Whether the laws are looked at in step n: multiples of the interval; 0 for never */
-PETSC_INTERN PetscBool LedgerIsLooked(PetscInt n, PetscInt interval);
 
 /* The bodies' sums at the beginning of a step: completes the damping work of the step before, of length dt_old */
 PETSC_INTERN void LedgerAddBodies(LedgerPart *part, const BodiesSums *sums, PetscReal dt_old);
@@ -78,7 +64,3 @@ PETSC_INTERN PetscErrorCode LedgerJudge(MPI_Comm comm, const Ledger *ledger, Pet
    tenth of what all others gave, J. LedgerJudgeContact raises PETSC_ERR_FP where it is; collective */
 PETSC_INTERN PetscBool      LedgerContactFeeds(PetscReal contact, PetscReal others);
 PETSC_INTERN PetscErrorCode LedgerJudgeContact(MPI_Comm comm, const Ledger *ledger, PetscInt step, PetscReal time);
-
-/* Raises PETSC_ERR_PLIB where a law does not hold to 1e-3, which is no rounding; moments miss what bodies have
-   deformed, and are only told. Collective. */
-PETSC_INTERN PetscErrorCode LedgerJudgeLaws(MPI_Comm comm, const LedgerLaws *laws, PetscInt step, PetscReal time);

@@ -26,12 +26,7 @@
   X(heat, "friction_heat_j")                                                                                           \
   X(n_open, "n_open")                                                                                                  \
   X(residual, "projector_residual")                                                                                    \
-  X(sweeps, "projector_sweeps")                                                                                        \
-  X(looks, "looks")                                                                                                    \
-  X(stiffness_error, "stiffness_error")                                                                                \
-  X(friction_error, "friction_error")                                                                                  \
-  X(momentum_error, "momentum_error")                                                                                  \
-  X(moment_error, "moment_error")
+  X(sweeps, "projector_sweeps")
 
 #define COLUMN_NAME(member, name)   "," name
 #define COLUMN_MEMBER(member, name) PetscReal member;
@@ -147,12 +142,7 @@ PetscErrorCode HistoryWriteRow(History history, const HistoryState *state)
                           .damping_work    = l->damping,
                           .energy_error    = l->error,
                           .integrator_work = l->integrator,
-                          .heat            = l->heat,
-                          .looks           = l->laws.looks,
-                          .stiffness_error = l->laws.stiffness,
-                          .friction_error  = l->laws.friction,
-                          .momentum_error  = l->laws.momentum,
-                          .moment_error    = l->laws.moment};
+                          .heat            = l->heat};
   PetscReal     *row;
 
   PetscFunctionBeginUser;

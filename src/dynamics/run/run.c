@@ -66,7 +66,6 @@ PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], Pets
                        .projector           = d->projector,
                        .history             = d->history,
                        .checkpoint_interval = d->checkpoint_interval,
-                       .check_interval      = d->laws.interval,
                        .from_static         = d->start == START_STATIC ? PETSC_TRUE : PETSC_FALSE,
                        .restart             = d->restart,
                        .view_kkt            = d->view_kkt};

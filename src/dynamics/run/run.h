@@ -26,7 +26,7 @@ typedef struct {
   History                 history;
   PetscReal               dt, end; /* s */
   PetscInt                n_steps; /* at most */
-  PetscInt                checkpoint_interval, check_interval;
+  PetscInt                checkpoint_interval;
   PetscBool               from_static, restart, view_kkt;
 } DynamicsRun;
 

@@ -4,28 +4,6 @@
 */
 #include "dynamics/dynamicsimpl.h"
 
-/* What second paths say (laws.h) */
-static PetscErrorCode LawsView(const LedgerLaws *laws, PetscViewer viewer)
-{
-  const struct {
-    const char *name;
-    PetscReal   value;
-  } line[] = {
-    {"work of friction beside mu N on the way slid", laws->friction},
-    {"K u of the kernels beside that of the elements", laws->stiffness},
-    {"change of momentum beside what acts", laws->momentum},
-    {"of angular momentum", laws->moment},
-  };
-
-  PetscFunctionBeginUser;
-  if (laws->looks == 0) PetscFunctionReturn(0);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "laws by second paths in %.0f steps, largest relative difference\n",
-                                   (double)laws->looks));
-  for (size_t i = 0; i < (laws->friction_alone != 0 ? 1 : PETSC_STATIC_ARRAY_LENGTH(line)); i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-46s %8.1e\n", line[i].name, (double)line[i].value));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
 {
   const struct {
@@ -48,7 +26,6 @@ PetscErrorCode LedgerView(const Ledger *l, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-18s %13.6e\n", line[i].name, (double)line[i].value));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  %-18s %13.6e  %.1e of the largest\n", "left over", (double)l->error,
                                    (double)(l->throughput > 0 ? PetscAbsReal(l->error) / l->throughput : 0)));
-  PetscCall(LawsView(&l->laws, viewer));
   PetscFunctionReturn(0);
 }
 
