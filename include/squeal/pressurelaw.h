@@ -9,7 +9,7 @@
 
 #include <squeal/quantity.h>
 
-#define PRESSURE_PARAMETERS 2 /* of a law, at most */
+#define PRESSURE_PARAMETERS 3 /* of a law, at most */
 
 typedef struct {
   PetscInt64 kind; /* place in the table of laws; 0: linear, its parameter 0 is -contact_kn, infinite: exact contact */

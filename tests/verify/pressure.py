@@ -10,8 +10,9 @@
                                                   SAVED has K.bin, H.bin, F.bin, M.bin with kn_per_area 1e12 N/m^3 and the same MU,
                                                   STIFFER K.bin with 2e12, whose difference tells unknowns and areas of the slaves
 
-LAW: exponential c0 p0, power k m, or table c p c p ... The curves are written down here once more; their inverses are found
-by bisection, the equilibrium by damped Newton steps in the displacements, the eigenvalues by LAPACK.
+LAW: exponential c0 p0, power k m, table c p c p ..., or lining h E e p e p ...: a table with h (e - p / E) for c. The curves are
+written down here once more; their inverses are found by bisection, the equilibrium by damped Newton steps in the displacements, the
+eigenvalues by LAPACK.
 """
 
 import csv
@@ -29,7 +30,12 @@ STIFFNESS = 1e12  # N/m^3, of SAVED
 
 class Law:
     def __init__(self, kind, numbers):
-        self.kind, self.numbers = kind, [float(n) for n in numbers]
+        numbers = [float(n) for n in numbers]
+        if kind == "lining":
+            thickness, modulus, *numbers = numbers
+            kind, strains = "table", list(zip(numbers[::2], numbers[1::2]))
+            numbers = [n for strain, p in strains for n in (thickness * (strain - p / modulus), p)]
+        self.kind, self.numbers = kind, numbers
         self.onset = {"exponential": lambda: -self.numbers[0], "power": lambda: 0.0, "table": lambda: self.numbers[0]}[kind]()
 
     def both(self, c):

@@ -22,7 +22,11 @@ typedef struct {
   char        file[PETSC_MAX_PATH_LEN];
 } PressureOptions;
 
-/* points.c - the points of a table, from its option in the law, or from the file; errors for those that are none */
+/* Numbers of a table, which no sweep varies */
+typedef enum { TABLE_THICKNESS, TABLE_SAMPLE, TABLE_MODULUS } TableParameter;
+
+/* points.c - the points of a table, from its option in the law, or from the file, of a lining as closings; errors for
+   those that are none */
 PETSC_INTERN PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], const char file[], PressureLaw *law);
 
 #define PRESSURE_ROOM  2000 /* numbers of a table, at most */
@@ -32,4 +36,5 @@ PETSC_INTERN PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], 
 #define PRESSURE_PARAMETER(j)                                                                                          \
   .at = offsetof(PressureLaw, parameter) + (j) * sizeof(PetscReal), .size = sizeof(PetscReal)
 /* Who reads it, and who varies it */
-#define PRESSURE_READ .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS, .unread = PRESSURE_EXACT, .varies = VARIES_LINEAR
+#define PRESSURE_TABLE .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS, .unread = PRESSURE_EXACT
+#define PRESSURE_READ  PRESSURE_TABLE, .varies = VARIES_LINEAR

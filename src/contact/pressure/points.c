@@ -1,7 +1,7 @@
 /*
-   The points of a pressure law that is a table, from its option or from a file: closing (m) and pressure (Pa) in each
-   line, with a comma between; a first line that begins with no number is a heading, empty lines and those that begin
-   with # are none. Read on one rank, checked on all.
+   The points of a pressure law that is a table, from its option or from a file: closing (m), of a lining its strain or
+   the compression of a sample (table.h), and pressure (Pa) in each line, with a comma between; a first line that begins
+   with no number is a heading, empty lines and those that begin with # are none. Read on one rank, checked on all.
 */
 #include "kind.h"
 #include "base/file.h"
@@ -105,6 +105,36 @@ static PetscErrorCode PointsCheck(MPI_Comm comm, const char option[], PressureLa
   PetscFunctionReturn(0);
 }
 
+/* The steepest line of a table of strains over pressures, Pa */
+static PetscReal StrainsModulus(const PressureLaw *law, PetscReal sample)
+{
+  PetscReal modulus = 0;
+
+  for (const PetscReal *i = law->point; i < &law->point[2 * (law->n_points - 1)]; i += 2)
+    modulus = PetscMax(modulus, sample * (i[3] - i[1]) / (i[2] - i[0]));
+  return modulus;
+}
+
+/* Closings of the spring at the back of a lining from its strains: c_i = h (e_i - p_i / E) */
+static PetscErrorCode PointsOfLining(MPI_Comm comm, const char name[], const char option[], PressureLaw *law)
+{
+  const PetscReal h = law->parameter[TABLE_THICKNESS], modulus = law->parameter[TABLE_MODULUS];
+  const PetscReal sample   = law->parameter[TABLE_SAMPLE] > 0 ? law->parameter[TABLE_SAMPLE] : 1;
+  const PetscReal steepest = StrainsModulus(law, sample);
+
+  PetscFunctionBeginUser;
+  if (h == 0) PetscFunctionReturn(0);
+  PetscCheck(modulus == 0 || modulus > steepest, comm, PETSC_ERR_USER_INPUT,
+             "-%s_pressure_modulus %.6g Pa must be above %.6g Pa, the largest modulus of a line of %s: the lining in "
+             "the mesh takes a part of the strain; give it and the part in the mesh a larger modulus",
+             name, (double)modulus, (double)steepest, option);
+  for (PetscInt i = 0; i < law->n_points; i++) {
+    law->point[2 * i] *= h / sample;
+    if (modulus > 0) law->point[2 * i] -= h * law->point[2 * i + 1] / modulus;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], const char file[], PressureLaw *law)
 {
   char option[256];
@@ -118,5 +148,6 @@ PetscErrorCode PressurePointsSet(MPI_Comm comm, const char name[], const char fi
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_pressure_%s", name, file[0] ? "file" : "table"));
   if (file[0]) PetscCall(PointsTake(comm, name, file, law));
   PetscCall(PointsCheck(comm, option, law));
+  PetscCall(PointsOfLining(comm, name, option, law));
   PetscFunctionReturn(0);
 }

@@ -150,6 +150,8 @@ PetscErrorCode PressureView(const PressureLaw *law, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %s %.6g", PressureKindOf(law)->row[j].name + sizeof("-pressure_") - 1,
                                      (double)law->parameter[j]));
   if (law->n_points) PetscCall(PetscViewerASCIIPrintf(viewer, " of %" PetscInt_FMT " points", law->n_points));
+  if (law->n_points && law->parameter[TABLE_THICKNESS] > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " of the strain of a lining %.6g thick", (double)law->parameter[0]));
   PetscFunctionReturn(0);
 }
 

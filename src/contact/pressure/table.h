@@ -4,10 +4,22 @@
       P(c) = p_i + P' (c - c_i),   P'(c) = (p_(i+1) - p_i) / (c_(i+1) - c_i),   c_i <= c < c_(i+1),
 
    the last line going on. The first pressure is 0: its closing is the onset. P' jumps at the points.
+
+   Of a lining of thickness h (m) a compressibility test gives strains e_i at the pressures, or the compressions e_i h_s
+   of a sample of thickness h_s. The lining in the mesh has a modulus E through its thickness (Pa) and takes p / E of
+   them; what is left is a spring in series with it, at its back:
+
+      c_i = h (e_i - p_i / E).
 */
 #pragma once
 
 #include "kind.h"
+
+static const char *TableIdleLining(const void *law, const QuantityRun *run)
+{
+  (void)run;
+  return ((const PressureLaw *)law)->parameter[TABLE_THICKNESS] > 0 ? NULL : "not used without -@pressure_thickness";
+}
 
 /* The point before which the line of c lies, or with k = 1 that of the pressure c: the last, but never the end */
 static const PetscReal *TableFind(const PressureLaw *law, int k, PetscReal c)
@@ -63,15 +75,19 @@ static PetscReal TableEnergy(const PressureLaw *law, PetscReal c)
 static const Quantity table_rows[] = {
   {"-pressure_table", "closing, pressure, closing, pressure, ..., both ascending, the first pressure 0", "m, Pa",
    QUANTITY_MANY, .at = offsetof(PressureLaw, point), .size = sizeof(PetscReal *),
-   .count = offsetof(PressureLaw, n_points), .room = PRESSURE_ROOM, .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
-   .unread = PRESSURE_EXACT},
+   .count = offsetof(PressureLaw, n_points), .room = PRESSURE_ROOM, PRESSURE_TABLE},
   {"-pressure_file", "or a file with closing,pressure in each line", NULL, QUANTITY_PATH, .path = "file",
-   .at = offsetof(PressureOptions, file), .size = PETSC_MAX_PATH_LEN, .in = RUN_LINEAR | RUN_STATIC | RUN_SPRINGS,
-   .unread = PRESSURE_EXACT},
+   .at = offsetof(PressureOptions, file), .size = PETSC_MAX_PATH_LEN, PRESSURE_TABLE},
+  {"-pressure_thickness", "of a lining whose strain, as of a compressibility test, is given in place of the closing",
+   "m", QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_THICKNESS), QUANTITY_OR_NONE, PRESSURE_TABLE},
+  {"-pressure_sample", "thickness of the sample whose compression in m is given in place of the strain", "m",
+   QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_SAMPLE), QUANTITY_OR_NONE, PRESSURE_TABLE, .idle = TableIdleLining},
+  {"-pressure_modulus", "of the lining in the mesh through its thickness, whose own strain is taken off the table",
+   "Pa", QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_MODULUS), QUANTITY_OR_NONE, PRESSURE_TABLE, .idle = TableIdleLining},
 };
 
 static const PressureKind table_pressure = {.name     = "table",
-                                            .n_rows   = 2,
+                                            .n_rows   = 5,
                                             .row      = table_rows,
                                             .onset    = TableOnset,
                                             .pressure = TablePressure,
