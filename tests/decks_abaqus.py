@@ -205,12 +205,14 @@ U
              # kg/ms^2 is 1e6 N/m: the rod along z at node 7, held at its other end
              "springs": "spring,spring_2", "spring_set": "spring", "spring_stiffness": "0,50e6,70e6",
              "spring_2_set": "spring_2", "spring_2_stiffness": "0,50e6,0",
+             "joints": "springa", "springa_a": "node", "springa_b": "node_2", "springa_at": "0,0,0.01", "springa_at_b": "0.01,0,0.01",
+             "springa_stiffness": "70e6,0,0",
              # 1e3 N is one kN, the unit of force: 3 at both nodes
              "loads": "force_force,pressed_pressure", "force_force_set": "force", "force_force_force": "0,6000,0",
              "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "4e6",
              "modes_band": "0,2000"}
     LISTED = ["flat.inp:17: differs: 1 of 1 elements C3D4 have the other", "flat.inp:17: differs: C3D4",
-              "flat.inp:68: *NODE FILE", "flat.inp:25: *ELEMENT, TYPE=MASS", "flat.inp:24: SPRINGA element 31",
+              "flat.inp:68: *NODE FILE", "flat.inp:26: *ELEMENT, TYPE=MASS: element 40 has no *MASS",
               "flat.inp:56: support of nodes that no volume element has", "flat.inp:27: set of elements EVERYTHING"]
 
 

@@ -46,8 +46,14 @@ def elements():
             if about == "curved" and not shape.second:
                 continue
             wanted, middle = abs(np.linalg.det(b)) * volume, b @ centre + a + moved * b[:, 0]
-            found, moment = integrals.volumes(shape, np.stack([places, places[shape.mirror_order()] if about == "straight" else places]))
+            image = places[shape.mirror_order()] if about == "straight" else places
+            found, moment, second = integrals.volumes(shape, np.stack([places, image]))
             check(f"{shape.name}, {about}: volume", close(found, wanted, wanted), (found, wanted))
+            if about == "straight":  # J = int r r' of the natural element by a rule of another degree
+                values, _, weights = integrals.rule(shape.family, shape.n_nodes, 4)
+                at = values @ local
+                wanted_second = abs(np.linalg.det(b)) * np.einsum("p,pi,pj->ij", weights, at @ b.T + a, at @ b.T + a)
+                check(f"{shape.name}: second moments", close(second, wanted_second[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]], 100), second)
             check(f"{shape.name}, {about}: centre", close(moment / found[:, None], middle, 10), (moment / found[:, None], middle))
 
 

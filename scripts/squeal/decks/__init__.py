@@ -3,7 +3,8 @@
   deck.py       what is in a deck, whichever code it is of: nodes, blocks of elements, sets, surfaces, materials, holders
   text.py       files as bytes; tables of numbers with commas or in columns, all at once, and line by line where one is wrong
   abaqus/       Abaqus and CalculiX: read.py keywords, parts and instances; words.py how keywords may be written; mesh.py nodes,
-                elements; sets.py sets, surfaces; material.py materials and sections; model.py holders, contact, steps; loads.py
+                elements; sets.py sets, surfaces; material.py materials and sections; model.py holders, contact, steps; loads.py;
+                joined.py couplings, masses, equations
   nastran/      Nastran: read.py files; cards.py cards in fields; case.py case control, sets that act; systems.py coordinate
                 systems; mesh.py grid points and solids; model.py properties, materials, supports; springs.py, loads.py, contact.py
   ansys/        Ansys' archive: read.py commands; blocks.py blocks; mesh.py nodes, elements, components; model.py
@@ -13,7 +14,7 @@
                 .vtu by meshio, and Code_Aster's .med; med_file.py the HDF5 of MED; gmsh_file.py a file of Gmsh 4.1, binary
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI
-  springs.py    springs to the ground
+  joined/       what joins nodes: couplings, rigid bodies, masses, springs between nodes, equations
   assemble.py   a deck to named sets, parts and scene entries; ties merged; holders.py supports, springs, loads, contacts;
                 gaps.py how far surfaces of a contact are apart; names.py names that squeal takes
   axes.py       supports in axes of a node's own

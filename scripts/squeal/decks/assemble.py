@@ -8,6 +8,9 @@ import numpy
 from .deck import Material, Section, firsts_of
 from .mesh.faces import surface_nodes
 from .holders import add_contacts, add_loads, add_springs, add_supports, add_ties
+from .joined.entries import add_joined
+from .joined.groups import Groups
+from .joined.holds import Holds
 from .names import Names
 
 CLOSE = 1e-6  # of the model's size: nodes that are nearer are in one place
@@ -33,6 +36,8 @@ class Result:
     surfaces: dict = field(default_factory=dict)  # name -> faces (cell, face)
     points: dict = field(default_factory=dict)  # name -> nodes
     into: numpy.ndarray = None  # node of the deck -> that of the deck which it became by ties
+    joined: object = None  # what joins nodes, of joined/
+    assembly: object = None
     entries: list = field(default_factory=list)
 
     def firsts(self):
@@ -167,6 +172,10 @@ class Assembly:
     def add(self, kind, name, rows, hints=()):
         self.result.entries.append(Entry(kind, self.things.new(name), rows, list(hints)))
 
+    def entry(self, kind, name, rows):
+        """An entry whose name is taken already."""
+        self.result.entries.append(Entry(kind, name, rows))
+
     def all_sets(self):
         """What the deck names and the scene does not use; names that begin with _ are those of a preprocessor."""
         for name, (faces, _) in self.deck.surfaces.items():
@@ -239,12 +248,14 @@ def assemble(deck, size):
     number[~used] = -1
     result = Result(deck.x[used], deck.blocks)
     result.into = merged
-    assembly = Assembly(deck, result, number[merged])
+    assembly = result.assembly = Assembly(deck, result, number[merged])
     materials = dict(deck.materials) | {"": Material("", None)}
     assembly.parts(materials)
-    add_supports(assembly)
+    result.joined = Holds(deck, Groups(deck, used[merged], merged)).run()
+    add_supports(assembly, result.joined.supports)
     add_springs(assembly)
-    add_loads(assembly)
+    add_joined(assembly, result.joined)
+    add_loads(assembly, result.joined.loads)
     add_contacts(assembly)
     add_ties(assembly)
     assembly.all_sets()

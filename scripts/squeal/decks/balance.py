@@ -1,5 +1,5 @@
-"""What a deck and the scene made of it weigh, and what holds and loads them: mass, centre of mass, elements, nodes that are
-held and loaded, force and moment, by part and in all. `of_deck` takes it from the elements, densities and loads of the deck;
+"""What a deck and the scene made of it weigh, and what holds and loads them: mass, centre of mass, inertia, elements, nodes that are
+held and loaded, what is joined, force and moment, by part and in all. `of_deck` takes it from the elements, densities, loads of the deck;
 written.py reads the scene and its mesh again, from their files. Both give a Model, and `sums` is the same for both."""
 
 from dataclasses import dataclass, field
@@ -25,10 +25,26 @@ class Model:
     forces: numpy.ndarray = None  # [n][3], N
     pressed: list = field(default_factory=list)  # (cells [f], nodes [f][k], pressure)
     gravity: numpy.ndarray = None  # m/s^2
+    points: list = field(default_factory=list)  # of class Carried
+    carried: dict = field(default_factory=dict)  # the same by the node of no element on which loads are
+    rigid: list = field(default_factory=list)  # nodes of each rigid set
+    links: list = field(default_factory=list)  # stiffness and viscosity [12] of bushings
+    equations: int = 0
 
     def __post_init__(self):
         n = len(self.x)
         self.held, self.springs, self.forces = numpy.zeros((n, 3), bool), numpy.zeros((n, 3)), numpy.zeros((n, 3))
+
+
+@dataclass
+class Carried:
+    """What a set carries at a place: mass, inertia xx, yy, zz, xy, xz, yz about it, force, moment. `node`: one of the set."""
+    node: int
+    x: numpy.ndarray
+    mass: float = 0.0
+    inertia: numpy.ndarray = field(default_factory=lambda: numpy.zeros(6))
+    force: numpy.ndarray = field(default_factory=lambda: numpy.zeros(3))
+    moment: numpy.ndarray = field(default_factory=lambda: numpy.zeros(3))
 
 
 @dataclass
@@ -38,7 +54,12 @@ class Row:
     volume: float = 0
     mass: float = None  # None: it has no density
     centre: numpy.ndarray = None
+    inertia: numpy.ndarray = None  # xx, yy, zz, xy, xz, yz about the centre
     cells: int = 0
+    rigid: int = 0  # nodes of rigid sets
+    lumped: float = 0  # mass of points
+    links: numpy.ndarray = field(default_factory=lambda: numpy.zeros(12))  # sums of stiffness and viscosity of bushings
+    equations: int = 0
     held: int = 0
     directions: int = 0  # that are held
     loaded: int = 0
@@ -48,8 +69,10 @@ class Row:
     gross: float = 0  # sum of the sizes of all forces
 
 
-def of_deck(deck, blocks, into, units):
-    """The model of a deck whose blocks had these nodes [e][n] when it was read; `into` is the node that each became by ties."""
+def of_deck(deck, blocks, result, units):
+    """The model of a deck whose blocks had these nodes [e][n] when it was read, with the node that each became by ties, and groups
+    of nodes that move as one."""
+    into, joined = result.into, result.joined
     model = Model(deck.x[into] * units.length, [(block.shape, into[nodes]) for block, nodes in zip(deck.blocks, blocks)])
     part_of = numpy.full(deck.n_cells, -1)
     for number, section in enumerate(deck.sections):
@@ -59,19 +82,60 @@ def of_deck(deck, blocks, into, units):
         if len(cells):
             density = None if material is None or material.density is None else material.density * units.density
             model.parts.append((section.name, density, cells))
+    solid = numpy.zeros(deck.n_nodes, bool)
+    for _, nodes in model.blocks:
+        solid[nodes] = True
     for support in deck.supports:
+        nodes = numpy.array([node for node in into[support.nodes].tolist() if solid[node] or node not in joined.used], int)
         for d in support.values:
-            model.held[into[support.nodes], d] = True
+            if d < 3:
+                model.held[nodes, d] = True
     for spring in deck.springs:
         numpy.add.at(model.springs, into[spring.nodes], numpy.multiply(spring.stiffness, units.stiffness))
     for load in deck.loads:
         if load.faces is None:
-            numpy.add.at(model.forces, into[load.nodes], load.force * units.force)
+            inside = solid[into[load.nodes]]
+            numpy.add.at(model.forces, into[load.nodes[inside]], load.force * units.force)
+            carry_load(model, joined, load, load.nodes[~inside], units)
         elif len(load.faces):
             model.pressed += faces_of(model, load.faces, load.pressure * units.stress)
+    join_model(model, deck, joined, units)
     if deck.gravity is not None:
         model.gravity = numpy.multiply(deck.gravity[0], units.length / units.time**2)
     return model
+
+
+def carry_load(model, joined, load, nodes, units):
+    """A force on nodes of no element: on what carries them, else on themselves."""
+    moment = numpy.zeros(3) if load.moment is None else load.moment * units.force * units.length
+    for node in nodes.tolist():
+        group = joined.at(node)
+        if group is None or len(group.directions) < 3:
+            model.forces[node] += load.force * units.force
+        elif group.how != "held":
+            point = model.carried.setdefault(node, Carried(int(group.nodes[0]), model.x[node]))
+            point.force, point.moment = point.force + load.force * units.force, point.moment + moment
+
+
+def join_model(model, deck, joined, units):
+    """Groups, masses, springs between nodes, equations."""
+    for group in joined.groups.groups:
+        if group.how == "held":
+            model.held[numpy.ix_(group.nodes, list(group.directions))] = True
+        elif group.how == "point" and group.rigid:
+            model.rigid.append(group.nodes)
+    for lump in deck.lumps:
+        group, into = joined.carrier(lump.node), joined.groups.into
+        if group is None or group.how != "held":
+            node = -1 if not lump.written else int(into[lump.node] if group is None else group.nodes[0])
+            model.points.append(Carried(node, model.x[lump.node] + lump.offset * units.length, lump.mass * units.mass,
+                                        numpy.multiply(lump.inertia, units.mass * units.length**2)))
+    for link in deck.links:
+        if link.written:
+            factor = numpy.repeat([1.0, units.length**2], 3)
+            model.links.append(numpy.concatenate([numpy.multiply(link.stiffness, factor * units.stiffness),
+                                                  numpy.multiply(link.viscosity, factor * units.mass / units.time)]))
+    model.equations = len(joined.follows)
 
 
 def faces_of(model, faces, pressure):
@@ -106,11 +170,11 @@ def cells_of_faces(model, nodes):
 def sums(model):
     """A row for each part, one of all, and one of nodes of no element, None where nothing is there. A node or face of several
     parts counts in the first."""
-    volume, moment = volumes_of(model)
+    volume, moment, second = volumes_of(model)
     middle = moment / numpy.where(volume > 0, volume, 1)[:, None]
     part_of, owner = owners(model, len(volume))
-    rows = [Row(name, *mass_of(density, volume[chosen], moment[chosen]), len(chosen)) for name, density, chosen in model.parts]
-    rows.append(Row("of no element", cells=0))
+    rows = [mass_of(name, density, (volume[chosen], moment[chosen], second[chosen])) for name, density, chosen in model.parts]
+    rows.append(Row("of no element", centre=numpy.zeros(3), inertia=numpy.zeros(6)))
     loaded, force, turn, gross = loads_on(model, middle, part_of, owner, len(rows))
     held, directions, loaded = (numpy.bincount(owner, values, len(rows)).astype(int) for values in (
         model.held.any(axis=1), model.held.sum(axis=1), loaded))
@@ -119,23 +183,56 @@ def sums(model):
         row.held, row.directions, row.loaded = int(held[number]), int(directions[number]), int(loaded[number])
         row.stiffness = stiffness[number]
         row.force, row.moment, row.gross = force[number], turn[number], gross[number]
+    add_carried(model, rows, owner)
+    for row in rows:
         if model.gravity is not None and row.mass:
             row.force = row.force + row.mass * model.gravity
             row.moment = row.moment + row.mass * numpy.cross(row.centre, model.gravity)
             row.gross += row.mass * numpy.linalg.norm(model.gravity)
     lost = rows.pop()
-    return rows, total_of(rows), lost if lost.held or lost.loaded or lost.stiffness.any() else None
+    return rows, total_of(rows, model), lost if lost.held or lost.loaded or lost.stiffness.any() or lost.lumped else None
+
+
+def add_carried(model, rows, owner):
+    """What points carry, and nodes that are joined rigidly."""
+    for point in [*model.points, *model.carried.values()]:
+        row = rows[owner[point.node] if point.node >= 0 else -1]
+        row.lumped += point.mass
+        if row.mass is not None and (point.mass or point.inertia.any()):
+            join_mass(row, point.mass, point.x, point.inertia)
+        if point.force.any() or point.moment.any():
+            row.loaded += 1
+            row.force = row.force + point.force
+            row.moment = row.moment + numpy.cross(point.x, point.force) + point.moment
+            row.gross += numpy.linalg.norm(point.force)
+    for nodes in model.rigid:
+        for number, count in zip(*numpy.unique(owner[nodes], return_counts=True)):
+            rows[number].rigid += int(count)
+
+
+def steiner(mass, arm):
+    """Inertia of a mass at an arm."""
+    x, y, z = arm
+    return mass * numpy.array([y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z])
+
+
+def join_mass(row, mass, x, inertia):
+    """Adds a mass at x to a row."""
+    total = row.mass + mass
+    centre = (row.mass * row.centre + mass * x) / total if total > 0 else row.centre
+    row.inertia = row.inertia + steiner(row.mass, row.centre - centre) + inertia + steiner(mass, x - centre)
+    row.mass, row.centre = total, centre
 
 
 def volumes_of(model):
-    """Volume and first moment of all cells; elements of one shape at once, since some decks have a block for each element."""
+    """Volume, first and second moments of all cells; elements of one shape at once, since some decks have a block for each element."""
     firsts = numpy.cumsum([0, *(len(nodes) for _, nodes in model.blocks)])
-    volume, moment = numpy.zeros(firsts[-1]), numpy.zeros((firsts[-1], 3))
+    volume, moment, second = numpy.zeros(firsts[-1]), numpy.zeros((firsts[-1], 3)), numpy.zeros((firsts[-1], 6))
     for shape in {shape.name: shape for shape, _ in model.blocks}.values():
         mine = [number for number, (other, _) in enumerate(model.blocks) if other is shape]
         rows = numpy.concatenate([numpy.arange(firsts[number], firsts[number + 1]) for number in mine])
-        volume[rows], moment[rows] = volumes(shape, model.x[numpy.concatenate([model.blocks[number][1] for number in mine])])
-    return volume, moment
+        volume[rows], moment[rows], second[rows] = volumes(shape, model.x[numpy.concatenate([model.blocks[number][1] for number in mine])])
+    return volume, moment, second
 
 
 def owners(model, n_cells):
@@ -151,10 +248,15 @@ def owners(model, n_cells):
     return part_of, owner
 
 
-def mass_of(density, volume, moment):
-    """Volume, mass, centre."""
-    total = volume.sum()
-    return total, None if density is None else density * total, moment.sum(axis=0) / total if total > 0 else numpy.zeros(3)
+def mass_of(name, density, moments):
+    """The row of a part with its volume, mass, centre, inertia about it."""
+    volume, first, second = (part.sum(axis=0) for part in moments)
+    centre = first / volume if volume > 0 else numpy.zeros(3)
+    row = Row(name, volume, None if density is None else density * volume, centre, cells=len(moments[0]))
+    xx, yy, zz, xy, xz, yz = second
+    about_origin = numpy.array([yy + zz, xx + zz, xx + yy, -xy, -xz, -yz])
+    row.inertia = (1.0 if density is None else density) * (about_origin - steiner(volume, centre))
+    return row
 
 
 def loads_on(model, middle, part_of, owner, n):
@@ -180,27 +282,34 @@ def loads_on(model, middle, part_of, owner, n):
     return loaded, force, turn, gross
 
 
-def total_of(rows):
+def total_of(rows, model):
     """The row of all parts."""
-    masses = [row.mass for row in rows]
-    by = [row.volume for row in rows] if None in masses else masses
-    centre = sum(weight * row.centre for weight, row in zip(by, rows)) / (sum(by) or 1)
-    found = Row("all", sum(row.volume for row in rows), None if None in masses else sum(masses), centre)
-    for name in ("cells", "held", "directions", "loaded", "stiffness", "force", "moment", "gross"):
+    known = all(row.mass is not None for row in rows)
+    found = Row("all", sum(row.volume for row in rows), 0.0, numpy.zeros(3), numpy.zeros(6))
+    for row in rows:
+        join_mass(found, row.mass if known else row.volume, row.centre, row.inertia)
+    found.mass = found.mass if known else None
+    for name in ("cells", "held", "directions", "loaded", "stiffness", "force", "moment", "gross", "rigid", "lumped"):
         setattr(found, name, sum(getattr(row, name) for row in rows))
+    found.links = numpy.array([numpy.ravel(link) for link in model.links]).reshape(-1, 12).sum(axis=0)
+    found.equations = model.equations
     return found
 
 
 def apart(deck, scene, size):
     """What differs between two rows: pairs (what, of the deck, of the scene)."""
     found = []
-    for name, what in (("cells", "elements"), ("held", "held nodes"), ("directions", "held directions"), ("loaded", "loaded nodes")):
+    for name, what in (("cells", "elements"), ("held", "held nodes"), ("directions", "held directions"), ("loaded", "loaded nodes"),
+                       ("rigid", "nodes that are joined rigidly"), ("equations", "equations")):
         if getattr(deck, name) != getattr(scene, name):
             found.append((what, str(getattr(deck, name)), str(getattr(scene, name))))
     gross = max(deck.gross, scene.gross)
     stiffness = abs(deck.stiffness).sum()
-    for name, unit, scale in (("volume", "m^3", deck.volume), ("mass", "kg", deck.mass), ("centre", "m", size), ("force", "N", gross),
-                              ("moment", "N m", gross * size), ("stiffness", "N/m", stiffness)):
+    weight = deck.volume if deck.mass is None else deck.mass
+    for name, unit, scale in (("volume", "m^3", deck.volume), ("mass", "kg", deck.mass), ("lumped", "kg", deck.lumped),
+                              ("centre", "m", size), ("inertia", "kg m^2", weight * size**2), ("force", "N", gross),
+                              ("moment", "N m", gross * size), ("stiffness", "N/m", stiffness),
+                              ("links", "N/m, N m/rad, N s/m, N m s/rad", abs(deck.links).max())):
         one, other = getattr(deck, name), getattr(scene, name)
         if (one is None) != (other is None) or (one is not None and not numpy.all(abs(one - other) <= SAME * (scale or 0))):
             found.append((name, f"{shown(one)} {unit}", f"{shown(other)} {unit}"))
@@ -224,10 +333,12 @@ def compared(deck, scene):
     else:
         differs = [f"{MARK}: {what} of {other.name}: {one} in the deck, {two} in the scene"
                    for row, other in zip([*rows, total], [*others, other_total]) for what, one, two in apart(row, other, size)]
-    lines = differs[:1] or ["balance: the scene has the mass, centre, elements, held and loaded nodes, force and moment of the deck"]
+    lines = differs[:1] or ["balance: the scene has the mass, centre, inertia, elements, held and loaded nodes, force and moment of the "
+                            "deck"]
     if lost:
-        lines.append(f"balance: nodes of no volume element: {lost.held} held, {lost.loaded} loaded with {shown(lost.force)} N; not in the "
-                     "scene")
+        mass = f", {lost.lumped:.6g} kg" if lost.lumped else ""
+        lines.append(f"balance: nodes of no volume element: {lost.held} held, {lost.loaded} loaded with {shown(lost.force)} N{mass}; not "
+                     "in the scene")
     return lines + table(others, other_total), differs[0] if differs else None
 
 
@@ -239,7 +350,12 @@ def table(rows, total):
     cells += [line_of(row) for row in chosen] + more + ([line_of(total)] if len(rows) > 1 else [])
     widths = [max(len(row[k]) for row in cells) for k in range(7)]
     lines = ["  ".join([row[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:]))]) for row in cells]
-    return lines + [f"moment about the origin: {shown(total.moment)} N m"] * bool(total.gross)
+    if total.mass:
+        lines.append(f"inertia about the centre, xx, yy, zz, xy, xz, yz: {shown(total.inertia)} kg m^2")
+    if total.rigid or total.lumped or total.links.any() or total.equations:
+        lines.append(f"joined: {total.rigid} nodes rigidly, {total.lumped:.6g} kg on points, {total.equations} equations, bushings of "
+                     f"{shown(total.links[:3])} N/m in all")
+    return lines + [f"moment about the origin: {shown(total.moment)} N m"] * bool(total.gross or numpy.any(total.moment))
 
 
 def line_of(row):

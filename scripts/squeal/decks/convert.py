@@ -10,6 +10,7 @@ from .abaqus.read import read_abaqus
 from .ansys.read import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
+from .joined.entries import write_equations
 from .mesh.gmsh_file import write_mesh
 from .mesh.meshes import MED, read_meshes
 from .nastran.read import read_nastran
@@ -80,19 +81,22 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     result.x = result.x * chosen.length
     if not numpy.isfinite(result.x).all():
         raise BadInput(f"{path}:1: places are not finite")
-    mesh, scene = (output.with_name(output.name + ending) for ending in (".msh", ".yaml"))
-    lines, notes = scene_lines(deck, result, chosen, why, mesh), [printable(note) for note in remarks(deck)]
+    mesh, scene, table = (output.with_name(output.name + ending) for ending in (".msh", ".yaml", "_equations.csv"))
+    equations = table if result.joined.follows else None
+    lines, notes = scene_lines(deck, result, chosen, why, (mesh, equations)), [printable(note) for note in remarks(deck)]
     missing = deck.missing()
     if strict and missing:
         raise BadInput(f"{printable(str(missing[0][0]))}: {printable(missing[0][1])} ({len(missing)} such lines; --strict)")
     try:
         write_mesh(mesh, result)
+        if equations:
+            write_equations(table, result)
         write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None
-    balance, differs = compared(of_deck(deck, nodes, result.into, chosen), of_scene(mesh, scene))
+    balance, differs = compared(of_deck(deck, nodes, result, chosen), of_scene(mesh, scene))
     if strict and differs:
         raise BadInput(f"{path}:1: {differs} (--strict)")
     cells = sum(len(block.ids) for block in result.blocks)
     return [printable(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
-            f"{len(result.points)} sets of nodes", *notes, *balance, f"{mesh} {scene}"]
+            f"{len(result.points)} sets of nodes", *notes, *balance, " ".join(map(str, filter(None, (mesh, scene, equations))))]

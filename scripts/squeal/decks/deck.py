@@ -70,7 +70,7 @@ class Section:
 
 @dataclass
 class Support:
-    """Directions 0, 1, 2 -> value of nodes; `name` where they are a named set."""
+    """Directions 0, 1, 2 (3, 4, 5: rotations) -> value of nodes; `name` where they are a named set."""
     nodes: numpy.ndarray
     values: dict
     name: str
@@ -87,12 +87,59 @@ class Spring:
 
 
 @dataclass
+class Join:
+    """Nodes that follow a reference node: rigidly, or it follows them in the mean with shares (None: equal ones)."""
+    name: str
+    node: int
+    nodes: numpy.ndarray
+    rigid: bool
+    place: Place
+    words: str  # as the deck has it
+    directions: tuple = (0, 1, 2)
+    shares: numpy.ndarray = None
+
+
+@dataclass
+class Lump:
+    """A mass, and its inertia xx, yy, zz, xy, xz, yz about its own place, `offset` from a node."""
+    node: int
+    place: Place
+    words: str
+    mass: float = 0.0
+    inertia: tuple = (0.0,) * 6
+    offset: numpy.ndarray = field(default_factory=lambda: numpy.zeros(3))
+    written: bool = False  # whether it is in the scene
+
+
+@dataclass
+class Link:
+    """Stiffness and viscosity along and about x, y, z, or axes 1 and 2, between two nodes; -1 is the ground."""
+    nodes: tuple
+    place: Place
+    words: str
+    stiffness: tuple = (0.0,) * 6
+    viscosity: tuple = (0.0,) * 6
+    axes: tuple = None
+    name: str = ""
+    written: bool = False  # whether it is in the scene
+
+
+@dataclass
+class Equation:
+    """sum of coefficient times motion d (0 to 5) of a node is 0: terms (node, d, coefficient)."""
+    terms: list
+    place: Place
+    words: str
+
+
+@dataclass
 class Load:
-    """Either `force` [3] at every one of the nodes, or a pressure on faces (cell, face), into the body."""
+    """Either `force` [3] and a `moment` at every one of the nodes, or a pressure on faces (cell, face), into the body."""
     name: str
     place: Place
     nodes: numpy.ndarray = None
     force: numpy.ndarray = None
+    moment: numpy.ndarray = None
     faces: numpy.ndarray = None
     pressure: float = 0
 
@@ -195,6 +242,7 @@ class Deck:
         self.node_sets, self.cell_sets, self.surfaces = {}, {}, {}  # name -> (indices or faces [n][2], Place)
         self.materials, self.sections = {}, []
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
+        self.joins, self.lumps, self.links, self.equations = [], [], [], []
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
         self.all_mirrored = False  # whether the format has all elements the other way round

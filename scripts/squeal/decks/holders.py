@@ -25,10 +25,10 @@ def grouped(rows, n):
         yield unique[group], nodes[inverse.ravel() == group]
 
 
-def add_supports(assembly):
+def add_supports(assembly, supports):
     """Directions that are held; those that are moved become motions."""
     named, single, places = {}, {}, {}
-    for support in assembly.deck.supports:
+    for support in supports:
         if support.name:
             values, where, _ = named.setdefault(support.name, ({}, [], support.nodes))
             values.update(support.values)
@@ -54,11 +54,6 @@ def numpy_free(rows):
 def support_entries(assembly, names, nodes, values, where):
     """Entries of a set: what is held at its place, and what is moved."""
     written = assembly.node_set(nodes, *names)
-    if not written:
-        held = "a reference node?" if len(nodes) == 1 else "reference nodes?"
-        for place in where:
-            assembly.deck.note(place, f"support of nodes that no volume element has ({held}): not in the scene")
-        return
     fixed = "".join(DIRECTIONS[d] for d in sorted(values) if values[d] == 0)
     moved = [d for d in sorted(values) if values[d] != 0]
     comment = summary(where)
@@ -92,11 +87,11 @@ def add_springs(assembly):
                                           ("stiffness", ("stiffness", tuple(stiffness)), f"{comment} per node")])
 
 
-def add_loads(assembly):
+def add_loads(assembly, loads):
     """Forces on nodes and pressures on faces, summed: over a set or surface that has a name, else at each node and face; gravity
     is of the scene as a whole."""
     named, single, places = {}, {}, {}
-    for load in assembly.deck.loads:
+    for load in loads:
         if load.faces is not None:
             continue
         if load.name:
@@ -111,7 +106,7 @@ def add_loads(assembly):
         force_entry(assembly, (name, name), nodes, force, where)
     for force, nodes in grouped(single, 3):
         force_entry(assembly, ("", "force"), nodes, force, [places[int(node)] for node in nodes])
-    add_pressures(assembly, [load for load in assembly.deck.loads if load.faces is not None])
+    add_pressures(assembly, [load for load in loads if load.faces is not None])
 
 
 def add_pressures(assembly, loads):

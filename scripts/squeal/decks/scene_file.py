@@ -7,9 +7,12 @@ import numpy
 from ..tables import quoted, whole
 
 MOST_ALIKE = 3
-LISTS = ("parts", "supports", "springs", "motions", "loads", "contacts", "ties")
+LISTS = ("parts", "supports", "springs", "motions", "joints", "points", "loads", "contacts", "ties")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
+           "mass": lambda u: u.mass, "inertia": lambda u: u.mass * u.length**2, "moment": lambda u: u.force * u.length,
+           "turn_stiffness": lambda u: u.stiffness * u.length**2, "viscosity": lambda u: u.mass / u.time,
+           "turn_viscosity": lambda u: u.mass / u.time * u.length**2,
            "points": lambda u: (u.length, u.stress), "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}
 
 
@@ -43,14 +46,23 @@ def mode_lines(deck, units):
     return [f"modes: {{target: 1, count: {max(int(count), 1)}{about}}}  # {place} the lowest{said}"]
 
 
-def scene_lines(deck, result, units, why, mesh):
-    """All lines."""
-    lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "",
-             f"model: {{mesh: {quoted(mesh)}}}" if deck.gravity is None else "model:"]
+def model_lines(deck, units, mesh, equations):
+    """The mesh, and what is of the scene as a whole."""
+    rows = [f"mesh: {quoted(mesh)}"]
+    if equations:
+        rows.append(f"equations: {quoted(equations)}")
+    if deck.gravity is None and len(rows) == 1:
+        return [f"model: {{{rows[0]}}}"]
     if deck.gravity is not None:
         vector, place = deck.gravity
         factor = units.length / units.time**2
-        lines += [f"  mesh: {quoted(mesh)}", '  gravity: "' + ",".join(f"{g * factor:.15g}" for g in vector) + f'"  # {place}']
+        rows.append('gravity: "' + ",".join(f"{g * factor:.15g}" for g in vector) + f'"  # {place}')
+    return ["model:", *(f"  {row}" for row in rows)]
+
+
+def scene_lines(deck, result, units, why, files):
+    """All lines; files are the mesh, and the equations where there are some."""
+    lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "", *model_lines(deck, units, *files)]
     for kind in LISTS:
         entries = [entry for entry in result.entries if entry.kind == kind]
         if entries:

@@ -4,7 +4,7 @@ import numpy
 import yaml
 
 from ..tables import BadInput
-from .balance import Model, cells_of_faces
+from .balance import Carried, Model, cells_of_faces
 from .mesh.elements import FACE_GMSH, SHAPES
 
 VOLUMES = {shape.gmsh: shape for shape in SHAPES.values()}
@@ -104,7 +104,8 @@ def of_scene(mesh, path):
         for name in groups[dimension, tag] if dimension < 3 else ():
             sets.setdefault(name, []).append(nodes)
     hold(model, scene, sets)
-    load(model, scene, sets)
+    points = join(model, scene, sets)
+    load(model, scene, sets, points)
     return model
 
 
@@ -120,10 +121,36 @@ def hold(model, scene, sets):
             model.springs[nodes.ravel()] += numbers(scene[name]["stiffness"])
 
 
-def load(model, scene, sets):
-    """Forces, spread evenly over a set, and pressures on the faces of another."""
+def join(model, scene, sets):
+    """Points and bushings, and the number of equations; returns the points by their names."""
+    found = {}
+    for name in words(scene, "points"):
+        values = scene[name]
+        nodes = numpy.unique(numpy.concatenate([rows.ravel() for rows in sets[values["set"]]]))
+        inertia = numbers(values["inertia"]) if "inertia" in values else [0.0] * 6
+        found[name] = Carried(int(nodes[0]), numpy.array(numbers(values["at"])), float(values.get("mass", 0)), numpy.array(inertia))
+        model.points.append(found[name])
+        if values.get("join") == "rigid":
+            model.rigid.append(nodes)
+    for name in words(scene, "joints"):
+        model.links.append([value for key in ("stiffness", "turn_stiffness", "viscosity", "turn_viscosity")
+                            for value in numbers(scene[name].get(key, "0,0,0"))])
+    table = (scene.get("model") or {}).get("equations")
+    if table:
+        with open(table, encoding="utf-8") as lines:
+            model.equations = len({line.partition(",")[0] for line in lines if line[0].isdigit()})
+    return found
+
+
+def load(model, scene, sets, points):
+    """Forces, spread evenly over a set or on a point, and pressures on the faces of another."""
     for name in words(scene, "loads"):
-        values, members = scene[name], sets[scene[name]["set"]]
+        values = scene[name]
+        if "point" in values:
+            points[values["point"]].force = numpy.array(numbers(values.get("force", "0,0,0")))
+            points[values["point"]].moment = numpy.array(numbers(values.get("moment", "0,0,0")))
+            continue
+        members = sets[values["set"]]
         if "force" in values:
             nodes = numpy.concatenate([rows.ravel() for rows in members])
             model.forces[nodes] += numpy.array(numbers(values["force"])) / len(nodes)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from .model import direction, is_turned, set_name
+from .model import direction, set_name
 from .sets import check_faces, reader_cells, reader_nodes, surface_of
 from ..deck import Load
 from ..text import real
@@ -53,10 +53,15 @@ def do_cload(reader, scope, card):
             raise place.wrong(f"*CLOAD: {len(fields)} fields, expected a node or set, a direction, a force")
         nodes, d = reader_nodes(reader, scope, fields[0], place), direction(fields[1], place, card.keyword, reader)
         value = real(fields[2], place)
-        if d is None or is_turned(reader, nodes, place, card.keyword):
+        if d is None:
             continue
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
-        reader.forces.append(Said(reader.steps, card.keyword, nodes, value, place, name, d))
+        turned = [node for node in nodes.tolist() if node in reader.rotations]
+        for node in turned:
+            reader.forces.append(Said(reader.steps, card.keyword, numpy.array([reader.rotations[node]]), value, place, "", d % 3 + 3))
+        rest = numpy.setdiff1d(nodes, turned) if turned else nodes
+        if len(rest):
+            reader.forces.append(Said(reader.steps, card.keyword, rest, value, place, "" if turned else name, d))
 
 
 def do_dload(reader, scope, card):
@@ -100,15 +105,33 @@ def do_dsload(reader, scope, card):
 def finish_loads(reader):
     """Loads of the deck."""
     deck = reader.deck
-    for row, left in in_force(reader.forces, lambda row: 3 * row.members + row.d, 3 * deck.n_nodes):
+    for row, left in in_force(reader.forces, lambda row: 6 * row.members + row.d, 6 * deck.n_nodes):
         if row.value and left.any():
-            force = numpy.zeros(3)
-            force[row.d] = row.value
-            deck.loads.append(Load(row.name if left.all() else "", row.place, nodes=row.members[left], force=force))
+            add_force(reader, row, row.members[left], row.name if left.all() else "")
     for row, left in in_force(reader.pressures, lambda row: row.members @ (6, 1), 6 * deck.n_cells):
         if row.value and left.any():
             deck.loads.append(Load(row.name if left.all() else "", row.place, faces=row.members[left], pressure=row.value))
     finish_gravity(reader)
+
+
+def add_force(reader, row, nodes, name):
+    """A force or moment at each of the nodes, in its own axes where it has some."""
+    own = [node for node in nodes.tolist() if node in reader.turned]
+    for node in own:
+        axes = reader.turned[node]
+        if axes is None:
+            reader.deck.note(row.place, "*CLOAD: in the axes of *TRANSFORM, not taken")
+        else:
+            reader.deck.loads.append(load_of(row, "", numpy.array([node]), row.value * axes[row.d % 3]))
+    rest = numpy.setdiff1d(nodes, own) if own else nodes
+    if len(rest):
+        reader.deck.loads.append(load_of(row, "" if own else name, rest, row.value * numpy.eye(3)[row.d % 3]))
+
+
+def load_of(row, name, nodes, vector):
+    """The load of a row: a force or a moment."""
+    none = numpy.zeros(3)
+    return Load(name, row.place, nodes=nodes, force=vector if row.d < 3 else none, moment=vector if row.d > 2 else None)
 
 
 def finish_gravity(reader):

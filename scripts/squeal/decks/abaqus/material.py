@@ -135,7 +135,7 @@ def axis_of(vector, card):
     """A unit vector."""
     length = numpy.linalg.norm(vector)
     if not length > 0:
-        raise card.place.wrong("*ORIENTATION: the points do not tell the axes")
+        raise card.place.wrong(f"*{card.keyword}: the points do not tell the axes")
     return vector / length
 
 

@@ -22,7 +22,8 @@ TYPES = {
 HYBRID = "C3D4", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D10M", "C3D20", "C3D20R", "C3D6", "C3D15"
 TYPES |= {f"{name}H": (TYPES[name][0], f"{name}H (hybrid) becomes {TYPES[name][0]} of squeal without a pressure of its own")
           for name in HYBRID}
-SPRINGS = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2}
+HOLDERS = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2, "DASHPOT1": 1, "DASHPOT2": 2, "DASHPOTA": 2, "MASS": 1, "ROTARYI": 1,
+           "CONN3D2": 2, "DCOUP3D": 1}  # elements of one or two nodes that join or load them
 
 
 def check_ids(ids, lines, file, what):
@@ -110,9 +111,9 @@ def do_element(reader, scope, card):
 
 
 def other_elements(reader, scope, card, kind):
-    """Springs, and elements that are none of squeal's: their numbers may be in sets."""
-    if kind in SPRINGS:
-        pieces = [slow_table(text, first, 1 + SPRINGS[kind], int, card.place.file) for text, first in card.pieces]
+    """Springs and the like, and elements that are none of squeal's: their numbers may be in sets."""
+    if kind in HOLDERS:
+        pieces = [slow_table(text, first, 1 + HOLDERS[kind], int, card.place.file) for text, first in card.pieces]
         for rows, lines in pieces:
             for row, line in zip(rows.tolist(), lines.tolist()):
                 place = Place(card.place.file, line)

@@ -2,33 +2,26 @@
 
 import numpy
 
+from .joined import leave_coupling
 from .material import first_row, numbers, other_rows
-from .mesh import SPRINGS
 from .sets import reader_nodes, surface_of
 from .words import choice, label
-from ..deck import NOT_NEEDED, Contact, Support, Tie, Turning
-from ..springs import ground_springs
+from ..deck import NOT_NEEDED, Contact, Equation, Support, Tie, Turning
+from ..axes import aligned
+from ..joined.springs import read_springs
 from ..text import real, whole
 
-HELD = {"ENCASTRE": (0, 1, 2), "PINNED": (0, 1, 2), "XSYMM": (0,), "YSYMM": (1,), "ZSYMM": (2,), "XASYMM": (1, 2),
-        "YASYMM": (0, 2), "ZASYMM": (0, 1)}
+HELD = {"ENCASTRE": range(6), "PINNED": (0, 1, 2), "XSYMM": (0, 4, 5), "YSYMM": (1, 3, 5), "ZSYMM": (2, 3, 4), "XASYMM": (1, 2, 3),
+        "YASYMM": (0, 2, 4), "ZASYMM": (0, 1, 5)}
 
 
 def direction(word, place, keyword, reader):
-    """0, 1, 2 of a degree of freedom; others, which solids do not have, are listed."""
+    """0 to 5 of a degree of freedom; others are listed."""
     dof = whole(word, place, "a degree of freedom")
-    if 1 <= dof <= 3:
+    if 1 <= dof <= 6:
         return dof - 1
     reader.deck.note(place, f"*{keyword}: degree of freedom {dof}, which solids do not have")
     return None
-
-
-def is_turned(reader, nodes, place, keyword):
-    """Whether *TRANSFORM has given nodes other axes; then the line is listed."""
-    if any(numpy.isin(nodes, turned).any() for turned, _ in reader.turned.values()):
-        reader.deck.note(place, f"*{keyword}: in the axes of *TRANSFORM, not taken")
-        return True
-    return False
 
 
 def do_boundary(reader, scope, card):
@@ -44,11 +37,36 @@ def do_boundary(reader, scope, card):
         nodes = reader_nodes(reader, scope, fields[0], place)
         word = fields[1].upper() if len(fields) > 1 else ""
         values = {d: 0.0 for d in HELD[word]} if word in HELD else boundary_values(reader, place, fields)
-        if values != {0: 0.0, 1: 0.0, 2: 0.0} and is_turned(reader, nodes, place, card.keyword):
-            continue
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
+        whole_set = len(nodes)
+        if any(d not in values or values[d] for d in range(3)):
+            nodes = hold_turned(reader, nodes, values, place)
         if values and len(nodes):
-            reader.supports.append((reader.steps, Support(nodes, values, name, place)))
+            reader.supports.append((reader.steps, Support(nodes, values, name if len(nodes) == whole_set else "", place)))
+
+
+def hold_turned(reader, nodes, values, place):
+    """Holds nodes that have axes of their own: along axes of space, or by equations; returns the other nodes."""
+    own = numpy.array([node in reader.turned for node in nodes.tolist()], bool)
+    for node in nodes[own].tolist():
+        axes, plain = reader.turned[node], {}
+        if axes is None:
+            reader.deck.note(place, "*BOUNDARY: in the axes of *TRANSFORM, not taken")
+            continue
+        for first in (0, 3):
+            held = [d for d in range(3) if first + d in values]
+            found = aligned(axes, held) if held else {}
+            if found is not None and not any(values[first + d] for d in held) or found and all(sign for _, sign in found.values()):
+                plain |= {first + d: sign * values[first + own_d] + 0.0 if sign else 0.0 for d, (own_d, sign) in found.items()}
+            elif any(values[first + d] for d in held):
+                reader.deck.note(place, "*BOUNDARY: moved in the axes of *TRANSFORM, not taken")
+            else:
+                reader.deck.equations += [
+                    Equation([(node, first + e, float(axes[d, e])) for e in range(3) if abs(axes[d, e]) > 1e-12], place,
+                             "*BOUNDARY in the axes of *TRANSFORM") for d in held]
+        if plain:
+            reader.supports.append((reader.steps, Support(numpy.array([node]), plain, "", place)))
+    return nodes[~own]
 
 
 def boundary_values(reader, place, fields):
@@ -60,14 +78,18 @@ def boundary_values(reader, place, fields):
     value = real(fields[3], place) if len(fields) > 3 and fields[3] else 0.0
     if not 0 <= first <= last <= 31:
         raise place.wrong(f"*BOUNDARY: degrees of freedom {first} to {last}")
-    if first < 1 or (last > 3 and not (first <= 3 and last <= 6)):
+    if first < 1 or last > 6:
         reader.deck.note(place, f"*BOUNDARY: degrees of freedom {first} to {last}, those beyond 1 to 3 solids do not have")
-    return {dof - 1: value for dof in range(max(first, 1), min(last, 3) + 1)}
+    return {dof - 1: value for dof in range(max(first, 1), min(last, 6) + 1)}
 
 
 def finish_supports(reader):
     """Supports of the deck: of a node and direction the last line counts, whichever set named it."""
-    deck, last, kept = reader.deck, numpy.full((reader.deck.n_nodes, 3), numpy.nan), []
+    deck, last, kept = reader.deck, numpy.full((reader.deck.n_nodes, 6), numpy.nan), []
+    for _, support in reader.supports:
+        if min(support.values) > 2 and all(reader.is_solid(node) for node in support.nodes.tolist()):
+            dofs = f"{min(support.values) + 1} to {max(support.values) + 1}"
+            deck.note(support.place, f"*BOUNDARY: degrees of freedom {dofs}, those beyond 1 to 3 solids do not have")
     for _, support in reversed(reader.supports):
         left = {}
         for d, value in support.values.items():
@@ -91,15 +113,16 @@ def do_spring(reader, scope, card):
     """Degrees of freedom, then the stiffness; done when all supports are known."""
     rows = [row for _, row in numbers(card)]
     if "NONLINEAR" in card.options:
-        reader.deck.note(card.place, "*SPRING, NONLINEAR: not understood")
+        reader.deck.note(card.place, f"*{card.keyword}, NONLINEAR: not understood")
         return
     lines = [text.split(b"\n") for text, _ in card.pieces]
     blank = bool(lines and not lines[0][0].strip())
     dofs, values = ([], rows) if blank or len(rows) < 2 else (rows[0], rows[1:])
     if not values or not values[0]:
-        raise card.place.wrong("*SPRING has no stiffness")
+        raise card.place.wrong(f"*{card.keyword} has no {'stiffness' if card.keyword == 'SPRING' else 'coefficient'}")
     if values[0][0] < 0:
-        raise card.place.wrong(f"*SPRING: stiffness {values[0][0]:g} must not be negative")
+        what = "stiffness" if card.keyword == "SPRING" else "coefficient"
+        raise card.place.wrong(f"*{card.keyword}: {what} {values[0][0]:g} must not be negative")
     reader.spring_cards.append((scope, card, dofs, values[0][0]))
 
 
@@ -262,8 +285,22 @@ def finish_steps(reader):
         contact.damping = reader.damping
 
 
+def turn_nodes(reader):
+    """What holds or loads a ROT NODE is of the rotations of the reference node."""
+    for at, (step, support) in enumerate(reader.supports):
+        own = [node for node in support.nodes.tolist() if node in reader.rotations]
+        for node in own:
+            turned = {d + 3: value for d, value in support.values.items() if d < 3}
+            if turned:
+                reader.supports.append((step, Support(numpy.array([reader.rotations[node]]), turned, "", support.place)))
+        if own:
+            reader.supports[at] = step, Support(numpy.setdiff1d(support.nodes, own), support.values, "", support.place)
+
+
 def finish(reader):
     """Supports, contact of all pairs, springs."""
+    leave_coupling(reader)
+    turn_nodes(reader)
     finish_supports(reader)
     for contact, interaction, tied in reader.pairs:
         values = reader.interactions.get(interaction)
@@ -276,11 +313,11 @@ def finish(reader):
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
         contact.points = values.get("points", ())
         reader.deck.contacts.append(contact)
-    ground_springs(reader, SPRINGS)
+    read_springs(reader)
     finish_steps(reader)
 
 
-CARDS = {"BOUNDARY": do_boundary, "SPRING": do_spring, "TIE": do_tie,
+CARDS = {"BOUNDARY": do_boundary, "SPRING": do_spring, "DASHPOT": do_spring, "TIE": do_tie,
          "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
          "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
          "FREQUENCY": do_frequency, "COMPLEX FREQUENCY": do_complex}

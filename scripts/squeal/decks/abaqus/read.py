@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy
 
 from ...tables import BadInput
-from . import loads as abaqus_loads, material as abaqus_material, mesh as abaqus_mesh, model as abaqus_model, sets as abaqus_sets
+from . import joined as abaqus_joined, loads as abaqus_loads, material as abaqus_material, mesh as abaqus_mesh
+from . import model as abaqus_model, sets as abaqus_sets
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from ..deck import NOT_NEEDED, Deck, Index, Place
 from ..text import read_bytes, real, shorter
@@ -21,12 +22,9 @@ OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEM
           "SECTION PRINT", "PRINT", "MODAL FILE"}
 ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONTROLS", "SOLVER CONTROLS"}
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
-PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY",  # say nothing of the model
-         "KINEMATIC", "DISTRIBUTING"}  # or are listed with what they belong to
+PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
-POINTS = "`points` of squeal do this, on a set of the mesh"
-INSTEAD = {"COUPLING": POINTS, "RIGID BODY": POINTS, "MASS": POINTS, "ROTARY INERTIA": POINTS,
-           "CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
+INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
 # Options that change what a card says; others are listed
 KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPUT", "PARENT"},
@@ -36,7 +34,12 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "MATERIAL": {"NAME"}, "DENSITY": set(), "DISTRIBUTION": {"NAME", "LOCATION", "TABLE"},
          "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
          "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
-         "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
+         "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "DASHPOT": {"ELSET"}, "MASS": {"ELSET"}, "ROTARY INERTIA": {"ELSET"},
+         "COUPLING": {"REF NODE", "SURFACE", "CONSTRAINT NAME", "ORIENTATION", "INFLUENCE RADIUS"}, "KINEMATIC": set(),
+         "DISTRIBUTING": {"WEIGHTING METHOD", "COUPLING"}, "KINEMATIC COUPLING": {"REF NODE", "ORIENTATION"},
+         "EQUATION": set(), "MPC": set(),
+         "RIGID BODY": {"REF NODE", "ROT NODE", "NSET", "ELSET", "PIN NSET", "TIE NSET"},
+         "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
                           "TIED"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
@@ -58,7 +61,7 @@ def listed(do):
 
 
 CARDS = {keyword: listed(do) for keyword, do in (
-    abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS).items()}
+    abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS).items()}
 
 
 @dataclass
@@ -192,7 +195,8 @@ class Scope:
         self.nodes, self.cells, self.others = Index(), Index(), Index(once=False)
         self.node_sets, self.cell_sets, self.surfaces, self.axes, self.distributions = {}, {}, {}, {}, {}
         self.other_sets = {}  # elsets -> numbers of elements that are no volumes
-        self.holders = {}  # numbers of spring elements -> (type, nodes, place)
+        self.holders = {}  # numbers of elements of one or two nodes -> (type, nodes, place)
+        self.given = set()  # those of masses that have their value
 
     def full(self, name):
         """The name in the deck."""
@@ -206,11 +210,25 @@ class Reader:
         self.deck = Deck(path, "Abaqus or CalculiX")
         self.main, self.instances, self.parts = Scope(self.deck), {}, {}
         self.material = self.interaction = self.changed = None
-        self.interactions, self.turned, self.spring_cards, self.pairs = {}, {}, [], []
+        self.interactions, self.spring_cards, self.pairs = {}, [], []
+        self.turned, self.rotations, self.surface_nodes = {}, {}, {}  # node -> its axes (None: unknown); ROT NODE -> REF NODE
+        self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
         self.supports = []  # (step, Support) as they come
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
+
+    def axes_at(self, node):
+        """Axes that a node has of its own, or None."""
+        return self.turned.get(node)
+
+    def is_solid(self, node):
+        """Whether a volume element has a node; elements are all read before."""
+        if self.solid is None or len(self.solid) != self.deck.n_nodes:
+            self.solid = numpy.zeros(self.deck.n_nodes, bool)
+            for block in self.deck.blocks:
+                self.solid[block.nodes] = True
+        return bool(self.solid[node])
 
     def split(self, name, scope):
         """Scope and local name of INSTANCE.NAME, which may stand behind ASSEMBLY. too."""
@@ -309,6 +327,9 @@ class Reader:
         for scope in [self.main, *self.instances.values()]:
             scope.nodes.sorted("node")
             scope.cells.sorted("element")
+            for number, (kind, _, place) in scope.holders.items():
+                if kind in abaqus_joined.NAMED and number not in scope.given:
+                    self.deck.note(place, f"*ELEMENT, TYPE={kind}: element {number} has no *{abaqus_joined.NAMED[kind]}")
         return self.deck
 
 

@@ -160,7 +160,8 @@ def do_surface(reader, scope, card):
         faces = union_of(reader, scope, card)
     elif kind == "NODE":
         nodes = [reader_nodes(reader, scope, fields[0], place) for place, fields in card.rows()]
-        faces = boundary_faces(reader.deck, numpy.unique(numpy.concatenate([NONE, *nodes])))
+        nodes = reader.surface_nodes[scope.full(name)] = numpy.unique(numpy.concatenate([NONE, *nodes]))
+        faces = boundary_faces(reader.deck, nodes)
         reader.deck.note(card.place, f"*SURFACE, TYPE=NODE {name}: taken as the faces all of whose nodes it has")
     elif kind == "ELEMENT":
         found = [surface_row(reader, scope, place, fields) for place, fields in card.rows()]
@@ -219,11 +220,4 @@ def check_faces(reader, cells, number, place):
     return numpy.stack([cells[~without], numpy.full((~without).sum(), number - 1)], axis=1)
 
 
-def do_transform(reader, scope, card):
-    name = card.need("NSET")
-    reader.turned[id(scope), name] = reader_nodes(reader, scope, name, card.place), card.place
-    reader.deck.note(card.place, f"*TRANSFORM: axes at the nodes of {name}; supports and forces there are not taken, but for nodes that "
-                                 "are held in all directions")
-
-
-CARDS = {"NSET": do_nset, "ELSET": do_elset, "SURFACE": do_surface, "TRANSFORM": do_transform}
+CARDS = {"NSET": do_nset, "ELSET": do_elset, "SURFACE": do_surface}

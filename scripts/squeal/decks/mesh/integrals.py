@@ -1,8 +1,8 @@
 """Integrals over elements and faces: volume and first moment, the vector of an area and its moment. Shape functions are the
 polynomials of a space that are 1 at one node and 0 at the others; integration by Gauss' points is exact for elements of
-straight and of curved edges, since places are polynomials:
+straight and of curved edges, since places are polynomials; Q, with the points of V, is exact for parallelepipeds and their like:
 
-  V = int det J,   S = int x det J,   A = int x_r x x_s,   M = int x x (x_r x x_s)
+  V = int det J,   S = int x det J,   Q = int x x' det J,   A = int x_r x x_s,   M = int x x (x_r x x_s)
 """
 
 import functools
@@ -119,29 +119,45 @@ def rule_at_nodes(shape):
 
 
 def volumes(shape, x):
-    """Volume [e] and first moment [e][3] of elements with nodes x [e][n][3], for a mirrored one positive too."""
-    volume, moment = numpy.zeros(len(x)), numpy.zeros((len(x), 3))
+    """Volume [e], first moment [e][3] and second moments xx, yy, zz, xy, xz, yz [e][6] of elements with nodes x [e][n][3], for a mirrored
+    one positive too."""
+    volume, moment, second = numpy.zeros(len(x)), numpy.zeros((len(x), 3)), numpy.zeros((len(x), 6))
     for first in range(0, len(x), CHUNK):
         part = x[first:first + CHUNK]
         plain, corners = straight(shape, part), len(CORNERS[shape.family])
         for chosen, n, n_points in ((plain, corners, 2), (~plain, shape.n_nodes, 4)):
-            if chosen.any():
+            if chosen.any() and chosen is plain and corners == 4:
+                rows = first + numpy.flatnonzero(plain)
+                volume[rows], moment[rows], second[rows] = tetrahedra(part[plain, :4])
+            elif chosen.any():
                 rows = first + numpy.flatnonzero(chosen)
-                volume[rows], moment[rows] = volumes_of_some(rule(shape.family, n, n_points), part[chosen, :n])
-    return volume, moment
+                volume[rows], moment[rows], second[rows] = volumes_of_some(rule(shape.family, n, n_points), part[chosen, :n])
+    return volume, moment, second
+
+
+def tetrahedra(x):
+    """The same of straight ones: V (sum x_i x_i' + s s') / 20 with s = sum x_i."""
+    total = x.sum(axis=1)
+    edge = x[:, 1:] - x[:, :1]
+    volume = abs(numpy.einsum("ei,ei->e", edge[:, 0], numpy.cross(edge[:, 1], edge[:, 2]))) / 6
+    second = [(x[:, :, i] * x[:, :, j]).sum(axis=1) + total[:, i] * total[:, j] for i, j in zip((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))]
+    return volume, volume[:, None] * total / 4, volume[:, None] * numpy.stack(second, axis=1) / 20
 
 
 def volumes_of_some(points_of, x):
     """The same by a rule."""
-    volume, moment = numpy.zeros(len(x)), numpy.zeros((len(x), 3))
+    volume, moment, second = numpy.zeros(len(x)), numpy.zeros((len(x), 3)), numpy.zeros((len(x), 6))
     n, x = len(x), numpy.ascontiguousarray(x.transpose(2, 0, 1)).reshape(-1, x.shape[1])  # rows of each coordinate
     for value, slope, weight in zip(*points_of):
         a, b, c = numpy.ascontiguousarray((x @ slope).T).reshape(3, 3, n)
         det = weight * (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]))
         volume += det
-        moment += (det * (x @ value).reshape(3, n)).T
+        at = (x @ value).reshape(3, n)
+        part = det * at
+        moment += part.T
+        second += numpy.concatenate([part * at, [part[0] * at[1], part[0] * at[2], part[1] * at[2]]]).T
     sign = numpy.where(volume < 0, -1.0, 1.0)
-    return sign * volume, sign[:, None] * moment
+    return sign * volume, sign[:, None] * moment, sign[:, None] * second
 
 
 def areas(x):

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""What joins nodes of imported decks - couplings, rigid bodies, masses, springs between nodes, equations, supports in turned axes -
+beside CalculiX on the same deck, to 1e-6 (it prints seven digits): hex20 and C3D20 with 27 points are one element. CalculiX 2.20 takes
+loads alone on a node of *DISTRIBUTING; springs on one are written as equations for it. Breaks when an arm,
+a sign, a share or an axis is wrong, or when something is lost without a word.
+
+    test_import_joined.py SQUEAL
+
+Comparisons are left out without `ccx`."""
+
+import csv
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from squeal.decks.convert import convert
+from squeal.export.calculix import run_calculix
+
+import decks
+import decks_joined
+import numpy as np
+from served import starter
+from test_import_keywords import scene
+
+CALCULIX, COUNT = 1e-6, 8
+FAILED = []
+
+
+def check(about, kept, shown=""):
+    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
+    if not kept:
+        FAILED.append(about)
+
+
+def brought(folder, text):
+    """Lines that are printed when a deck is brought in, and options of the scene."""
+    (folder / "deck.inp").write_text(text)
+    lines = convert(folder / "deck.inp", "mm-t-s", folder / "deck")
+    return lines, scene(folder, "deck")[0]
+
+
+def frequencies(folder, program):
+    """Hz, of the scene."""
+    done = program.run(folder, ["-options_file", "deck.yaml", "-output_dir", "out", "-output_fields", "0", "-modes_count", str(COUNT)])
+    if done.status:
+        return np.zeros(0), done.stderr
+    with (folder / "out/modes.csv").open(newline="") as rows:
+        return np.array([float(row["freq_hz"]) for row in csv.DictReader(rows)][:COUNT]), ""
+
+
+def beside(folder, program, about, text, other=None):
+    """A deck in squeal and CalculiX, or another deck in CalculiX."""
+    lines, _ = brought(folder, text)
+    check(f"{about}: balance", any(line.startswith("balance: the scene has") for line in lines), lines)
+    check(f"{about}: nothing is left out", not any("not in the scene" in line or "not understood" in line for line in lines), lines)
+    ours, said = frequencies(folder, program)
+    check(f"{about}: runs", len(ours) == COUNT, said)
+    if shutil.which("ccx") and len(ours) == COUNT:
+        theirs = run_calculix(folder, (other or text).splitlines())[0].imag[:COUNT] / (2 * np.pi)
+        worst = max(abs(ours / theirs - 1))
+        check(f"{about}: CalculiX, apart by {worst:.1e}, {CALCULIX:g} allowed", worst < CALCULIX, (ours, theirs))
+
+
+def supports_and_loads(folder, solid):
+    """What a reference node carries in the scene: force and moment, in the axes of space and turned ones."""
+    step = "*STEP\n*STATIC\n*CLOAD\n9001, 1, 3.\n9001, 5, 20.\n*END STEP"
+    for about, how, join in (("kinematic", "*KINEMATIC\n", "rigid"), ("distributing", "*DISTRIBUTING\n", None)):
+        lines, options = brought(folder, decks_joined.deck(solid, decks_joined.REF + decks_joined.COUPLED + how, step=step))
+        point, = (value for key, value in options.items() if key == "points")
+        check(f"{about}: force and moment", (options.get(f"{point}_force_force"), options.get(f"{point}_force_moment"),
+                                             options.get(f"{point}_join")) == ("3,0,0", "0,0.02,0", join), options)
+        check(f"{about}: balance of the load", any(line.startswith("balance: the scene has") for line in lines), lines)
+    turned = "*NSET, NSET=R\n9001\n*TRANSFORM, NSET=R\n0., 1., 0., -1., 0., 0.\n"
+    _, options = brought(folder, decks_joined.deck(solid, decks_joined.REF + turned + decks_joined.COUPLED + "*KINEMATIC\n", step=step))
+    check("in turned axes", (options["c1_force_force"], options["c1_force_moment"]) == ("0,3,0", "-0.02,0,0"), options)
+
+
+def not_taken(folder, solid):
+    """What cannot be in the scene has a line."""
+    ref, mass, coupled = decks_joined.REF, decks_joined.MASS, decks_joined.COUPLED
+    for about, cards, said in (
+            ("a mass that nothing joins", ref + mass, "*MASS LUMP: at a node that no volume element has, and nothing joins"),
+            ("a coupling without its kind", ref + coupled, "*COUPLING without *KINEMATIC or *DISTRIBUTING"),
+            ("rotations alone", ref + coupled + "*KINEMATIC\n4, 6\n", "of rotations alone, which solids do not have"),
+            ("an unknown constraint", "*MPC\nSLIDER, 1, 2, 3\n", "*MPC, SLIDER: not understood"),
+            ("a mass without its value", ref + "*ELEMENT, TYPE=MASS, ELSET=L\n90001, 9001\n", "element 90001 has no *MASS"),
+            ("inertia of a solid's node", "*ELEMENT, TYPE=ROTARYI, ELSET=L\n90001, 1\n*ROTARY INERTIA, ELSET=L\n1., 1., 1.\n",
+             "on a node that has no rotation")):
+        lines, _ = brought(folder, decks_joined.deck(solid, cards))
+        check(f"{about}: listed", sum(said in line for line in lines) == 1, lines)
+
+
+def main():
+    program = starter(sys.argv[1])
+    with tempfile.TemporaryDirectory(prefix="squeal-") as name:
+        folder = Path(name)
+        solid = decks.Solid("hex20", folder, "--elements", "4,2,2")
+        for about, (cards, hold) in decks_joined.CASES.items():
+            beside(folder, program, about, decks_joined.deck(solid, cards, hold))
+        for about, text in decks_joined.BETWEEN.items():
+            beside(folder, program, about, decks_joined.between(solid, text))
+        ref, lump = decks_joined.REF, decks_joined.MASS
+        spread = decks_joined.deck(solid, ref + decks_joined.COUPLED + "*DISTRIBUTING\n1, 6\n" + decks_joined.HELD_BY)
+        beside(folder, program, "springs on a distributing coupling", spread, decks_joined.explicit(solid, [47.0, 3.0, 9.0]))
+        rigid = decks_joined.deck(solid, ref + lump + "*RIGID BODY, NSET=RIGHT, REF NODE=9001\n")
+        beside(folder, program, "beams to a node", decks_joined.deck(solid, ref + lump + "*MPC\nBEAM, RIGHT, 9001\n"), rigid)
+        a, b = (node + 1 for node in solid.nodes("right")[:2])
+        equal = "".join(f"*EQUATION\n2\n{a}, {d}, 1., {b}, {d}, -1.\n" for d in (1, 2, 3))
+        beside(folder, program, "tied nodes", decks_joined.between(solid, decks_joined.TIED), decks_joined.deck(solid, equal))
+        supports_and_loads(folder, solid)
+        not_taken(folder, solid)
+    return 1 if FAILED else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
