@@ -66,3 +66,35 @@ def explicit(solid, about):
         cards += ["*EQUATION", str(len(terms))]
         cards += [", ".join(f"{node}, {e}, {value:.11g}" for node, e, value in terms[at:at + 4]) for at in range(0, len(terms), 4)]
     return deck(solid, "\n".join(cards) + "\n" + HELD_BY)
+
+
+def nastran(solid, cards):
+    """The bar as a deck of Nastran, with more cards in free fields; grid point 9001 off its right side."""
+    lines = decks.nastran(solid, "large")
+    lines = [line for line in lines if not line.startswith("CELAS2")]
+    case = ["SOL 103", "CEND", "SPC = 1", "MPC = 7", "BEGIN BULK"]
+    return "\n".join([*case, *lines[lines.index("BEGIN BULK") + 1:-1], "GRID,9001,,47.,3.,9.", *cards, "ENDDATA"]) + "\n"
+
+
+def continued(name, *fields):
+    """A card in free fields over several lines."""
+    rows = [fields[at:at + 8] for at in range(0, len(fields), 8)]
+    return [",".join([name if k == 0 else "", *map(str, row)]) for k, row in enumerate(rows)]
+
+
+def ansys(solid, elements, commands, types=()):
+    """The bar as an archive of Ansys, with node 9001, more elements (numbers of EBLOCK) and commands."""
+    lines = decks.ansys(solid)
+    at = next(k for k, line in enumerate(lines) if line.startswith("N,R5.3"))
+    lines.insert(at, f"{9001:9d}{0:9d}{0:9d}" + "".join(f"{v:21.13E}" for v in (47.0, 3.0, 9.0)))
+    head = next(k for k, line in enumerate(lines) if line.startswith("NBLOCK"))
+    n = len(solid.x) + 1
+    lines[head] = f"NBLOCK,6,SOLID,{9001:9d},{n:9d}"
+    lines[head:head] = list(types)
+    end = next(k for k, line in enumerate(lines) if line.strip() == "-1")
+    block = next(k for k, line in enumerate(lines) if line.startswith("EBLOCK"))
+    total = sum(len(nodes) for nodes in solid.cells.values()) + len(elements)
+    lines[block] = f"EBLOCK,19,SOLID,{90999:9d},{total:9d}"
+    lines[end:end] = ["".join(f"{v:9d}" for v in element) for element in elements]
+    at = lines.index("/SOLU")
+    return "\n".join([*lines[:at], *commands, *lines[at:]]) + "\n"

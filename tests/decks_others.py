@@ -50,9 +50,12 @@ class Nastran:
              "spring_2_stiffness": "1e3,2e3,3e3", "loads": "force_force,pressed_pressure", "force_force_set": "force",
              "force_force_force": "0,0,-3", "pressed_pressure_set": "pressed", "pressed_pressure_pressure": "3e6",
              "contacts": "contact_3", "contact_3_surfaces": "surface_2,surface_1", "contact_3_law": "constraint",
-             "contact_3_mu": "0.35", "modes_band": "10,5000"}
+             "contact_3_mu": "0.35", "modes_band": "10,5000",
+             # point 17 has axes 1 along y, 2 along -x: 5 N/mm along y between 17 and 18
+             "joints": "celas2", "celas2_a": "node", "celas2_b": "node_2", "celas2_at": "0,0.01,0.02", "celas2_at_b": "0,0,0.02",
+             "celas2_stiffness": "5000,0,0"}
     LISTED = ["pair.bdf:33: differs: CHEXA", "pair.bdf:1: SOL", "pair.bdf:2: CEND", "pair.bdf:40: MAT1: GE", "pair.bdf:39: PSOLID 9",
-              "pair.bdf:49: CELAS2: between", "pair.bdf:54: PLOAD4: a pressure that varies", "pair.bdf:61: TEMPD"]
+              "pair.bdf:54: PLOAD4: a pressure that varies", "pair.bdf:61: TEMPD"]
     FORCES = {"force_force": (0, 0, -3), "pressed_pressure": (0, 0, -300)}
 
 
@@ -84,7 +87,7 @@ class NastranCase:
              "modes_target": "1", "modes_count": "7"}
     LISTED = ["case.bdf:8: differs: SUBCASE 2 of 2", "case.bdf:18: differs: CHEXA", "case.bdf:23: differs: PARAM WTMASS",
               "case.bdf:2: SOL", "case.bdf:3: CEND", "case.bdf:4: TITLE: output", "case.bdf:11: MPC = 5", "case.bdf:28: SPC1 of set 7",
-              "case.bdf:37: FORCE of set 13", "case.bdf:38: MOMENT: a moment", "case.bdf:40: 1 CPYRAM", "case.bdf:41: CQUAD4",
+              "case.bdf:37: FORCE of set 13", "case.bdf:38: a moment on a node", "case.bdf:40: 1 CPYRAM", "case.bdf:41: CQUAD4",
               "case.bdf:43: EIGRL 4"]
 
 

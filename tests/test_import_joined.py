@@ -24,7 +24,7 @@ import numpy as np
 from served import starter
 from test_import_keywords import scene
 
-CALCULIX, COUNT = 1e-6, 8
+CALCULIX, SAME, COUNT = 1e-6, 1e-9, 8
 FAILED = []
 
 
@@ -34,10 +34,10 @@ def check(about, kept, shown=""):
         FAILED.append(about)
 
 
-def brought(folder, text):
+def brought(folder, text, ending="inp"):
     """Lines that are printed when a deck is brought in, and options of the scene."""
-    (folder / "deck.inp").write_text(text)
-    lines = convert(folder / "deck.inp", "mm-t-s", folder / "deck")
+    (folder / f"deck.{ending}").write_text(text)
+    lines = convert(folder / f"deck.{ending}", "mm-t-s", folder / "deck")
     return lines, scene(folder, "deck")[0]
 
 
@@ -61,6 +61,43 @@ def beside(folder, program, about, text, other=None):
         theirs = run_calculix(folder, (other or text).splitlines())[0].imag[:COUNT] / (2 * np.pi)
         worst = max(abs(ours / theirs - 1))
         check(f"{about}: CalculiX, apart by {worst:.1e}, {CALCULIX:g} allowed", worst < CALCULIX, (ours, theirs))
+
+
+def same(folder, program, about, text, other):
+    """A deck of another code and one of Abaqus: the same frequencies."""
+    found = []
+    for ending, deck in ((text[0], text[1]), ("inp", other)):
+        lines, _ = brought(folder, deck, ending)
+        check(f"{about}, {ending}: balance", any(line.startswith("balance: the scene has") for line in lines), lines)
+        left = [line for line in lines if "not in the scene" in line or "not taken" in line]
+        check(f"{about}, {ending}: nothing is left out", not left, left)
+        found.append(frequencies(folder, program))
+    ours, theirs = found[0][0], found[1][0]
+    worst = max(abs(ours / theirs - 1)) if len(ours) == len(theirs) == COUNT else np.inf
+    check(f"{about}: as the deck of Abaqus, apart by {worst:.1e}, {SAME:g} allowed", worst < SAME, found)
+
+
+def nastran(folder, program, solid):
+    """RBE2, RBE3, CONM2, CELAS2, CBUSH, MPC beside *KINEMATIC, *DISTRIBUTING, *MASS and *ROTARY INERTIA, *SPRING, *EQUATION."""
+    right = [node + 1 for node in solid.nodes("right")]
+    ref, coupled = decks_joined.REF, decks_joined.COUPLED
+    lump = decks_joined.MASS + ("*ELEMENT, TYPE=ROTARYI, ELSET=T\n90003, 9001\n"
+                                "*ROTARY INERTIA, ELSET=T\n3e-3, 4e-3, 5e-3, 1e-3, -5e-4, 2e-4\n")
+    heavy = decks_joined.continued("CONM2", 90001, 9001, 0, "2.E-5", "", "", "", "", "3.E-3", "-1.E-3", "4.E-3", "5.E-4", "-2.E-4", "5.E-3")
+    rigid = decks_joined.continued("RBE2", 90002, 9001, 123456, *right)
+    spread = decks_joined.continued("RBE3", 90002, "", 9001, 123456, "1.0", 123, *right)
+    same(folder, program, "RBE2 with CONM2", ("bdf", decks_joined.nastran(solid, rigid + heavy)),
+         decks_joined.deck(solid, ref + lump + coupled + "*KINEMATIC\n"))
+    same(folder, program, "RBE3 with CONM2", ("bdf", decks_joined.nastran(solid, spread + heavy)),
+         decks_joined.deck(solid, ref + lump + coupled + "*DISTRIBUTING\n"))
+    held = "".join(decks_joined.HELD_BY.splitlines(True)[5:10])
+    same(folder, program, "RBE2 with CBUSH", ("bdf", decks_joined.nastran(solid, rigid + [
+        "CBUSH,90005,5,9001,,,,,0", "PBUSH,5,K,0.,900.,0."])), decks_joined.deck(solid, ref + coupled + "*KINEMATIC\n" + held))
+    a, b, c = right[:3]
+    same(folder, program, "CELAS2 between points", ("bdf", decks_joined.nastran(solid, [f"CELAS2,90006,4000.,{a},2,{b},2"])),
+         decks_joined.between(solid, decks_joined.SPRING2))
+    equations = [line for d in (1, 3) for line in decks_joined.continued("MPC", 7, a, d, "1.", b, d, "-0.7", "", "", c, 4 - d, "0.4")]
+    same(folder, program, "MPC", ("bdf", decks_joined.nastran(solid, equations)), decks_joined.between(solid, decks_joined.EQUATIONS))
 
 
 def supports_and_loads(folder, solid):
@@ -109,6 +146,7 @@ def main():
         a, b = (node + 1 for node in solid.nodes("right")[:2])
         equal = "".join(f"*EQUATION\n2\n{a}, {d}, 1., {b}, {d}, -1.\n" for d in (1, 2, 3))
         beside(folder, program, "tied nodes", decks_joined.between(solid, decks_joined.TIED), decks_joined.deck(solid, equal))
+        nastran(folder, program, solid)
         supports_and_loads(folder, solid)
         not_taken(folder, solid)
     return 1 if FAILED else 0

@@ -178,7 +178,7 @@ def not_taken(folder):
           and float(options["glue_distance"]) == 0.0005 and options["glue_far"] == "free", options)
     _, listed = sections(folder, "deck.inp", f"*PART, NAME=P\n*NODE\n1, 0., 0., 0.\n*END PART\n{body}{steel}")
     check("a part without an instance is listed", any(line.startswith("deck.inp:1: *PART P: no") for line in listed), listed)
-    nastran = "CELAS2,5,1.,7,3,,,0.04\nPBUSH,6,K,1.,2.,3.,4.\n,B,5.\nPELAS,7,1.,0.1\nENDDATA\n"
+    nastran = "CELAS2,5,1.,7,3,,,0.04\nPBUSH,6,K,1.,2.,3.,4.\n,GE,5.\nPELAS,7,1.,0.1\nENDDATA\n"
     text = decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY.replace("PSOLID,1,1", "PSOLID,1,1,,2") + nastran
     _, listed = sections(folder, "deck.bdf", text)
     for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only",

@@ -9,7 +9,7 @@ from ..deck import NOT_NEEDED, Place
 from .cards import named
 
 LINE = re.compile(r"([A-Za-z][A-Za-z0-9]*)\s*(\([^)]*\))?\s*(?:=|\s|$)\s*(.*)$")
-CHOICES = ("SPC", "LOAD", "METHOD", "STATSUB")
+CHOICES = ("SPC", "LOAD", "METHOD", "STATSUB", "MPC")
 # First four letters of what asks for output, or names
 OUTPUT = {word[:4] for word in """TITLE SUBTITLE LABEL ECHO LINE MAXLINES DISPLACEMENT VELOCITY ACCELERATION STRESS STRAIN ELSTRESS FORCE
 ELFORCE SPCFORCES MPCFORCES OLOAD ESE EKE EDE SET OUTPUT PAGE VECTOR PRESSURE THERMAL FLUX GPFORCE GPSTRESS GPSTRAIN GPKE SVECTOR
@@ -45,7 +45,7 @@ def read_line(deck, control, place, text):
     number = int(value) if re.fullmatch(r"\d{1,9}", value) else None
     if word[:4] == "SUBC" and word not in ("SUBCOM", ) and number is not None:
         control.cases.append(Case(number, place))
-    elif (word if word == "SPC" else word[:4]) in ("SPC", "LOAD", "METH", "STAT") and number is not None:
+    elif (word if word in ("SPC", "MPC") else word[:4]) in ("SPC", "LOAD", "METH", "STAT", "MPC") and number is not None:
         name = next(choice for choice in CHOICES if choice.startswith(word[:4]))
         (control.cases[-1].choices if control.cases else control.above)[name] = number, place
     elif word[:4] in OUTPUT or value.upper() == "NONE":
@@ -115,8 +115,10 @@ class Chosen:
             load = lowest(deck, tables, (*LOADS[:-2], "LOAD"), {n for parts in factors.values() for n in parts}, "LOAD")
         self.spcs = set() if spc is None else {spc, *sums.get(spc, ())}
         self.loads = {} if load is None else {load: 1.0} | factors.get(load, {})
+        self.mpcs = mpc_sets(deck, tables, choices, control)
         self.method = choices.get("METHOD", (None,))[0]
-        for name, number, cards in (("SPC", spc, (*SPCS, "SPCADD")), ("LOAD", load, (*LOADS, "LOAD"))):
+        mpc = choices.get("MPC", (None,))[0]
+        for name, number, cards in (("MPC", mpc, ("MPC", "MPCADD")), ("SPC", spc, (*SPCS, "SPCADD")), ("LOAD", load, (*LOADS, "LOAD"))):
             if number is not None and number not in numbers_of(tables, cards):
                 deck.note(choices[name][1], f"{name} = {number}: there is no such set")
         self.note_others(deck, tables, control)
@@ -134,6 +136,10 @@ class Chosen:
         """Tables of the cards that act, of a name."""
         return self.acting(tables, name, self.spcs)
 
+    def constraints(self, tables):
+        """Tables of MPC that act."""
+        return self.acting(tables, "MPC", self.mpcs)
+
     def acting(self, tables, name, numbers):
         found = []
         for table in named(tables, name):
@@ -148,6 +154,24 @@ class Chosen:
             for row, number in enumerate(table.whole(0, 1)[:, 0].tolist()):
                 if self.loads[number]:
                     yield table.rows(slice(row, row + 1)), self.loads[number]
+
+
+def mpc_sets(deck, tables, choices, control):
+    """Numbers of the sets of MPC that act; others are listed."""
+    sums = {}
+    for table in named(tables, "MPCADD"):
+        for row in range(len(table)):
+            number, *others = [int(value) for value in table.whole(0, table.width)[row] if value]
+            sums.setdefault(number, []).extend(others)
+    wanted = choices.get("MPC", (None,))[0]
+    if control.alone:
+        wanted = lowest(deck, tables, ("MPC", "MPCADD"), {n for others in sums.values() for n in others}, "MPC")
+    found = set() if wanted is None else {wanted, *sums.get(wanted, ())}
+    for table in named(tables, "MPC"):
+        for row, number in enumerate(table.whole(0, 1)[:, 0].tolist()):
+            if number not in found:
+                deck.note(table.place(row), f"MPC of set {number}: case control has no MPC = {number}: not taken")
+    return found
 
 
 def load_factors(tables):

@@ -7,30 +7,31 @@ from ..mesh.faces import faces_by_three
 from .case import LOADS
 
 KNOWN = set(LOADS)
-NOT_TAKEN = {"MOMENT": "a moment on a grid point; solids have no rotations", "SPCD": "a displacement given as a load",
-             "RFORCE": "a body that turns", "RFORCE1": "a body that turns", "TEMP": "a temperature", "TEMPD": "a temperature"}
+NOT_TAKEN = {"SPCD": "a displacement given as a load", "RFORCE": "a body that turns", "RFORCE1": "a body that turns",
+             "TEMP": "a temperature", "TEMPD": "a temperature"}
 
 
 def read_loads(deck, tables, mesh, chosen):
-    for name, read in (("FORCE", force), ("FORCE1", force_along), ("PLOAD4", pressure), ("PLOAD", pressure_on_points), ("GRAV", gravity)):
+    for name, read in (("FORCE", force), ("MOMENT", force), ("FORCE1", force_along), ("PLOAD4", pressure), ("PLOAD", pressure_on_points), ("GRAV", gravity)):
         for table, factor in chosen.loads_of(tables, name):
             read(deck, mesh, table, factor)
-    for name in (name for name in LOADS if name not in ("FORCE", "FORCE1", "PLOAD4", "PLOAD", "GRAV")):
+    for name in (name for name in LOADS if name not in ("FORCE", "MOMENT", "FORCE1", "PLOAD4", "PLOAD", "GRAV")):
         for table, _ in chosen.loads_of(tables, name):
             deck.note(table.place(0), f"{name}: {NOT_TAKEN.get(name, 'a load that is not understood')}: not taken")
 
 
-def add_force(deck, mesh, number, vector, place):
-    """A force on a grid point."""
+def add_force(deck, mesh, number, vector, place, turns=False):
+    """A force or a moment on a grid point."""
     nodes = mesh.known([number])
     if not len(nodes):
         deck.note(place, f"a force on the scalar point {number}: not taken")
         return
-    deck.loads.append(Load("", place, nodes=mesh.nodes.need(nodes, "grid point", place), force=vector))
+    at = mesh.nodes.need(nodes, "grid point", place)
+    deck.loads.append(Load("", place, nodes=at, force=0 * vector if turns else vector, moment=vector if turns else None))
 
 
 def force(deck, mesh, table, factor):
-    """FORCE: set, grid point, system, factor, three components."""
+    """FORCE, MOMENT: set, grid point, system, factor, three components."""
     place = table.place(0)
     _, node, system = table.whole(0, 3)[0].tolist()
     if system not in mesh.systems:
@@ -38,7 +39,7 @@ def force(deck, mesh, table, factor):
     numbers = mesh.known([node])
     x = deck.x[mesh.nodes.need(numbers, "grid point", place)[0]] if len(numbers) else numpy.zeros(3)
     vector = factor * table.real(3, 4)[0, 0] * table.real(4, 7)[0] @ mesh.systems[system].directions(x)
-    add_force(deck, mesh, node, vector, place)
+    add_force(deck, mesh, node, vector, place, table.name == "MOMENT")
 
 
 def force_along(deck, mesh, table, factor):

@@ -28,6 +28,15 @@ class Mesh:
         self.blocks = []  # (cells, property numbers)
         self.scalar = set()  # numbers of SPOINT
         self.held, self.waiting, self.fluids = [], {}, set()
+        self.mass_factor, self.solid = 1.0, None  # PARAM WTMASS; which nodes elements have
+
+    def is_solid(self, deck, node):
+        """Whether a volume element has a node."""
+        if self.solid is None:
+            self.solid = numpy.zeros(deck.n_nodes, bool)
+            for block in deck.blocks:
+                self.solid[block.nodes] = True
+        return bool(self.solid[node])
 
     def known(self, numbers):
         """Those that are no scalar points, which are at no place."""

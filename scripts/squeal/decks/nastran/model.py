@@ -3,7 +3,7 @@
 import numpy
 
 from ..axes import aligned
-from ..deck import Axes, Material, Section, Support
+from ..deck import Axes, Equation, Material, Section, Support
 from ..elastic import engineering
 from .cards import named
 from .mesh import check_rows
@@ -13,7 +13,7 @@ KNOWN = {"PSOLID", "MAT1", "MAT9", "MAT10", "MAT11", "SPC", "SPC1", "EIGRL", "EI
 
 def read_model(deck, tables, mesh, chosen):
     read_materials(deck, tables)
-    read_parameters(deck, tables)
+    read_parameters(deck, tables, mesh)
     read_properties(deck, tables, mesh)
     read_supports(deck, tables, mesh, chosen)
     read_method(deck, tables, chosen)
@@ -33,7 +33,7 @@ def read_method(deck, tables, chosen):
                 deck.modes = int(table.whole(at + 2 + (at > 1), at + 3 + (at > 1))[row, 0]), low, high, table.place(row)
 
 
-def read_parameters(deck, tables):
+def read_parameters(deck, tables, mesh):
     """PARAM WTMASS is the factor from densities to those of mass; GRDPNT asks for output."""
     for table in named(tables, "PARAM"):
         for row in range(len(table)):
@@ -44,6 +44,7 @@ def read_parameters(deck, tables):
                     raise table.place(row).wrong(f"PARAM WTMASS {value} must be positive")
                 for material in deck.materials.values():
                     material.density = material.density and material.density * factor
+                mesh.mass_factor = factor
                 if factor != 1:
                     deck.differ(table.place(row), f"PARAM WTMASS {value}: densities are those of the materials times this")
             else:
@@ -186,10 +187,10 @@ def axes_of(deck, mesh, number, place):
 
 
 def directions(word, place, what):
-    """Directions 0, 1, 2 of digits 1 to 6."""
+    """Motions 0 to 5 of digits 1 to 6."""
     if not word or not set(word) <= set("0123456"):
         raise place.wrong(f"{what}: '{word}' should be digits of 1 to 6")
-    return [int(digit) - 1 for digit in word if digit in "123"]
+    return [int(digit) - 1 for digit in word if digit in "123456"]
 
 
 def in_space(mesh, node, x, held):
@@ -228,11 +229,24 @@ def hold(deck, mesh, nodes, what, place, name):
     if len(plain):
         deck.supports.append(Support(plain, {d: value for d in held}, "", place))
     for node in own:
-        found = in_space(mesh, node, deck.x[node], held)
-        if found is None or value and any(sign == 0 for _, sign in found.values()):
-            deck.note(place, f"{name}: in the axes of a coordinate system (CD of GRID), not taken")
-        else:
-            deck.supports.append(Support(numpy.array([node]), {d: sign * value + 0.0 for d, (_, sign) in found.items()}, "", place))
+        for first in (0, 3):
+            part = [d - first for d in held if first <= d < first + 3]
+            if part:
+                hold_own(deck, mesh, node, (part, first, value), place, name)
+
+
+def hold_own(deck, mesh, node, what, place, name):
+    """Holds a point in its own axes: along those of space, or by equations."""
+    held, first, value = what
+    found = in_space(mesh, node, deck.x[node], held)
+    if found is not None and not (value and any(sign == 0 for _, sign in found.values())):
+        deck.supports.append(Support(numpy.array([node]), {first + d: sign * value + 0.0 for d, (_, sign) in found.items()}, "", place))
+    elif value or mesh.turned.get(int(node), 0) not in mesh.systems:
+        deck.note(place, f"{name}: in the axes of a coordinate system (CD of GRID), not taken")
+    else:
+        axes = mesh.systems[mesh.turned[int(node)]].directions(deck.x[node])
+        deck.equations += [Equation([(node, first + e, float(axes[d, e])) for e in range(3) if abs(axes[d, e]) > 1e-12], place, name)
+                           for d in held]
 
 
 def listed_numbers(table, row, first, known, what):
