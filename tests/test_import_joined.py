@@ -100,6 +100,49 @@ def nastran(folder, program, solid):
     same(folder, program, "MPC", ("bdf", decks_joined.nastran(solid, equations)), decks_joined.between(solid, decks_joined.EQUATIONS))
 
 
+def ansys(folder, program, solid):
+    """MASS21, COMBIN14, MPC184, CERIG, CE, CP, a pilot node of contact by MPC, beside cards of Abaqus."""
+    right = [node + 1 for node in solid.nodes("right")]
+    ref, coupled = decks_joined.REF, decks_joined.COUPLED
+    lump = decks_joined.MASS + ("*ELEMENT, TYPE=ROTARYI, ELSET=T\n90003, 9001\n*ROTARY INERTIA, ELSET=T\n3e-3, 4e-3, 5e-3\n")
+    types = ["ET,        11,21", "ET,        12,14", "ET,        13,184", "KEYOP,      13, 1, 1", "KEYOP,      12, 2, 2"]
+    heavy = [1, 11, 5, 1, 0, 0, 0, 0, 1, 0, 90001, 9001]
+    real = ["R,5,2e-5,2e-5,2e-5,3e-3,4e-3,5e-3"]
+    members = ["".join(f"{v:10d}" for v in right[at:at + 8]) for at in range(0, len(right), 8)]
+    component = [f"CMBLOCK,RIGHT   ,NODE,{len(right):8d}", "(8i10)", *members]
+    rigid = decks_joined.deck(solid, ref + lump + coupled + "*KINEMATIC\n")
+    region = [*component, *real, "CERIG,9001,RIGHT,ALL"]
+    same(folder, program, "MASS21 on CERIG", ("cdb", decks_joined.ansys(solid, [heavy], region, types)), rigid)
+    beams = [[1, 13, 1, 1, 0, 0, 0, 0, 2, 0, 90100 + k, 9001, node] for k, node in enumerate(right)]
+    same(folder, program, "MASS21 on MPC184", ("cdb", decks_joined.ansys(solid, [heavy, *beams], real, types)), rigid)
+    rows = []
+    for node in right:
+        arm = decks.MM * solid.x[node - 1] - [47.0, 3.0, 9.0]
+        for d in range(3):  # u = t + w x r
+            a, b = (d + 1) % 3, (d + 2) % 3
+            terms = [(node, "U" + "XYZ"[d], -1.0), (9001, "U" + "XYZ"[d], 1.0), (9001, "ROT" + "XYZ"[a], arm[b]),
+                     (9001, "ROT" + "XYZ"[b], -arm[a])]
+            terms = [term for term in terms if term[2]]
+            rows.append(f"CE,R5.0,DEFI,{len(terms):8d},       1,  0.00000000    ")
+            for at in range(0, len(terms), 2):
+                rows.append("CE,R5.0,NODE," + ",".join(f"{n:10d},{label:4s},{value!r}" for n, label, value in terms[at:at + 2]))
+    same(folder, program, "MASS21 on CE of a rigid region", ("cdb", decks_joined.ansys(solid, [heavy], [*real, *rows], types)), rigid)
+    a, b, c = right[:3]
+    spring = [1, 12, 6, 1, 0, 0, 0, 0, 2, 0, 90050, a, b]
+    same(folder, program, "COMBIN14", ("cdb", decks_joined.ansys(solid, [spring], ["R,6,4000."], types)),
+         decks_joined.between(solid, decks_joined.SPRING2))
+    equations = [f"CE,{d},0,{a},U{'XYZ'[d - 1]},1.,{b},U{'XYZ'[d - 1]},-0.7,{c},U{'XYZ'[3 - d]},0.4" for d in (1, 3)]
+    same(folder, program, "CE", ("cdb", decks_joined.ansys(solid, [], equations)), decks_joined.between(solid, decks_joined.EQUATIONS))
+    coupled_nodes = [f"CP,{d},U{'XYZ'[d - 1]},{b},{a}" for d in (1, 2, 3)]
+    same(folder, program, "CP", ("cdb", decks_joined.ansys(solid, [], coupled_nodes)), decks_joined.between(solid, decks_joined.TIED))
+    types = ["ET,        14,175", "ET,        15,170", "ET,        11,21", "KEYOP,      14, 12, 5", "KEYOP,      14, 2, 2"]
+    pair = [[1, 14, 9, 1, 0, 0, 0, 0, 1, 0, 90200 + k, node] for k, node in enumerate(right)] + [
+        [1, 15, 9, 1, 0, 0, 0, 0, 1, 0, 90300, 9001]]
+    for about, kind, other in (("rigid", 2, rigid), ("spread", 1, rigid.replace("*KINEMATIC", "*DISTRIBUTING"))):
+        same(folder, program, f"a pilot node, {about}", ("cdb", decks_joined.ansys(
+            solid, [heavy, *pair], real, [*types, f"KEYOP,      14, 4, {kind}"])), other)
+
+
 def supports_and_loads(folder, solid):
     """What a reference node carries in the scene: force and moment, in the axes of space and turned ones."""
     step = "*STEP\n*STATIC\n*CLOAD\n9001, 1, 3.\n9001, 5, 20.\n*END STEP"
@@ -147,6 +190,7 @@ def main():
         equal = "".join(f"*EQUATION\n2\n{a}, {d}, 1., {b}, {d}, -1.\n" for d in (1, 2, 3))
         beside(folder, program, "tied nodes", decks_joined.between(solid, decks_joined.TIED), decks_joined.deck(solid, equal))
         nastran(folder, program, solid)
+        ansys(folder, program, solid)
         supports_and_loads(folder, solid)
         not_taken(folder, solid)
     return 1 if FAILED else 0

@@ -72,6 +72,9 @@ def check_scene(folder, case):
     for key, value in case.SCENE.items():
         check(f"{main}: {key} is {value}", same(value, options.pop(key, "")), f"found {scene(folder, 'scene')[0].get(key)}")
     options.pop("model_mesh", None), options.pop("mesh", None)
+    table = options.pop("model_equations", "")
+    rows = Path(table).read_text().splitlines()[1:] if table else []
+    check(f"{main}: equations", len({row.partition(",")[0] for row in rows}) == getattr(case, "EQUATIONS", 0), rows)
     check(f"{main}: nothing else", not options, options)
     where = [line.replace(f"{folder}/", "") for line in listed]
     for line in case.LISTED:

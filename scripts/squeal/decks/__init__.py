@@ -8,7 +8,8 @@
   nastran/      Nastran: read.py files; cards.py cards in fields; case.py case control, sets that act; systems.py coordinate
                 systems; mesh.py grid points and solids; model.py properties, materials, supports; springs.py, loads.py,
                 contact.py, joined.py
-  ansys/        Ansys' archive: read.py commands; blocks.py blocks; mesh.py nodes, elements, components; model.py
+  ansys/        Ansys' archive: read.py commands; blocks.py blocks; mesh.py nodes, elements, components; model.py;
+                joined.py
   mesh/         elements.py shapes: corners, edges, faces, numbers and order of nodes of Gmsh; faces.py faces of the cells: of
                 sets of nodes, on the boundary, by their corners; middles.py nodes in the middle of edges that are left out;
                 orientation.py elements that are mirror images; integrals.py integrals over elements and faces; meshes.py .vtk and

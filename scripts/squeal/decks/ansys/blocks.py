@@ -1,7 +1,7 @@
 """Blocks of Ansys' archives: a header with commas, a format such as (3i9,6e21.13e3), lines in fixed columns, and an end."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy
 
@@ -21,6 +21,7 @@ class Command:
     """A line with commas."""
     words: list
     place: Place
+    lines: list = field(default_factory=list)  # of numbers that follow it
 
     def word(self, number):
         return self.words[number] if number < len(self.words) else ""

@@ -11,7 +11,8 @@ KNOWN = {"ET", "LOCAL"}
 MOST = 10**9
 # Number of a type -> nodes
 SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}
-FACETS = {173: "contact", 174: "contact", 170: "target"}  # elements on surfaces
+JOINTS = {21, 14, 184}  # ansys/joined.py
+FACETS = {173: "contact", 174: "contact", 175: "contact", 170: "target"}  # elements on surfaces
 DIFFERS = {("hex8", 185): "SOLID185 becomes hex8 of squeal, QM6, which is that of its enhanced strains, KEYOPT(2) = 3 (or 2)",
            ("hex8", 45): "SOLID45 becomes hex8 of squeal, QM6, which is that with its extra shapes",
            ("hex20", 186): "SOLID186 (reduced integration by default) becomes hex20 of squeal with 27 points",
@@ -41,6 +42,7 @@ class Mesh:
         self.nodes, self.cells, self.others = Index(), Index(), Index()
         self.materials, self.systems_of, self.components = [], [], {}
         self.turned, self.facets, self.types = {}, {}, {}  # node -> its own axes, ...
+        self.joints, self.options = [], {}  # (type, head, nodes, place) of MASS21 and the like; type -> {number of KEYOPT: value}
         self.behaviour = {}  # type -> KEYOPT(12): what contact does where it is not 0: rough, without separation, bonded
         self.own_held = {}  # node -> {own direction: (value, place)}
         self.selected = "ALL"  # nodes that ALL means: an array, or "" where this is not known
@@ -146,6 +148,8 @@ def add_type(deck, mesh, block, kind, found):
             for real in numpy.unique(head[:, 2]).tolist():
                 chosen = head[:, 2] == real
                 mesh.facets.setdefault((real, FACETS[kind]), []).append((nodes[chosen], head[chosen], block.place(int(rows[chosen][0]))))
+        elif kind in JOINTS:
+            mesh.joints += [(kind, *row, block.place(int(at))) for *row, at in zip(head, nodes, rows)]
         else:
             deck.note(block.place(int(rows[0])), f"{len(rows)} elements of type {kind}, which squeal has not")
         return
@@ -275,6 +279,7 @@ def read_type_block(mesh, block):
     for row, (number, kind) in enumerate(rows.tolist()):
         mesh.types[number] = kind
         options = block.words(row, letters)[2:]
+        mesh.options[number] = {k: int(word) for k, word in enumerate(options, 1) if word.isdigit() and int(word)}
         if len(options) > 11 and options[11].isdigit():
             mesh.behaviour[number] = int(options[11])
 
@@ -290,8 +295,10 @@ def read_types(mesh, blocks, commands):
             if not command.word(1) or not name:
                 raise command.place.wrong("ET needs a number and a type")
             mesh.types[command.whole(1)] = int(name[1])
-        elif command.words[0] == "KEYOPT" and command.word(2) == "12":
-            mesh.behaviour[command.whole(1)] = command.whole(3)
+        elif command.words[0] == "KEYOPT" and command.word(2).isdigit():
+            mesh.options.setdefault(command.whole(1), {})[command.whole(2)] = command.whole(3)
+            if command.word(2) == "12":
+                mesh.behaviour[command.whole(1)] = command.whole(3)
 
 
 def read_mesh(deck, blocks, commands):

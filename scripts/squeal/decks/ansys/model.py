@@ -3,13 +3,15 @@
 import numpy
 
 from .blocks import DATABASE
+from .joined import pilot
 from .mesh import FACES
 from ..axes import aligned
-from ..deck import Axes, Contact, Load, Material, Section, Support, Tie, Turning
+from ..deck import Axes, Contact, Equation, Load, Material, Section, Support, Tie, Turning
 from ..mesh.faces import boundary_faces, faces_by_three
 from ..text import REAL
 
 KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE"}
+FREEDOMS = "UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"
 LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "MU"}
 
 
@@ -161,9 +163,9 @@ def support(deck, mesh, command):
     """D, node, UX, value, -, last node, step, more labels."""
     labels = [word.upper() for word in (command.word(2), *command.words[7:12]) if word]
     for label in labels:
-        if label not in ("UX", "UY", "UZ", "ALL"):
+        if label not in (*FREEDOMS, "ALL"):
             deck.note(command.place, f"D {label[:10]}: not understood")
-    held = sorted({d for d, label in enumerate(("UX", "UY", "UZ")) if {label, "ALL"} & set(labels)})
+    held = sorted({d for d, label in enumerate(FREEDOMS) if {label, "ALL"} & set(labels)})
     nodes, name = nodes_of(deck, mesh, command) if held else (None, "")
     value = value_of(deck, command, 3) if nodes is not None else None
     if value is None:
@@ -179,19 +181,30 @@ def support(deck, mesh, command):
 def hold_turned(deck, mesh):
     """Supports of nodes with axes of their own."""
     for node, values in mesh.own_held.items():
-        found, place = aligned(mesh.turned[node], sorted(values)), next(iter(values.values()))[1]
-        moved = any(value for value, _ in values.values())
-        if found is None or moved and any(sign == 0 for _, sign in found.values()):
-            deck.note(place, "D: in the turned axes of a node, not taken")
-        else:
-            deck.supports.append(Support(numpy.array([node]), {d: sign * values[own][0] + 0.0 if moved else 0.0
-                                                               for d, (own, sign) in found.items()}, "", place))
+        for first in (0, 3):
+            part = {d - first: value for d, value in values.items() if first <= d < first + 3}
+            if part:
+                hold_own(deck, node, mesh.turned[node], part, first)
+
+
+def hold_own(deck, node, axes, values, first):
+    """Holds translations or rotations of a node in its own axes: along those of space, or by equations."""
+    found, place = aligned(axes, sorted(values)), next(iter(values.values()))[1]
+    moved = any(value for value, _ in values.values())
+    if found is not None and not (moved and any(sign == 0 for _, sign in found.values())):
+        deck.supports.append(Support(numpy.array([node]), {first + d: sign * values[own][0] + 0.0 if moved else 0.0
+                                                           for d, (own, sign) in found.items()}, "", place))
+    elif moved:
+        deck.note(place, "D: in the turned axes of a node, not taken")
+    else:
+        deck.equations += [Equation([(node, first + e, float(axes[d, e])) for e in range(3) if abs(axes[d, e]) > 1e-12], place,
+                                    "D in the turned axes of a node") for d in values]
 
 
 def force(deck, mesh, command):
     """F, node, FX, value, -, last node, step."""
     label = command.word(2).upper()
-    if label not in ("FX", "FY", "FZ"):
+    if label not in ("FX", "FY", "FZ", "MX", "MY", "MZ"):
         deck.note(command.place, f"F {label[:10]}: not understood")
         return
     nodes, name = nodes_of(deck, mesh, command)
@@ -202,10 +215,16 @@ def force(deck, mesh, command):
     vector["XYZ".index(label[1])] = value
     own = [node for node in nodes.tolist() if node in mesh.turned] if mesh.turned else []
     for node in own:
-        deck.loads.append(Load("", command.place, nodes=numpy.array([node]), force=vector @ mesh.turned[node]))
+        deck.loads.append(load_of(label, "", command.place, numpy.array([node]), vector @ mesh.turned[node]))
     rest = numpy.setdiff1d(nodes, own) if own else nodes
     if len(rest):
-        deck.loads.append(Load("" if own else name, command.place, nodes=rest, force=vector))
+        deck.loads.append(load_of(label, "" if own else name, command.place, rest, vector))
+
+
+def load_of(label, name, place, nodes, vector):
+    """A force, or a moment."""
+    turns = label[0] == "M"
+    return Load(name, place, nodes=nodes, force=0 * vector if turns else vector, moment=vector if turns else None)
 
 
 def pressure_on_face(deck, mesh, command):
@@ -286,6 +305,8 @@ BONDED = 3, 5, 6  # values of KEYOPT(12)
 def read_contact(deck, mesh, values):
     """Pairs of contact and target elements with one set of real constants; friction by MU of the material."""
     for number in sorted({number for number, _ in mesh.facets}):
+        if pilot(deck, mesh, number):
+            continue
         sides = {}
         for kind in ("contact", "target"):
             for nodes, head, place in mesh.facets.get((number, kind), []):

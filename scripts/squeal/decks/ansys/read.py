@@ -5,7 +5,7 @@ import re
 import numpy
 
 from ...tables import BadInput
-from . import mesh as ansys_mesh, model as ansys_model
+from . import joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
 from .blocks import BLOCK, DATABASE, Command, read_block
 from ..deck import Deck, Place
 from ..text import line_starts, read_bytes
@@ -37,6 +37,9 @@ def commands_of(path, text, first, parameters):
             line = "*SET"
         words = [word.strip() for word in line.split(",")]
         if re.match(r"[-+.\d(]", words[0]):
+            if found and found[-1].words[0] == "RLBLOCK":
+                found[-1].lines.append(line)
+                continue
             if found and DATABASE.match(found[-1].words[-1]) and before == found[-1].words[0]:
                 found[-1].words[-1:] = words[0].split() if len(words) == 1 else words
             continue
@@ -80,11 +83,12 @@ def read_ansys(path):
     mesh = ansys_mesh.read_mesh(deck, blocks, commands)
     if not deck.n_cells:
         return deck
+    ansys_joined.read_joined(deck, commands, mesh)
     ansys_model.read_model(deck, commands, mesh)
     if not any(command.words[0] in ("FINISH", "FINI", "SOLVE") for command in commands):
         deck.note(Place(str(path), len(starts) - 1), "there is no FINISH: is the file whole?")
     for command in commands:
-        if not is_idle(command) and command.words[0] not in ansys_mesh.KNOWN | ansys_model.KNOWN:
+        if not is_idle(command) and command.words[0] not in ansys_mesh.KNOWN | ansys_model.KNOWN | ansys_joined.KNOWN:
             deck.note(command.place, f"{command.words[0][:20]}: not understood")
     return deck
 

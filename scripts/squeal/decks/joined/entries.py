@@ -94,6 +94,7 @@ def add_lump(places, lump):
         places.deck.note(lump.place, f"{lump.words}: on {group.words}, which joins some directions only: not in the scene")
         return
     if not lump.mass and not inertia.any():
+        places.deck.note(lump.place, f"{lump.words}: without a mass: not in the scene")
         return
     rows = places.point(lump.node, lump.place, group)
     if rows is None:

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy
 
+from ..deck import Join
+
 FLAT = 1e-10  # of the largest moment of A: below it nothing tells the rotation
 SHARED = 3  # nodes not on one line that make one rigid body of two
 
@@ -67,12 +69,54 @@ def straight(x):
     return len(x) < SHARED or sizes[1] <= 1e-6 * max(sizes[0], 1e-300)
 
 
+def rigid_by_equations(deck, solid):
+    """Joins in the place of equations that say that nodes follow one of no element rigidly: three for each, of these two nodes alone,
+    which all six motions obey."""
+    pairs = {}
+    for number, equation in enumerate(deck.equations):
+        nodes = {node for node, _, _ in equation.terms}
+        loose = [node for node in nodes if not solid[node]]
+        if len(nodes) == 2 and len(loose) == 1 and any(d > 2 and node == loose[0] for node, d, _ in equation.terms):
+            pairs.setdefault((loose[0], *(nodes - set(loose))), []).append(number)
+    known = {frozenset(pair): pair for pair in pairs}
+    for number, equation in enumerate(deck.equations):  # along a direction without an arm there is no rotation
+        pair = known.get(frozenset(node for node, _, _ in equation.terms))
+        if pair and number not in pairs[pair]:
+            pairs[pair].append(number)
+    found, used = {}, set()
+    for (loose, node), numbers in pairs.items():
+        if len(numbers) == 3 and obeyed(deck, loose, node, numbers):
+            found.setdefault(loose, []).append(node)
+            used.update(numbers)
+    for loose, nodes in found.items():
+        first = next(deck.equations[number] for number in sorted(used) if any(term[0] == loose for term in deck.equations[number].terms))
+        deck.joins.append(Join("region", loose, numpy.array(nodes), True, first.place, f"{first.words} of a rigid region"))
+    deck.equations = [equation for number, equation in enumerate(deck.equations) if number not in used]
+
+
+def obeyed(deck, loose, node, numbers):
+    """Whether equations tell all displacements of a node, and every rigid motion obeys them."""
+    own, rest = numpy.zeros((3, 3)), numpy.zeros((3, 6))
+    phi = motions(deck.x[node][None], deck.x[loose])
+    for row, number in enumerate(numbers):
+        for at, d, value in deck.equations[number].terms:
+            if at == node:
+                if d > 2:
+                    return False
+                own[row, d] += value
+            else:
+                rest[row, d] += value
+    size = abs(own).max() * max(abs(phi).max(), 1e-300)
+    return abs(numpy.linalg.det(own)) > 1e-9 * abs(own).max()**3 and abs(own @ phi + rest).max() < 1e-6 * size
+
+
 class Groups:
     """All groups of a deck, and the one that each node of no element moves with. `into` is the node that each became by ties."""
 
     def __init__(self, deck, solid, into):
         self.deck, self.solid, self.into = deck, solid, into
         self.groups, self.of_node = [], {}
+        rigid_by_equations(deck, solid)
         joins = [join for join in deck.joins if self.known(join)]
         for number in self.clusters(joins):
             self.add([joins[k] for k in number])

@@ -12,10 +12,11 @@ NOT_TAKEN = {"SPCD": "a displacement given as a load", "RFORCE": "a body that tu
 
 
 def read_loads(deck, tables, mesh, chosen):
-    for name, read in (("FORCE", force), ("MOMENT", force), ("FORCE1", force_along), ("PLOAD4", pressure), ("PLOAD", pressure_on_points), ("GRAV", gravity)):
+    readers = {"FORCE": force, "MOMENT": force, "FORCE1": force_along, "PLOAD4": pressure, "PLOAD": pressure_on_points, "GRAV": gravity}
+    for name, read in readers.items():
         for table, factor in chosen.loads_of(tables, name):
             read(deck, mesh, table, factor)
-    for name in (name for name in LOADS if name not in ("FORCE", "MOMENT", "FORCE1", "PLOAD4", "PLOAD", "GRAV")):
+    for name in (name for name in LOADS if name not in readers):
         for table, _ in chosen.loads_of(tables, name):
             deck.note(table.place(0), f"{name}: {NOT_TAKEN.get(name, 'a load that is not understood')}: not taken")
 

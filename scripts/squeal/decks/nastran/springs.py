@@ -4,7 +4,6 @@ import numpy
 
 from ..deck import Link, Spring
 from .cards import named
-from .model import in_space
 
 KNOWN = {"CELAS1", "CELAS2", "PELAS", "CBUSH", "PBUSH", "CDAMP1", "CDAMP2", "PDAMP"}
 
