@@ -20,6 +20,8 @@
                   taken up again
    without either, only the displacements slide. In all cases a slave travels over the facets with its own
    displacements. The normals are those of the undeformed master (small rotations), turned with it.
+   With -contact_discretization mortar a pair is a mean of each side (contact.h), by integrals over both surfaces where
+   they lie, which follow the bodies (contact/projector/mortar.c).
 */
 #pragma once
 

@@ -71,6 +71,36 @@ PETSC_INTERN PetscErrorCode ContactMortarSplit(Contact contact, PetscInt interfa
 /* mortar/mortar.c - sides, areas over the master (0 for none) and gaps of the pairs from the first on, which are those
    of all slave nodes of the interface and have their feet. Collective. */
 PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first);
+/* Surfaces of a mortar interface that move, in time (mortar/moved.c) */
+typedef struct {
+  const ContactInterface *c;
+  const ContactSurface   *master;  /* at rest */
+  ContactSurface          slave;   /* at rest, with a place for each side of its folds */
+  ContactSurface          here[2]; /* slave and master where they lie, nodes numbered by the caller */
+  PetscReal (*look)[3];            /* [places] of the slave: sums of area vectors there, m^2 */
+  ContactFacetList near;
+  PetscInt         n_failed; /* segments that could not be mapped, since the beginning */
+} ContactMoved;
+
+/* Their pairs at one moment, [places of the slave]; area 0: none. Numbers of nodes are those of the caller. */
+typedef struct {
+  ContactPair     *pair;
+  ContactPairFoot *feet;
+  ContactPairNode *sides;
+} ContactMovedPairs;
+
+/* mortar/moved.c - both surfaces of an interface. Collective. */
+PETSC_INTERN PetscErrorCode ContactMovedCreate(Contact contact, PetscInt interface, ContactMoved *moved);
+/* mortar/moved.c - numbers of the nodes at the places of the slave and of the master, ascending as vertex[] */
+PETSC_INTERN PetscErrorCode ContactMovedNumber(ContactMoved *moved, const PetscInt slave[], const PetscInt master[]);
+/* mortar/moved.c - the pairs where the slave's places lie at u[0] [places][3] and the master's nodes at u[1] (m) from
+   rest, NULL: at rest; on one rank */
+PETSC_INTERN PetscErrorCode ContactMovedFind(ContactMoved *moved, const PetscReal *const u[2],
+                                             ContactMovedPairs *pairs);
+PETSC_INTERN PetscErrorCode ContactMovedPairsDestroy(ContactMovedPairs *pairs);
+/* mortar/moved.c - raises the error for faces over which no point can be found. Collective. */
+PETSC_INTERN PetscErrorCode ContactMovedCheck(MPI_Comm comm, const ContactMoved *moved);
+PETSC_INTERN PetscErrorCode ContactMovedDestroy(ContactMoved *moved);
 /* mortar/match.c - whether the meshes of an interface match, from all its slave nodes, the pairs from the first on.
    Collective. */
 PETSC_INTERN PetscErrorCode ContactMeshesMatch(Contact contact, PetscInt interface, PetscInt first, PetscBool *match);

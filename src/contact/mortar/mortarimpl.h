@@ -113,6 +113,13 @@ typedef struct {
 
 /* split.c - gives nodes of a slave at folds a place for each side, the others after those of all nodes */
 PETSC_INTERN PetscErrorCode MortarSplitSlave(ContactSurface *s);
+/* split.c - normals at the folds of a master, of each side alone */
+PETSC_INTERN PetscErrorCode MortarSplitMaster(ContactSurface *s);
+/* split.c - sums of the area vectors of the facets at each place of the slave, m^2 */
+PETSC_INTERN void MortarPlacesLook(const ContactSurface *s, PetscReal look[][3]);
+/* split.c - the foot of a place of the slave that looks along a vector */
+PETSC_INTERN PetscErrorCode MortarFootFind(const ContactSurface *master, const PetscReal x[3], const PetscReal look[3],
+                                           ContactFacetList *near, ContactFoot *foot);
 /* mortar.c - areas and sides of the pairs, whose nodes are m->sides; pair, n_pairs, out and direction are set.
    Collective. */
 PETSC_INTERN PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const ContactSurface *master,

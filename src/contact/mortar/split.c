@@ -91,8 +91,7 @@ static PetscErrorCode SidesFind(const ContactSurface *s, const FoldStar *star, P
   PetscFunctionReturn(0);
 }
 
-/* Normals at the folds of a master, of each side alone */
-static PetscErrorCode MasterSplit(ContactSurface *s)
+PetscErrorCode MortarSplitMaster(ContactSurface *s)
 {
   PetscInt *side, *place;
   FoldStar  star;
@@ -146,15 +145,13 @@ PetscErrorCode MortarSplitSlave(ContactSurface *s)
   PetscFunctionReturn(0);
 }
 
-/* Sums of the area vectors of the facets at each place of the slave, m^2 */
-static PetscErrorCode PlacesLook(const ContactSurface *s, PetscReal (**look)[3])
+void MortarPlacesLook(const ContactSurface *s, PetscReal look[][3])
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(s->n_nodes, look));
+  for (PetscInt v = 0; v < s->n_nodes; v++)
+    for (int d = 0; d < 3; d++) look[v][d] = 0;
   for (PetscInt f = 0; f < s->n_facets; f++)
     for (int j = 0; j < s->facet[f].n; j++)
-      for (int d = 0; d < 3; d++) (*look)[s->facet[f].node[j]][d] += s->facet[f].normal[d] * PetscSqr(s->facet[f].size);
-  PetscFunctionReturn(0);
+      for (int d = 0; d < 3; d++) look[s->facet[f].node[j]][d] += s->facet[f].normal[d] * PetscSqr(s->facet[f].size);
 }
 
 /* How much a facet looks towards a slave's side at a foot: the cosine, its own normal times -look */
@@ -193,6 +190,15 @@ static PetscErrorCode FootTurn(const ContactSurface *master, const PetscReal x[3
     for (int d = 0; d < 2; d++) foot->natural[d] = there.natural[d];
     FacetShapeOf(master->facet[there.facet].n)->snap(foot->natural);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MortarFootFind(const ContactSurface *master, const PetscReal x[3], const PetscReal look[3],
+                              ContactFacetList *near, ContactFoot *foot)
+{
+  PetscFunctionBeginUser;
+  ContactFootFind(master, x, foot);
+  PetscCall(FootTurn(master, x, look, near, foot));
   PetscFunctionReturn(0);
 }
 
@@ -238,15 +244,15 @@ PetscErrorCode ContactMortarSplit(Contact contact, PetscInt interface, PetscInt 
   PetscCall(ContactSurfaceCreate(contact, contact->interfaces[interface].slave, &slave));
   PetscCall(MortarSplitSlave(&slave));
   PetscCall(PairsAppend(contact, first, &slave));
-  PetscCall(MasterSplit(master));
-  PetscCall(PlacesLook(&slave, &look));
+  PetscCall(MortarSplitMaster(master));
+  PetscCall(PetscMalloc1(slave.n_nodes, &look));
+  MortarPlacesLook(&slave, look);
   for (PetscInt p = first; p < contact->n_pairs && (master->folds || slave.n_nodes > slave.n_sorted); p++) {
     ContactPairFoot *at = &contact->feet[p];
     ContactFoot      foot;
 
     PetscCall(PetscArraycpy(at->normal, look[at->place], 3));
-    ContactFootFind(master, contact->pairs[p].x, &foot);
-    PetscCall(FootTurn(master, contact->pairs[p].x, look[at->place], &near, &foot));
+    PetscCall(MortarFootFind(master, contact->pairs[p].x, look[at->place], &near, &foot));
     ContactPairTakeFoot(&contact->interfaces[interface], master, &foot, &contact->pairs[p], at);
   }
   PetscCall(PetscFree(look));

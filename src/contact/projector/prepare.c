@@ -48,13 +48,24 @@ INTO_VERSIONS PetscReal MasterCompliance(const ProjectorNodes *nodes, const Proj
   return sum;
 }
 
+/* Compliance of the slave along axis d, sum_k v_k^2 / M_k */
+INTO_VERSIONS PetscReal SlaveCompliance(const ProjectorNodes *nodes, const ProjectorPair *pair, int d)
+{
+  PetscReal sum = 0;
+
+  if (pair->n_own == 1) return nodes->minv[3 * pair->slave + d];
+  for (int k = 0; k < pair->n_own; k++) sum += PetscSqr(pair->own_weight[k]) * nodes->minv[3 * pair->own[k] + d];
+  return sum;
+}
+
 /* W_pp = e M_s^-1 e' + e (sum_i w_i^2 M_i^-1) e', 1/kg, the first with the directions turned to the ground. Where
    each node has one mass in all directions (even) that is w I with w = 1/M_s + sum_i w_i^2 / M_i: the cone of such a
    pair is solved by a projection, without a search for the direction of slip (project.c). */
 static void PairSetCompliance(const ProjectorNodes *nodes, ProjectorPair *pair)
 {
-  const PetscReal *slave = &nodes->minv[3 * pair->slave];
-  PetscBool        even  = pair->n == 4 ? nodes->even[pair->slave] : PETSC_FALSE;
+  const PetscReal slave[3] = {SlaveCompliance(nodes, pair, 0), SlaveCompliance(nodes, pair, 1),
+                              SlaveCompliance(nodes, pair, 2)};
+  PetscBool       even     = pair->n == 4 && pair->n_own == 1 ? nodes->even[pair->slave] : PETSC_FALSE;
 
   for (int k = 0; k < 4 && even; k++)
     if (pair->weight[k] != 0 && !nodes->even[pair->node[k]]) even = PETSC_FALSE;
@@ -137,13 +148,30 @@ static void PairFollow(ContactProjector p, PetscInt k, const PetscReal d[3], con
   for (int i = 0; i < 2; i++) pair->natural[i] = foot.natural[i];
 }
 
+/* The gap of the mesh between both sides of a mean, m; differences from the slave node first */
+static PetscReal MeanGap(ContactProjector p, const ProjectorPair *pair)
+{
+  const PetscReal *x   = &p->nodes.x[3 * pair->slave];
+  PetscReal        gap = 0;
+
+  for (int j = 0; j < 3; j++) {
+    PetscReal along = 0;
+
+    for (int k = 1; k < pair->n_own; k++) along += pair->own_weight[k] * (p->nodes.x[3 * pair->own[k] + j] - x[j]);
+    for (int i = 0; i < pair->n; i++) along -= pair->weight[i] * (p->nodes.x[3 * pair->node[i] + j] - x[j]);
+    gap += pair->e[0][j] * along;
+  }
+  return gap;
+}
+
 /* The gap of the mesh and n . (d - sum_i w_i u_i), the latter as n . (d - u_0 - sum_{i>0} w_i (u_i - u_0)): a common
    motion of both bodies, of metres perhaps, cancels before it is multiplied */
 PetscReal PairGap(ContactProjector p, const ProjectorPair *pair, const PetscReal d[3], const PetscReal u[])
 {
   const ContactFacet *f = &p->master[pair->interface].surface->facet[pair->facet];
   const PetscReal    *w = pair->weight, *u0 = &u[3 * pair->node[0]];
-  PetscReal           gap = ContactGap(f, w, pair->e[0], &p->nodes.x[3 * pair->slave]);
+  PetscReal           gap =
+    p->mortar[pair->interface] ? MeanGap(p, pair) : ContactGap(f, w, pair->e[0], &p->nodes.x[3 * pair->slave]);
 
   for (int j = 0; j < 3; j++) {
     PetscReal along = d[j] - u0[j];
@@ -153,6 +181,21 @@ PetscReal PairGap(ContactProjector p, const ProjectorPair *pair, const PetscReal
     gap += pair->e[0][j] * along;
   }
   return gap;
+}
+
+/* Means of both sides at displacements `where`; a pair that comes anew is taken as in PairFollow() */
+static void PairMean(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal where[], PetscReal deepest)
+{
+  ProjectorPair   *pair = &p->pair[k];
+  const PetscBool  anew = pair->facet < 0 && deepest < PETSC_MAX_REAL ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal        mean_x[3], mean_u[3], d[3];
+  const PetscReal *x;
+
+  MeanFind(p, k, where);
+  if (!anew || pair->facet < 0) return;
+  x = PairSlave(pair, p->nodes.x, mean_x);
+  FrameDisplacement(&p->frame[pair->interface], x, PairSlave(pair, u, mean_u), d);
+  if (-PairGap(p, pair, d, u) > deepest * p->master[pair->interface].surface->size) pair->facet = -1;
 }
 
 /* Facet that a slave faces at predicted displacements; one that faced none must have come to one at u already */
@@ -181,21 +224,34 @@ static PetscBool PairNeedsSlip(ContactProjector p, const ProjectorPair *pair)
   return p->sliding[pair->interface].slides && (FrictionExists(law) || FrictionVaries(law)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Nodes, weights and n, t, b at the foot of a slave that slides along a vector */
+static PetscReal PairFoot(ContactProjector p, ProjectorPair *pair, const PetscReal along[3])
+{
+  const ProjectorMaster *master = &p->master[pair->interface];
+  const ContactFacet    *facet  = &master->surface->facet[pair->facet];
+
+  pair->n = PetscMax(facet->n, 4);
+  for (int i = 0; i < pair->n; i++) pair->node[i] = master->node[facet->node[i < facet->n ? i : 0]];
+  pair->weight[3] = 0;
+  return ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
+}
+
 /* PETSC_FALSE: no facet in reach. A triangle gets its first node as a fourth one with weight 0, so that sums over
    nodes need no branch. */
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
 {
-  ProjectorPair         *pair    = &p->pair[k];
-  const ContactSliding  *sliding = &p->sliding[pair->interface];
-  const ContactFrame    *frame   = &p->frame[pair->interface];
-  const PetscReal       *x = &p->nodes.x[3 * pair->slave], *where = sliding->slides ? p->nodes.rest : predicted;
-  const ProjectorMaster *master = &p->master[pair->interface];
-  const ContactFacet    *facet;
-  PetscReal              place[3], along[3];
+  ProjectorPair        *pair    = &p->pair[k];
+  const ContactSliding *sliding = &p->sliding[pair->interface];
+  const ContactFrame   *frame   = &p->frame[pair->interface];
+  const PetscReal      *x = &p->nodes.x[3 * pair->slave], *where = sliding->slides ? p->nodes.rest : predicted;
+  PetscReal             place[3], along[3];
 
   for (int i = 0; i < 3; i++) pair->p[i] = pair->q[i] = 0;
   pair->status = CONTACT_OPEN;
-  if (!pair->found) PairFind(p, k, sliding->slides ? p->nodes.rest : u, where, deepest);
+  if (p->mortar[pair->interface])
+    PairMean(p, k, u, where, deepest);
+  else if (!pair->found)
+    PairFind(p, k, sliding->slides ? p->nodes.rest : u, where, deepest);
   pair->found = SlidingStays(sliding);
   if (pair->facet < 0) {
     pair->slip = -1;
@@ -204,12 +260,8 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   if (pair->found && pair->ready) return PETSC_TRUE;
   FrameDisplacement(frame, x, &where[3 * pair->slave], place);
   for (int i = 0; i < 3; i++) place[i] += x[i];
-  facet   = &master->surface->facet[pair->facet];
-  pair->n = PetscMax(facet->n, 4);
-  for (int i = 0; i < pair->n; i++) pair->node[i] = master->node[facet->node[i < facet->n ? i : 0]];
-  pair->weight[3] = 0;
   ContactSlideAlong(&p->contact->interfaces[pair->interface], place, along);
-  pair->speed   = ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
+  pair->speed   = p->mortar[pair->interface] ? ContactTangents(along, pair->e) : PairFoot(p, pair, along);
   pair->no_slip = pair->speed == 0 && PairNeedsSlip(p, pair) ? PETSC_TRUE : PETSC_FALSE;
   if (!sliding->rotates) {
     const PetscReal part = sliding->turning ? pair->speed / Vec3Length(along) : 1;
@@ -264,11 +316,15 @@ INTO_VERSIONS PetscReal NormalDisplacement(const ProjectorPair *pair, const Pets
 {
   PetscReal sum = 0;
 
+  const PetscReal *slave;
+  PetscReal        mean[3];
+
+  slave = PairSlave(pair, u, mean);
   for (int d = 0; d < 3; d++) {
     PetscReal master = 0;
 
     for (int i = 0; i < 4; i++) master += pair->weight[i] * u[3 * pair->node[i] + d];
-    sum += pair->e[0][d] * (u[3 * pair->slave + d] - master);
+    sum += pair->e[0][d] * (slave[d] - master);
   }
   for (int k = 12; k < 3 * pair->n; k++)
     sum -= pair->e[0][k % 3] * pair->weight[k / 3] * u[3 * pair->node[k / 3] + k % 3];
@@ -279,10 +335,12 @@ INTO_VERSIONS PetscReal NormalDisplacement(const ProjectorPair *pair, const Pets
 INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep *step)
 {
   ProjectorPair   *pair = &p->pair[k];
-  const PetscReal *x = &p->nodes.x[3 * pair->slave], *u = &p->nodes.u[3 * pair->slave];
-  PetscReal        before[3], after[3], impulse[3];
+  const PetscReal *x, *u;
+  PetscReal        before[3], after[3], impulse[3], mean_x[3], mean_u[3];
 
   if (!PairPlace(p, k, p->nodes.u, p->nodes.predicted, PROJECTOR_DEEPEST)) return;
+  x = PairSlave(pair, p->nodes.x, mean_x);
+  u = PairSlave(pair, p->nodes.u, mean_u);
   if (pair->found) {
     PairSetDrift(p, step, u, u, pair);
     pair->offset[0] = (pair->gap + NormalDisplacement(pair, p->nodes.u)) / step->dt;
@@ -317,6 +375,7 @@ PetscErrorCode PairsPrepare(ContactProjector p, const ContactStep *step)
   }
   NodesPredict(p, step->dt);
   if (p->search_next) PetscCall(ProjectorSearch(p, step->time + step->dt, 1, p->nodes.predicted));
+  PetscCall(ProjectorMortarStep(p, step));
   PairsPrepareAll(p, step);
   PetscFunctionReturn(0);
 }

@@ -18,7 +18,8 @@
 
 void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3])
 {
-  const PetscReal *slave = &v[3 * pair->slave], *w = pair->weight;
+  PetscReal        mean[3];
+  const PetscReal *slave = PairSlave(pair, v, mean), *w = pair->weight;
   const PetscReal *a = &v[3 * pair->node[0]], *b = &v[3 * pair->node[1]], *c = &v[3 * pair->node[2]],
                   *d = &v[3 * pair->node[3]];
   PetscReal master[3];
@@ -51,7 +52,8 @@ static void PairPush(const ProjectorPair *pair, const PetscReal p[3], const Pets
     slave[d]  = pair->turned[0][d] * p[0] + pair->turned[1][d] * p[1] + pair->turned[2][d] * p[2];
     master[d] = pair->e[0][d] * p[0] + pair->e[1][d] * p[1] + pair->e[2][d] * p[2];
   }
-  for (int d = 0; d < 3; d++) v[3 * pair->slave + d] += minv[3 * pair->slave + d] * slave[d];
+  for (int k = 0; k < pair->n_own; k++)
+    for (int d = 0; d < 3; d++) v[3 * pair->own[k] + d] += pair->own_weight[k] * minv[3 * pair->own[k] + d] * slave[d];
   for (int k = 0; k < pair->n; k++)
     for (int d = 0; d < 3; d++) v[3 * pair->node[k] + d] -= pair->weight[k] * minv[3 * pair->node[k] + d] * master[d];
 }
@@ -200,6 +202,7 @@ INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
   if (row->mass > 0) return NOISE * PETSC_MACHINE_EPSILON * row->mass * RowSize(row, p->nodes.v);
   for (int d = 0; d < 3; d++) {
     sum += PetscAbsReal(p->nodes.v[3 * pair->slave + d]) + PetscAbsReal(pair->offset[d]);
+    for (int i = 1; i < pair->n_own; i++) sum += PetscAbsReal(pair->own_weight[i] * p->nodes.v[3 * pair->own[i] + d]);
     for (int i = 0; i < 4; i++) sum += PetscAbsReal(pair->weight[i] * p->nodes.v[3 * pair->node[i] + d]);
   }
   for (int k = 12; k < 3 * pair->n; k++)

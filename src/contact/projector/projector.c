@@ -10,7 +10,7 @@
 #include "projectorimpl.h"
 
 /* What the root says with the forces */
-enum { HEAD_SEARCH, HEAD_FAILED, HEAD_RESIDUAL, HEAD_SWEEPS, HEAD_X };
+enum { HEAD_SEARCH, HEAD_FAILED, HEAD_RESIDUAL, HEAD_SWEEPS, HEAD_X, HEAD_DISTORTED = HEAD_X + 3 };
 
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
 {
@@ -49,11 +49,6 @@ static PetscErrorCode InterfaceCheckInTime(MPI_Comm comm, const ContactInterface
   PetscCall(PetscStrcmp(c->slave, c->master, &same));
   PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-%s_surfaces %s,%s: a surface does not slide on itself; give two",
              c->name, c->slave, c->master);
-  PetscCheck(
-    c->discretization != CONTACT_MORTAR, comm, PETSC_ERR_SUP,
-    "-%s_discretization mortar is not supported in time on the mesh, where slave nodes follow the master: give "
-    "-%s_discretization node, or -dynamics_model reduced",
-    c->name, c->name);
   PetscCall(FrictionCheckNotNegative(comm, c->name, &c->friction));
   PetscFunctionReturn(0);
 }
@@ -155,6 +150,8 @@ static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, P
   head[HEAD_RESIDUAL] = convergence.residual;
   head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
   head[HEAD_FAILED]   = convergence.converged ? 0 : 1;
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (p->mortar[i] && p->mortar[i]->moved.n_failed) head[HEAD_DISTORTED] = (PetscReal)(i + 1);
   for (int d = 0; d < 3 && convergence.worst >= 0; d++) head[HEAD_X + d] = p->slave_x[3 * convergence.worst + d];
   PetscFunctionReturn(0);
 }
@@ -188,6 +185,8 @@ PetscErrorCode ProjectorFinish(ContactProjector p)
              "raise -projector_max_it %" PetscInt_FMT,
              time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
              (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
+  if (head[HEAD_DISTORTED] > 0)
+    PetscCall(ContactMovedCheck(p->share.comm, &p->mortar[(PetscInt)head[HEAD_DISTORTED] - 1]->moved));
   PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }

@@ -40,15 +40,27 @@ typedef struct {
   PetscInt              n_seen, *seen; /* nodes of it that are active */
 } ProjectorMaster;
 
+/* Mortar pairs of one interface in time, on the root: those of two moments, knots, and between them */
+typedef struct {
+  ContactMoved      moved; /* on all ranks its surfaces at rest */
+  ContactMovedPairs knot[2];
+  PetscBool         has[2];
+  PetscReal        *x; /* [places and nodes of the master][3] displacements at a knot, m */
+  PetscInt          room, *node;
+  PetscReal        *weight, *part[2]; /* of the nodes of a pair, slave's first, as they are and at the knots */
+  PetscInt         *first;            /* [places][2] where sides of slave and master begin; [places] the end */
+} ProjectorMortar;
+
 /* natural map residual, relative to the largest impulse of the step before and of this one */
 #define PROJECTOR_RTOL 1e-10
 #define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
 
-/* A slave node and the point of the master that it faces */
+/* A slave node and the point of the master that it faces, or means of both sides */
 typedef struct {
   PetscInt      interface, slave;
-  PetscInt      facet;                     /* of the interface's surface, -1 where it faces none */
-  PetscReal     natural[2];                /* on the facet */
+  PetscInt      place;      /* of mortar: in the split surface of the slave (contact/mortar/split.c), else 0 */
+  PetscInt      facet;      /* of the interface's surface, -1 where it faces none */
+  PetscReal     natural[2]; /* on the facet */
   PetscReal     lambda[PROJECTOR_PAST][3]; /* forces on the slave in the frame of the master, N; [0] of the last step */
   PetscReal     e[3][3], turned[3][3];     /* n, t, b in the frame of the master, and on the ground */
   PetscReal     gap;                       /* of the undeformed bodies, where the facet will not change any more, m */
@@ -62,9 +74,14 @@ typedef struct {
   PetscReal     slip_before;  /* that of v_{n-3/2}, as far as it is known */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
-  int           n; /* nodes of the facet, four at least: those of a triangle have a fourth of weight 0 */
-  PetscInt      node[CONTACT_MAX_MASTER];
-  PetscReal     weight[CONTACT_MAX_MASTER];
+  /* nodes of the facet, or of the mean of the master, four at least: those of a triangle have a fourth of weight 0 */
+  int        n;
+  PetscInt  *node;
+  PetscReal *weight;
+  /* of the mean of the slave, 1 for the node itself alone */
+  int              n_own;
+  const PetscInt  *own;
+  const PetscReal *own_weight;
 } ProjectorPair;
 
 /* What Gauss-Seidel needs of a pair without coupling of its directions and with four nodes, close together; Cartesian,
@@ -130,7 +147,12 @@ struct _p_ContactProjector {
   ContactFrame     frame[CONTACT_MAX], frame_old[CONTACT_MAX]; /* at t_{n+1} and t_n */
   PetscInt         n_pairs;
   ProjectorPair   *pair;
-  ProjectorRow    *row; /* [n_pairs] */
+  ProjectorRow    *row;                 /* [n_pairs] */
+  PetscInt        *node;                /* [n_pairs][CONTACT_MAX_MASTER] of the facets that slaves face, and */
+  PetscReal       *weight;              /* of these */
+  ProjectorMortar *mortar[CONTACT_MAX]; /* on all ranks; NULL: slave nodes and points of the master */
+  PetscReal        knot[2], between;    /* times of the mortar knots, s; how far t_{n+1} is from one to the other */
+  PetscReal       *u_knot;              /* [2][n_nodes][3] displacements there, m; NULL where all pairs stay */
   PetscInt        *first_candidate;
   ContactFacetList candidates; /* facets near each slave */
   PetscReal       *place; /* [n_pairs][3] displacement of the slave in the frame of the master at the last search, m */
@@ -173,6 +195,17 @@ static inline void FrameDisplacement(const ContactFrame *f, const PetscReal x[3]
   const PetscReal y[3] = {x[0] + u[0] - f->centre[0], x[1] + u[1] - f->centre[1], x[2] + u[2] - f->centre[2]};
 
   for (int i = 0; i < 3; i++) d[i] = u[i] + f->D[i][0] * y[0] + f->D[i][1] * y[1] + f->D[i][2] * y[2] - f->shift[i];
+}
+
+/* Of values at the nodes that of a pair's slave, or the mean, which is put into mean[] */
+static inline const PetscReal *PairSlave(const ProjectorPair *pair, const PetscReal x[], PetscReal mean[3])
+{
+  if (pair->n_own == 1) return &x[3 * pair->slave];
+  for (int d = 0; d < 3; d++) {
+    mean[d] = 0;
+    for (int k = 0; k < pair->n_own; k++) mean[d] += pair->own_weight[k] * x[3 * pair->own[k] + d];
+  }
+  return mean;
 }
 
 /* Number of the node at place i of holder[] */
@@ -230,6 +263,24 @@ PETSC_INTERN PetscReal PairGap(ContactProjector projector, const ProjectorPair *
                                const PetscReal u[]);
 /* project.c - inverse of a compliance for the natural map, kg; 0 where nothing moves along n */
 PETSC_INTERN PetscReal PairMass(const ProjectorPair *pair);
+/* mortar.c - surfaces of the interfaces whose pairs are means; their nodes, among the n of unique[]. Collective. */
+PETSC_INTERN PetscErrorCode ProjectorMortarCreate(ContactProjector projector);
+PETSC_INTERN PetscErrorCode ProjectorMortarNumber(ContactProjector projector, PetscInt n, const PetscInt unique[]);
+PETSC_INTERN PetscErrorCode ProjectorMortarDestroy(ContactProjector projector);
+/* mortar.c - the knot at the start, time t, the nodes at u; before a step, another one where it is due; on the root */
+PETSC_INTERN PetscErrorCode ProjectorMortarStart(ContactProjector projector, PetscReal t, const PetscReal u[]);
+PETSC_INTERN PetscErrorCode ProjectorMortarStep(ContactProjector projector, const ContactStep *step);
+/* mortar.c - whether the sides of an interface change in time */
+PETSC_INTERN PetscBool MortarTravels(const ContactProjector projector, PetscInt interface);
+/* mean.c - sides and n of a pair at displacements `where`, facet -1 where it has none */
+PETSC_INTERN void MeanFind(ContactProjector projector, PetscInt pair, const PetscReal where[]);
+/* mortar.c - marks the facets of the master within `reach` (m) of those of the slave at displacements u */
+PETSC_INTERN PetscErrorCode MortarActivate(ContactProjector projector, PetscInt interface, PetscReal reach,
+                                           const PetscReal u[]);
+/* mortar.c - numbers of the memory, with which knots are made anew */
+PETSC_INTERN PetscInt       MortarMemoryLength(const ContactProjector projector);
+PETSC_INTERN void           MortarGetMemory(const ContactProjector projector, PetscReal values[]);
+PETSC_INTERN PetscErrorCode MortarSetMemory(ContactProjector projector, const PetscReal values[]);
 /* prepare.c - predicted displacements of the active nodes, u + dt v */
 PETSC_INTERN void NodesPredict(ContactProjector projector, PetscReal dt);
 /* project.c - velocity of the slave relative to the master along n, t, b, m/s, of velocities v of the nodes */

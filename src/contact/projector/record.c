@@ -51,7 +51,9 @@ INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
     PairSetForce(pair, kick, miss);
     if (pair->facet < 0 || pair->p[0] == 0) continue;
     for (int d = 0; d < 3; d++) {
-      for (int i = 0; i < 3; i++) force[3 * pair->slave + d] += pair->turned[i][d] * (pair->p[i] / kick);
+      for (int k = 0; k < pair->n_own; k++)
+        for (int i = 0; i < 3; i++)
+          force[3 * pair->own[k] + d] += pair->own_weight[k] * pair->turned[i][d] * (pair->p[i] / kick);
       for (int j = 0; j < 4; j++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
     }
     for (int j = 12; j < 3 * pair->n; j++) force[3 * pair->node[j / 3] + j % 3] -= pair->weight[j / 3] * lambda[j % 3];

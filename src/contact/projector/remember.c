@@ -12,7 +12,7 @@
 static PetscInt MemoryLength(const ContactProjector p)
 {
   if (p->share.rank != p->share.root) return 1;
-  return 4 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes;
+  return 4 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes + MortarMemoryLength(p);
 }
 
 PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscReal **values)
@@ -40,6 +40,7 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) *v++ = pair->lambda[i / 3][i % 3];
   }
   PetscCall(PetscArraycpy(v, p->u_search, 3 * p->share.n_nodes));
+  MortarGetMemory(p, v + 3 * p->share.n_nodes);
   PetscFunctionReturn(0);
 }
 
@@ -65,6 +66,7 @@ static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = *v++;
   }
   PetscCall(ProjectorSearch(p, t, 1, v));
+  PetscCall(MortarSetMemory(p, v + 3 * p->share.n_nodes));
   PetscFunctionReturn(0);
 }
 

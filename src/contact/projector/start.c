@@ -23,15 +23,16 @@ static void PairsFind(ContactProjector p, StartFault *fault)
   fault->no_slip = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     ProjectorPair   *pair = &p->pair[k];
-    const PetscReal *x    = &p->nodes.x[3 * pair->slave];
-    PetscReal        d[3], gap;
+    const PetscReal *x;
+    PetscReal        d[3], gap, mean_x[3], mean_u[3];
 
     pair->facet = -1;
     pair->slip  = -1;
     pair->found = pair->ready = PETSC_FALSE;
     p->state[k]               = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
     if (!PairPlace(p, k, p->nodes.u, p->nodes.u, PETSC_MAX_REAL)) continue;
-    FrameDisplacement(&p->frame[pair->interface], x, &p->nodes.u[3 * pair->slave], d);
+    x = PairSlave(pair, p->nodes.x, mean_x);
+    FrameDisplacement(&p->frame[pair->interface], x, PairSlave(pair, p->nodes.u, mean_u), d);
     gap = p->state[k].gap = PairGap(p, pair, d, p->nodes.u);
     if (-gap > fault->depth) {
       fault->depth     = -gap;
@@ -58,6 +59,7 @@ static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault *f
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
   PetscCall(ProjectorSearch(p, t, START_REACH, p->nodes.u));
+  PetscCall(ProjectorMortarStart(p, t, p->nodes.u));
   PairsFind(p, fault);
   PetscCall(ProjectorSearch(p, t, 1, p->nodes.u));
   PairsFind(p, fault);
@@ -94,10 +96,10 @@ static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault
   PetscFunctionReturn(0);
 }
 
-/* A pair of the sliding state, by interface and node of its slave */
+/* A pair of the sliding state, by interface, node and place of its slave */
 typedef struct {
-  PetscInt     interface, number;
-  PetscReal    force[3]; /* on the slave, N */
+  PetscInt     interface, number, place; /* place: ProjectorPair */
+  PetscReal    force[3];                 /* on the slave, N */
   ContactState state;
 } Given;
 
@@ -106,7 +108,8 @@ static int GivenCompare(const void *left, const void *right)
   const Given *a = (const Given *)left, *b = (const Given *)right;
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
-  return (a->number > b->number) - (a->number < b->number);
+  if (a->number != b->number) return a->number < b->number ? -1 : 1;
+  return (a->place > b->place) - (a->place < b->place);
 }
 
 /* The pairs of all ranks, on all ranks */
@@ -123,6 +126,7 @@ static PetscErrorCode GivenGather(ContactProjector p, const ContactState states[
     const ContactState *s    = &states[k];
 
     local[k] = (Given){pair->interface, pair->vertex, .state = *s};
+    if (p->mortar[pair->interface]) local[k].place = contact->feet[k].place;
     for (int d = 0; d < 3; d++)
       local[k].force[d] = s->lambda_n * pair->n[d] - s->lambda_t[0] * pair->t[d] - s->lambda_t[1] * pair->b[d];
   }
@@ -164,7 +168,7 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
   PetscFunctionBeginUser;
   PetscCall(GivenGather(p, states, &n, &all));
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const Given    wanted = {.interface = p->interface[k], .number = p->number[k]};
+    const Given    wanted = {.interface = p->interface[k], .number = p->number[k], .place = p->pair[k].place};
     const Given   *given  = n ? (const Given *)bsearch(&wanted, all, (size_t)n, sizeof(Given), GivenCompare) : NULL;
     ProjectorPair *pair   = &p->pair[k];
 
@@ -196,6 +200,8 @@ PetscErrorCode ContactProjectorStart(ContactProjector p, PetscReal t, const Pets
              "ContactProjectorSetMass() must be called before ContactProjectorStart()");
   PetscCall(ProjectorGatherAll(p, u, p->nodes.u));
   PetscCall(StartSearch(p, t, &fault));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (p->mortar[i]) PetscCall(ContactMovedCheck(p->share.comm, &p->mortar[i]->moved));
   PetscCall(StartCheck(p, slack, &fault));
   PetscCall(StartForces(p, states));
   PetscCall(ProjectorActivate(p));

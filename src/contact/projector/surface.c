@@ -9,7 +9,7 @@
 
 /* A slave node as its owner knows it */
 typedef struct {
-  PetscInt  interface, number;
+  PetscInt  interface, number, place; /* place: ProjectorPair */
   PetscReal x[3];
 } Slave;
 
@@ -120,20 +120,55 @@ static int SlaveCompare(const void *left, const void *right)
   const Slave *a = (const Slave *)left, *b = (const Slave *)right;
 
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
-  return ContactPlaceCompare(a->x, b->x);
+  if (ContactPlaceCompare(a->x, b->x)) return ContactPlaceCompare(a->x, b->x);
+  return (a->place > b->place) - (a->place < b->place);
+}
+
+/* Places of the slaves of mortar interfaces; those at folds get a slave for each further side, appended */
+static PetscErrorCode SlavesPlace(ContactProjector p, PetscInt *n_slaves, Slave **slave)
+{
+  const PetscInt n     = *n_slaves;
+  PetscInt       extra = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (p->mortar[i]) extra += p->mortar[i]->moved.slave.n_nodes;
+  PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(n + extra), slave));
+  for (PetscInt k = 0; k < n; k++) {
+    const ProjectorMortar *m    = p->mortar[(*slave)[k].interface];
+    const ContactSurface  *s    = m ? &m->moved.slave : NULL;
+    PetscInt               side = s ? s->n_sorted : 0;
+
+    if (s) PetscCall(PetscFindInt((*slave)[k].number, s->n_sorted, s->vertex, &(*slave)[k].place));
+    for (; s && side < s->n_nodes; side++) {
+      if (s->vertex[side] != (*slave)[k].number) continue;
+      (*slave)[*n_slaves]           = (*slave)[k];
+      (*slave)[(*n_slaves)++].place = side;
+    }
+  }
+  PetscFunctionReturn(0);
 }
 
 /* One pair per slave, without partner as yet */
 static PetscErrorCode PairsCreate(ContactProjector p, PetscInt n, const Slave slave[], const PetscInt unique[])
 {
+  static const PetscReal one = 1;
+
   PetscFunctionBeginUser;
   p->n_pairs = n;
+  PetscCall(PetscCalloc2(CONTACT_MAX_MASTER * n, &p->node, CONTACT_MAX_MASTER * n, &p->weight));
   PetscCall(PetscCalloc3(n, &p->pair, n, &p->row, n, &p->state));
   PetscCall(PetscMalloc5(n, &p->interface, n, &p->number, 3 * n, &p->slave_x, n, &p->visited, n, &p->visit));
   PetscCall(PetscCalloc2(n + 1, &p->first_candidate, 3 * n, &p->place));
   for (PetscInt i = 0; i < n; i++) {
     p->pair[i].interface = p->interface[i] = slave[i].interface;
     p->pair[i].facet                       = -1;
+    p->pair[i].place                       = slave[i].place;
+    p->pair[i].node                        = &p->node[CONTACT_MAX_MASTER * i];
+    p->pair[i].weight                      = &p->weight[CONTACT_MAX_MASTER * i];
+    p->pair[i].n_own                       = 1;
+    p->pair[i].own                         = &p->pair[i].slave;
+    p->pair[i].own_weight                  = &one;
     p->number[i]                           = slave[i].number;
     PetscCall(PetscFindInt(slave[i].number, p->share.n_nodes, unique, &p->pair[i].slave));
     PetscCall(PetscArraycpy(&p->slave_x[3 * i], slave[i].x, 3));
@@ -151,6 +186,7 @@ static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(SlavesAppend(p->contact, i, &n_local, &local));
   PetscCall(RootFind(p->contact->comm, n_local, &p->share.root));
   PetscCall(GatherRecords(p->contact->comm, n_local, sizeof(Slave), local, &n, &all));
+  PetscCall(SlavesPlace(p, &n, &all));
   if (n) qsort(all, (size_t)n, sizeof(Slave), SlaveCompare);
   PetscCall(PairsCreate(p, p->share.rank == p->share.root ? n : 0, all, unique));
   PetscCall(PetscFree(local));
@@ -198,10 +234,12 @@ PetscErrorCode ProjectorSetUpSurfaces(ContactProjector p)
 
   PetscFunctionBeginUser;
   PetscCall(NodesFind(p, &n, &unique));
+  PetscCall(ProjectorMortarCreate(p));
   PetscCall(SlavesFind(p, unique));
   PetscCall(ShareSetActive(&p->share, NULL));
   PetscCall(NodesCreate(p));
   for (PetscInt i = 0; i < p->n_interfaces; i++) PetscCall(MasterCreate(p, i, n, unique));
+  PetscCall(ProjectorMortarNumber(p, n, unique));
   PetscCall(PetscFree(unique));
   PetscFunctionReturn(0);
 }
@@ -211,6 +249,8 @@ PetscErrorCode ProjectorDestroySurfaces(ContactProjector p)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     PetscCall(PetscFree4(p->master[i].node, p->master[i].seen, p->master[i].live, p->master[i].box));
+  PetscCall(ProjectorMortarDestroy(p));
+  PetscCall(PetscFree2(p->node, p->weight));
   PetscCall(PetscFree3(p->pair, p->row, p->state));
   PetscCall(PetscFree5(p->interface, p->number, p->slave_x, p->visited, p->visit));
   PetscCall(PetscFree2(p->first_candidate, p->place));

@@ -185,7 +185,7 @@ static void AnyTangent(const PetscReal n[3], PetscReal t[3])
 
 /* t along a vector v less its part along n, b = n x t; returns |v - n (n . v)| in the unit of v. Where that is below
    1e-6 |v| (squares: 1e-12) it is what rounding leaves of v along n: t is any tangent then, and 0 is returned. */
-static PetscReal TangentsSet(const PetscReal along[3], PetscReal e[3][3])
+PetscReal ContactTangents(const PetscReal along[3], PetscReal e[3][3])
 {
   const PetscReal dot  = along[0] * e[0][0] + along[1] * e[0][1] + along[2] * e[0][2];
   PetscReal       full = 0, square = 0, length = 0;
@@ -217,7 +217,7 @@ PetscReal ContactBasis(const ContactFacet *f, const PetscReal natural[2], const 
     inverse = 1 / PetscSqrtReal(PetscSqr(e[0][0]) + PetscSqr(e[0][1]) + PetscSqr(e[0][2]));
     for (int d = 0; d < 3; d++) e[0][d] *= inverse;
   }
-  return TangentsSet(along, e);
+  return ContactTangents(along, e);
 }
 
 /* n . (x - x_0 - sum_{i>0} w_i (x_i - x_0)): differences of places first, so that a gap of 1e-9 m at places of 1 m

@@ -137,6 +137,8 @@ PETSC_INTERN void ContactFootFind(const ContactSurface *surface, const PetscReal
    where it has none and t is any tangent */
 PETSC_INTERN PetscReal ContactBasis(const ContactFacet *facet, const PetscReal natural[2], const PetscReal along[3],
                                     PetscReal weight[], PetscReal e[3][3]);
+/* foot.c - t and b of e[3] = n, t, b, whose n is set: t along a vector; returns as ContactBasis() does */
+PETSC_INTERN PetscReal ContactTangents(const PetscReal along[3], PetscReal e[3][3]);
 /* foot.c - n . (x - x_m) at rest, m */
 PETSC_INTERN PetscReal ContactGap(const ContactFacet *facet, const PetscReal weight[], const PetscReal n[3],
                                   const PetscReal x[3]);
