@@ -251,6 +251,9 @@ PetscErrorCode ComponentsDestroy(ModesComponents *c)
   if (!*c) PetscFunctionReturn(0);
   PetscCall(PetscFree((*c)->level));
   PetscCall(PetscFree((*c)->found_of));
+  PetscCall(PetscFree((*c)->column));
+  PetscCall(PetscFree((*c)->dot));
+  PetscCall(PetscFree((*c)->mass));
   PetscCall(PetscFree((*c)->free));
   PetscCall(PetscFree((*c)->own));
   PetscCall(PetscFree3((*c)->share, (*c)->energy, (*c)->mixed));

@@ -180,6 +180,29 @@ static PetscErrorCode SharesSum(Modes modes, const Modes free, PetscInt i, Petsc
   PetscFunctionReturn(0);
 }
 
+/* The same from the products of the basis in which the free modes were found: all vectors of the mode are in it */
+static void SharesTake(const ModesComponents c, PetscInt n_free, PetscInt i, PetscBool left, PetscReal sums[])
+{
+  const PetscInt  n = c->bodies.n, m = c->n_vectors;
+  const PetscInt *column = c->column[i];
+  PetscReal      *whole  = &sums[n_free * N_SUMS * n];
+
+  for (int k = 0; k < (left ? 4 : 2); k++)
+    for (PetscInt j = 0; j < n_free && column[k] >= 0; j++)
+      sums[(j * N_SUMS + k) * n + c->found_of[j]] = c->dot[j * m + column[k]];
+  for (PetscInt b = 0; b < n; b++) {
+    const PetscReal *mass = &c->mass[b * m * m];
+
+    for (int k = 0; k < 4 && left; k++) {
+      const PetscInt y = column[SUM_Y_RE + k / 2], x = column[SUM_X_RE + k % 2];
+
+      if (x >= 0 && y >= 0) whole[(SUM_RE_RE + k) * n + b] = mass[y * m + x];
+    }
+    for (int k = 0; k < 2; k++)
+      if (column[k] >= 0) whole[(SUM_X_X_RE + k) * n + b] = mass[column[k] * m + column[k]];
+  }
+}
+
 /* y^T M_b x of body b, of a mode without left vector x^H M_b x */
 static PetscComplex WholeOf(PetscBool left, PetscInt n, PetscInt b, const PetscReal whole[], PetscReal *energy)
 {
@@ -236,7 +259,7 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(modes->n * n, &c->share, modes->n * n, &c->energy, modes->n, &c->mixed));
   PetscCall(PetscMalloc1(n_sums, &sums));
-  for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
+  for (int k = 0; k <= N_SUMS && !c->found; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
   for (PetscInt i = 0; i < modes->n; i++) {
     PetscBool left;
 
@@ -244,11 +267,14 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
     left = yr && (!c->found || modes->mode[i].unstable) ? PETSC_TRUE : PETSC_FALSE; /* names need energies alone */
     PetscCall(PetscArrayzero(sums, n_sums));
-    PetscCall(SharesSum(modes, free, i, left, product, sums));
+    if (c->found)
+      SharesTake(c, free->n, i, left, sums);
+    else
+      PetscCall(SharesSum(modes, free, i, left, product, sums));
     SharesForm(c, left, free->n, i, sums);
     c->mixed[i] = ShapeMixed(modes, i);
   }
-  for (int k = 0; k <= N_SUMS; k++) PetscCall(VecDestroy(&product[k]));
+  for (int k = 0; k <= N_SUMS && !c->found; k++) PetscCall(VecDestroy(&product[k]));
   PetscCall(PetscFree(sums));
   PetscFunctionReturn(0);
 }

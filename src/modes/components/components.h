@@ -31,14 +31,17 @@ typedef struct {
 struct _p_ModesComponents {
   FreeBodies bodies; /* those of the modes (shallow) */
   PetscInt   n_levels;
-  FreeLevel *level;    /* [levels] by frequency */
-  FreeMode  *free;     /* [levels][bodies] */
-  PetscReal *own;      /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
-  PetscReal *share;    /* [modes][levels + 1][bodies], the last one of the whole body: by left and right vector */
-  PetscReal *energy;   /* likewise, of the right vector alone */
-  PetscReal *mixed;    /* [modes] what the shape is off by, as in FreeLevel */
-  PetscBool  found;    /* free modes from the modes found: unstable modes alone have rows */
-  PetscInt  *found_of; /* [free modes] their bodies; NULL of a solution */
+  FreeLevel *level;      /* [levels] by frequency */
+  FreeMode  *free;       /* [levels][bodies] */
+  PetscReal *own;        /* [free modes][bodies]: phi' M_b phi, which is 1 for the body that moves */
+  PetscReal *share;      /* [modes][levels + 1][bodies], the last one of the whole body: by left and right vector */
+  PetscReal *energy;     /* likewise, of the right vector alone */
+  PetscReal *mixed;      /* [modes] what the shape is off by, as in FreeLevel */
+  PetscBool  found;      /* free modes from the modes found: unstable modes alone have rows */
+  PetscInt  *found_of;   /* [free modes] their bodies; NULL of a solution */
+  PetscInt   n_vectors;  /* of the basis in which they were found; 0 of a solution */
+  PetscInt (*column)[4]; /* [modes] right and left vector, real and imaginary part, in the basis; -1 for 0 */
+  PetscReal *dot, *mass; /* [free modes][vectors] phi' M v; [bodies][vectors][vectors] v' M_b v */
 };
 
 /* names.c - whether mode i is unstable or named after a part. Not collective */
@@ -64,11 +67,15 @@ typedef struct {
 
 /* ritz.c - AX = M X, (K + less) X */
 PETSC_INTERN PetscErrorCode FreeMatricesMultiply(const FreeMatrices *bodies, Mat X, const Mat AX[2]);
-/*  makes room for n vectors, which the caller sets; measures and solves; columns first .. first + n - 1 of F
-   become the first n modes of body b, zero elsewhere. Collective, results alike on all ranks */
+/*  makes room for n vectors, which the caller sets; measures and solves; columns first, first + 1, ... of F
+   become modes begin .. end - 1 of body b, zero elsewhere. Collective, results alike on all ranks */
 PETSC_INTERN PetscErrorCode FreeBasisCreate(const FreeBodies *of, Mat M, PetscInt n, FreeBasis *basis);
 PETSC_INTERN PetscErrorCode FreeBasisSolve(const FreeMatrices *bodies, FreeBasis *basis);
-PETSC_INTERN PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, PetscInt n, PetscInt first, Mat F);
+typedef struct {
+  PetscInt begin, end, first;
+} LiftRange;
+
+PETSC_INTERN PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, const LiftRange *range, Mat F);
 PETSC_INTERN PetscErrorCode FreeBasisDestroy(FreeBasis *basis);
 /* reduce.c - the modes of a body among its scaled vectors, of G and H [n][n]; G is overwritten. Not collective */
 typedef struct {
@@ -79,13 +86,13 @@ typedef struct {
 PETSC_INTERN PetscErrorCode FreeBodySolve(PetscInt n, PetscReal G[], const PetscReal H[], const FreeBodyModes *modes);
 /* One free mode among the bodies' */
 typedef struct {
-  PetscInt  column, body; /* column in F */
+  PetscInt  column, body, of; /* column in F, its body, its number there */
   PetscReal kappa, error;
   PetscBool rigid;
 } FoundMode;
 
-/* judge.c - kappa by Rayleigh's quotient and errors of the n columns of F, free modes phi with phi'M phi = 1, from what
-   is known of kappa; Z as of OperatorsGetDependents(). Collective */
+/* judge.c - kappa by Rayleigh's quotient and errors of those of n free modes that are not rigid, the columns phi of F
+   with phi'M phi = 1, from what is known of kappa; Z as of OperatorsGetDependents(). Collective */
 PETSC_INTERN PetscErrorCode FoundJudge(const FreeMatrices *bodies, Mat Z, Mat F, PetscInt n, FoundMode found[]);
 /* found.c - free modes from the modes found, without a solution: those below the highest that takes part in a mode that
    is unstable or named after a part; `free` is empty before. They

@@ -17,7 +17,7 @@
 #define FOUND_APART                                                                                                    \
   1.01 /* condition, one over the cosine of right and left vector, from which on the left one serves */
 /* modes, whose right vectors have tails enough: then left ones serve from FOUND_FAR on, and of complex vectors parts of
-   FOUND_SMALL of the other */
+   FOUND_SMALL of the other; of a mode that asks for shares all do */
 #define FOUND_MANY  48
 #define FOUND_FAR   1.3
 #define FOUND_SMALL 0.1
@@ -33,17 +33,18 @@ typedef struct {
 static PetscErrorCode VectorsMeasure(const Modes modes, PetscInt i, const FoundVectors *v, PetscReal size[4])
 {
   const PetscBool many = modes->n > FOUND_MANY ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool few  = many && !ComponentsAsks(modes, i) ? PETSC_TRUE : PETSC_FALSE; /* parts */
 
   PetscFunctionBeginUser;
   for (int part = 0; part < 4; part++) {
-    const PetscReal apart = part < 2 ? 0 : many ? FOUND_FAR : FOUND_APART;
+    const PetscReal apart = part < 2 || modes->mode[i].unstable ? 0 : many ? FOUND_FAR : FOUND_APART;
     PetscReal      *first = &size[part / 2 * 2];
 
     size[part] = 0;
     if (v->x[part] && !(modes->mode[i].condition < apart)) PetscCall(VecDot(v->x[part], v->x[part], &size[part]));
     size[part] = PetscSqrtReal(size[part]);
-    if (part % 2 && many && size[part] < FOUND_SMALL * first[0]) size[part] = 0;
-    if (part % 2 && many && first[0] < FOUND_SMALL * size[part]) first[0] = 0;
+    if (part % 2 && few && size[part] < FOUND_SMALL * first[0]) size[part] = 0;
+    if (part % 2 && few && first[0] < FOUND_SMALL * size[part]) first[0] = 0;
   }
   PetscFunctionReturn(0);
 }
@@ -192,22 +193,77 @@ static PetscErrorCode FoundPut(Operators operators, const FoundMode *found, Mat 
   PetscFunctionReturn(0);
 }
 
-/* The free modes of the columns of F that are good */
-static PetscErrorCode FoundCollect(Operators operators, PetscInt n, FoundMode found[], Mat F, ModesComponents c,
-                                   Modes free)
+/* dot[vectors] = phi' M v of a free mode phi and the vectors v of the basis */
+static void FoundDot(const FreeBasis *basis, const FoundMode *found, PetscReal dot[])
 {
+  const PetscInt   n = basis->n, b = found->body;
+  const PetscReal *z = &basis->Z[(b * n + found->of) * n];
+
+  for (PetscInt j = 0; j < n; j++) {
+    dot[j] = 0;
+    for (PetscInt i = 0; i < n; i++) dot[j] += z[i] * basis->mass[(b * n + j) * n + i];
+  }
+}
+
+/* Free modes, whose shapes are columns of F[PETSC_FALSE] where they are elastic, of F[PETSC_TRUE] where rigid */
+typedef struct {
+  PetscInt   n;
+  FoundMode *mode; /* [n] body by body */
+  Mat        F[2];
+} FoundModes;
+
+/* Those that are good */
+static PetscErrorCode FoundCollect(Operators operators, const FreeBasis *basis, const FoundModes *modes,
+                                   ModesComponents c, Modes free)
+{
+  const PetscInt n     = modes->n;
+  FoundMode     *found = modes->mode;
+
   PetscFunctionBeginUser;
   PetscCall(SpectrumCreate(n, &free->right));
   PetscCall(PetscCalloc1(n, &free->mode));
   PetscCall(PetscCalloc1(n, &free->residual));
   FoundSort(n, found);
   PetscCall(PetscMalloc1(n, &c->found_of));
+  PetscCall(PetscMalloc1(n * basis->n, &c->dot));
   for (PetscInt j = 0; j < n; j++) {
     if (!found[j].rigid && !(found[j].error <= 2 * FOUND_WORST * found[j].kappa)) continue;
     c->found_of[free->n] = found[j].body;
-    PetscCall(FoundPut(operators, &found[j], F, free));
+    FoundDot(basis, &found[j], &c->dot[free->n * basis->n]);
+    PetscCall(FoundPut(operators, &found[j], modes->F[found[j].rigid], free));
   }
   if (free->n) PetscCall(ModesLabel(free));
+  PetscFunctionReturn(0);
+}
+
+/* The first n_modes of each body */
+static PetscErrorCode FoundLift(const FreeMatrices *bodies, const FreeBasis *basis, const PetscInt n_modes[],
+                                FoundModes *found)
+{
+  PetscInt n_own, columns[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  found->n = 0;
+  for (PetscInt b = 0; b < basis->n_bodies; b++)
+    for (PetscInt k = 0; k < n_modes[b]; k++) {
+      const PetscBool rigid = k < basis->n_rigid[b] ? PETSC_TRUE : PETSC_FALSE;
+
+      found->mode[found->n++] = (FoundMode){
+        .column = columns[rigid]++, .body = b, .of = k, .kappa = basis->kappa[b * basis->n + k], .rigid = rigid};
+    }
+  PetscCall(MatGetLocalSize(bodies->M, &n_own, NULL));
+  for (int k = 0; k < 2; k++)
+    PetscCall(MatCreateDense(PetscObjectComm((PetscObject)bodies->M), n_own, PETSC_DECIDE, PETSC_DETERMINE, columns[k],
+                             NULL, &found->F[k]));
+  columns[0] = columns[1] = 0;
+  for (PetscInt b = 0; b < basis->n_bodies; b++) {
+    const PetscInt rigid = PetscMin(n_modes[b], basis->n_rigid[b]);
+
+    PetscCall(FreeBasisLift(basis, b, &(LiftRange){rigid, n_modes[b], columns[0]}, found->F[0]));
+    PetscCall(FreeBasisLift(basis, b, &(LiftRange){0, rigid, columns[1]}, found->F[1]));
+    columns[0] += n_modes[b] - rigid;
+    columns[1] += rigid;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -215,29 +271,31 @@ static PetscErrorCode FoundCollect(Operators operators, PetscInt n, FoundMode fo
 static PetscErrorCode BasisCollect(Operators operators, const FreeMatrices *bodies, const FreeBasis *basis,
                                    const PetscInt n_modes[], ModesComponents c, Modes free)
 {
-  PetscInt   n_own, n = 0, first = 0;
-  FoundMode *found;
-  Mat        F, Z;
+  PetscInt   n = 0;
+  FoundModes found;
+  Mat        Z;
 
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < basis->n_bodies; b++) n += n_modes[b];
-  PetscCall(MatGetLocalSize(bodies->M, &n_own, NULL));
-  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)bodies->M), n_own, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &F));
-  PetscCall(PetscMalloc1(n, &found));
-  for (PetscInt b = 0; b < basis->n_bodies; b++) {
-    for (PetscInt k = 0; k < n_modes[b]; k++)
-      found[first + k] = (FoundMode){.column = first + k,
-                                     .body   = b,
-                                     .kappa  = basis->kappa[b * basis->n + k],
-                                     .rigid  = k < basis->n_rigid[b] ? PETSC_TRUE : PETSC_FALSE};
-    PetscCall(FreeBasisLift(basis, b, n_modes[b], first, F));
-    first += n_modes[b];
-  }
+  PetscCall(PetscMalloc1(n, &found.mode));
+  PetscCall(FoundLift(bodies, basis, n_modes, &found));
   PetscCall(OperatorsGetDependents(operators, &Z, NULL));
-  if (n) PetscCall(FoundJudge(bodies, Z, F, n, found));
-  if (n) PetscCall(FoundCollect(operators, n, found, F, c, free));
-  PetscCall(PetscFree(found));
-  PetscCall(MatDestroy(&F));
+  PetscCall(FoundJudge(bodies, Z, found.F[0], n, found.mode));
+  if (n) PetscCall(FoundCollect(operators, basis, &found, c, free));
+  PetscCall(PetscFree(found.mode));
+  for (int k = 0; k < 2; k++) PetscCall(MatDestroy(&found.F[k]));
+  PetscFunctionReturn(0);
+}
+
+/* Keeps what shares are made of: the products of the vectors, and which these are */
+static PetscErrorCode ProductsKeep(PetscInt n, const FoundVectors v[], FreeBasis *basis, ModesComponents c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &c->column));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscArraycpy(c->column[i], v[i].column, 4));
+  PetscCall(PetscMalloc1(c->bodies.n * basis->n * basis->n, &c->mass));
+  PetscCall(PetscArraycpy(c->mass, basis->mass, c->bodies.n * basis->n * basis->n));
+  c->n_vectors = basis->n;
   PetscFunctionReturn(0);
 }
 
@@ -261,6 +319,7 @@ static PetscErrorCode FoundSolve(Modes modes, PetscInt n, const FoundVectors v[]
   ModesChoose(modes, of, &basis, v, n_modes);
   PetscCall(BasisCollect(operators, &bodies, &basis, n_modes, c, free));
   PetscCall(PetscFree(n_modes));
+  PetscCall(ProductsKeep(modes->n, v, &basis, c));
   PetscCall(FreeBasisDestroy(&basis));
   PetscFunctionReturn(0);
 }

@@ -81,10 +81,13 @@ static PetscErrorCode ResidualWeigh(Vec K_phi, Vec M_phi, PetscReal kappa, Mat Z
 PetscErrorCode FoundJudge(const FreeMatrices *bodies, Mat Z, Mat F, PetscInt n, FoundMode found[])
 {
   PetscReal *sums; /* [n] r' D^-1 r */
+  PetscInt   columns;
   Mat        AF[2];
   Vec        d;
 
   PetscFunctionBeginUser;
+  PetscCall(MatGetSize(F, NULL, &columns));
+  if (!columns) PetscFunctionReturn(0);
   for (int k = 0; k < 2; k++) PetscCall(MatDuplicate(F, MAT_DO_NOT_COPY_VALUES, &AF[k]));
   PetscCall(FreeMatricesMultiply(bodies, F, AF));
   PetscCall(DiagonalFind(bodies, Z, &d));
@@ -92,16 +95,18 @@ PetscErrorCode FoundJudge(const FreeMatrices *bodies, Mat Z, Mat F, PetscInt n, 
   for (PetscInt j = 0; j < n; j++) {
     Vec       phi, K_phi, M_phi;
     PetscReal kappa = found[j].kappa;
+    PetscInt  k     = found[j].column;
 
-    PetscCall(MatDenseGetColumnVecRead(F, j, &phi));
-    PetscCall(MatDenseGetColumnVec(AF[1], j, &K_phi));
-    PetscCall(MatDenseGetColumnVecRead(AF[0], j, &M_phi));
+    if (found[j].rigid) continue;
+    PetscCall(MatDenseGetColumnVecRead(F, k, &phi));
+    PetscCall(MatDenseGetColumnVec(AF[1], k, &K_phi));
+    PetscCall(MatDenseGetColumnVecRead(AF[0], k, &M_phi));
     PetscCall(VecDot(phi, K_phi, &found[j].kappa));
     found[j].error = PetscAbsReal(found[j].kappa - kappa);
     PetscCall(ResidualWeigh(K_phi, M_phi, kappa, Z, d, &sums[j]));
-    PetscCall(MatDenseRestoreColumnVecRead(AF[0], j, &M_phi));
-    PetscCall(MatDenseRestoreColumnVec(AF[1], j, &K_phi));
-    PetscCall(MatDenseRestoreColumnVecRead(F, j, &phi));
+    PetscCall(MatDenseRestoreColumnVecRead(AF[0], k, &M_phi));
+    PetscCall(MatDenseRestoreColumnVec(AF[1], k, &K_phi));
+    PetscCall(MatDenseRestoreColumnVecRead(F, k, &phi));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)F)));
   for (PetscInt j = 0; j < n; j++) found[j].error += FOUND_SOFT * sums[j];

@@ -268,9 +268,10 @@ PetscErrorCode FreeBasisSolve(const FreeMatrices *bodies, FreeBasis *basis)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, PetscInt n, PetscInt first, Mat F)
+PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, const LiftRange *range, Mat F)
 {
   const PetscScalar one = 1, zero = 0;
+  const PetscInt    n = range->end - range->begin;
   Columns           V;
   PetscScalar      *f, *v, *phi;
   const PetscInt   *row = basis->row[b];
@@ -278,20 +279,22 @@ PetscErrorCode FreeBasisLift(const FreeBasis *basis, PetscInt b, PetscInt n, Pet
   PetscBLASInt      columns, inner;
 
   PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
   PetscCall(PetscBLASIntCast(n, &columns));
   PetscCall(PetscBLASIntCast(basis->n, &inner));
   PetscCall(VectorsOpen(basis, basis->n, &V));
   PetscCall(MatDenseGetLDA(F, &ldf));
   PetscCall(MatDenseGetArray(F, &f));
   PetscCall(PetscMalloc2(RITZ_ROWS * basis->n, &v, RITZ_ROWS * n, &phi));
-  for (PetscInt start = 0; start < basis->n_rows[b] && n; start += RITZ_ROWS) {
+  for (PetscInt start = 0; start < basis->n_rows[b]; start += RITZ_ROWS) {
     const PetscBLASInt rows = (PetscBLASInt)PetscMin(RITZ_ROWS, basis->n_rows[b] - start);
 
     RowsPack(rows, &row[start], &V, v);
-    PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &rows, &columns, &inner, &one, v, &rows,
-                                        &basis->Z[b * basis->n * basis->n], &inner, &zero, phi, &rows));
+    PetscCallBLAS("BLASgemm",
+                  BLASgemm_("N", "N", &rows, &columns, &inner, &one, v, &rows,
+                            &basis->Z[(b * basis->n + range->begin) * basis->n], &inner, &zero, phi, &rows));
     for (PetscInt k = 0; k < n; k++)
-      for (PetscInt i = 0; i < rows; i++) f[(size_t)(first + k) * ldf + row[start + i]] = phi[k * rows + i];
+      for (PetscInt i = 0; i < rows; i++) f[(size_t)(range->first + k) * ldf + row[start + i]] = phi[k * rows + i];
   }
   PetscCall(PetscFree2(v, phi));
   PetscCall(MatDenseRestoreArray(F, &f));

@@ -201,7 +201,8 @@ PetscErrorCode DiscDestroy(Disc *disc)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(disc->node, disc->weight));
-  PetscCall(PetscFree(disc->basis));
+  PetscCall(PetscFree(disc->place));
+  PetscCall(PetscFree2(disc->basis, disc->turn));
   PetscCall(PetscFree(disc->gram));
   PetscCall(PetscFree2(disc->waiting, disc->waiting_from));
   PetscCall(PetscFree2(disc->rhs, disc->fit));

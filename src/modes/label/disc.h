@@ -16,24 +16,33 @@ enum { DISC_COS_RE, DISC_COS_IM, DISC_SIN_RE, DISC_SIN_IM, N_DISC_VALUES };
 #define DISC_SAMPLES 41 /* places at which profiles are read */
 #define DISC_WAITING 48 /* displacements that one product takes: the basis goes through the memory once for them */
 
+/* How the displacement of a node enters the fit */
+typedef struct {
+  PetscReal weight;       /* its mass, kg */
+  PetscReal cosine, sine; /* of theta */
+  PetscReal scale;        /* one over the root of the mass at its place */
+} DiscTurned;
+
 typedef struct _p_Disc {
-  MPI_Comm   comm;
-  PetscBool  has_contact;
-  PetscReal  centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
-  PetscReal  r_inner, r_outer;                 /* m */
-  PetscBool  is_drum;                          /* twice as long as wide: profiles are read along the axis */
-  PetscReal  range[2];                         /* of the radius, or of a drum's place along the axis, m */
-  PetscReal  size;                             /* radius of gyration, m */
-  int        n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
-  PetscInt   n_nodes, n_modes;                 /* nodes of the disc on this rank; shapes to fit */
-  PetscInt  *node;                             /* their local nodes */
-  PetscReal *weight;                           /* nodal mass, kg */
-  PetscReal *basis;                            /* [n_nodes][DISC_TERMS] times the root of the weight */
-  PetscReal *gram;                             /* [DISC_TERMS][DISC_TERMS] */
-  PetscReal *rhs, *fit;    /* [n_modes][N_DISC_DIRECTIONS][2][DISC_TERMS]: right-hand sides; coefficients */
-  PetscInt   n_waiting;    /* of at most DISC_WAITING displacements of shapes, m times the root of kg: */
-  PetscReal *waiting;      /* [n_waiting][n_nodes] */
-  PetscInt  *waiting_from; /* [n_waiting] which right-hand sides they are to make */
+  MPI_Comm    comm;
+  PetscBool   has_contact;
+  PetscReal   centre[3], axis[3], e1[3], e2[3]; /* e1 points to the contact */
+  PetscReal   r_inner, r_outer;                 /* m */
+  PetscBool   is_drum;                          /* twice as long as wide: profiles are read along the axis */
+  PetscReal   range[2];                         /* of the radius, or of a drum's place along the axis, m */
+  PetscReal   size;                             /* radius of gyration, m */
+  int         n_harmonics;                      /* of DISC_HARMONICS, those that the mesh resolves */
+  PetscInt    n_nodes, n_modes;                 /* nodes of the disc on this rank; shapes to fit */
+  PetscInt   *node;                             /* their local nodes */
+  PetscReal  *weight;                           /* nodal mass, kg */
+  PetscInt    n_places, *place;                 /* places (s, theta) on this rank; [n_nodes] where the nodes are */
+  DiscTurned *turn;                             /* [n_nodes] */
+  PetscReal  *basis;                            /* [n_places][DISC_TERMS] times the root of the weight there */
+  PetscReal  *gram;                             /* [DISC_TERMS][DISC_TERMS] */
+  PetscReal  *rhs, *fit;    /* [n_modes][N_DISC_DIRECTIONS][2][DISC_TERMS]: right-hand sides; coefficients */
+  PetscInt    n_waiting;    /* of at most DISC_WAITING displacements of shapes, m times the root of kg: */
+  PetscReal  *waiting;      /* [n_waiting][n_places] */
+  PetscInt   *waiting_from; /* [n_waiting] which right-hand sides they are to make */
 } Disc;
 
 /* A part that may be a disc */
@@ -46,11 +55,15 @@ typedef struct {
 
 /* is_disc = whether two of the three principal moments of inertia agree within 5 %, so that there is an axis */
 PETSC_INTERN PetscErrorCode DiscCreate(MPI_Comm comm, const DiscPart *part, Disc *disc, PetscBool *is_disc);
-/* label/fit.c - polar coordinates of a point, m and rad */
+/* label/places.c - polar coordinates of a point, m and rad */
 PETSC_INTERN void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta);
 /* Place along the axis from the centre, m */
 PETSC_INTERN PetscReal DiscAlong(const Disc *disc, const PetscReal x[3]);
-/* Basis and normal equations; then, for each set of shapes anew, room for their fit */
+/* Radius, of a drum the place along the axis, and angle, m and rad */
+PETSC_INTERN void DiscPlace(const Disc *disc, const PetscReal x[3], PetscReal *s, PetscReal *theta);
+/* Which nodes are at one place, through the thickness */
+PETSC_INTERN PetscErrorCode DiscFindPlaces(Disc *disc, const PetscReal x[]);
+/* label/fit.c - basis and normal equations; then, for each set of shapes anew, room for their fit */
 PETSC_INTERN PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[]);
 PETSC_INTERN PetscErrorCode DiscFitBegin(Disc *disc, PetscInt n_modes);
 /* Takes the displacements u[re, im][local nodes][3] of a shape for its right-hand sides, u[1] = NULL for a real one;

@@ -5,6 +5,8 @@
       min sum_i w_i |u_d(x_i) - sum_k c_k phi_k(x_i)|^2   ->   G c = b,   G = Phi' W Phi,   b = Phi' W u_d,
 
    phi_k = P_j(s) cos m theta and P_j(s) sin m theta, w_i the masses of the nodes (kg), d axial, radial, tangential.
+   Nodes i at one place (s, theta), through the thickness, share the row sqrt(W) phi, W = sum w_i, and their right-hand
+   side is sum w_i u_d(x_i) / sqrt(W).
    Over the harmonic m alone b'G_m^-1 b is the energy sum w u^2 that it explains.
 */
 #include "disc.h"
@@ -13,20 +15,6 @@
 
 /* of the mean of G's diagonal, added to it: of no weight beside the harmonics that a ring resolves */
 #define REGULAR 1e-6
-
-void DiscPolar(const Disc *disc, const PetscReal x[3], PetscReal *r, PetscReal *theta)
-{
-  const PetscReal d[3] = {x[0] - disc->centre[0], x[1] - disc->centre[1], x[2] - disc->centre[2]};
-  const PetscReal a = Vec3Dot(d, disc->e1), b = Vec3Dot(d, disc->e2);
-
-  *r     = PetscSqrtReal(a * a + b * b);
-  *theta = atan2(b, a);
-}
-
-PetscReal DiscAlong(const Disc *disc, const PetscReal x[3])
-{
-  return Vec3Dot(x, disc->axis) - Vec3Dot(disc->centre, disc->axis);
-}
 
 /* P_0 .. P_4 of the place s in the range mapped to [-1, 1] */
 static void DiscLegendre(const Disc *disc, PetscReal s, PetscReal p[DISC_POLYNOMIALS])
@@ -69,23 +57,39 @@ static void DiscGramFinish(PetscReal gram[])
   }
 }
 
+/* The rows of the basis, of all places */
+static PetscErrorCode DiscBasisFill(Disc *disc, const PetscReal x[])
+{
+  PetscReal *weight; /* [places] kg */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(disc->n_places, &weight));
+  for (PetscInt i = 0; i < disc->n_nodes; i++) weight[disc->place[i]] += disc->weight[i];
+  PetscCall(PetscCalloc2(disc->n_places * DISC_TERMS, &disc->basis, disc->n_nodes, &disc->turn));
+  for (PetscInt i = 0; i < disc->n_nodes; i++) {
+    PetscReal *terms = &disc->basis[disc->place[i] * DISC_TERMS], s, theta;
+
+    DiscPlace(disc, &x[3 * disc->node[i]], &s, &theta);
+    if (terms[0] == 0) DiscTerms(disc, s, theta, PetscSqrtReal(weight[disc->place[i]]), terms);
+    disc->turn[i] = (DiscTurned){disc->weight[i], terms[DISC_POLYNOMIALS] / terms[0],
+                                 terms[2 * DISC_POLYNOMIALS] / terms[0], 1 / terms[0]};
+  }
+  PetscCall(PetscFree(weight));
+  PetscFunctionReturn(0);
+}
+
 /* gram = basis' W basis; basis is row-major, hence column-major transposed */
 PetscErrorCode DiscFitCreate(Disc *disc, const PetscReal x[])
 {
   const PetscBLASInt terms = DISC_TERMS;
   const PetscReal    one = 1, zero = 0;
   PetscBLASInt       n;
-  PetscReal          r, theta;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
-  PetscCall(PetscMalloc1(disc->n_nodes * DISC_TERMS, &disc->basis));
+  PetscCall(DiscFindPlaces(disc, x));
+  PetscCall(DiscBasisFill(disc, x));
+  PetscCall(PetscBLASIntCast(disc->n_places, &n));
   PetscCall(PetscCalloc1(DISC_TERMS * DISC_TERMS, &disc->gram));
-  for (PetscInt i = 0; i < disc->n_nodes; i++) {
-    DiscPolar(disc, &x[3 * disc->node[i]], &r, &theta);
-    if (disc->is_drum) r = DiscAlong(disc, &x[3 * disc->node[i]]);
-    DiscTerms(disc, r, theta, PetscSqrtReal(disc->weight[i]), &disc->basis[i * DISC_TERMS]);
-  }
   if (n)
     PetscCallBLAS("BLASsyrk", BLASsyrk_("U", "N", &terms, &n, &one, disc->basis, &terms, &zero, disc->gram, &terms));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, disc->gram, DISC_TERMS * DISC_TERMS, MPIU_REAL, MPI_SUM, disc->comm));
@@ -106,7 +110,7 @@ PetscErrorCode DiscFitBegin(Disc *disc, PetscInt n_modes)
   PetscCall(PetscFree2(disc->rhs, disc->fit));
   disc->n_modes   = n_modes;
   disc->n_waiting = 0;
-  PetscCall(PetscMalloc2(DISC_WAITING * disc->n_nodes, &disc->waiting, DISC_WAITING, &disc->waiting_from));
+  PetscCall(PetscMalloc2(DISC_WAITING * disc->n_places, &disc->waiting, DISC_WAITING, &disc->waiting_from));
   PetscCall(PetscCalloc2(DiscUnknowns(disc), &disc->rhs, DiscUnknowns(disc), &disc->fit));
   PetscFunctionReturn(0);
 }
@@ -120,7 +124,7 @@ static PetscErrorCode DiscProduct(Disc *disc)
   PetscBLASInt       n, columns;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(disc->n_nodes, &n));
+  PetscCall(PetscBLASIntCast(disc->n_places, &n));
   PetscCall(PetscBLASIntCast(disc->n_waiting, &columns));
   disc->n_waiting = 0;
   if (!n || !columns) PetscFunctionReturn(0);
@@ -133,35 +137,35 @@ static PetscErrorCode DiscProduct(Disc *disc)
   PetscFunctionReturn(0);
 }
 
-/* Displacement u of node i in the directions of the disc times r, the root of its weight; its row of the basis begins
-   with r, r cos theta and r sin theta */
-static void DiscTurn(const Disc *disc, PetscInt i, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
+/* Displacement u of a node in the directions of the disc */
+static void DiscTurn(const Disc *disc, const DiscTurned *at, const PetscReal u[3], PetscReal v[N_DISC_DIRECTIONS])
 {
-  const PetscReal *row = &disc->basis[i * DISC_TERMS];
-  const PetscReal  a = Vec3Dot(u, disc->e1), b = Vec3Dot(u, disc->e2);
-  const PetscReal  c = row[DISC_POLYNOMIALS], s = row[2 * DISC_POLYNOMIALS];
+  const PetscReal a = Vec3Dot(u, disc->e1), b = Vec3Dot(u, disc->e2);
 
-  v[DISC_AXIAL]      = row[0] * Vec3Dot(u, disc->axis);
-  v[DISC_RADIAL]     = a * c + b * s;
-  v[DISC_TANGENTIAL] = b * c - a * s;
+  v[DISC_AXIAL]      = Vec3Dot(u, disc->axis);
+  v[DISC_RADIAL]     = a * at->cosine + b * at->sine;
+  v[DISC_TANGENTIAL] = b * at->cosine - a * at->sine;
 }
 
 PetscErrorCode DiscProject(Disc *disc, PetscInt mode, PetscReal *const u[2], PetscReal energy[2])
 {
-  const PetscInt n = disc->n_nodes;
+  const PetscInt n = disc->n_places;
 
   PetscFunctionBeginUser;
   if (disc->n_waiting + 2 * N_DISC_DIRECTIONS > DISC_WAITING) PetscCall(DiscProduct(disc));
   for (int part = 0; part < 2 && u[part]; part++) {
-    PetscReal *at = &disc->waiting[disc->n_waiting * n], v[N_DISC_DIRECTIONS];
+    PetscReal *to = &disc->waiting[disc->n_waiting * n], v[N_DISC_DIRECTIONS];
 
-    for (PetscInt i = 0; i < n; i++) {
-      DiscTurn(disc, i, &u[part][3 * disc->node[i]], v);
+    PetscCall(PetscArrayzero(to, N_DISC_DIRECTIONS * n));
+    for (PetscInt i = 0; i < disc->n_nodes; i++) {
+      const DiscTurned *at = &disc->turn[i];
+
+      DiscTurn(disc, at, &u[part][3 * disc->node[i]], v);
       for (int d = 0; d < N_DISC_DIRECTIONS; d++) {
-        at[d * n + i] = v[d];
-        energy[0] += v[d] * v[d];
+        to[d * n + disc->place[i]] += at->weight * at->scale * v[d];
+        energy[0] += at->weight * v[d] * v[d];
       }
-      energy[1] += v[DISC_AXIAL] * v[DISC_AXIAL];
+      energy[1] += at->weight * v[DISC_AXIAL] * v[DISC_AXIAL];
     }
     for (int d = 0; d < N_DISC_DIRECTIONS; d++)
       disc->waiting_from[disc->n_waiting++] = (mode * N_DISC_DIRECTIONS + d) * 2 + part;
