@@ -40,6 +40,7 @@ static const Quantity views[N_SHOWN] = {
   VIEW(SHOWN_FRF, "-frf_view", "show the frequency response and its peaks", RUN_FRF),
   VIEW(SHOWN_DYNAMICS, "-dynamics_view", "show bodies, step and balances of a run in time", RUN_TRANSIENT),
   VIEW(SHOWN_MAP, "-map_view", "show regimes and cost of a map", RUN_MAP),
+  VIEW(SHOWN_SAMPLE, "-sample_view", "show what samples tell", RUN_SAMPLE),
   VIEW(SHOWN_CYCLE, "-cycle_view", "show cycles, their stability and errors", RUN_CYCLE),
 };
 const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
@@ -142,6 +143,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(SolverReadIterativeOptions(comm));
   PetscCall(SweepCreate(comm, &chain->sweep));
   PetscCall(SweepSetFromOptions(chain->sweep));
+  PetscCall(SampleCreate(comm, &chain->sample));
+  PetscCall(SampleSetFromOptions(chain->sample));
   PetscCall(FrfCreate(comm, &chain->frf));
   PetscCall(FrfSetFromOptions(chain->frf));
   PetscFunctionReturn(0);
@@ -165,6 +168,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(ReducedDestroy(&chain->reduced));
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(FrfDestroy(&chain->frf));
+  PetscCall(SampleDestroy(&chain->sample));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
   PetscCall(PencilDestroy(&chain->pencil));
@@ -215,6 +219,7 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscCall(StaticsVisit(chain->statics, visitor));
   PetscCall(ModesVisit(chain->modes, visitor));
   PetscCall(SweepVisit(chain->sweep, visitor));
+  PetscCall(SampleVisit(chain->sample, visitor));
   PetscCall(FrfVisit(chain->frf, visitor));
   PetscCall(SolverVisit(visitor));
   PetscFunctionReturn(0);
@@ -335,6 +340,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(SweepSetModes(chain->sweep, chain->modes));
   PetscCall(ModesGetContact(chain->modes, &sliding));
   if (sliding) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
+  PetscCall(SampleSetRooms(chain->sample, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(MapSetModes(chain->map, chain->modes));
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));

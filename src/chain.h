@@ -15,6 +15,7 @@ typedef enum {
   SHOWN_DYNAMICS,
   SHOWN_MAP,
   SHOWN_CYCLE,
+  SHOWN_SAMPLE,
   N_SHOWN
 } Shown;
 
@@ -29,6 +30,7 @@ typedef struct {
   Pencil      pencil; /* at p, where modes, a file or a view ask for it */
   Modes       modes;
   Sweep       sweep;
+  Sample      sample;
   Frf         frf;
   Dynamics    dynamics;
   ReducedRun  reduced; /* the same runs on few coordinates, where asked for */

@@ -92,19 +92,15 @@ static PetscErrorCode ChainCheckWear(const Chain *chain)
   PetscFunctionReturn(0);
 }
 
-/* A sweep may vary what makes damping, of which one point may have none, and real modes have none. A component ends in
-   _x, _y or _z: damper_viscosity_x */
-static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
+/* Options that are varied, as one list, may be of what makes damping, of which one point may have none. A component
+   ends in _x, _y or _z: damper_viscosity_x */
+static PetscErrorCode ChainAddVaried(Chain *chain, const char varied[], unsigned *does)
 {
-  const char *swept;
-  char      **name;
-  int         n;
-  PetscBool   real;
+  char **name;
+  int    n;
 
   PetscFunctionBeginUser;
-  PetscCall(SweepGetAsked(chain->sweep, &swept, &real));
-  if (real) *does |= RUN_UNDAMPED;
-  PetscCall(PetscStrToArray(swept, ',', &n, &name));
+  PetscCall(PetscStrToArray(varied, ',', &n, &name));
   for (int i = 0; i < n; i++) {
     const size_t   length = strlen(name[i]);
     QuantitySearch search = {.option = name[i] + strspn(name[i], " ")};
@@ -120,6 +116,29 @@ static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
     }
   }
   PetscCall(PetscStrToArrayDestroy(n, name));
+  PetscFunctionReturn(0);
+}
+
+/* Real modes have no damping */
+static PetscErrorCode ChainAddSweep(Chain *chain, unsigned *does)
+{
+  const char *swept;
+  PetscBool   real;
+
+  PetscFunctionBeginUser;
+  PetscCall(SweepGetAsked(chain->sweep, &swept, &real));
+  if (real) *does |= RUN_UNDAMPED;
+  PetscCall(ChainAddVaried(chain, swept, does));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainAddSample(Chain *chain, unsigned *does)
+{
+  const char *varied;
+
+  PetscFunctionBeginUser;
+  PetscCall(SampleGetVaried(chain->sample, &varied));
+  PetscCall(ChainAddVaried(chain, varied, does));
   PetscFunctionReturn(0);
 }
 
@@ -147,6 +166,8 @@ STEP(ChainWriteModes, ModesWrite(chain->modes, chain->results))
 STEP(ChainForgetPencil, PencilDestroy(&chain->pencil)) /* A sweep makes pencils of its own */
 STEP(ChainSolveSweep, SweepSolve(chain->sweep, chain->results))
 STEP(ChainWriteSweep, SweepWrite(chain->sweep, chain->results))
+STEP(ChainSolveSample, SampleSolve(chain->sample, chain->results))
+STEP(ChainWriteSample, SampleWrite(chain->sample, chain->results))
 STEP(ChainSolveStatics, StaticsSolveWorn(chain->statics, chain->p))
 STEP(ChainWriteStatics, StaticsWrite(chain->statics, chain->results))
 STEP(ChainJudgeReduced, ReducedJudgeVerified(chain->reduced))
@@ -166,13 +187,15 @@ const AnalysisRow chain_analyses[N_ANALYSES] = {
                           .does = RUN_EQUILIBRIUM, .uses = USES_LOADS},
   [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainJudgeReduced,
                           .does = RUN_HISTORY, .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
-  [ANALYSIS_FRF]   = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, .does = RUN_EPS | RUN_PEP,
-                      .uses = LINEAR | USES_PLACES},
-  [ANALYSIS_MAP]   = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap,
-                      .uses = USES_LOADS | USES_DAMPING},
-  [ANALYSIS_CYCLE] = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, .add = ChainAddCycle,
-                      .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
-  [ANALYSIS_CHECK] = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
+  [ANALYSIS_FRF]    = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, .does = RUN_EPS | RUN_PEP,
+                       .uses = LINEAR | USES_PLACES},
+  [ANALYSIS_MAP]    = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap,
+                       .uses = USES_LOADS | USES_DAMPING},
+  [ANALYSIS_CYCLE]  = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, .add = ChainAddCycle,
+                       .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
+  [ANALYSIS_SAMPLE] = {SQUEAL_SWEEP, SHOWN_SAMPLE, ChainForgetPencil, ChainSolveSample, ChainWriteSample,
+                       .add = ChainAddSample, .uses = LINEAR},
+  [ANALYSIS_CHECK]  = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)

@@ -44,6 +44,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
   if (what == SHOWN_DYNAMICS) PetscCall(TransientView(chain, viewer));
   if (what == SHOWN_MAP) PetscCall(MapView(chain->map, viewer));
+  if (what == SHOWN_SAMPLE) PetscCall(SampleView(chain->sample, viewer));
   if (what == SHOWN_CYCLE) PetscCall(CycleView(chain->cycle, viewer));
   PetscFunctionReturn(0);
 }

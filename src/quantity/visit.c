@@ -5,7 +5,7 @@
 #include <string.h>
 
 const char *const AnalysisNames[N_ANALYSES + 1] = {"modes", "sweep", "static", "transient", "frf",
-                                                   "map",   "cycle", "check",  NULL};
+                                                   "map",   "cycle", "sample", "check",     NULL};
 
 /* What a run does within an analysis */
 static const struct {

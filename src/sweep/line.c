@@ -4,7 +4,6 @@
    only.
 */
 #include "line.h"
-#include "base/algebra/dense.h"
 
 /* A line has at least its n[0] points of the grid, in order, and between them the ends of brackets of a change of
    status (grid/sliding.c). */
@@ -127,35 +126,6 @@ static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
   PetscFunctionReturn(0);
 }
 
-/* Names come from the shapes on the mesh: the complex coordinates of n modes are lifted as 4 n real columns in one
-   product with V, which reads V once. */
-PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes, char label[][32])
-{
-  const PetscInt n = modes->n;
-  PetscReal     *columns;
-  Vec           *shape;
-  BV             block;
-
-  PetscFunctionBeginUser;
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(4 * n * modes->size, &columns, 4 * n, &shape));
-  DenseSplit(n * modes->size, modes->x, columns); /* xr, xi, yr, yi, [4 n][size] */
-  DenseSplit(n * modes->size, modes->y, columns + 2 * n * modes->size);
-  PetscCall(BasisCreateBlock(&sweep->basis, 4 * n, &block));
-  PetscCall(BasisLift(&sweep->basis, modes->size, 4 * n, columns, block));
-  for (PetscInt i = 0; i < 4 * n; i++) {
-    PetscCall(BVCreateVec(block, &shape[i]));
-    PetscCall(BVCopyVec(block, i, shape[i]));
-  }
-  PetscCall(BVDestroy(&block));
-  PetscCall(PencilSetParameters(sweep->pencil, p));
-  PetscCall(ModesLabelShapes(sweep->modes,
-                             &(ModesShapes){n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n}, label));
-  for (PetscInt i = 0; i < 4 * n; i++) PetscCall(VecDestroy(&shape[i]));
-  PetscCall(PetscFree2(columns, shape));
-  PetscFunctionReturn(0);
-}
-
 /* Where each branch is looked at for its name, or -1: where it grows faster than anywhere before, on this or on an
    earlier line; a branch without a name and without growth nearest to the middle of the line */
 static void LabelPoints(Sweep sweep, const LinePoints *points, PetscInt at[])
@@ -203,7 +173,7 @@ static PetscErrorCode PointLabel(Sweep sweep, const LinePoints *points, PetscInt
     if (points->branch[i][k] >= 0 && at[points->branch[i][k]] == i) list[n++] = k;
   if (n) {
     PetscCall(ReducedModesSelect(modes, n, list, &some));
-    PetscCall(SweepLabelModes(sweep, &points->p[i * sweep->grid.n_parameters], &some, label));
+    PetscCall(BasisLabelModes(&sweep->basis, sweep->modes, &points->p[i * sweep->grid.n_parameters], &some, label));
     for (PetscInt k = 0; k < n; k++)
       PetscCall(PetscStrncpy(sweep->label[points->branch[i][list[k]]].text, label[k], 32));
     PetscCall(ReducedModesDestroy(&some));

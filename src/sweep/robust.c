@@ -180,7 +180,7 @@ static PetscErrorCode RisksKeep(Sweep sweep, const PetscReal p[], const ReducedM
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(nominal->n, &label));
-  PetscCall(SweepLabelModes(sweep, p, nominal, label));
+  PetscCall(BasisLabelModes(&sweep->basis, sweep->modes, p, nominal, label));
   sweep->n_risks = 0;
   for (PetscInt k = 0; k <= nominal->n; k++) {
     if (!risk[k].n_unstable) continue;

@@ -141,6 +141,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
   sweep->greedy.window       = sweep->window;
   sweep->greedy.groups       = &sweep->groups;
   sweep->greedy.rtol         = sweep->rtol;
+  sweep->greedy.option       = "-sweep_rtol";
+  sweep->greedy.advice       = "raise -sweep_max_samples, narrow the range, or give -sweep_method full";
   if (!sweep->max_given && sweep->grid.n_groups)
     sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;

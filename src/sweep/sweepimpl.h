@@ -118,9 +118,6 @@ PETSC_INTERN PetscErrorCode SweepLinesForget(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepShareEvents(Sweep sweep, PetscInt n_before);
 /* Largest estimated relative error of all places, but for rounding */
 PETSC_INTERN PetscReal SweepWorst(Sweep sweep);
-/* Names of all modes of a point from their shapes on the mesh */
-PETSC_INTERN PetscErrorCode SweepLabelModes(Sweep sweep, const PetscReal p[], const ReducedModes *modes,
-                                            char label[][32]);
 /* Which eigenvalues are unstable or neutral, beyond the estimated error, or `numerical`: the error bar covers zero, or
    is not finite */
 PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);

@@ -12,9 +12,10 @@
 #define MAX_SHOWN 160  /* characters of a list that are shown */
 
 /* All lists of a scene */
-static const char *const lists[] = {"-parts",  "-supports", "-springs",       "-dashpots", "-loads",  "-contacts",
-                                    "-probes", "-motions",  "-impulses",      "-circles",  "-joints", "-points",
-                                    "-terms",  "-ties",     "-modes_changes", "-stages"};
+static const char *const lists[] = {"-parts",    "-supports",        "-springs", "-dashpots", "-loads",
+                                    "-contacts", "-probes",          "-motions", "-impulses", "-circles",
+                                    "-joints",   "-points",          "-terms",   "-ties",     "-modes_changes",
+                                    "-stages",   "-sample_variables"};
 
 /* Whether a name can be a prefix: a letter, then letters, digits and underscores */
 static PetscBool NameIsIdentifier(const char name[])
@@ -76,8 +77,8 @@ PetscErrorCode OptionsFindList(const char name[], size_t size, char text[])
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
-  static const char *const own[] = {"dynamics",  "frf", "model",  "modes",  "operators", "output",
-                                    "projector", "rig", "squeal", "static", "statics",   "sweep"};
+  static const char *const own[] = {"dynamics", "frf",    "model",  "modes",  "operators", "output", "projector",
+                                    "rig",      "sample", "squeal", "static", "statics",   "sweep"};
   const char              *names;
   PetscBool                taken = PETSC_FALSE;
 

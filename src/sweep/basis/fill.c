@@ -11,6 +11,7 @@
    be had.
 */
 #include "basis.h"
+#include "base/algebra/dense.h"
 #include "solver/factor/shiftinvert.h"
 #include <slepceps.h>
 
@@ -38,6 +39,36 @@ PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, Pet
     }
   }
   PetscCall(BVSetActiveColumns(*block, 0, m));
+  PetscFunctionReturn(0);
+}
+
+/* Names come from the shapes on the mesh: the complex coordinates of n modes are lifted as 4 n real columns in one
+   product with V, which reads V once. */
+PetscErrorCode BasisLabelModes(const Basis *basis, Modes solver, const PetscReal p[], const ReducedModes *modes,
+                               char label[][32])
+{
+  const PetscInt n = modes->n;
+  PetscReal     *columns;
+  Vec           *shape;
+  BV             block;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(4 * n * modes->size, &columns, 4 * n, &shape));
+  DenseSplit(n * modes->size, modes->x, columns); /* xr, xi, yr, yi, [4 n][size] */
+  DenseSplit(n * modes->size, modes->y, columns + 2 * n * modes->size);
+  PetscCall(BasisCreateBlock(basis, 4 * n, &block));
+  PetscCall(BasisLift(basis, modes->size, 4 * n, columns, block));
+  for (PetscInt i = 0; i < 4 * n; i++) {
+    PetscCall(BVCreateVec(block, &shape[i]));
+    PetscCall(BVCopyVec(block, i, shape[i]));
+  }
+  PetscCall(BVDestroy(&block));
+  PetscCall(PencilSetParameters(basis->pencil, p));
+  PetscCall(
+    ModesLabelShapes(solver, &(ModesShapes){n, modes->rigid, shape, shape + n, shape + 2 * n, shape + 3 * n}, label));
+  for (PetscInt i = 0; i < 4 * n; i++) PetscCall(VecDestroy(&shape[i]));
+  PetscCall(PetscFree2(columns, shape));
   PetscFunctionReturn(0);
 }
 

@@ -215,9 +215,8 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   }
   PetscCall(GreedyWorkDestroy(&run));
   PetscCheck(next < 0, basis->comm, PETSC_ERR_NOT_CONVERGED,
-             "-sweep_rtol %.6g is not made sure of at all %" PetscInt_FMT " points by %" PetscInt_FMT
-             " full solutions; raise -sweep_max_samples, narrow the range, or give -sweep_method full",
-             (double)greedy->rtol, n, greedy->n_samples);
+             "%s %.6g is not made sure of at all %" PetscInt_FMT " points by %" PetscInt_FMT " full solutions; %s",
+             greedy->option, (double)greedy->rtol, n, greedy->n_samples, greedy->advice);
   PetscFunctionReturn(0);
 }
 

@@ -21,6 +21,7 @@ typedef struct {
   ReducedWindow      window; /* of the eigenvalues asked for */
   const PointGroups *groups;
   PetscReal          rtol;
+  const char        *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt           max_samples;
   PetscInt           n_samples;
   GreedySample      *sample; /* [max_samples] */

@@ -5,8 +5,8 @@
 #include "points.h"
 #include "base/process/progress.h"
 
-/* The rank that solves point i: groups in turn, each on its first rank, spread evenly over the ranks. */
-static PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
+/* Groups in turn, each on its first rank, spread evenly over the ranks. */
+PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i)
 {
   PetscMPIInt size;
 

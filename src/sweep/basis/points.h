@@ -22,6 +22,8 @@ typedef struct {
   PointStore *store; /* NULL: nothing is kept */
 } PointGroups;
 
+/* The rank that solves point i */
+PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i);
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
 PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);

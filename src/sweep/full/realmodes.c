@@ -50,7 +50,7 @@ static PetscErrorCode PlaceSolve(Sweep sweep, PetscInt i, LinePoints *points)
   PetscCall(PetscMalloc1(modes->n, &points->branch[i]));
   PetscCall(PetscCalloc1(modes->n, &points->name[i]));
   PetscCall(PetscCalloc1(modes->n, &label));
-  PetscCall(SweepLabelModes(sweep, p, modes, label));
+  PetscCall(BasisLabelModes(&sweep->basis, sweep->modes, p, modes, label));
   for (PetscInt k = 0; k < modes->n; k++) {
     points->branch[i][k] = -1;
     PetscCall(PetscStrncpy(points->name[i][k].text, label[k], sizeof(points->name[i][k].text)));

@@ -12,7 +12,7 @@
 #define MAX_POINTS 1000000
 
 /* Raises an error for the stiffness damping of a part with a loss factor, which is part of it */
-static PetscErrorCode AxisCheckLoss(Sweep sweep, Model model, const char name[])
+static PetscErrorCode ParameterCheckLoss(MPI_Comm comm, Model model, const char option[], const char name[])
 {
   const ModelScene *scene;
 
@@ -22,17 +22,15 @@ static PetscErrorCode AxisCheckLoss(Sweep sweep, Model model, const char name[])
     const Part  *p      = &scene->parts[i];
     const size_t length = strlen(p->name);
 
-    PetscCheck(p->loss == 0 || strncmp(name, p->name, length) || strcmp(name + length, "_beta"), sweep->comm,
-               PETSC_ERR_USER_INPUT,
-               "-sweep_parameter %s replaces what -%s_loss_factor %.6g gives: leave one of them out", name, p->name,
-               (double)p->loss);
+    PetscCheck(p->loss == 0 || strncmp(name, p->name, length) || strcmp(name + length, "_beta"), comm,
+               PETSC_ERR_USER_INPUT, "%s %s replaces what -%s_loss_factor %.6g gives: leave one of them out", option,
+               name, p->name, (double)p->loss);
   }
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a parameter that would be overwritten at every point: a stiffness that is identified, a
-   force that the sliding state gives. */
-static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
+PetscErrorCode GridParameterCheck(MPI_Comm comm, Operators operators, PetscBool sliding, const char option[],
+                                  const char name[])
 {
   const ContactInterface *interfaces;
   PetscInt                n = 0;
@@ -40,18 +38,17 @@ static PetscErrorCode AxisCheck(Sweep sweep, const char name[])
   Contact                 contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, &model, &contact));
-  if (model) PetscCall(AxisCheckLoss(sweep, model, name));
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  if (model) PetscCall(ParameterCheckLoss(comm, model, option, name));
   if (contact) PetscCall(ContactGetInterfaces(contact, &n, &interfaces));
   for (PetscInt i = 0; i < n; i++) {
     const size_t      length = strlen(interfaces[i].name);
     const char *const what   = strncmp(name, interfaces[i].name, length) ? "" : name + length;
 
-    PetscCheck(!interfaces[i].identify || strcmp(what, "_kn"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-%s identify does nothing where -sweep_parameter %s gives its values", name, name);
-    PetscCheck(!sweep->statics || strcmp(what, "_force"), sweep->comm, PETSC_ERR_USER_INPUT,
-               "-sweep_parameter %s does nothing with -modes_contact static, which takes the normal forces from the "
-               "-loads",
+    PetscCheck(!interfaces[i].identify || strcmp(what, "_kn"), comm, PETSC_ERR_USER_INPUT,
+               "-%s identify does nothing where %s %s gives its values", name, option, name);
+    PetscCheck(!sliding || strcmp(what, "_force"), comm, PETSC_ERR_USER_INPUT,
+               "%s %s does nothing with -modes_contact static, which takes the normal forces from the -loads", option,
                name);
   }
   PetscFunctionReturn(0);
@@ -86,7 +83,8 @@ static PetscErrorCode AxisAdd(void *ctx, const char option[], const char name[],
 
   PetscFunctionBeginUser;
   PetscCall(GridParameterFind(sweep->comm, sweep->operators, option, name, &index));
-  PetscCall(AxisCheck(sweep, name));
+  PetscCall(GridParameterCheck(sweep->comm, sweep->operators, sweep->statics ? PETSC_TRUE : PETSC_FALSE,
+                               "-sweep_parameter", name));
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &list));
   PetscCheck(sweep->statics || !list[index].state, sweep->comm, PETSC_ERR_USER_INPUT,
              "%s %s changes modes through the sliding state alone; give -modes_contact static", option, name);

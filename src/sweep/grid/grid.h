@@ -34,6 +34,10 @@ PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char te
 /* The parameter of that name; errors list the valid ones */
 PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char option[], const char name[],
                                  PetscInt *index);
+/* axes.c - raises the error for a parameter that would be overwritten at every point: a stiffness that is identified, a
+   force that the sliding state gives. */
+PetscErrorCode GridParameterCheck(MPI_Comm comm, Operators operators, PetscBool sliding, const char option[],
+                                  const char name[]);
 PetscInt       GridSize(const SweepGrid *grid);
 PetscInt       GridLines(const SweepGrid *grid);
 /* The points of the grid as places, all of status 0 */

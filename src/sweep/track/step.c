@@ -64,6 +64,22 @@ PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const Red
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TrackSure(const Reduced *reduced, const PetscReal *const p[2], const ReducedModes *a,
+                         const ReducedModes *b, PetscInt from[])
+{
+  const BranchPoint *const point[2] = {&(BranchPoint){.modes = a}, &(BranchPoint){.modes = b}};
+  ModeFrame               *frame[2];
+  Match                    match;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsCompare(reduced, p, point, NULL, frame, &match));
+  match.least = UNIQUE;
+  PetscCall(MatchAssign(frame[0], frame[1], match.strength, NULL, &match));
+  PetscCall(PetscArraycpy(from, match.from, b->n));
+  PetscCall(PointsForget(frame, &match));
+  PetscFunctionReturn(0);
+}
+
 /* Events of the modes that are unstable on one side only; a mode of a that goes on unstable is told by goes_on. */
 static PetscErrorCode JumpsFind(const ModeFrame *a, const ModeFrame *b, const Match *match, BranchEvents *events)
 {

@@ -63,6 +63,9 @@ PetscErrorCode TrackLine(const Reduced *reduced, const BranchLine *line, const R
    certain = whether no match is ambiguous */
 PetscErrorCode TrackMatch(const Reduced *reduced, const PetscReal p[], const ReducedModes *a, const ReducedModes *b,
                           PetscInt from[], PetscBool *certain);
+/* The same with all parameters p of both points, and none for a mode that is no other one's for certain */
+PetscErrorCode TrackSure(const Reduced *reduced, const PetscReal *const p[2], const ReducedModes *a,
+                         const ReducedModes *b, PetscInt from[]);
 /* Modes of two points a, b on the two sides of a change of contact status: branches of b that are certainly
    modes of a become those of a, the others keep theirs; appends a jump for every mode that is unstable on one side
    only. p = all parameters at b */

@@ -1,0 +1,181 @@
+/*
+   All points on the basis: first it is made good at some of them, the nominal point foremost, then all are solved, with
+   their branches, each on one rank; where the estimated error of one exceeds -sample_rtol the basis grows, and these
+   are solved again.
+*/
+#include "sampleimpl.h"
+#include "base/process/progress.h"
+
+/* Points that the greedy choice looks at, each of its estimates solving the dense problem of every one of them; the
+   first of a sequence fill the box evenly */
+#define SAMPLE_TRAIN 100
+/* Passes over points whose error exceeds rtol */
+#define SAMPLE_ROUNDS 6
+/* Points of each rank that are solved before their modes are sent */
+#define BATCH 50
+/* Halvings of the way from the nominal point, where branches are in doubt */
+#define FOLLOW_DEPTH 3
+
+/* Raises the error for a value that a parameter cannot have, of the samples that are solved */
+static PetscErrorCode SamplesCheckValues(Sample s)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->box.n_parameters, &p));
+  for (PetscInt i = 0; i < s->n_points; i++) {
+    PetscCall(SampleParameters(s, i, p));
+    for (PetscInt k = 0; k < s->n_variables; k++)
+      for (PetscInt m = 0; m < s->variable[k].n_names; m++)
+        PetscCall(OperatorsCheckParameter(s->operators, s->variable[k].moved[m], p[s->variable[k].moved[m]]));
+  }
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Makes the basis good at the nominal point and at most SAMPLE_TRAIN of the list [n] */
+static PetscErrorCode BasisGrow(Sample s, PetscInt n, const PetscInt list[])
+{
+  const PetscInt n_parameters = s->box.n_parameters, n_train = PetscMin(n, SAMPLE_TRAIN);
+  PetscReal     *points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((n_train + 1) * n_parameters, &points));
+  PetscCall(PetscArraycpy(points, s->box.nominal, n_parameters));
+  for (PetscInt i = 0; i < n_train; i++) PetscCall(SampleParameters(s, list[i], &points[(i + 1) * n_parameters]));
+  PetscCall(BoxFit(&s->box, n_train + 1, points));
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* The modes of the nominal point on the present basis, alike on all ranks */
+static PetscErrorCode NominalSolve(Sample s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedModesDestroy(&s->nominal));
+  PetscCall(BoxSolve(&s->box, s->box.nominal, &s->nominal));
+  PetscCall(ReducedModesBroadcast(s->comm, 0, &s->nominal));
+  PetscFunctionReturn(0);
+}
+
+/* Solves a point, and finds its branches from the nominal modes */
+static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
+{
+  Box         *box = &s->box;
+  ReducedModes modes;
+  PetscReal   *p;
+  PetscInt    *branch, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(box->n_parameters, &p));
+  PetscCall(SampleParameters(s, i, p));
+  PetscCall(BoxSolve(box, p, &modes));
+  PetscCall(PetscMalloc2(modes.n, &branch, s->nominal.n, &all));
+  for (PetscInt k = 0; k < s->nominal.n; k++) all[k] = k;
+  PetscCall(BoxFollow(box, &(BoxModes){box->nominal, &s->nominal, all}, &(BoxModes){p, &modes, branch}, FOLLOW_DEPTH,
+                      &s->n_divided));
+  PetscCall(PetscMalloc1(modes.n, &point->mode));
+  point->n     = 0;
+  point->worst = ReducedModesWorst(&modes, &box->window, PETSC_FALSE);
+  for (PetscInt k = 0; k < modes.n; k++)
+    if (BoxHolds(box, modes.lambda[k]))
+      point->mode[point->n++] = (SampleMode){creal(modes.lambda[k]), cimag(modes.lambda[k]), modes.error[k], branch[k]};
+  PetscCall(PetscFree2(branch, all));
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Gives all ranks the points first to last - 1 of the list, each from the rank that solved it */
+static PetscErrorCode PointsShare(Sample s, PetscInt first, PetscInt last, const PetscInt list[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
+  for (PetscInt k = first; k < last; k++) {
+    const PetscMPIInt owner   = PointGroupsOwner(&s->box.groups, k);
+    SamplePoint      *point   = &s->point[list[k]];
+    PetscReal         head[2] = {(PetscReal)point->n, point->worst};
+
+    PetscCallMPI(MPI_Bcast(head, 2, MPIU_REAL, owner, s->comm));
+    point->n     = (PetscInt)head[0];
+    point->worst = head[1];
+    if (rank != owner) PetscCall(PetscMalloc1(point->n, &point->mode));
+    PetscCallMPI(
+      MPI_Bcast(point->mode, (PetscMPIInt)(point->n * (PetscInt)sizeof(SampleMode)), MPI_BYTE, owner, s->comm));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Solves the points of the list */
+static PetscErrorCode PointsRun(Sample s, PetscInt n, const PetscInt list[])
+{
+  const PetscInt batch = BATCH * s->box.groups.n_groups;
+  PetscMPIInt    rank;
+  Progress       progress;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
+  PetscCall(ProgressBegin(&progress, "samples", n));
+  for (PetscInt first = 0; first < n; first += batch) {
+    const PetscInt last = PetscMin(n, first + batch);
+
+    for (PetscInt k = first; k < last; k++) {
+      PetscCall(PetscFree(s->point[list[k]].mode));
+      if (PointGroupsOwner(&s->box.groups, k) == rank) PetscCall(SampleSolvePoint(s, list[k], &s->point[list[k]]));
+      PetscCall(ProgressStep(&progress));
+    }
+    PetscCall(PointsShare(s, first, last, list));
+  }
+  PetscCall(ProgressEnd(&progress));
+  PetscFunctionReturn(0);
+}
+
+/* The points whose error exceeds rtol, the worst in front: list, and how many */
+static PetscErrorCode PointsExceeding(Sample s, PetscInt *n, PetscInt list[])
+{
+  PetscReal *worst;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_points, &worst));
+  *n = 0;
+  for (PetscInt i = 0; i < s->n_points; i++) {
+    if (s->point[i].worst <= s->box.rtol) continue;
+    worst[*n] = -s->point[i].worst;
+    list[*n]  = i;
+    *n        = *n + 1;
+  }
+  PetscCall(PetscSortRealWithArrayInt(*n, worst, list));
+  PetscCall(PetscFree(worst));
+  PetscFunctionReturn(0);
+}
+
+/* All points are solved anew where the nominal modes are no longer as many, since branches are numbered by them. */
+PetscErrorCode SamplePoints(Sample s)
+{
+  PetscInt *list, n = s->n_points;
+
+  PetscFunctionBeginUser;
+  PetscCall(SamplesCheckValues(s));
+  PetscCall(PetscCalloc1(s->n_points, &s->point));
+  PetscCall(PetscMalloc1(s->n_points, &list));
+  for (PetscInt i = 0; i < n; i++) list[i] = i;
+  for (int round = 0; round < SAMPLE_ROUNDS && n; round++) {
+    const PetscInt n_before = s->nominal.n;
+
+    PetscCall(BasisGrow(s, n, list));
+    PetscCall(NominalSolve(s));
+    if (round && s->nominal.n != n_before)
+      for (n = 0; n < s->n_points; n++) list[n] = n;
+    PetscCall(PointsRun(s, n, list));
+    if (s->box.whole) break;
+    PetscCall(PointsExceeding(s, &n, list));
+  }
+  PetscCall(PetscFree(list));
+  PetscCheck(s->box.whole || !n, s->comm, PETSC_ERR_NOT_CONVERGED,
+             "-sample_rtol %.6g was not reached at %" PetscInt_FMT " of the %" PetscInt_FMT
+             " points; raise -sample_rtol or -sample_max_solutions",
+             (double)s->box.rtol, n, s->n_points);
+  PetscFunctionReturn(0);
+}

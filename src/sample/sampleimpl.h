@@ -1,0 +1,88 @@
+/* Private to sample/: its record */
+#pragma once
+
+#include <squeal/sample.h>
+#include "draw/distribution.h"
+#include "draw/sequence.h"
+#include "statistics/estimate.h"
+#include "statistics/indices.h"
+#include "sweep/box/box.h"
+
+#define SAMPLE_MAX_VARIABLES (SOBOL_DIMENSIONS / 2) /* the design of the indices takes two dimensions for each */
+#define SAMPLE_MAX_TEXT      4096
+
+/* What is drawn, and which parameters take its value */
+typedef struct {
+  char        *name;
+  PetscInt     n_names;
+  char       **names;
+  Distribution distribution;
+  PetscBool    relative;
+  PetscBool    mean_given, deviation_given, lower_given, upper_given, peak_given;
+  char         table[PETSC_MAX_PATH_LEN];
+  PetscInt    *moved; /* [n_names] indices of the parameters */
+} SampleVariable;
+
+/* One eigenvalue of a sample */
+typedef struct {
+  PetscReal sigma, omega, error; /* rad/s */
+  PetscInt  branch;              /* from 0 on, of the nominal modes; -1 where it is none of them for certain */
+} SampleMode;
+
+/* All in the band */
+typedef struct {
+  PetscInt    n;
+  SampleMode *mode;
+  PetscReal   worst; /* largest estimated relative error, but for rounding */
+} SamplePoint;
+
+/* What is known of a branch; the last one is of all modes: the fastest growth */
+typedef struct {
+  PetscInt  n, n_unstable, n_surely, n_possibly; /* samples that have it; that grow, beyond their error, within it */
+  Moments   frequency, growth;                   /* Hz, 1/s */
+  PetscReal interval[2];                         /* of the probability of growth */
+  char      label[32];
+} SampleBranch;
+
+struct _p_Sample {
+  MPI_Comm  comm;
+  Operators operators;
+  Box       box;
+  /* set by options */
+  PetscInt        n_variables;
+  SampleVariable *variable;
+  SequenceKind    kind;
+  char            correlations[SAMPLE_MAX_TEXT];
+  PetscInt        n, n_rows, seed; /* samples; rows of the design of the indices, 0 for none */
+  char            varied[SAMPLE_MAX_TEXT];
+  /* results */
+  Sequence       sequence;
+  PetscReal     *factor; /* [n_variables][n_variables] L of the correlations L L', or NULL */
+  PetscInt       n_points;
+  SamplePoint   *point;      /* [n_points] the samples, then the rest of the design */
+  ReducedModes   nominal;    /* whose modes are the branches */
+  SampleBranch  *branch;     /* [nominal.n + 1] */
+  PetscInt       n_divided;  /* solutions that following the branches took */
+  PetscLogDouble seconds[2]; /* basis, points */
+};
+
+extern const QuantityTable sample_quantities;
+extern const QuantityList  sample_list;
+
+/* variable.c - raises errors for what no distribution can be, and finds the parameters; values [n_variables] of
+   point i, and all parameters p there */
+PETSC_INTERN PetscErrorCode SampleFindVariables(Sample sample);
+PETSC_INTERN PetscErrorCode SampleVariableCheck(MPI_Comm comm, void *owner, void *record);
+PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal value[]);
+PETSC_INTERN PetscErrorCode SampleParameters(Sample sample, PetscInt i, PetscReal p[]);
+/* points.c - the basis and all points on it */
+PETSC_INTERN PetscErrorCode SamplePoints(Sample sample);
+/* branches.c - the mode of a branch at a point, NULL where it has none; branch nominal.n: the mode that grows fastest;
+   all branches */
+PETSC_INTERN const SampleMode *SampleFind(Sample sample, PetscInt i, PetscInt branch);
+PETSC_INTERN PetscErrorCode    SampleBranches(Sample sample);
+/* The values of a branch at all points, as SampleFind() has them: which = 0 frequency, 1 growth */
+PETSC_INTERN void SampleBranchValues(Sample sample, PetscInt branch, int which, PetscReal value[]);
+/* Indices of a branch [n_variables], r_squared of the regression, rows of the design that count */
+PETSC_INTERN PetscErrorCode SampleIndices(Sample sample, const PetscReal value[], VariableIndex index[],
+                                          PetscReal *r_squared, PetscInt *n_rows);

@@ -1,0 +1,68 @@
+/* What samples tell a person */
+#include "sampleimpl.h"
+
+/* The probability that a branch grows */
+static PetscErrorCode BranchView(Sample s, PetscInt b, PetscViewer viewer)
+{
+  const SampleBranch *branch = &s->branch[b];
+
+  PetscFunctionBeginUser;
+  if (!branch->n_possibly && b < s->nominal.n) PetscFunctionReturn(0);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  %s", branch->label));
+  if (b < s->nominal.n) PetscCall(PetscViewerASCIIPrintf(viewer, " near %.2f Hz", (double)branch->frequency.mean));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ": %.4g, in [%.4g, %.4g] at 95 %%; growth %.4g to %.4g 1/s",
+                                   (double)branch->n_unstable / (double)branch->n, (double)branch->interval[0],
+                                   (double)branch->interval[1], (double)branch->growth.least,
+                                   (double)branch->growth.most));
+  if (branch->n_possibly > branch->n_surely)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "; %" PetscInt_FMT " left open by their errors",
+                                     branch->n_possibly - branch->n_surely));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(0);
+}
+
+/* Modes that belong to no branch for certain */
+static PetscInt ModesLost(Sample s, PetscInt *n)
+{
+  PetscInt lost = 0;
+
+  *n = 0;
+  for (PetscInt i = 0; i < s->n; i++)
+    for (PetscInt k = 0; k < s->point[i].n; k++, ++*n) lost += s->point[i].mode[k].branch < 0;
+  return lost;
+}
+
+PetscErrorCode SampleView(Sample s, PetscViewer viewer)
+{
+  static const char *const sequences[] = {"of a scrambled Sobol sequence", "of a Latin hypercube", "drawn at random"};
+  PetscReal                worst       = 0;
+  PetscInt                 lost, n;
+
+  PetscFunctionBeginUser;
+  lost = ModesLost(s, &n);
+  for (PetscInt i = 0; i < s->n_points; i++) worst = PetscMax(worst, s->point[i].worst);
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "%" PetscInt_FMT " samples of %" PetscInt_FMT " variables, %s, seed %" PetscInt_FMT "\n", s->n,
+    s->n_variables, sequences[s->kind], s->seed));
+  if (s->box.statics)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "sliding state: the %" PetscInt_FMT " pairs closed at the scene's own values, at all samples\n",
+      s->box.n_closed));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "probability of growth:\n"));
+  for (PetscInt b = 0; b <= s->nominal.n; b++) PetscCall(BranchView(s, b, viewer));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "branches: %" PetscInt_FMT " of %" PetscInt_FMT " modes are none of the scene's own for certain\n", lost,
+    n));
+  if (s->box.whole)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns: no error but rounding\n",
+                                     s->box.basis.reduced.n_used));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "basis of %" PetscInt_FMT " vectors from %" PetscInt_FMT
+                                     " full solutions; largest estimated error %.1e (an estimate, not a bound)\n",
+                                     s->box.basis.reduced.n_used, s->box.greedy.n_samples, (double)worst));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "time: basis and samples %.2f s, %" PetscInt_FMT " points, %" PetscInt_FMT " between for branches\n",
+    s->seconds[0], s->n_points, s->n_divided));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,185 @@
+/* The tables of samples */
+#include "sampleimpl.h"
+
+/* ShortText as text, empty where there is none */
+typedef struct {
+  char text[32];
+} ShortText;
+
+static ShortText TextOrEmpty(PetscReal value)
+{
+  ShortText number = {""};
+
+  if (!PetscIsInfOrNanReal(value)) (void)snprintf(number.text, sizeof(number.text), "%.15g", (double)value);
+  return number;
+}
+
+/* Names of the variables behind the first columns, which end in a comma */
+static PetscErrorCode VariableColumns(Sample s, const char first[], size_t size, char columns[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(columns, first, size));
+  for (PetscInt k = 0; k < s->n_variables; k++) {
+    PetscCall(PetscStrlcat(columns, ",", size));
+    PetscCall(PetscStrlcat(columns, s->variable[k].name, size));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A row for each sample: how many modes, how many of them grow, the one that grows fastest, and the variables */
+static PetscErrorCode SamplesWrite(Sample s, Results results)
+{
+  ResultsTable table;
+  char         columns[SAMPLE_MAX_TEXT];
+  PetscReal    row[6 + SAMPLE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  PetscCall(VariableColumns(s, "sample,modes,unstable,freq_hz,growth_rad_s,error_rad_s", sizeof(columns), columns));
+  PetscCall(ResultsTableOpen(results, "samples", columns, &table));
+  for (PetscInt i = 0; i < s->n; i++) {
+    const SampleMode *m          = SampleFind(s, i, s->nominal.n);
+    PetscInt          n_unstable = 0;
+
+    for (PetscInt k = 0; k < s->point[i].n; k++) {
+      const SampleMode *each = &s->point[i].mode[k];
+
+      n_unstable += ModesLimitJudge(&s->box.limit, each->sigma, each->omega, each->error) == MODE_UNSTABLE;
+    }
+    row[0] = (PetscReal)(i + 1);
+    row[1] = (PetscReal)s->point[i].n;
+    row[2] = (PetscReal)n_unstable;
+    row[3] = m ? m->omega / (2 * PETSC_PI) : NAN;
+    row[4] = m ? m->sigma : NAN;
+    row[5] = m ? m->error : NAN;
+    PetscCall(SampleValues(s, i, &row[6]));
+    PetscCall(ResultsTableNumbers(table, 6 + s->n_variables, row));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* All modes of all samples */
+static PetscErrorCode ModesRows(Sample s, Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "samples_modes", "sample,branch,freq_hz,growth_rad_s,error_rad_s,class", &table));
+  for (PetscInt i = 0; i < s->n; i++)
+    for (PetscInt k = 0; k < s->point[i].n; k++) {
+      const SampleMode *m = &s->point[i].mode[k];
+
+      PetscCall(ResultsTableRow(table, "%d,%s,%.15g,%.15g,%.15g,%s", (int)i + 1,
+                                TextOrEmpty(m->branch < 0 ? NAN : m->branch + 1).text,
+                                (double)(m->omega / (2 * PETSC_PI)), (double)m->sigma, (double)m->error,
+                                ModeStateName(ModesLimitJudge(&s->box.limit, m->sigma, m->omega, m->error))));
+    }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* Five quantiles with commas between */
+typedef struct {
+  char text[N_QUANTILES * 26];
+} Quantiles;
+
+static Quantiles QuantilesText(const Moments *m)
+{
+  Quantiles q = {""};
+  size_t    n = 0;
+
+  for (int k = 0; k < N_QUANTILES; k++)
+    n += (size_t)snprintf(q.text + n, sizeof(q.text) - n, "%s%s", k ? "," : "", TextOrEmpty(m->quantile[k]).text);
+  return q;
+}
+
+static PetscErrorCode ProbabilityRow(Sample s, PetscInt b, ResultsTable table)
+{
+  const SampleBranch *branch = &s->branch[b];
+  const PetscBool     any    = b == s->nominal.n ? PETSC_TRUE : PETSC_FALSE;
+  const PetscComplex  lambda = any ? CMPLX(NAN, NAN) : s->nominal.lambda[b];
+  const Moments      *f = &branch->frequency, *g = &branch->growth;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableRow(
+    table, "%s,\"%s\",%s,%s,%d,%s,%s,%s,%s,%s,%s,%d,%s,%.15g,%.15g,%d", any ? "any" : TextOrEmpty(b + 1).text,
+    branch->label, TextOrEmpty(cimag(lambda) / (2 * PETSC_PI)).text, TextOrEmpty(creal(lambda)).text, (int)branch->n,
+    TextOrEmpty(f->mean).text, TextOrEmpty(f->deviation).text, QuantilesText(f).text, TextOrEmpty(g->mean).text,
+    TextOrEmpty(g->deviation).text, QuantilesText(g).text, (int)branch->n_unstable,
+    TextOrEmpty(branch->n ? (PetscReal)branch->n_unstable / (PetscReal)branch->n : NAN).text,
+    (double)branch->interval[0], (double)branch->interval[1], (int)(branch->n_possibly - branch->n_surely)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ProbabilityWrite(Sample s, Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(
+    results, "probability",
+    "branch,label,freq_hz,growth_rad_s,samples,freq_mean_hz,freq_deviation_hz,freq_1_hz,freq_5_hz,freq_50_hz,freq_95_"
+    "hz,"
+    "freq_99_hz,growth_mean_rad_s,growth_deviation_rad_s,growth_1_rad_s,growth_5_rad_s,growth_50_rad_s,growth_95_rad_s,"
+    "growth_99_rad_s,unstable,probability,probability_lower,probability_upper,open",
+    &table));
+  for (PetscInt b = 0; b <= s->nominal.n; b++)
+    if (s->branch[b].frequency.n || b == s->nominal.n) PetscCall(ProbabilityRow(s, b, table));
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of the indices of a branch, of its frequency and of its growth */
+static PetscErrorCode IndexRows(Sample s, PetscInt b, PetscReal value[], ResultsTable table)
+{
+  VariableIndex index[SAMPLE_MAX_VARIABLES];
+  PetscReal     r_squared;
+  PetscInt      n_rows;
+
+  PetscFunctionBeginUser;
+  for (int which = 0; which < 2; which++) {
+    SampleBranchValues(s, b, which, value);
+    PetscCall(SampleIndices(s, value, index, &r_squared, &n_rows));
+    for (PetscInt k = 0; k < s->n_variables; k++) {
+      const VariableIndex *v    = &index[k];
+      int                  rank = 1;
+
+      for (PetscInt j = 0; j < s->n_variables; j++) rank += PetscAbsReal(index[j].slope) > PetscAbsReal(v->slope);
+      PetscCall(ResultsTableRow(
+        table, "%s,\"%s\",%s,%s,%s,%s,%s,%s,%d,%s,%s,%s,%s", b == s->nominal.n ? "any" : TextOrEmpty(b + 1).text,
+        s->branch[b].label, which ? "growth_rad_s" : "freq_hz", s->variable[k].name, TextOrEmpty(v->first).text,
+        TextOrEmpty(v->first_error).text, TextOrEmpty(v->total).text, TextOrEmpty(v->total_error).text, (int)n_rows,
+        TextOrEmpty(v->slope).text, TextOrEmpty(v->slope_error).text,
+        TextOrEmpty(PetscIsNanReal(v->slope) ? NAN : rank).text, TextOrEmpty(r_squared).text));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode IndicesWrite(Sample s, Results results)
+{
+  ResultsTable table;
+  PetscReal   *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(results, "indices",
+                             "branch,label,of,variable,first,first_error,total,total_error,rows,slope,slope_error,rank,"
+                             "r_squared",
+                             &table));
+  PetscCall(PetscMalloc1(s->n_points, &value));
+  for (PetscInt b = 0; b <= s->nominal.n; b++)
+    if (s->branch[b].frequency.n) PetscCall(IndexRows(s, b, value, table));
+  PetscCall(PetscFree(value));
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SampleWrite(Sample s, Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SamplesWrite(s, results));
+  PetscCall(ModesRows(s, results));
+  PetscCall(ProbabilityWrite(s, results));
+  PetscCall(IndicesWrite(s, results));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,179 @@
+/*
+   A basis over a box. Points are chosen by the greedy choice of a sweep (basis/greedy.c) among those that are given,
+   whatever their number of parameters: by their distances first, then by the estimated error.
+
+   The contact status is that of the sliding state at the nominal point, and stays at all others.
+*/
+#include "box.h"
+
+#define BOX_GUARD                                                                                                      \
+  0.03 /* as basis/greedy.c holds modes beyond the band, so that branches are followed across its ends */
+
+/* The pencil about the sliding state at the nominal point, or with all pairs closed */
+static PetscErrorCode BoxLinearise(Box *box)
+{
+  SlidingState state;
+  PetscBool    affine;
+  PetscInt     n_closed = 0;
+
+  PetscFunctionBeginUser;
+  box->n_closed = -1;
+  if (!box->statics) {
+    PetscCall(OperatorsLinearise(box->operators, NULL, &box->pencil));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(StaticsIsAffine(box->statics, &affine));
+  PetscCheck(affine, box->comm, PETSC_ERR_SUP,
+             "a basis about the sliding state: pairs that hold by friction, friction damping, the stiffness of a "
+             "-contact_pressure_law, -static_geometric and -static_follower change with it from point to point; give "
+             "-modes_contact all");
+  PetscCall(StaticsSolveSliding(box->statics, box->nominal, &state));
+  PetscCall(StaticsRelease(box->statics));
+  for (PetscInt i = 0; i < state.n_pairs; i++) n_closed += state.group[i] >= 0 ? 1 : 0;
+  PetscCallMPI(MPI_Allreduce(&n_closed, &box->n_closed, 1, MPIU_INT, MPI_SUM, box->comm));
+  PetscCall(OperatorsLinearise(box->operators, &state, &box->pencil));
+  PetscCall(SlidingStateDestroy(&state));
+  PetscFunctionReturn(0);
+}
+
+/* Room for samples is that of the full solutions and of the points that are only looked at */
+static PetscErrorCode BoxBeginGreedy(Box *box)
+{
+  Greedy *g = &box->greedy;
+
+  PetscFunctionBeginUser;
+  g->modes       = box->modes;
+  g->window      = box->window;
+  g->groups      = &box->groups;
+  g->rtol        = box->rtol;
+  g->option      = box->option;
+  g->advice      = box->advice;
+  g->max_samples = box->max_solutions;
+  g->progress    = &box->progress;
+  g->last        = PETSC_MAX_REAL;
+  PetscCall(PetscCalloc1(g->max_samples + 2 + GREEDY_LOOKS, &g->sample));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxSetUp(Box *box)
+{
+  PetscReal   band[2];
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetBand(box->modes, band, &box->window.growth));
+  PetscCall(ModesGetLimit(box->modes, &box->limit));
+  box->window.low  = 2 * PETSC_PI * band[0];
+  box->window.high = 2 * PETSC_PI * band[1];
+  PetscCallMPI(MPI_Comm_size(box->comm, &size));
+  box->groups = (PointGroups){box->comm, box->n_groups ? box->n_groups : size, NULL};
+  PetscCall(BoxLinearise(box));
+  PetscCall(PencilGetParameters(box->pencil, &box->n_parameters, NULL, NULL));
+  PetscCall(PencilSetParameters(box->pencil, box->nominal));
+  PetscCall(ModesSetPencil(box->modes, box->pencil));
+  PetscCall(BasisCreate(box->comm, box->pencil, &box->basis));
+  box->basis.reduced.limit = box->limit;
+  PetscCall(BoxBeginGreedy(box));
+  PetscCall(BasisFillWhole(&box->basis, &box->whole));
+  if (box->whole) box->window.rtol = PETSC_MAX_REAL;
+  PetscFunctionReturn(0);
+}
+
+/* Where modes beyond the growth that was asked for were found, window.rtol admits those that are known well */
+PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[])
+{
+  Greedy    *g     = &box->greedy;
+  PointStore store = {0};
+
+  PetscFunctionBeginUser;
+  if (box->whole) PetscFunctionReturn(0);
+  box->groups.store = &store;
+  PetscCall(GreedyRun(g, n, points, &box->basis));
+  box->groups.store = NULL;
+  PetscCall(PointStoreDestroy(&store));
+  if (g->reach > box->window.growth) box->window.rtol = box->rtol / POINTS_MARGIN;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxSolve(const Box *box, const PetscReal p[], ReducedModes *modes)
+{
+  ReducedWindow guarded = box->window;
+
+  PetscFunctionBeginUser;
+  guarded.low  = guarded.low < 0.5 * guarded.high ? 0 : guarded.low * (1 - BOX_GUARD);
+  guarded.high = guarded.high * (1 + BOX_GUARD);
+  PetscCall(PointStoreSolve(NULL, &box->basis.reduced, &guarded, p, modes));
+  PetscFunctionReturn(0);
+}
+
+PetscBool BoxHolds(const Box *box, PetscComplex lambda)
+{
+  const ReducedWindow *w = &box->window;
+
+  return cimag(lambda) >= w->low && cimag(lambda) <= w->high ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether both points have a mode inside the window that the other has none for */
+static PetscBool BranchesLack(const Box *box, const BoxModes *a, const BoxModes *b, const PetscInt from[])
+{
+  PetscInt lonely_a = 0, lonely_b = 0;
+
+  for (PetscInt i = 0; i < a->modes->n; i++) {
+    PetscBool goes_on = a->branch[i] < 0 ? PETSC_TRUE : PETSC_FALSE;
+
+    for (PetscInt j = 0; j < b->modes->n; j++)
+      if (from[j] == i) goes_on = PETSC_TRUE;
+    if (!goes_on && BoxHolds(box, a->modes->lambda[i])) lonely_a++;
+  }
+  for (PetscInt j = 0; j < b->modes->n; j++)
+    if (from[j] < 0 && BoxHolds(box, b->modes->lambda[j])) lonely_b++;
+  return lonely_a && lonely_b ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* By way of the middle, in two halves */
+static PetscErrorCode FollowDivided(const Box *box, const BoxModes *a, BoxModes *b, int depth, PetscInt *n_solved)
+{
+  ReducedModes modes;
+  PetscReal   *p;
+  BoxModes     middle = {.modes = &modes};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(box->n_parameters, &p));
+  for (PetscInt k = 0; k < box->n_parameters; k++) p[k] = 0.5 * (a->p[k] + b->p[k]);
+  middle.p = p;
+  PetscCall(BoxSolve(box, p, &modes));
+  ++*n_solved;
+  PetscCall(PetscMalloc1(modes.n, &middle.branch));
+  PetscCall(BoxFollow(box, a, &middle, depth - 1, n_solved));
+  PetscCall(BoxFollow(box, &middle, b, depth - 1, n_solved));
+  PetscCall(PetscFree(middle.branch));
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxFollow(const Box *box, const BoxModes *a, BoxModes *b, int depth, PetscInt *n_solved)
+{
+  PetscInt *from;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->modes->n, &from));
+  PetscCall(TrackSure(&box->basis.reduced, (const PetscReal *[]){a->p, b->p}, a->modes, b->modes, from));
+  if (depth > 0 && BranchesLack(box, a, b, from)) {
+    PetscCall(FollowDivided(box, a, b, depth, n_solved));
+  } else {
+    for (PetscInt j = 0; j < b->modes->n; j++) b->branch[j] = from[j] < 0 ? -1 : a->branch[from[j]];
+  }
+  PetscCall(PetscFree(from));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxDestroy(Box *box)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(box->nominal));
+  PetscCall(GreedyDestroy(&box->greedy));
+  PetscCall(BasisDestroy(&box->basis));
+  PetscCall(PencilDestroy(&box->pencil));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,53 @@
+/*
+   Private to the rooms above sweep/: a reduced basis over a box of any number of parameters, made good at scattered
+   points of it, on which any point is then solved with an estimate of its errors.
+*/
+#pragma once
+
+#include "sweep/basis/greedy.h"
+#include "sweep/track/track.h"
+#include <squeal/statics.h>
+
+/* What is given, then what is made */
+typedef struct {
+  MPI_Comm    comm;
+  Operators   operators;
+  Modes       modes;
+  Statics     statics; /* about whose sliding state at the nominal point the pencil is, held at all others; or NULL */
+  PetscReal  *nominal; /* [n_parameters] copied by the caller, freed by BoxDestroy() */
+  PetscReal   rtol;
+  const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
+  PetscInt    max_solutions, n_groups;
+  /* */
+  PetscInt      n_parameters, n_closed; /* n_closed: pairs closed in the sliding state, -1 without statics */
+  Pencil        pencil;
+  ReducedWindow window; /* of the eigenvalues asked for */
+  ModesLimit    limit;
+  Basis         basis;
+  Greedy        greedy;
+  PointGroups   groups;
+  Progress      progress;
+  PetscBool     whole; /* the basis is the whole space: no error but rounding */
+} Box;
+
+/* The pencil, and the basis where it is the whole space. Collective.
+   Errors: PETSC_ERR_SUP where the sliding state makes the pencil not affine. */
+PETSC_INTERN PetscErrorCode BoxSetUp(Box *box);
+/* Enlarges the basis until all n points [n][n_parameters] are estimated within rtol, the first of them by the
+   eigensolver. Collective. Errors: PETSC_ERR_NOT_CONVERGED. */
+PETSC_INTERN PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[]);
+/* Modes of one point with estimated errors, in the window or a little beyond it (guarded). Not collective. */
+PETSC_INTERN PetscErrorCode BoxSolve(const Box *box, const PetscReal p[], ReducedModes *modes);
+/* Whether an eigenvalue is in the window itself. Not collective. */
+PETSC_INTERN PetscBool BoxHolds(const Box *box, PetscComplex lambda);
+/* Modes at a point with all parameters p, and the branch [modes->n] of each */
+typedef struct {
+  const PetscReal    *p;
+  const ReducedModes *modes;
+  PetscInt           *branch;
+} BoxModes;
+/* Branch of each mode of b from those of a; -1 for those that are none of a's for certain. Where a mode on either side
+   is left without partner the way between is divided, `depth` times at most. n_solved grows by the solutions that took.
+   Not collective. */
+PETSC_INTERN PetscErrorCode BoxFollow(const Box *box, const BoxModes *a, BoxModes *b, int depth, PetscInt *n_solved);
+PETSC_INTERN PetscErrorCode BoxDestroy(Box *box);
