@@ -54,7 +54,7 @@ class Nastran:
              # point 17 has axes 1 along y, 2 along -x: 5 N/mm along y between 17 and 18
              "joints": "celas2", "celas2_a": "node", "celas2_b": "node_2", "celas2_at": "0,0.01,0.02", "celas2_at_b": "0,0,0.02",
              "celas2_stiffness": "5000,0,0"}
-    LISTED = ["pair.bdf:33: differs: CHEXA", "pair.bdf:1: SOL", "pair.bdf:2: CEND", "pair.bdf:40: MAT1: GE", "pair.bdf:39: PSOLID 9",
+    LISTED = ["pair.bdf:33: differs: CHEXA", "pair.bdf:1: SOL", "pair.bdf:2: CEND", "pair.bdf:40: MAT1: GE", "pair.bdf:39: property 9",
               "pair.bdf:54: PLOAD4: a pressure that varies", "pair.bdf:61: TEMPD"]
     FORCES = {"force_force": (0, 0, -3), "pressed_pressure": (0, 0, -300)}
 
@@ -87,7 +87,8 @@ class NastranCase:
              "modes_target": "1", "modes_count": "7"}
     LISTED = ["case.bdf:8: differs: SUBCASE 2 of 2", "case.bdf:18: differs: CHEXA", "case.bdf:23: differs: PARAM WTMASS",
               "case.bdf:2: SOL", "case.bdf:3: CEND", "case.bdf:4: TITLE: output", "case.bdf:11: MPC = 5", "case.bdf:28: SPC1 of set 7",
-              "case.bdf:37: FORCE of set 13", "case.bdf:38: a moment on a node", "case.bdf:40: 1 CPYRAM", "case.bdf:41: CQUAD4",
+              "case.bdf:37: FORCE of set 13", "case.bdf:38: a moment on a node", "case.bdf:40: 1 CPYRAM",
+              "case.bdf:41: 1 CQUAD4 without a PSHELL",
               "case.bdf:43: EIGRL 4"]
 
 

@@ -80,10 +80,10 @@ def spellings():
     yield "a star alone", PLAIN.replace("*STEP", "*\n*STEP"), ("'*': of no keyword",)
     yield "a support of a node that is not there", PLAIN.replace(HELD, HELD + "99, 1, 3\n"), ("node 99 is not in the file",)
     yield "directions held one by one", PLAIN.replace("FIX, 1, 3\n", "FIX, 1\nFIX, 2\nFIX, 3\n"), ()
-    yield "a shell beside solids", PLAIN.replace(HELD, (
-        "*ELEMENT, TYPE=S4, ELSET=SKIN\n101, 9,10,11,12\n*SHELL SECTION, ELSET=SKIN, MATERIAL=M\n0.5\n*SURFACE, NAME=SS\nSKIN, SPOS\n"
-        ) + HELD), ("*ELEMENT, TYPE=S4: 1 elements", "the elements of SKIN are none", "*SURFACE: 'SPOS' is no face",
-                    "*SURFACE SS has no faces", "*SHELL SECTION: not understood")
+    yield "a beam beside solids", PLAIN.replace(HELD, (
+        "*ELEMENT, TYPE=B31, ELSET=ROD\n101, 9,11\n*BEAM SECTION, ELSET=ROD, MATERIAL=M, SECTION=RECT\n0.5, 0.5\n1., 0., 0.\n"
+        "*SURFACE, NAME=SS\nROD, SPOS\n") + HELD), (
+            "*ELEMENT, TYPE=B31: 1 elements", "the elements of ROD are none", "*SURFACE SS has no faces", "*BEAM SECTION: not understood")
     yield "cyclic symmetry is no glue", PLAIN.replace(HELD, (
         "*SURFACE, NAME=A\nE, S1\n*SURFACE, NAME=B\nE, S2\n*TIE, NAME=T, CYCLIC SYMMETRY\nA, B\n") + HELD), (
             "*TIE, CYCLIC SYMMETRY: not read",)

@@ -7,12 +7,13 @@
                 joined.py couplings, masses, equations
   nastran/      Nastran: read.py files; cards.py cards in fields; case.py case control, sets that act; systems.py coordinate
                 systems; mesh.py grid points and solids; model.py properties, materials, supports; springs.py, loads.py,
-                contact.py, joined.py
+                contact.py, joined.py, shells.py
   ansys/        Ansys' archive: read.py commands; blocks.py blocks; mesh.py nodes, elements, components; model.py;
                 joined.py
   mesh/         elements.py shapes: corners, edges, faces, numbers and order of nodes of Gmsh; faces.py faces of the cells: of
                 sets of nodes, on the boundary, by their corners; middles.py nodes in the middle of edges that are left out;
-                orientation.py elements that are mirror images; integrals.py integrals over elements and faces; meshes.py .vtk and
+                orientation.py elements that are mirror images; shells.py shells as solids;
+                integrals.py integrals over elements and faces; meshes.py .vtk and
                 .vtu by meshio, and Code_Aster's .med; med_file.py the HDF5 of MED; gmsh_file.py a file of Gmsh 4.1, binary
   elastic.py    engineering constants of a stiffness
   units.py      which units a deck is in, and factors to SI

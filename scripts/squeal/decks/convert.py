@@ -15,6 +15,7 @@ from .mesh.gmsh_file import write_mesh
 from .mesh.meshes import MED, read_meshes
 from .nastran.read import read_nastran
 from .mesh.orientation import set_orientation
+from .mesh.shells import solidify
 from .scene_file import remarks, scene_lines, write_scene
 from .units import guess, named
 from .written import of_scene
@@ -67,6 +68,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     if not output.parent.is_dir():
         raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
     deck = read_deck(path, subcase)
+    solidify(deck)
     if not deck.n_cells:
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
     set_orientation(deck)

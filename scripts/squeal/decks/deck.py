@@ -33,6 +33,11 @@ class Block:
     ids: numpy.ndarray  # [n]
     nodes: numpy.ndarray  # [n][nodes], indices
     place: Place
+    plain: numpy.ndarray = None  # of shells: their own nodes
+
+    def own_nodes(self):
+        """Nodes as the deck has them."""
+        return self.nodes if self.plain is None else self.plain
 
 
 @dataclass
@@ -97,6 +102,7 @@ class Join:
     words: str  # as the deck has it
     directions: tuple = (0, 1, 2)
     shares: numpy.ndarray = None
+    knot: bool = False  # a fibre of a shell
 
 
 @dataclass
@@ -243,6 +249,7 @@ class Deck:
         self.materials, self.sections = {}, []
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
         self.joins, self.lumps, self.links, self.equations = [], [], [], []
+        self.shells, self.dummies = [], None  # of mesh/shells.py
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)
         self.all_mirrored = False  # whether the format has all elements the other way round

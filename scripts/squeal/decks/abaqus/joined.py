@@ -140,7 +140,7 @@ def nodes_of_elements(reader, scope, name, place):
     found = [nodes for number in inner.other_sets.get(local, []) if number in inner.holders for nodes in [inner.holders[number][1]]]
     if local in inner.cell_sets:
         cells, firsts = inner.cell_sets[local], reader.deck.firsts()
-        found += [block.nodes[cells[(cells >= low) & (cells < high)] - low].ravel()
+        found += [block.own_nodes()[cells[(cells >= low) & (cells < high)] - low].ravel()
                   for block, low, high in zip(reader.deck.blocks, firsts, firsts[1:])]
     if not found:
         reader.deck.note(place, f"the elements of {name} are none of squeal's: not taken")

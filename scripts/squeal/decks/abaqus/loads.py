@@ -70,6 +70,9 @@ def do_dload(reader, scope, card):
         kind = fields[1].upper() if len(fields) > 1 else ""
         if kind == "GRAV":
             gravity(reader, scope, place, fields)
+        elif kind == "P" and len(fields) == 3:
+            faces = check_faces(reader, reader_cells(reader, scope, fields[0], place), 1, place)
+            reader.pressures.append(Said(reader.steps, card.keyword, faces, real(fields[2], place), place))
         elif len(kind) == 2 and kind[0] == "P" and kind[1].isdigit() and len(fields) == 3:
             faces = check_faces(reader, reader_cells(reader, scope, fields[0], place), int(kind[1]), place)
             reader.pressures.append(Said(reader.steps, card.keyword, faces, real(fields[2], place), place))

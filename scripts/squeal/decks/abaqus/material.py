@@ -7,10 +7,12 @@ from .sets import reader_cells
 from .words import choice, label
 from ..deck import Axes, Material, Section
 from ..elastic import engineering
-from ..text import real
+from ..mesh.shells import set_thickness
+from ..text import REAL, real
 
 END_MATERIAL = {"SURFACE INTERACTION", "CONNECTOR BEHAVIOR", "GASKET BEHAVIOR", "FLUID BEHAVIOR", "STEP"}  # have cards of their own
 
+SIDES = {"SPOS": 0.5, "SNEG": -0.5, "MIDDLE SURFACE": 0.0}  # of the shell that its nodes are on
 STIFFNESSES = ("ISOTROPIC", "ORTHOTROPIC", "ENGINEERING CONSTANTS", "LAMINA", "ANISOTROPIC", "TRACTION", "COUPLED TRACTION",
                "SHEAR", "SHORT FIBER", "BILAMINA")
 
@@ -170,10 +172,16 @@ def do_orientation(reader, scope, card):
 
 
 def do_section(reader, scope, card):
-    name, material = card.need("ELSET"), card.need("MATERIAL")
+    name = card.need("ELSET")
     if name in scope.other_sets and name not in scope.cell_sets:
         reader.deck.note(card.place, f"*SOLID SECTION: the elements of {name} are none of squeal's")
         return
+    add_section(reader, scope, card)
+
+
+def add_section(reader, scope, card):
+    """A part of the cells of a set."""
+    name, material = card.need("ELSET"), card.need("MATERIAL")
     axes = label(card.options.get("ORIENTATION", ""))
     inner, local = reader.split(axes, scope)
     if axes and local not in inner.axes:
@@ -181,6 +189,28 @@ def do_section(reader, scope, card):
     cells = reader_cells(reader, scope, name, card.place)
     name = scope.prefix if scope.prefix and len(cells) == scope.cells.n else scope.full(name)
     reader.deck.sections.append(Section(name, cells, material, inner.axes[local] if axes else None, card.place))
+
+
+def do_shell_section(reader, scope, card):
+    """A shell of one material and one thickness; OFFSET is SPOS, SNEG or a part of the thickness."""
+    name = card.need("ELSET")
+    if "COMPOSITE" in card.options or not card.options.get("MATERIAL"):
+        card.options.pop("COMPOSITE", None)
+        reader.deck.note(card.place, f"*{card.keyword} {name}: layers, or a stiffness without a material: not taken")
+        return
+    if name in scope.other_sets and name not in scope.cell_sets:
+        reader.deck.note(card.place, f"*{card.keyword}: the elements of {name} are none of squeal's")
+        return
+    row, _ = first_row(card, 1)
+    if not row[0] > 0:
+        raise card.place.wrong(f"*{card.keyword}: the thickness {row[0]:g} must be positive")
+    word = card.options.get("OFFSET", "0").strip().upper()
+    if word not in SIDES and not REAL.match(word):
+        reader.deck.note(card.place, f"*{card.keyword}, OFFSET={word[:30]}: not understood, 0 is taken")
+        word = "0"
+    offset = SIDES[word] if word in SIDES else real(word, card.place)
+    set_thickness(reader.deck, reader_cells(reader, scope, name, card.place), row[0], -offset * row[0])
+    add_section(reader, scope, card)
 
 
 def finish_sections(deck):
@@ -208,4 +238,4 @@ def finish_sections(deck):
 
 
 CARDS = {"MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,
-         "DISTRIBUTION": do_distribution, "ORIENTATION": do_orientation, "SOLID SECTION": do_section}
+         "DISTRIBUTION": do_distribution, "ORIENTATION": do_orientation, "SOLID SECTION": do_section, "SHELL SECTION": do_shell_section}

@@ -5,6 +5,7 @@ import numpy
 from .sets import NONE, join
 from .words import choice
 from ..deck import Block, Place, shape_of
+from ..mesh.shells import add_shells
 from ..text import fast_table, real, slow_table, whole
 
 # Type -> shape, and what differs from squeal's element
@@ -22,6 +23,8 @@ TYPES = {
 HYBRID = "C3D4", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D10M", "C3D20", "C3D20R", "C3D6", "C3D15"
 TYPES |= {f"{name}H": (TYPES[name][0], f"{name}H (hybrid) becomes {TYPES[name][0]} of squeal without a pressure of its own")
           for name in HYBRID}
+SHELLS = {"S3": 3, "S3R": 3, "S3RS": 3, "STRI3": 3, "S4": 4, "S4R": 4, "S4RS": 4, "S4R5": 4, "S6": 6,
+          "STRI65": 6, "S8": 8, "S8R": 8, "S8R5": 8}
 HOLDERS = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2, "DASHPOT1": 1, "DASHPOT2": 2, "DASHPOTA": 2, "MASS": 1, "ROTARYI": 1,
            "CONN3D2": 2, "DCOUP3D": 1}  # elements of one or two nodes that join or load them
 
@@ -104,10 +107,26 @@ def do_element(reader, scope, card):
             reader.deck.differ(card.place, differs)
         if card.options.get("ELSET"):
             join(scope.cell_sets, reader.deck.cell_sets, scope, card.need("ELSET"), cells, card.place)
+    elif kind in SHELLS:
+        shell_elements(reader, scope, card, kind)
     elif kind.startswith("C3D"):
         raise card.place.wrong(f"*ELEMENT, TYPE={kind}: squeal has no such solid, and without it the body is another")
     else:
         other_elements(reader, scope, card, kind)
+
+
+def shell_elements(reader, scope, card, kind):
+    """Shells: solids of their thickness."""
+    file = card.place.file
+    rows, lines = element_rows(reader, card, 1 + SHELLS[kind])
+    check_ids(rows[:, 0], lines, file, "an element")
+    nodes = scope.nodes.need(rows[:, 1:], "node", lambda row: Place(file, int(lines[row])))
+    if not len(rows):
+        return
+    cells = add_shells(reader.deck, kind, rows[:, 0], nodes, card.place)
+    scope.cells.add(rows[:, 0], cells, lines, file)
+    if card.options.get("ELSET"):
+        join(scope.cell_sets, reader.deck.cell_sets, scope, card.need("ELSET"), cells, card.place)
 
 
 def other_elements(reader, scope, card, kind):

@@ -10,6 +10,7 @@ from ..text import parse_all, whole
 
 MOST = 20000000  # numbers that GENERATE may make
 FACE = re.compile(r"S(\d)$")
+SHELL_FACES = {"SNEG": "S1", "SPOS": "S2", "E1": "S3", "E2": "S4", "E3": "S5", "E4": "S6"}  # of the solids that shells become
 NONE, NO_FACES = numpy.empty(0, int), numpy.empty((0, 2), int)
 
 
@@ -76,7 +77,7 @@ def nodes_of_cells(reader, scope, card):
     """Nodes of the elements of a set."""
     cells = reader_cells(reader, scope, card.options["ELSET"], card.place)
     firsts = reader.deck.firsts()
-    parts = [block.nodes[cells[(cells >= low) & (cells < high)] - low].ravel()
+    parts = [block.own_nodes()[cells[(cells >= low) & (cells < high)] - low].ravel()
              for block, low, high in zip(reader.deck.blocks, firsts, firsts[1:])]
     return numpy.unique(numpy.concatenate([NONE, *parts]))
 
@@ -200,7 +201,7 @@ def surface_row(reader, scope, place, fields):
     if len(fields) < 2 or not fields[1]:
         faces = boundary_faces(reader.deck)
         return faces[numpy.isin(faces[:, 0], cells)]
-    found = FACE.match(fields[1].upper())
+    found = FACE.match(SHELL_FACES.get(fields[1].upper(), fields[1].upper()))
     if not found:
         reader.deck.note(place, f"*SURFACE: '{fields[1][:40]}' is no face of a volume element (S1 to S6): not taken")
         return NO_FACES

@@ -29,6 +29,7 @@ class Group:
     directions: tuple = (0, 1, 2)
     shares: numpy.ndarray = None  # [nodes], None: equal ones
     how: str = "point"
+    knot: bool = False  # fibres of shells alone
     attached: set = field(default_factory=set)  # nodes of no element that move with it, the reference node among them
 
 
@@ -154,7 +155,7 @@ class Groups:
 
     def add(self, joins):
         """The group of joins that are one body."""
-        first = joins[0]
+        first = next((join for join in joins if not join.knot), joins[0])
         nodes = numpy.unique(numpy.concatenate([join.nodes for join in joins]))
         attached = {int(node) for node in nodes[~self.solid[nodes]]} | {join.node for join in joins if not self.solid[join.node]}
         ref, inside = first.node, self.into[nodes[self.solid[nodes]]]
@@ -171,7 +172,7 @@ class Groups:
             self.deck.note(first.place, f"{first.words}: nodes of no volume element among those that it means: they are left out")
             attached = {ref} if not self.solid[ref] else set()
         self.groups.append(Group(ref, self.deck.x[ref], inside, first.rigid, first.place, first.words, first.name, first.directions, shares,
-                                 attached=attached))
+                                 attached=attached, knot=all(join.knot for join in joins)))
 
     def share(self):
         """Rigid groups with nodes in common: one body where these tell its motion; else the later one loses them, which is said."""

@@ -49,7 +49,7 @@ class Holds:
         rows = [(self.row_of(equation.terms), equation) for equation in self.deck.equations]
         touched = {int(node) for equation in self.deck.equations for node, _, _ in equation.terms}
         for group in self.groups.groups:
-            self.hold(group, bool(touched & (group.attached | {group.node})))
+            self.hold(group, group.knot or bool(touched & (group.attached | {group.node})))
         for row, equation in rows:
             if row is None:
                 self.deck.note(equation.place, f"{equation.words}: of a rotation that solids do not have: not in the scene")

@@ -10,14 +10,13 @@ import itertools
 
 import numpy
 
-from .elements import EDGES, FACES, HEX27_FACES, SHAPES
+from .elements import AROUND_SHELL, EDGES, FACES, HEX27_FACES, SHAPES
 
 CHUNK = 100000  # elements at a time
 CORNERS = {"tet": ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)),
            "wedge": tuple((r, s, z) for z in (-1, 1) for r, s in ((0, 0), (1, 0), (0, 1))),
            "hex": tuple((x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))),
            "triangle": ((0, 0), (1, 0), (0, 1)), "quad": ((-1, -1), (1, -1), (1, 1), (-1, 1))}
-AROUND = {3: ((0, 1), (1, 2), (2, 0)), 4: ((0, 1), (1, 2), (2, 3), (3, 0))}
 
 
 def nodes_of(shape):
@@ -38,7 +37,7 @@ def nodes_of_face(n):
     corners = numpy.array(CORNERS[family], float)
     places = [corners]
     if n > 4:
-        places.append(numpy.array([corners[list(edge)].mean(axis=0) for edge in AROUND[len(corners)]]))
+        places.append(numpy.array([corners[list(edge)].mean(axis=0) for edge in AROUND_SHELL[len(corners)]]))
     if n == 9:
         places.append(numpy.zeros((1, 2)))
     return numpy.concatenate(places)

@@ -7,6 +7,7 @@ import numpy
 from ..deck import Block, Index, shape_of
 from ..mesh.middles import fill_middles
 from .cards import named
+from .shells import read_shells
 from .systems import SPACE, solve_systems
 
 KNOWN = {"GRID", "GRDSET", "SPOINT", "CTETRA", "CPENTA", "CHEXA", "CPYRAM"}
@@ -28,6 +29,7 @@ class Mesh:
         self.blocks = []  # (cells, property numbers)
         self.scalar = set()  # numbers of SPOINT
         self.held, self.waiting, self.fluids = [], {}, set()
+        self.shells = []  # (cells, property numbers, table, rows)
         self.mass_factor, self.solid = 1.0, None  # PARAM WTMASS; which nodes elements have
 
     def is_solid(self, deck, node):
@@ -214,5 +216,6 @@ def read_mesh(deck, tables):
     read_grid(deck, mesh, tables)
     mesh.nodes.sorted("grid point")
     read_solids(deck, mesh, tables)
+    read_shells(deck, mesh, tables)
     mesh.cells.sorted("element")
     return mesh

@@ -7,6 +7,7 @@ from ..deck import Axes, Equation, Material, Section, Support
 from ..elastic import engineering
 from .cards import named
 from .mesh import check_rows
+from .shells import read_properties as read_shell_properties
 
 KNOWN = {"PSOLID", "MAT1", "MAT9", "MAT10", "MAT11", "SPC", "SPC1", "EIGRL", "EIGR", "PARAM"}
 
@@ -138,6 +139,7 @@ def read_properties(deck, tables, mesh):
             if any(words[3:]):
                 deck.note(place, f"PSOLID {number}: integration and output ({', '.join(filter(None, words[3:]))}) are not read")
             properties[number] = known_material(deck, material, number, place), axes_of(deck, mesh, system, place), place
+    read_shell_properties(deck, tables, mesh, properties, known_material)
     if not properties:
         bare_parts(deck, mesh)
         return
@@ -148,18 +150,18 @@ def read_properties(deck, tables, mesh):
     for number, parts in sorted(groups.items()):
         where = mesh.cells.line_of(int(parts[0][0]))
         if number not in properties:
-            deck.note(where, f"there is no PSOLID {number}: the part has no material, give it")
+            deck.note(where, f"there is no PSOLID or PSHELL {number}: the part has no material, give it")
         material, axes, place = properties.pop(number, ("", None, where))
         deck.sections.append(Section(f"part_{number}", numpy.concatenate(parts), material, axes, place))
     for number, (*_, place) in properties.items():
-        deck.note(place, f"PSOLID {number}: no element has it")
+        deck.note(place, f"property {number}: no element has it")
 
 
 def known_material(deck, material, number, place):
     """The name of a material that is read."""
     if str(material) in deck.materials:
         return str(material)
-    deck.note(place, f"PSOLID {number}: there is no MAT1, MAT9 or MAT11 {material}: the part has no material, give it")
+    deck.note(place, f"property {number}: there is no MAT1, MAT9 or MAT11 {material}: the part has no material, give it")
     return ""
 
 
