@@ -42,6 +42,8 @@ struct _p_Contact {
 
 /* pair.c - appends the pairs of one interface to contact->pairs */
 PETSC_INTERN PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface);
+/* pair.c - whether its pairs are means over both surfaces, before or after ContactSetUp(). Collective. */
+PETSC_INTERN PetscErrorCode ContactIsMortar(Contact contact, PetscInt interface, PetscBool *mortar);
 /* pair.c - the largest value of all ranks, and its place, m. Collective. */
 PETSC_INTERN PetscErrorCode ContactShareWorst(MPI_Comm comm, PetscReal *value, PetscReal x[3]);
 /* Whether a slave lies farther beyond the border of the master than is allowed */

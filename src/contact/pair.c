@@ -162,7 +162,23 @@ static PetscErrorCode DiscretizationChoose(Contact contact, PetscInt interface, 
   PetscFunctionBeginUser;
   if (told == CONTACT_AUTO) PetscCall(ContactMeshesMatch(contact, interface, first, &match));
   contact->mortar[interface] = match ? PETSC_FALSE : PETSC_TRUE;
-  if (!match) PetscCall(ContactMortarSplit(contact, interface, first));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactIsMortar(Contact contact, PetscInt interface, PetscBool *mortar)
+{
+  const PetscInt        first = contact->n_pairs;
+  const ContactSurface *surface;
+
+  PetscFunctionBeginUser;
+  if (!contact->n_pairs_all) {
+    PetscCall(ContactGetSurface(contact, interface, &surface));
+    if (contact->interfaces[interface].discretization == CONTACT_AUTO)
+      PetscCall(FootPairs(contact, interface, surface));
+    PetscCall(DiscretizationChoose(contact, interface, first));
+    contact->n_pairs = first;
+  }
+  *mortar = contact->mortar[interface];
   PetscFunctionReturn(0);
 }
 
@@ -306,8 +322,7 @@ static PetscErrorCode ChoicesTell(Contact contact, const ContactInterface *c, Pe
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnit(contact->model, "m", &metre));
   if (c->discretization == CONTACT_AUTO && contact->mortar[c - contact->interfaces])
-    PetscCall(PetscPrintf(
-      contact->comm, "contact %s: meshes do not match: mortar, but node to surface in time on the mesh\n", c->name));
+    PetscCall(PetscPrintf(contact->comm, "contact %s: meshes do not match: mortar\n", c->name));
   if (c->interference > 0.1 * PetscSqrtReal(area))
     PetscCall(PetscFPrintf(contact->comm, stderr,
                            "squeal: warning: -%s_interference %.6g %s is more than 10 %% of the size of the contact, "
@@ -331,6 +346,7 @@ PetscErrorCode ContactPairInterface(Contact contact, PetscInt interface)
   PetscCall(ModelGetUnit(contact->model, "m", &failure.metre));
   PetscCall(FootPairs(contact, interface, surface));
   PetscCall(DiscretizationChoose(contact, interface, first));
+  if (contact->mortar[interface]) PetscCall(ContactMortarSplit(contact, interface, first));
   PetscCall(PairsChoose(contact, interface, first, surface, &failure));
   PetscCall(PartnerCheck(contact->comm, c, &failure));
   if (!contact->mortar[interface]) PetscCall(PairsCover(contact, interface, first, &lost));

@@ -30,7 +30,10 @@ PetscErrorCode ProjectorMortarCreate(ContactProjector p)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    if (p->contact->interfaces[i].discretization != CONTACT_MORTAR) continue;
+    PetscBool mortar;
+
+    PetscCall(ContactIsMortar(p->contact, i, &mortar));
+    if (!mortar) continue;
     PetscCall(PetscCalloc1(1, &p->mortar[i]));
     PetscCall(ContactMovedCreate(p->contact, i, &p->mortar[i]->moved));
   }

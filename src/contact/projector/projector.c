@@ -263,9 +263,10 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
                                      "contact %s: %" PetscInt_FMT " nodes of %s on %" PetscInt_FMT " facets of %s, ",
                                      c->name, n[i], c->slave, p->master[i].surface->n_facets, c->master));
     PetscCall(FrictionView(&c->friction, viewer));
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, ", multipliers%s\n",
-      c->discretization == CONTACT_AUTO ? ", node to surface, since positions are followed" : ""));
+    PetscCall(PetscViewerASCIIPrintf(viewer, ", multipliers%s%s\n", p->mortar[i] ? " of mortar pairs" : "",
+                                     c->discretization != CONTACT_AUTO ? ""
+                                     : p->mortar[i]                    ? ", since meshes do not match"
+                                                                       : ", node to node, since meshes match"));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));
