@@ -26,14 +26,35 @@ def runs_of(check, runs):
     return named & set(runs) or {next(iter(runs))}
 
 
+def groups_of(case):
+    """Names of the runs, those that share results or a check together."""
+    runs, group = case["run"], {name: {name} for name in case["run"]}
+    together = [{name, *re.findall(r"{(\w+)}", str(run))} & set(runs) for name, run in runs.items()]
+    for names in together + [runs_of(check, runs) for check in case.get("check", [])]:
+        joined = set().union(*(group[name] for name in names))
+        group.update(dict.fromkeys(joined, joined))
+    return [names for name, names in group.items() if name == next(each for each in runs if each in names)]
+
+
+def thin(case):
+    """By day, where a run begins much sooner on one rank, that is done on several ranks by one of twelve bad inputs that ask for no
+    numbers of ranks, and by one of three groups of runs that no check compares across ranks."""
+    runs, first = case["run"], next(iter(case["run"]))
+    across = {check.get("run", first) for check in case.get("check", []) if "across_ranks" in check}
+    groups = [names for names in groups_of(case) if not names & across]
+    bad = [min(names) for names in groups if len(names) == 1 and all("error" in runs[name] for name in names)]
+    for k, name in enumerate(name for name in bad if not runs[name]["own"]):
+        runs[name]["ranks"] = runs[name]["ranks"] if k % 12 == 0 else [1]
+    for k, names in enumerate(names for names in groups if not names <= set(bad)):
+        for name in names if k % 3 else ():
+            runs[name]["ranks"] = runs[name]["ranks"][:1]
+
+
 def ranks_of_runs(case, chosen, night):
-    """Gives each run its numbers of ranks, by night those of the night too; all of these, in order, with `chosen` first. By day three
-    of four bad inputs are tried on one rank in place of several, where a run begins much sooner."""
-    alone = re.compile("|".join(f"{{{name}}}" for name in case["run"]))  # without the results of another run
-    bad = [run for run in case["run"].values() if "error" in run and "ranks" not in run and not alone.search(str(run))]
+    """Gives each run its numbers of ranks, by night those of the night too; all of these, in order, with `chosen` first."""
     for run in case["run"].values():
+        run["own"] = "ranks" in run
         run["ranks"] = run.get("ranks", chosen) + (run.get("night", []) if night else [])
-    for k, run in enumerate(bad):
-        if not night and k % 4:
-            run["ranks"] = [1]
+    if not night:
+        thin(case)
     return chosen + sorted({ranks for run in case["run"].values() for ranks in run["ranks"]} - set(chosen))
