@@ -90,6 +90,7 @@ PetscErrorCode ContactProjectorGetNodes(ContactProjector p, PetscInt *n, const P
 PetscErrorCode ProjectorGatherAll(ContactProjector p, const PetscReal local[], PetscReal root[])
 {
   PetscFunctionBeginUser;
+  PetscCall(ProjectorFinish(p)); /* the answer of the last step lies where messages go */
   PetscCall(ShareSetActive(&p->share, NULL));
   PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){root}));
   PetscFunctionReturn(0);
