@@ -381,5 +381,5 @@ def say(deck, sheets, special):
         deck.differ(shells.block.place, f"{shells.block.kind} becomes {shells.block.shape.name}, one layer of its thickness, with 27 or "
                                         "18 points" + ("; some are no wider than thick" if wide < 1 else ""))
     if special:
-        deck.differ(deck.shells[0].block.place, f"{len(special)} nodes of shells are held, joined, turned, shared with solids or of several "
-                                                "sheets: their fibres are rigid")
+        deck.differ(deck.shells[0].block.place, f"{len(special)} nodes of shells are held, joined, turned, shared with solids or of "
+                                                "several sheets: their fibres are rigid")

@@ -22,8 +22,8 @@ def read_shells(deck, mesh, tables):
         head[head[:, 1] == 0, 1] = head[head[:, 1] == 0, 0]
         found = numpy.isin(head[:, 1], list(known))
         if not found.all():
-            deck.note(table.place(int((~found).argmax())), f"{(~found).sum()} {table.name} without a PSHELL (of layers?): not in the scene; "
-                                                           "a superelement of their program may stand for them")
+            deck.note(table.place(int((~found).argmax())), f"{(~found).sum()} {table.name} without a PSHELL (of layers?): not in the "
+                                                           "scene; a superelement of their program may stand for them")
         second = (nodes[:, corners:] > 0).all(axis=1) if n > corners else numpy.zeros(len(nodes), bool)
         part = found & ~second & (nodes[:, corners:] > 0).any(axis=1)
         if part.any():
