@@ -83,7 +83,8 @@ def spellings():
     yield "a beam beside solids", PLAIN.replace(HELD, (
         "*ELEMENT, TYPE=B31, ELSET=ROD\n101, 9,11\n*BEAM SECTION, ELSET=ROD, MATERIAL=M, SECTION=RECT\n0.5, 0.5\n1., 0., 0.\n"
         "*SURFACE, NAME=SS\nROD, SPOS\n") + HELD), (
-            "*ELEMENT, TYPE=B31: 1 elements", "the elements of ROD are none", "*SURFACE SS has no faces", "*BEAM SECTION: not understood")
+            "*ELEMENT, TYPE=B31: 1 elements", "the elements of ROD are none", "*SURFACE SS has no faces",
+            "*BEAM SECTION: not in the scene; let its program")
     yield "cyclic symmetry is no glue", PLAIN.replace(HELD, (
         "*SURFACE, NAME=A\nE, S1\n*SURFACE, NAME=B\nE, S2\n*TIE, NAME=T, CYCLIC SYMMETRY\nA, B\n") + HELD), (
             "*TIE, CYCLIC SYMMETRY: not read",)
@@ -190,6 +191,33 @@ def supports(folder):
     options, lines, model = brought(folder, text)
     check("OP=NEW: what earlier steps held is free", options["fix_fix"] == "x" and model.held.sum() == 4, options)
     check("OP=NEW: listed", sum("OP=NEW: supports of earlier steps act no longer" in line for line in lines) == 1, lines)
+
+
+def stated(folder):
+    """Amplitudes, temperatures, damping and laws of contact that are values of the scene."""
+    ramp = "*AMPLITUDE, NAME=A\n0., 0., 2., 4.\n"
+    pressed = "*STEP\n*STATIC\n0.1, 0.5\n*CLOAD, AMPLITUDE=A\n9, 1, 3.\n*DLOAD, AMPLITUDE=A\n2, P2, 7.\n*END STEP\n"
+    options, lines, model = brought(folder, PLAIN.replace(STEP, ramp + pressed))
+    check("amplitude: 4/2 x 0.5 of loads", abs(sums(model)[1].force - [3 - 7 * 100, 0, 0]).max() < 1e-9, sums(model)[1].force)
+    check("amplitude: said", sum("times 1, the value of *AMPLITUDE A" in line for line in lines) == 2, lines)
+    warm = MATERIAL.replace("210000., .3", "200000., .3, 0.\n100000., .2, 100.").replace("7.8E-9", "8.E-9, 0.\n7.E-9, 100.")
+    for about, given, young, poisson, density in (
+            ("initial temperature", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nFIX, 25.\n", 175e9, 0.275, 7750),
+            ("a temperature beyond the table", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nFIX, 250.\n", 100e9, 0.2, 7000),
+            ("no temperature", "", 200e9, 0.3, 8000)):
+        options, _, _ = brought(folder, PLAIN.replace(MATERIAL, warm + given))
+        found = [float(options[f"e_{key}"]) for key in ("young", "poisson", "density")]
+        check(f"{about}: material", np.allclose(found, (young, poisson, density), rtol=1e-12), found)
+    lossy = PLAIN.replace("7.8E-9\n", "7.8E-9\n*DAMPING, STRUCTURAL=0.02\n").replace("*FREQUENCY\n6", "*FREQUENCY\n6, 1000., 4000.")
+    options, _, _ = brought(folder, lossy)
+    check("structural damping", (options["e_loss_factor"], options["model_loss_frequency"]) == ("0.02", "2000"), options)
+    law = GAP.replace("=LINEAR\n1.e5", "=EXPONENTIAL\n0.01, 3.\n*FRICTION, EXPONENTIAL DECAY\n0.5, 0.3, 0.002")
+    options, _, _ = brought(folder, law)
+    found = [options[f"i_{key}"] for key in ("pressure_law", "pressure_c0", "pressure_p0", "friction_law", "mu_static", "mu_kinetic")]
+    check("exponential law and decay of friction", found == ["exponential", "1e-05", "3000000", "static_kinetic", "0.5", "0.3"] and
+          abs(float(options["i_mu_decay_speed"]) - 0.5) < 1e-12, options)
+    _, lines, _ = brought(folder, GAP.replace("1.e5\n", "1.e5\n*FRICTION\n0.5, 0., 0.\n0.4, 0., 10.\n"))
+    check("a table of friction is said", sum("a table over pressure (mu 0.5, 0.4)" in line for line in lines) == 1, lines)
 
 
 def modes(folder, program):
@@ -316,7 +344,7 @@ def unforeseen():
 def main():
     program = starter(str(Path(sys.argv[1]).resolve()))
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for part in (ways, included, overlapping, distributed, steps, supports, infinite, study, no_files):
+        for part in (ways, included, overlapping, distributed, steps, supports, stated, infinite, study, no_files):
             part(Path(name))
         for part in (modes, gap, names):
             part(Path(name), program)

@@ -66,6 +66,7 @@ def merge_ties(deck, size):
     the node that each one became."""
     into, ties = numpy.arange(deck.n_nodes), deck.ties
     deck.ties = []
+    merge_equal(deck, CLOSE * size, into)
     for tie in ties:
         slaves, masters = (surface_nodes(deck, deck.surfaces[name][0]) for name in (tie.slave, tie.master))
         found = coincident(deck.x, slaves, masters, CLOSE * size)
@@ -76,6 +77,25 @@ def merge_ties(deck, size):
             into[into == into[slave]] = into[master]
         deck.differ(tie.place, f"{tie.words}: {len(slaves)} nodes of {tie.slave} become those of {tie.master} in their place")
     return into
+
+
+def merge_equal(deck, limit, into):
+    """Makes one node of two in one place that three equations u_a = u_b tie, a direction each."""
+    pairs, used = {}, used_nodes(deck)
+    for number, equation in enumerate(deck.equations):
+        if len(equation.terms) == 2 and equation.terms[0][1] == equation.terms[1][1] < 3:
+            (a, d, one), (b, _, other) = equation.terms
+            if one == -other and used[a] and used[b] and a != b:
+                pairs.setdefault((min(a, b), max(a, b)), {})[d] = number
+    done = set()
+    for (a, b), numbers in pairs.items():
+        if len(numbers) == 3 and numpy.linalg.norm(deck.x[a] - deck.x[b]) <= limit:
+            into[into == into[b]] = into[a]
+            done |= set(numbers.values())
+    if done:
+        first = deck.equations[min(done)]
+        deck.differ(first.place, f"{first.words}: {len(done) // 3} pairs of nodes in one place, which move alike, become one node each")
+        deck.equations = [equation for number, equation in enumerate(deck.equations) if number not in done]
 
 
 def model_size(deck):
@@ -233,6 +253,8 @@ def part_entry(name, section, material):
         row("alpha", ("rate", (material.alpha,)), "DAMPING")
     if material.beta:
         row("beta", ("time", (material.beta,)), "DAMPING")
+    if material.loss:
+        row("loss_factor", ("", (material.loss,)), "LOSS")
     return entry
 
 

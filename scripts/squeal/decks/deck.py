@@ -60,6 +60,7 @@ class Material:
     density: float = None
     alpha: float = 0
     beta: float = 0
+    loss: float = 0  # factor of structural damping
     places: dict = field(default_factory=dict)
 
 
@@ -160,6 +161,8 @@ class Contact:
     mu: float = None
     stiffness: float = None  # per area
     points: tuple = ()  # or overclosure, pressure, overclosure, ...
+    exponential: tuple = ()  # or clearance at no pressure, pressure at no clearance
+    decay: tuple = ()  # static and kinetic coefficient, speed over which the first falls to the second
     rotation: tuple = ()
     centre: tuple = ()
     turning: Place = None  # where the rotation is from

@@ -201,11 +201,18 @@ def add_contacts(assembly):
             rows.append(("kn_per_area", ("stiffness_per_area", (contact.stiffness,)), comment))
         elif contact.points:
             rows += [("pressure_law", "table", comment), ("pressure_table", ("points", contact.points), comment)]
+        elif contact.exponential:
+            rows += [("pressure_law", "exponential", comment), ("pressure_c0", ("length", contact.exponential[:1]), comment),
+                     ("pressure_p0", ("stress", contact.exponential[1:]), comment)]
         else:
             rows.append(("law", "constraint", f"{comment} no stiffness is given: exact contact"))
         rows += gap_rows(assembly.deck, contact)
         hints = []
-        if contact.mu is not None:
+        if contact.decay:
+            rows += [("friction_law", "static_kinetic", comment), ("mu_static", ("", contact.decay[:1]), comment),
+                     ("mu_kinetic", ("", contact.decay[1:2]), comment), ("mu_decay_speed", ("speed", contact.decay[2:]), comment)]
+            hints.append("speed: ?   friction depends on the sliding speed, m/s, which is not in the file: give it")
+        elif contact.mu is not None:
             rows.append(("mu", ("", (contact.mu,)), comment))
         if contact.rotation:
             rows += [("rotation", ("rate", contact.rotation), f"{contact.turning} of the master"),

@@ -13,7 +13,8 @@ FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.
            "mass": lambda u: u.mass, "inertia": lambda u: u.mass * u.length**2, "moment": lambda u: u.force * u.length,
            "turn_stiffness": lambda u: u.stiffness * u.length**2, "viscosity": lambda u: u.mass / u.time,
            "turn_viscosity": lambda u: u.mass / u.time * u.length**2,
-           "points": lambda u: (u.length, u.stress), "rate": lambda u: 1 / u.time, "stiffness_per_area": lambda u: u.stiffness_per_area}
+           "points": lambda u: (u.length, u.stress), "rate": lambda u: 1 / u.time, "speed": lambda u: u.length / u.time,
+           "exponential": lambda u: (u.length, u.stress), "stiffness_per_area": lambda u: u.stiffness_per_area}
 
 
 def shown(value, units):
@@ -51,6 +52,11 @@ def model_lines(deck, units, mesh, equations):
     rows = [f"mesh: {quoted(mesh)}"]
     if equations:
         rows.append(f"equations: {quoted(equations)}")
+    if any(deck.materials[section.material].loss for section in deck.sections if section.material):
+        low, high = (value / units.time for value in deck.modes[1:3]) if deck.modes else (0.0, 0.0)
+        middle = (low * high)**0.5 if low > 0 and high > 0 else high / 2 if high > 0 else 1000.0
+        why = "the middle of the band" if high > 0 else "no band is in the file: give the frequency that matters"
+        rows.append(f"loss_frequency: {middle:.6g}  # Hz, where loss factors are exact: {why}")
     if deck.gravity is None and len(rows) == 1:
         return [f"model: {{{rows[0]}}}"]
     if deck.gravity is not None:

@@ -173,6 +173,9 @@ def do_mass(reader, scope, card):
 
 def do_equation(reader, scope, card):
     """A number of terms, then node or set, degree of freedom, coefficient of each, over several lines."""
+    if card.options.pop("REMOVE", None) is not None:
+        reader.deck.note(card.place, "*EQUATION, REMOVE: equations stay")
+        return
     words = [(place, word) for place, fields in card.rows() for word in fields if word]
     at = 0
     while at < len(words):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy
 
-from .model import direction, set_name
+from .model import direction, factor_of, set_name
 from .sets import check_faces, reader_cells, reader_nodes, surface_of
 from ..deck import Load
 from ..text import real
@@ -48,11 +48,14 @@ def in_force(rows, keys_of, n):
 
 def do_cload(reader, scope, card):
     forget(reader, card)
+    factor = factor_of(reader, card)
     for place, fields in card.rows():
-        if len(fields) != 3:
+        if len(fields) < 3:
             raise place.wrong(f"*CLOAD: {len(fields)} fields, expected a node or set, a direction, a force")
+        if any(fields[3:]):
+            reader.deck.note(place, f"*CLOAD: fields behind the force ({', '.join(fields[3:])[:30]}): not taken")
         nodes, d = reader_nodes(reader, scope, fields[0], place), direction(fields[1], place, card.keyword, reader)
-        value = real(fields[2], place)
+        value = factor * real(fields[2], place)
         if d is None:
             continue
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
@@ -66,21 +69,22 @@ def do_cload(reader, scope, card):
 
 def do_dload(reader, scope, card):
     forget(reader, card)
+    factor = factor_of(reader, card)
     for place, fields in card.rows():
         kind = fields[1].upper() if len(fields) > 1 else ""
         if kind == "GRAV":
-            gravity(reader, scope, place, fields)
+            gravity(reader, scope, place, fields, factor)
         elif kind == "P" and len(fields) == 3:
             faces = check_faces(reader, reader_cells(reader, scope, fields[0], place), 1, place)
-            reader.pressures.append(Said(reader.steps, card.keyword, faces, real(fields[2], place), place))
+            reader.pressures.append(Said(reader.steps, card.keyword, faces, factor * real(fields[2], place), place))
         elif len(kind) == 2 and kind[0] == "P" and kind[1].isdigit() and len(fields) == 3:
             faces = check_faces(reader, reader_cells(reader, scope, fields[0], place), int(kind[1]), place)
-            reader.pressures.append(Said(reader.steps, card.keyword, faces, real(fields[2], place), place))
+            reader.pressures.append(Said(reader.steps, card.keyword, faces, factor * real(fields[2], place), place))
         else:
             reader.deck.note(place, f"*DLOAD {kind}: not understood")
 
 
-def gravity(reader, scope, place, fields):
+def gravity(reader, scope, place, fields, factor):
     """Acceleration and direction, on all cells or some."""
     if len(fields) != 6:
         raise place.wrong("*DLOAD GRAV needs an acceleration and three components of its direction")
@@ -88,12 +92,13 @@ def gravity(reader, scope, place, fields):
     cells = reader_cells(reader, scope, fields[0], place) if fields[0] else numpy.arange(reader.deck.n_cells)
     if not numpy.linalg.norm(values[1:]) > 0:
         raise place.wrong("*DLOAD GRAV has no direction")
-    vector = values[0] * values[1:] / numpy.linalg.norm(values[1:])
+    vector = factor * values[0] * values[1:] / numpy.linalg.norm(values[1:])
     reader.gravity.append(Said(reader.steps, "DLOAD", cells, vector, place))
 
 
 def do_dsload(reader, scope, card):
     forget(reader, card)
+    factor = factor_of(reader, card)
     for place, fields in card.rows():
         if len(fields) != 3 or fields[1].upper() != "P":
             reader.deck.note(place, f"*DSLOAD {', '.join(fields[1:2])}: not understood")
@@ -102,7 +107,7 @@ def do_dsload(reader, scope, card):
         faces = reader.deck.surfaces[name][0]
         if not len(faces):
             reader.deck.note(place, f"*DSLOAD: {name} has no faces; not in the scene")
-        reader.pressures.append(Said(reader.steps, card.keyword, faces, real(fields[2], place), place, name))
+        reader.pressures.append(Said(reader.steps, card.keyword, faces, factor * real(fields[2], place), place, name))
 
 
 def finish_loads(reader):

@@ -30,6 +30,36 @@ def first_row(card, least):
     return rows[0][1], rows[1:]
 
 
+def at_temperature(reader, card, n):
+    """The n numbers of a table at the temperature of the deck, straight between its lines and constant beyond them; (row, other lines):
+    the first line where no temperature is told, or where the lines differ by more than it."""
+    rows = numbers(card)
+    first, rest = first_row(card, n)
+    own = [row for _, row in rows]
+    if not rest or reader.temperature is None or any(len(row) != n + 1 for row in own) or (numpy.diff([row[n] for row in own]) <= 0).any():
+        return first, rest
+    value, place = reader.temperature
+    table = numpy.array(own)
+    reader.deck.differ(card.place, f"*{card.keyword}: at the temperature {value:g} of {place}")
+    return [float(numpy.interp(value, table[:, n], table[:, k])) for k in range(n)], []
+
+
+def do_temperature(reader, scope, card):
+    """*INITIAL CONDITIONS, TYPE=TEMPERATURE, and *TEMPERATURE in steps: the last one, where it is the same for all nodes."""
+    if card.keyword == "INITIAL CONDITIONS" and choice(card.options.pop("TYPE", ""), "TEMPERATURE") != "TEMPERATURE":
+        reader.deck.note(card.place, "*INITIAL CONDITIONS: only temperatures are read")
+        return
+    values = {}
+    for place, fields in card.rows():
+        if len(fields) > 1 and REAL.match(fields[1] or "0"):
+            values[real(fields[1] or "0", place)] = place
+    if len(values) == 1 and not card.options.get("FILE"):
+        reader.temperature = next(iter(values.items()))
+        reader.deck.note(card.place, f"*{card.keyword}: {next(iter(values)):g} chooses values of materials, and strains nothing")
+    else:
+        reader.deck.note(card.place, f"*{card.keyword}: temperatures that differ or come from a file: not taken")
+
+
 def other_rows(reader, card, rows):
     for place, _ in rows:
         reader.deck.note(place, f"*{card.keyword}: only the first line is taken")
@@ -50,7 +80,7 @@ def material_of(reader, card):
 
 
 def do_density(reader, _, card):
-    row, rest = first_row(card, 1)
+    row, rest = at_temperature(reader, card, 1)
     material_of(reader, card).density = row[0]
     if not row[0] > 0:
         raise card.place.wrong(f"density {row[0]:g} must be positive")
@@ -61,7 +91,7 @@ def do_elastic(reader, _, card):
     material, kind = material_of(reader, card), choice(card.options.get("TYPE", "ISOTROPIC"), *STIFFNESSES)
     rows = numbers(card)
     if kind == "ISOTROPIC":
-        row, rest = first_row(card, 2)
+        row, rest = at_temperature(reader, card, 2)
         material.young, material.poisson = (row[0],), (row[1],)
     elif kind in ("ENGINEERING CONSTANTS", "ORTHOTROPIC"):
         values, used = [], 0
@@ -93,8 +123,10 @@ def do_damping(reader, _, card):
     material.alpha = real(card.options.get("ALPHA") or "0", card.place)
     material.beta = real(card.options.get("BETA") or "0", card.place)
     if "STRUCTURAL" in card.options:
-        said = "is a loss factor, `loss_factor` with `-model_loss_frequency`"
-        reader.deck.note(card.place, f"*DAMPING, STRUCTURAL={card.options.pop('STRUCTURAL')}: {said}")
+        material.loss = real(card.options.pop("STRUCTURAL") or "0", card.place)
+        material.places["LOSS"] = card.place
+        if material.loss < 0:
+            raise card.place.wrong(f"*DAMPING, STRUCTURAL={material.loss:g} must not be negative")
 
 
 def read_axes(_, scope, card):
@@ -237,5 +269,6 @@ def finish_sections(deck):
     deck.sections = found
 
 
-CARDS = {"MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,
+CARDS = {"INITIAL CONDITIONS": do_temperature, "TEMPERATURE": do_temperature,
+         "MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,
          "DISTRIBUTION": do_distribution, "ORIENTATION": do_orientation, "SOLID SECTION": do_section, "SHELL SECTION": do_shell_section}

@@ -33,10 +33,12 @@ def do_boundary(reader, scope, card):
     if card.choose("OP", "MOD", "NEW", "MOD") == "NEW":
         reader.deck.note(card.place, "*BOUNDARY, OP=NEW: supports of earlier steps act no longer; see which you want")
         reader.supports = [row for row in reader.supports if row[0] == reader.steps]
+    factor = factor_of(reader, card)
     for place, fields in card.rows():
         nodes = reader_nodes(reader, scope, fields[0], place)
         word = fields[1].upper() if len(fields) > 1 else ""
         values = {d: 0.0 for d in HELD[word]} if word in HELD else boundary_values(reader, place, fields)
+        values = {d: factor * value for d, value in values.items()}
         name = "" if fields[0].isdigit() else set_name(reader, scope, fields[0])
         whole_set = len(nodes)
         if any(d not in values or values[d] for d in range(3)):
@@ -165,7 +167,7 @@ def do_interaction(reader, _, card):
 def do_friction(reader, _, card):
     if "ROUGH" in card.options:
         raise card.place.wrong("*FRICTION, ROUGH: squeal has no contact without slip; give mu")
-    row, rest = first_row(card, 1)
+    row, rest = friction_row(reader, card)
     values = reader.interactions.get(reader.interaction)
     if values is None:
         raise card.place.wrong("*FRICTION outside of a *SURFACE INTERACTION")
@@ -176,9 +178,29 @@ def do_friction(reader, _, card):
     values["mu"], values["friction"] = row[0], card.place
     if {"SLIP TOLERANCE", "ELASTIC SLIP"} & set(card.options):
         reader.deck.differ(card.place, "*FRICTION: slip that Abaqus allows a pair that sticks; Coulomb's law of squeal allows none")
+    if "EXPONENTIAL DECAY" in card.options:
+        card.options.pop("EXPONENTIAL DECAY")
+        if len(row) < 3 or not row[2] > 0 or row[1] < 0:
+            reader.deck.note(card.place, "*FRICTION, EXPONENTIAL DECAY: needs mu_s, mu_k and a positive decay; mu_s is taken")
+        else:
+            values["decay"] = row[0], row[1], 1 / row[2]
+        row = row[:1]
     if any(row[1:]):
         reader.deck.note(card.place, "*FRICTION: only the first number, mu, is taken")
     other_rows(reader, card, rest)
+
+
+def friction_row(reader, card):
+    """Numbers of the first line; of a table over pressure alone (mu, 0, pressure) or speed (mu, speed) this is said."""
+    row, rest = first_row(card, 1)
+    if not rest or "EXPONENTIAL DECAY" in card.options:
+        return row, rest
+    table = [[*values, 0.0, 0.0, 0.0][:4] for _, values in numbers(card)]
+    varies = [word for k, word in ((1, "slip rate"), (2, "pressure"), (3, "temperature")) if len({line[k] for line in table}) > 1]
+    values = ", ".join(f"{line[0]:g}" for line in table[:6])
+    reader.deck.note(card.place, f"*FRICTION: a table over {' and '.join(varies) or 'nothing'} (mu {values}{' ...' if table[6:] else ''}): "
+                                 f"modes are linear, the first, {row[0]:g}, is taken; give the mu of the scene's pressure and speed")
+    return row[:1], []
 
 
 def points_of(reader, card):
@@ -205,6 +227,13 @@ def do_behavior(reader, _, card):
             raise card.place.wrong("*SURFACE BEHAVIOR: the stiffness must be positive")
     elif kind == "TABULAR":
         values["points"] = points_of(reader, card)
+    elif kind == "EXPONENTIAL":
+        row = first_row(card, 2)[0]
+        if min(row[:2]) <= 0:
+            raise card.place.wrong("*SURFACE BEHAVIOR: clearance and pressure of the exponential law must be positive")
+        values["exponential"] = row[0], row[1]
+        reader.deck.differ(card.place, "*SURFACE BEHAVIOR, EXPONENTIAL: as Abaqus has it; CalculiX' law of this name is "
+                                       "another, p0 exp(ln(100) c / c0)")
     elif kind == "TIED":
         values["tied"] = True
     elif kind != "HARD":
@@ -251,6 +280,32 @@ def do_step(reader, _, card):
 
 def do_static(reader, _, card):
     reader.preload = card.place
+    rows = numbers(card)
+    reader.period = rows[0][1][1] if rows and len(rows[0][1]) > 1 and rows[0][1][1] > 0 else 1.0
+
+
+def do_amplitude(reader, _, card):
+    """Times and values, several in a line."""
+    kind = choice(card.options.pop("DEFINITION", "TABULAR"), "TABULAR", "EQUALLY SPACED", "SMOOTH STEP", "PERIODIC", "DECAY", "USER")
+    values = [value for _, row in numbers(card) for value in row]
+    if kind not in ("TABULAR", "SMOOTH STEP") or len(values) < 4 or len(values) % 2 or (numpy.diff(values[::2]) < 0).any():
+        reader.deck.note(card.place, f"*AMPLITUDE, DEFINITION={kind}: not understood; loads keep their size")
+        return
+    reader.amplitudes[card.need("NAME")] = numpy.array(values).reshape(-1, 2)
+
+
+def factor_of(reader, card):
+    """Size of what an amplitude scales, at the end of the step."""
+    name = label(card.options.pop("AMPLITUDE", ""))
+    if not name:
+        return 1.0
+    if name not in reader.amplitudes:
+        reader.deck.note(card.place, f"*{card.keyword}: amplitude {name} is not read: not scaled")
+        return 1.0
+    table = reader.amplitudes[name]
+    value = float(numpy.interp(reader.period, table[:, 0], table[:, 1]))
+    reader.deck.differ(card.place, f"*{card.keyword}: times {value:g}, the value of *AMPLITUDE {name} at the end of the step")
+    return value
 
 
 def do_frequency(reader, _, card):
@@ -311,13 +366,13 @@ def finish(reader):
                                         f"*CONTACT PAIR {contact.slave}, {contact.master}, tied"))
             continue
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
-        contact.points = values.get("points", ())
+        contact.points, contact.exponential, contact.decay = (values.get(name, ()) for name in ("points", "exponential", "decay"))
         reader.deck.contacts.append(contact)
     read_springs(reader)
     finish_steps(reader)
 
 
-CARDS = {"BOUNDARY": do_boundary, "SPRING": do_spring, "DASHPOT": do_spring, "TIE": do_tie,
+CARDS = {"AMPLITUDE": do_amplitude, "BOUNDARY": do_boundary, "SPRING": do_spring, "DASHPOT": do_spring, "TIE": do_tie,
          "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
          "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
          "FREQUENCY": do_frequency, "COMPLEX FREQUENCY": do_complex}

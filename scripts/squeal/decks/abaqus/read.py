@@ -16,7 +16,7 @@ from ..text import read_bytes, real, shorter
 DEEPEST = 10  # files that include each other
 BLANKS = re.compile(rb"^[ \t]+(?=\*)", re.MULTILINE)  # the first letter of a line of a keyword, but for blanks, is *
 PHASES = {"NODE": 0, "ELEMENT": 1, "NSET": 2, "ELSET": 2, "SURFACE": 3, "DISTRIBUTION": 3, "TRANSFORM": 3,
-          "ORIENTATION": 4}  # others last
+          "ORIENTATION": 4, "INITIAL CONDITIONS": 4, "TEMPERATURE": 4, "AMPLITUDE": 4}  # others last
 OUTPUT = {"NODE PRINT", "EL PRINT", "NODE FILE", "EL FILE", "NODE OUTPUT", "ELEMENT OUTPUT", "OUTPUT", "RESTART", "PREPRINT",
           "CONTACT FILE", "CONTACT PRINT", "CONTACT OUTPUT", "ENERGY OUTPUT", "ENERGY PRINT", "FILE FORMAT", "MONITOR",
           "SECTION PRINT", "PRINT", "MODAL FILE"}
@@ -24,7 +24,11 @@ ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONT
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
-INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this", "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
+INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this",
+           "PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
+           "BEAM SECTION": "let its program write a superelement of these elements",
+           "SHELL GENERAL SECTION": "its shells have no thickness",
+           "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
 # Options that change what a card says; others are listed
 KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPUT", "PARENT"},
@@ -33,6 +37,7 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "SURFACE": {"NAME", "TYPE", "INTERNAL"}, "TRANSFORM": {"NSET", "TYPE"},
          "MATERIAL": {"NAME"}, "DENSITY": set(), "DISTRIBUTION": {"NAME", "LOCATION", "TABLE"},
          "ELASTIC": {"TYPE"}, "DAMPING": {"ALPHA", "BETA"},
+         "INITIAL CONDITIONS": set(), "TEMPERATURE": {"OP"}, "AMPLITUDE": {"NAME", "TIME"},
          "SHELL SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "CONTROLS", "SECTION INTEGRATION", "POISSON"},
          "SOLID SECTION": {"ELSET", "MATERIAL", "ORIENTATION", "CONTROLS"}, "ORIENTATION": {"NAME", "SYSTEM", "DEFINITION"},
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "DASHPOT": {"ELSET"}, "MASS": {"ELSET"}, "ROTARY INERTIA": {"ELSET"},
@@ -217,6 +222,7 @@ class Reader:
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
         self.supports = []  # (step, Support) as they come
+        self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
 
     def axes_at(self, node):

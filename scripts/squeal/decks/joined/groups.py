@@ -16,7 +16,7 @@ FLAT = 1e-10  # of the largest moment of A: below it nothing tells the rotation
 SHARED = 3  # nodes not on one line that make one rigid body of two
 
 
-@dataclass
+@dataclass(eq=False)
 class Group:
     """Solid nodes, ascending, of a reference node at x; `how` is what becomes of it: point, held, or equations."""
     node: int

@@ -22,8 +22,9 @@ def read_shells(deck, mesh, tables):
         head[head[:, 1] == 0, 1] = head[head[:, 1] == 0, 0]
         found = numpy.isin(head[:, 1], list(known))
         if not found.all():
-            deck.note(table.place(int((~found).argmax())), f"{(~found).sum()} {table.name} without a PSHELL (of layers?): not in the "
-                                                           "scene; a superelement of their program may stand for them")
+            place = table.place(int((~found).argmax()))
+            deck.note(place, f"{(~found).sum()} {table.name} without a PSHELL (of layers?): not in the scene; a superelement of their "
+                             "program may stand for them")
         second = (nodes[:, corners:] > 0).all(axis=1) if n > corners else numpy.zeros(len(nodes), bool)
         part = found & ~second & (nodes[:, corners:] > 0).any(axis=1)
         if part.any():
@@ -44,7 +45,8 @@ def read_properties(deck, tables, mesh, properties, known_material):
         for row, number in enumerate(table.whole(0, 1)[:, 0].tolist()):
             place, words = table.place(row), table.words(row, 9)
             if number in properties:
-                raise place.wrong(f"property {number} stands twice")
+                deck.note(place, f"PSHELL {number}: another property has this number: not taken")
+                continue
             material = known_material(deck, int(words[1]) if words[1].isdigit() else 0, number, place)
             thickness = table.one_real(row, 2, words[2]) if words[2] else 0.0
             if words[3] not in ("", words[1]) or any(words[k] not in ("", "1.", "1.0") for k in (4,)) or words[6] not in ("", words[1]):
