@@ -8,8 +8,10 @@ NAME_front, NAME_back (y), NAME_bottom and NAME_top (z), and NAME_inside, the fa
 cells along x. KIND as in tests/solids.py. --cylinder bends planes of equal z into cylinders, that of z = 0 to the
 radius R: with s = R + z and angle = y / R, y becomes s sin(angle), z s cos(angle) - R. --lean L,COT leans planes of x >= L
 above z = 0 over to the left, by z COT, and those before in proportion to x, so that what ends at L is a wedge.
---join NAME=SET,SET makes a set of all faces of others. --crown NAME,R makes the bottom of a box a parabola, z higher by
-x^2 / (2 R), less above it and nothing at its top.
+--join NAME=SET,SET makes a set of all faces of others. --flush SET,FILE writes gaps of 0 at its nodes, as -contact_gap reads them.
+--crown NAME,R makes the bottom of a box a parabola, z higher by x^2 / (2 R), less above it and nothing at its top; --dome NAME,R likewise
+with x^2 + y^2. --grade KX,KY,KZ makes cells smaller towards x, y, z = 0 along axes whose K is not 0: x = L sinh(K s) / sinh(K) in place of
+x = L s, L the largest |x| of the box.
 """
 
 import argparse
@@ -48,6 +50,13 @@ def box(text, shift):
     return groups, x
 
 
+def grade(places, grades, text):
+    """Places with smaller cells towards 0."""
+    corners = np.array([[float(v) for v in corner.split(",")] for corner in text.split(":")[2:4]])
+    length, k = np.abs(corners).max(0), np.where(grades > 0, grades, 1)
+    return {p: np.where(grades > 0, length * np.sinh(k * v / np.where(length > 0, length, 1)) / np.sinh(k), v) for p, v in places.items()}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path)
@@ -55,15 +64,21 @@ def main():
     parser.add_argument("--cylinder", type=float, metavar="R")
     parser.add_argument("--lean", default="0,0", metavar="L,COT")
     parser.add_argument("--crown", default=",1", metavar="NAME,R")
+    parser.add_argument("--dome", default=",1", metavar="NAME,R")
+    parser.add_argument("--grade", default="0,0,0", metavar="KX,KY,KZ")
+    parser.add_argument("--flush", metavar="SET,FILE")
     parser.add_argument("--join", action="append", default=[], metavar="NAME=SET,SET")
     args = parser.parse_args()
     groups, x = [], {}
+    grades = np.array([float(k) for k in args.grade.split(",")])
     for i, text in enumerate(args.boxes):
         more, places = box(text, 100000 * i)
-        crown, radius = args.crown.split(",")
-        if text.split(":")[0] == crown:
-            low, high = (float(corner.split(",")[2]) for corner in text.split(":")[2:4])
-            places = {p: v + np.array([0, 0, v[0]**2 / (2 * float(radius)) * (high - v[2]) / (high - low)]) for p, v in places.items()}
+        places = grade(places, grades, text)
+        for axes, (curved, radius) in ((1, args.crown.split(",")), (2, args.dome.split(","))):
+            if text.split(":")[0] == curved:
+                low, high = (float(corner.split(",")[2]) for corner in text.split(":")[2:4])
+                places = {p: v + np.array([0, 0, np.sum(v[:axes]**2) / (2 * float(radius)) * (high - v[2]) / (high - low)])
+                          for p, v in places.items()}
         groups += more
         x.update(places)
     for name, sets in (text.split("=") for text in args.join):
@@ -75,6 +90,13 @@ def main():
         for p, (a, y, z) in x.items():
             s, angle = args.cylinder + z, y / args.cylinder
             x[p] = np.array([a, s * np.sin(angle), s * np.cos(angle) - args.cylinder])
+    if args.flush:
+        name, file = args.flush.split(",")
+        kind = next(text.split(":")[1] for text in args.boxes if name.startswith(text.split(":")[0] + "_"))
+        corners = [face for _, other, members in groups if other == name for _, face in members]
+        places = [np.concatenate([f, (f + np.roll(f, 1, 0)) // 2, f.mean(0, keepdims=True).astype(int)]) for f in corners]
+        nodes = {tuple(node) for face in places for node in face[:{"hex8": 4, "hex20": 8, "hex27": 9}[kind]].tolist()}
+        Path(file).write_text("x_m,y_m,z_m,gap_m\n" + "".join("{:.17g},{:.17g},{:.17g},0\n".format(*x[node]) for node in sorted(nodes)))
     write(args.file, "2.2", x, groups, None)
 
 
