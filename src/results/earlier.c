@@ -45,6 +45,7 @@ static const struct {
   {"parameters.csv", NULL},
   {"samples.csv", NULL},
   {"samples_modes.csv", NULL},
+  {"samples_verify.csv", NULL},
   {"probability.csv", NULL},
   {"indices.csv", NULL},
   {"frf.csv", NULL},

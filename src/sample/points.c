@@ -13,6 +13,8 @@
 #define SAMPLE_ROUNDS 6
 /* Points of each rank that are solved before their modes are sent */
 #define BATCH 50
+/* Points from which on a model of fewer vectors is worth its making */
+#define SAMPLE_MANY 300
 /* Halvings of the way from the nominal point, where branches are in doubt */
 #define FOLLOW_DEPTH 3
 
@@ -44,43 +46,75 @@ static PetscErrorCode BasisGrow(Sample s, PetscInt n, const PetscInt list[])
   PetscCall(PetscArraycpy(points, s->box.nominal, n_parameters));
   for (PetscInt i = 0; i < n_train; i++) PetscCall(SampleParameters(s, list[i], &points[(i + 1) * n_parameters]));
   PetscCall(BoxFit(&s->box, n_train + 1, points));
+  if (s->n_points >= SAMPLE_MANY) PetscCall(BoxCompress(&s->box, n_train + 1, points));
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }
 
-/* The modes of the nominal point on the present basis, alike on all ranks */
+/* The modes of the nominal point on the present basis, alike on all ranks, and on the model of fewer vectors, which
+   goes where it has others */
 static PetscErrorCode NominalSolve(Sample s)
 {
+  PetscBool same = PETSC_TRUE;
+
   PetscFunctionBeginUser;
   PetscCall(ReducedModesDestroy(&s->nominal));
-  PetscCall(BoxSolve(&s->box, s->box.nominal, &s->nominal));
+  PetscCall(ReducedModesDestroy(&s->small));
+  PetscCall(BoxSolve(&s->box, PETSC_FALSE, s->box.nominal, &s->nominal));
   PetscCall(ReducedModesBroadcast(s->comm, 0, &s->nominal));
+  if (!s->box.small.n_used) PetscFunctionReturn(0);
+  PetscCall(BoxSolve(&s->box, PETSC_TRUE, s->box.nominal, &s->small));
+  if (s->small.n != s->nominal.n) same = PETSC_FALSE;
+  for (PetscInt k = 0; k < s->nominal.n && same; k++)
+    if (BoxHolds(&s->box, s->nominal.lambda[k]) &&
+        cabs(s->small.lambda[k] - s->nominal.lambda[k]) > s->small.error[k] + s->nominal.error[k])
+      same = PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPIU_BOOL, MPI_LAND, s->comm));
+  if (!same) PetscCall(BoxForgetSmall(&s->box.small));
   PetscFunctionReturn(0);
 }
 
-/* Solves a point, and finds its branches from the nominal modes */
-static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
+PetscErrorCode SampleModesAt(Sample s, const PetscReal p[], ReducedModes *modes, PetscInt **branch)
 {
-  Box         *box = &s->box;
-  ReducedModes modes;
-  PetscReal   *p;
-  PetscInt    *branch, *all;
+  Box      *box   = &s->box;
+  PetscBool small = box->small.n_used ? PETSC_TRUE : PETSC_FALSE;
+  PetscInt *all;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(box->n_parameters, &p));
-  PetscCall(SampleParameters(s, i, p));
-  PetscCall(BoxSolve(box, p, &modes));
-  PetscCall(PetscMalloc2(modes.n, &branch, s->nominal.n, &all));
+  if (small) {
+    PetscCall(BoxSolve(box, PETSC_TRUE, p, modes));
+    small = ReducedModesWorst(modes, &box->window, PETSC_FALSE) <= box->rtol ? PETSC_TRUE : PETSC_FALSE;
+    if (!small) PetscCall(ReducedModesDestroy(modes));
+  }
+  if (!small) PetscCall(BoxSolve(box, PETSC_FALSE, p, modes));
+  s->n_large += small ? 0 : 1;
+  PetscCall(PetscMalloc1(modes->n, branch));
+  PetscCall(PetscMalloc1(s->nominal.n, &all));
   for (PetscInt k = 0; k < s->nominal.n; k++) all[k] = k;
-  PetscCall(BoxFollow(box, &(BoxModes){box->nominal, &s->nominal, all}, &(BoxModes){p, &modes, branch}, FOLLOW_DEPTH,
-                      &s->n_divided));
+  PetscCall(BoxFollow(box, &(BoxModes){box->nominal, small ? &s->small : &s->nominal, all},
+                      &(BoxModes){p, modes, *branch}, FOLLOW_DEPTH, &s->n_divided));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
+/* Solves a point, and finds its branches */
+static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
+{
+  ReducedModes modes;
+  PetscReal   *p;
+  PetscInt    *branch;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->box.n_parameters, &p));
+  PetscCall(SampleParameters(s, i, p));
+  PetscCall(SampleModesAt(s, p, &modes, &branch));
   PetscCall(PetscMalloc1(modes.n, &point->mode));
   point->n     = 0;
-  point->worst = ReducedModesWorst(&modes, &box->window, PETSC_FALSE);
+  point->worst = ReducedModesWorst(&modes, &s->box.window, PETSC_FALSE);
   for (PetscInt k = 0; k < modes.n; k++)
-    if (BoxHolds(box, modes.lambda[k]))
+    if (BoxHolds(&s->box, modes.lambda[k]))
       point->mode[point->n++] = (SampleMode){creal(modes.lambda[k]), cimag(modes.lambda[k]), modes.error[k], branch[k]};
-  PetscCall(PetscFree2(branch, all));
+  PetscCall(PetscFree(branch));
   PetscCall(ReducedModesDestroy(&modes));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);

@@ -52,6 +52,8 @@ static const Quantity rows[] = {
    SAMPLE_AT(box.rtol), .initial = 1e-6, QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE},
   {"-sample_max_solutions", "most full solutions", NULL, QUANTITY_INT, SAMPLE_AT(box.max_solutions), .initial = 100,
    QUANTITY_POSITIVE},
+  {"-sample_verify", "compare with full solutions at this many of the samples", NULL, QUANTITY_INT, SAMPLE_AT(n_verify),
+   QUANTITY_NOT_NEGATIVE},
   {"-sample_groups", "ranks that share the samples (0: all; the full solutions use all ranks)", NULL, QUANTITY_INT,
    SAMPLE_AT(box.n_groups), QUANTITY_NOT_NEGATIVE},
 };

@@ -94,6 +94,7 @@ PetscErrorCode SampleSolve(Sample s, Results results)
   PetscCall(PetscTime(&ended));
   s->seconds[0] = ended - begun;
   PetscCall(SampleBranches(s));
+  PetscCall(SampleVerify(s));
   PetscFunctionReturn(0);
 }
 
@@ -116,8 +117,10 @@ PetscErrorCode SampleDestroy(Sample *sample)
   PetscCall(PetscFree(s->point));
   PetscCall(PetscFree(s->variable));
   PetscCall(PetscFree(s->factor));
+  PetscCall(PetscFree(s->check));
   PetscCall(PetscFree(s->branch));
   PetscCall(ReducedModesDestroy(&s->nominal));
+  PetscCall(ReducedModesDestroy(&s->small));
   PetscCall(SequenceDestroy(&s->sequence));
   PetscCall(BoxDestroy(&s->box));
   PetscCall(PetscFree(*sample));

@@ -7,6 +7,7 @@
 #include "statistics/estimate.h"
 #include "statistics/indices.h"
 #include "sweep/box/box.h"
+#include "sweep/full/compare.h"
 
 #define SAMPLE_MAX_VARIABLES (SOBOL_DIMENSIONS / 2) /* the design of the indices takes two dimensions for each */
 #define SAMPLE_MAX_TEXT      4096
@@ -45,9 +46,11 @@ typedef struct {
 } SampleBranch;
 
 struct _p_Sample {
-  MPI_Comm  comm;
-  Operators operators;
-  Box       box;
+  PetscInt   n_verify; /* full solutions to compare with */
+  FullCheck *check;    /* [n_verify] */
+  MPI_Comm   comm;
+  Operators  operators;
+  Box        box;
   /* set by options */
   PetscInt        n_variables;
   SampleVariable *variable;
@@ -59,11 +62,12 @@ struct _p_Sample {
   Sequence       sequence;
   PetscReal     *factor; /* [n_variables][n_variables] L of the correlations L L', or NULL */
   PetscInt       n_points;
-  SamplePoint   *point;      /* [n_points] the samples, then the rest of the design */
-  ReducedModes   nominal;    /* whose modes are the branches */
-  SampleBranch  *branch;     /* [nominal.n + 1] */
-  PetscInt       n_divided;  /* solutions that following the branches took */
-  PetscLogDouble seconds[2]; /* basis, points */
+  SamplePoint   *point;          /* [n_points] the samples, then the rest of the design */
+  ReducedModes   nominal, small; /* whose modes are the branches; the same on the model of fewer vectors */
+  PetscInt       n_large;        /* points that were solved on the whole basis */
+  SampleBranch  *branch;         /* [nominal.n + 1] */
+  PetscInt       n_divided;      /* solutions that following the branches took */
+  PetscLogDouble seconds[2];     /* basis, points */
 };
 
 extern const QuantityTable sample_quantities;
@@ -77,6 +81,12 @@ PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal va
 PETSC_INTERN PetscErrorCode SampleParameters(Sample sample, PetscInt i, PetscReal p[]);
 /* points.c - the basis and all points on it */
 PETSC_INTERN PetscErrorCode SamplePoints(Sample sample);
+/* Modes at p on the model of fewer vectors, where it is good enough, or on the whole basis; their branches [modes->n]
+   from the nominal modes, freed by the caller. Not collective. */
+PETSC_INTERN PetscErrorCode SampleModesAt(Sample sample, const PetscReal p[], ReducedModes *modes, PetscInt **branch);
+/* verify.c - full solutions at some samples; which one the k-th is */
+PETSC_INTERN PetscErrorCode SampleVerify(Sample sample);
+PETSC_INTERN PetscInt       SampleVerified(Sample sample, PetscInt k);
 /* branches.c - the mode of a branch at a point, NULL where it has none; branch nominal.n: the mode that grows fastest;
    all branches */
 PETSC_INTERN const SampleMode *SampleFind(Sample sample, PetscInt i, PetscInt branch);

@@ -32,6 +32,28 @@ static PetscInt ModesLost(Sample s, PetscInt *n)
   return lost;
 }
 
+/* True errors beside their estimates */
+static PetscErrorCode VerifiedView(Sample s, PetscViewer viewer)
+{
+  PetscReal error = 0, ratio = 0;
+  PetscInt  n = 0, n_beyond = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->n_verify; k++) {
+    error = PetscMax(error, s->check[k].error);
+    ratio = PetscMax(ratio, s->check[k].ratio);
+    n += s->check[k].n_full;
+    n_beyond += s->check[k].n_beyond;
+  }
+  if (s->n_verify)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "checked by full solutions at %" PetscInt_FMT
+                                     " samples: largest true error %.1e, at most %.2g of what is stated; "
+                                     "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond it\n",
+                                     s->n_verify, (double)error, (double)ratio, n_beyond, n));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SampleView(Sample s, PetscViewer viewer)
 {
   static const char *const sequences[] = {"of a scrambled Sobol sequence", "of a Latin hypercube", "drawn at random"};
@@ -61,6 +83,11 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
                                      "basis of %" PetscInt_FMT " vectors from %" PetscInt_FMT
                                      " full solutions; largest estimated error %.1e (an estimate, not a bound)\n",
                                      s->box.basis.reduced.n_used, s->box.greedy.n_samples, (double)worst));
+  if (s->box.small.n_used)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "most points on %" PetscInt_FMT " vectors made of these, %" PetscInt_FMT " on all\n", s->box.small.n_used,
+      s->n_large));
+  PetscCall(VerifiedView(s, viewer));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "time: basis and samples %.2f s, %" PetscInt_FMT " points, %" PetscInt_FMT " between for branches\n",
     s->seconds[0], s->n_points, s->n_divided));

@@ -174,9 +174,33 @@ static PetscErrorCode IndicesWrite(Sample s, Results results)
   PetscFunctionReturn(0);
 }
 
+/* Samples beside full solutions */
+static PetscErrorCode SamplesVerifyWrite(Sample s, Results results)
+{
+  ResultsTable table;
+
+  PetscFunctionBeginUser;
+  if (!s->n_verify) PetscFunctionReturn(0);
+  PetscCall(ResultsTableOpen(results, "samples_verify",
+                             "sample,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,error_estimate,"
+                             "freq_hz,full_error,modes_beyond_error,worst_ratio",
+                             &table));
+  for (PetscInt k = 0; k < s->n_verify; k++) {
+    const FullCheck *c = &s->check[k];
+
+    PetscCall(ResultsTableRow(table, "%d,%d,%d,%d,%d,%.15g,%.15g,%.15g,%.15g,%d,%.15g", (int)SampleVerified(s, k) + 1,
+                              (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced,
+                              (double)c->error, (double)c->estimate, (double)(c->omega / (2 * PETSC_PI)),
+                              (double)c->full, (int)c->n_beyond, (double)c->ratio));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SampleWrite(Sample s, Results results)
 {
   PetscFunctionBeginUser;
+  PetscCall(SamplesVerifyWrite(s, results));
   PetscCall(SamplesWrite(s, results));
   PetscCall(ModesRows(s, results));
   PetscCall(ProbabilityWrite(s, results));

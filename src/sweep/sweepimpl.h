@@ -8,6 +8,7 @@
 #include "sweep/grid/status.h"
 #include "sweep/track/track.h"
 #include "sweep/grid/grid.h"
+#include "sweep/full/compare.h"
 
 #define SWEEP_MAX_TEXT      65536 /* length of a list of values */
 #define SWEEP_MAX_UNCERTAIN 16
@@ -42,12 +43,7 @@ typedef struct {
 /* True errors at a point that the basis has never seen */
 typedef struct {
   SweepPlace at;
-  PetscInt   n_full, n_reduced, n_unstable_full, n_unstable_reduced;
-  PetscReal  error, estimate; /* largest relative ones: distance, estimate of the reduced model */
-  PetscReal  full;            /* largest relative error that the full solution itself states */
-  PetscInt   n_beyond;        /* modes whose true error exceeds what both solutions state */
-  PetscReal  ratio;           /* largest true error beside what both state */
-  PetscReal  omega;           /* rad/s, where the true error is largest */
+  FullCheck  found;
 } SweepCheck;
 
 /* Which modes can become unstable when parameters are uncertain */

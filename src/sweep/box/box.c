@@ -95,14 +95,40 @@ PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxSolve(const Box *box, const PetscReal p[], ReducedModes *modes)
+/* The window and a little more */
+static ReducedWindow WindowGuarded(const Box *box)
 {
   ReducedWindow guarded = box->window;
 
-  PetscFunctionBeginUser;
   guarded.low  = guarded.low < 0.5 * guarded.high ? 0 : guarded.low * (1 - BOX_GUARD);
   guarded.high = guarded.high * (1 + BOX_GUARD);
-  PetscCall(PointStoreSolve(NULL, &box->basis.reduced, &guarded, p, modes));
+  return guarded;
+}
+
+/* Errors on few vectors are those beside the basis, and its own */
+PetscErrorCode BoxSolve(const Box *box, PetscBool small, const PetscReal p[], ReducedModes *modes)
+{
+  const ReducedWindow guarded = WindowGuarded(box);
+
+  PetscFunctionBeginUser;
+  PetscCall(PointStoreSolve(NULL, small ? &box->small : &box->basis.reduced, &guarded, p, modes));
+  for (PetscInt i = 0; i < modes->n && small; i++) modes->error[i] += box->greedy.worst * cabs(modes->lambda[i]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxSolveAll(const Box *box, PetscInt n, const PetscReal points[], ReducedModes modes[])
+{
+  const ReducedWindow guarded = WindowGuarded(box);
+  PetscMPIInt         rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(box->comm, &rank));
+  PetscCall(PetscMemzero(modes, (size_t)n * sizeof(*modes)));
+  for (PetscInt i = 0; i < n; i++)
+    if (PointGroupsOwner(&box->groups, i) == rank)
+      PetscCall(ReducedSolve(&box->basis.reduced, &points[i * box->n_parameters], &guarded, &modes[i]));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(ReducedModesBroadcast(box->comm, PointGroupsOwner(&box->groups, i), &modes[i]));
   PetscFunctionReturn(0);
 }
 
@@ -130,6 +156,12 @@ static PetscBool BranchesLack(const Box *box, const BoxModes *a, const BoxModes 
   return lonely_a && lonely_b ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Whether modes are those of the model of fewer vectors */
+static PetscBool BoxIsSmall(const Box *box, const ReducedModes *modes)
+{
+  return modes->size == box->small.n_used ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* By way of the middle, in two halves */
 static PetscErrorCode FollowDivided(const Box *box, const BoxModes *a, BoxModes *b, int depth, PetscInt *n_solved)
 {
@@ -141,7 +173,7 @@ static PetscErrorCode FollowDivided(const Box *box, const BoxModes *a, BoxModes 
   PetscCall(PetscMalloc1(box->n_parameters, &p));
   for (PetscInt k = 0; k < box->n_parameters; k++) p[k] = 0.5 * (a->p[k] + b->p[k]);
   middle.p = p;
-  PetscCall(BoxSolve(box, p, &modes));
+  PetscCall(BoxSolve(box, BoxIsSmall(box, a->modes), p, &modes));
   ++*n_solved;
   PetscCall(PetscMalloc1(modes.n, &middle.branch));
   PetscCall(BoxFollow(box, a, &middle, depth - 1, n_solved));
@@ -158,7 +190,8 @@ PetscErrorCode BoxFollow(const Box *box, const BoxModes *a, BoxModes *b, int dep
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(b->modes->n, &from));
-  PetscCall(TrackSure(&box->basis.reduced, (const PetscReal *[]){a->p, b->p}, a->modes, b->modes, from));
+  PetscCall(TrackSure(BoxIsSmall(box, a->modes) ? &box->small : &box->basis.reduced, (const PetscReal *[]){a->p, b->p},
+                      a->modes, b->modes, from));
   if (depth > 0 && BranchesLack(box, a, b, from)) {
     PetscCall(FollowDivided(box, a, b, depth, n_solved));
   } else {
@@ -168,10 +201,24 @@ PetscErrorCode BoxFollow(const Box *box, const BoxModes *a, BoxModes *b, int dep
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BoxForgetSmall(Reduced *small)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0; t < small->n_terms && small->A; t++) {
+    PetscCall(PetscFree(small->A[t]));
+    PetscCall(PetscFree(small->D[t]));
+  }
+  PetscCall(PetscFree(small->A));
+  PetscCall(PetscFree(small->D));
+  *small = (Reduced){0};
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BoxDestroy(Box *box)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(box->nominal));
+  PetscCall(BoxForgetSmall(&box->small));
   PetscCall(GreedyDestroy(&box->greedy));
   PetscCall(BasisDestroy(&box->basis));
   PetscCall(PencilDestroy(&box->pencil));

@@ -28,6 +28,7 @@ typedef struct {
   PointGroups   groups;
   Progress      progress;
   PetscBool     whole; /* the basis is the whole space: no error but rounding */
+  Reduced       small; /* of fewer vectors, for many points; n_used is 0 where there is none */
 } Box;
 
 /* The pencil, and the basis where it is the whole space. Collective.
@@ -36,8 +37,16 @@ PETSC_INTERN PetscErrorCode BoxSetUp(Box *box);
 /* Enlarges the basis until all n points [n][n_parameters] are estimated within rtol, the first of them by the
    eigensolver. Collective. Errors: PETSC_ERR_NOT_CONVERGED. */
 PETSC_INTERN PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[]);
-/* Modes of one point with estimated errors, in the window or a little beyond it (guarded). Not collective. */
-PETSC_INTERN PetscErrorCode BoxSolve(const Box *box, const PetscReal p[], ReducedModes *modes);
+/* compress.c - makes a model of fewer vectors from the modes of some of the points, estimated within rtol at all of
+   them; none where that saves nothing. Collective. */
+PETSC_INTERN PetscErrorCode BoxCompress(Box *box, PetscInt n, const PetscReal points[]);
+/* Frees it. Not collective. */
+PETSC_INTERN PetscErrorCode BoxForgetSmall(Reduced *small);
+/* Modes of one point with estimated errors, in the window or a little beyond it (guarded), on the basis or on the model
+   of fewer vectors, `small`. Not collective. */
+PETSC_INTERN PetscErrorCode BoxSolve(const Box *box, PetscBool small, const PetscReal p[], ReducedModes *modes);
+/* The same of n points on the basis, without errors, shared among the ranks, alike on all. Collective. */
+PETSC_INTERN PetscErrorCode BoxSolveAll(const Box *box, PetscInt n, const PetscReal points[], ReducedModes modes[]);
 /* Whether an eigenvalue is in the window itself. Not collective. */
 PETSC_INTERN PetscBool BoxHolds(const Box *box, PetscComplex lambda);
 /* Modes at a point with all parameters p, and the branch [modes->n] of each */
@@ -48,6 +57,6 @@ typedef struct {
 } BoxModes;
 /* Branch of each mode of b from those of a; -1 for those that are none of a's for certain. Where a mode on either side
    is left without partner the way between is divided, `depth` times at most. n_solved grows by the solutions that took.
-   Not collective. */
+   Modes are those of the basis, or of `small`, by their size. Not collective. */
 PETSC_INTERN PetscErrorCode BoxFollow(const Box *box, const BoxModes *a, BoxModes *b, int depth, PetscInt *n_solved);
 PETSC_INTERN PetscErrorCode BoxDestroy(Box *box);

@@ -3,6 +3,7 @@
    results at points that the basis has never seen, half way between those of the sweep.
 */
 #include "follow.h"
+#include "compare.h"
 
 /* The modes that were found at place i of the line */
 static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
@@ -99,70 +100,6 @@ PetscErrorCode SweepBrute(Sweep sweep)
   PetscFunctionReturn(0);
 }
 
-/* Largest distance of a full eigenvalue in the window from the nearest reduced one, relative, and the frequency where
-   it is */
-static PetscReal LargestDistance(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced,
-                                 PetscReal *omega)
-{
-  PetscReal largest = 0;
-
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
-    PetscReal          nearest = PETSC_MAX_REAL;
-
-    if (full[i].rigid || PetscAbsReal(full[i].sigma) > growth) continue;
-    for (PetscInt k = 0; k < reduced->n; k++) nearest = PetscMin(nearest, cabs(reduced->lambda[k] - lambda));
-    if (nearest <= largest * cabs(lambda)) continue;
-    largest = nearest / cabs(lambda);
-    *omega  = full[i].omega;
-  }
-  return largest;
-}
-
-/* ratio = |lambda_full - lambda_reduced| / (error_full + error_reduced), the largest of all modes, and how many
-   exceed 1. A NaN counts as exceeding, hence the comparisons by !(<=). */
-static void CheckRatios(PetscInt n, const Mode full[], PetscReal growth, const ReducedModes *reduced, SweepCheck *check)
-{
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscComplex lambda  = CMPLX(full[i].sigma, full[i].omega);
-    PetscReal          nearest = PETSC_MAX_REAL, stated = 1, ratio;
-
-    if (full[i].rigid || !reduced->n || PetscAbsReal(full[i].sigma) > growth) continue;
-    for (PetscInt k = 0; k < reduced->n; k++) {
-      const PetscReal distance = cabs(reduced->lambda[k] - lambda);
-
-      if (distance < nearest) nearest = distance, stated = reduced->error[k] + full[i].error;
-    }
-    ratio = nearest / stated;
-    if (!(ratio <= 1)) check->n_beyond++;
-    if (!(ratio <= check->ratio)) check->ratio = ratio;
-  }
-}
-
-/* How many modes each solution has of those that both must have, how many grow, and the largest error that the full one
-   states */
-static void CheckCountModes(Sweep sweep, PetscInt n, const Mode full[], const ReducedModes *reduced, SweepCheck *check)
-{
-  const PetscReal   growth = sweep->window.growth;
-  const ModesLimit *limit  = &sweep->limit;
-
-  for (PetscInt i = 0; i < n; i++) {
-    if (PetscAbsReal(full[i].sigma) > growth) continue;
-    check->n_full++;
-    check->n_unstable_full += ModesLimitJudge(limit, full[i].sigma, full[i].omega, full[i].error) == MODE_UNSTABLE;
-    if (!full[i].rigid) check->full = PetscMax(check->full, full[i].error / hypot(full[i].sigma, full[i].omega));
-  }
-  for (PetscInt k = 0; k < reduced->n; k++) {
-    const PetscReal omega = cimag(reduced->lambda[k]);
-
-    if (omega < sweep->window.low || omega > sweep->window.high || PetscAbsReal(creal(reduced->lambda[k])) > growth)
-      continue;
-    check->n_reduced++;
-    check->n_unstable_reduced +=
-      ModesLimitJudge(limit, creal(reduced->lambda[k]), omega, reduced->error[k]) == MODE_UNSTABLE;
-  }
-}
-
 /* Compares the two at the point of the check, by what both must have: growth and decay as asked for, |sigma|; the
    reduced window is a little wider, for modes on its edge */
 static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
@@ -185,10 +122,8 @@ static PetscErrorCode CheckPoint(Sweep sweep, SweepCheck *check)
   PetscCall(PetscFree(p));
   PetscCall(ModesSolve(sweep->modes));
   PetscCall(ModesGet(sweep->modes, &n, &full));
-  CheckCountModes(sweep, n, full, &reduced, check);
-  CheckRatios(n, full, growth, &reduced, check);
-  check->error    = LargestDistance(n, full, growth, &reduced, &check->omega);
-  check->estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
+  FullCompare(&sweep->window, &sweep->limit, n, full, &reduced, &check->found);
+  check->found.estimate = sweep->method == SWEEP_REAL ? NAN : ReducedModesWorst(&reduced, &sweep->window, PETSC_TRUE);
   PetscCall(ReducedModesDestroy(&reduced));
   PetscFunctionReturn(0);
 }

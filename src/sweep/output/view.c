@@ -133,7 +133,7 @@ static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
-    const SweepCheck *c = &sweep->check[i];
+    const FullCheck *c = &sweep->check[i].found;
 
     error    = PetscMax(error, c->error);
     estimate = PetscMax(estimate, c->estimate);

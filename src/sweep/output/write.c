@@ -122,13 +122,14 @@ static PetscErrorCode CheckRows(Sweep sweep, ResultsTable table)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < sweep->n_checks; i++) {
-    const SweepCheck *c = &sweep->check[i];
+    const FullCheck *c = &sweep->check[i].found;
 
-    PetscCall(ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g,%d,%s", (double)c->at.value[0],
-                              NumberOrEmpty(sweep->grid.n_axes == 2 ? c->at.value[1] : NAN).text, (int)c->n_full,
-                              (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error,
-                              NumberOrEmpty(c->estimate).text, (double)(c->omega / (2 * PETSC_PI)), (double)c->full,
-                              (int)c->n_beyond, NumberOrEmpty(sweep->method == SWEEP_REAL ? NAN : c->ratio).text));
+    PetscCall(
+      ResultsTableRow(table, "%.15g,%s,%d,%d,%d,%d,%.15g,%s,%.15g,%.15g,%d,%s", (double)sweep->check[i].at.value[0],
+                      NumberOrEmpty(sweep->grid.n_axes == 2 ? sweep->check[i].at.value[1] : NAN).text, (int)c->n_full,
+                      (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error,
+                      NumberOrEmpty(c->estimate).text, (double)(c->omega / (2 * PETSC_PI)), (double)c->full,
+                      (int)c->n_beyond, NumberOrEmpty(sweep->method == SWEEP_REAL ? NAN : c->ratio).text));
   }
   PetscFunctionReturn(0);
 }
