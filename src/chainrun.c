@@ -153,9 +153,48 @@ static PetscErrorCode ChainAddCycle(Chain *chain, unsigned *does)
   PetscFunctionReturn(0);
 }
 
-/* A step of an analysis that is one call */
+/* The run in time */
+static PetscErrorCode ChainViewTransient(Chain *chain, PetscViewer viewer)
+{
+  PetscBool reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedIsAsked(chain->reduced, &reduced));
+  PetscCall(OperatorsViewOmitted(chain->operators, viewer));
+  if (reduced)
+    PetscCall(ReducedView(chain->reduced, viewer));
+  else
+    PetscCall(DynamicsView(chain->dynamics, viewer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainViewModes(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StaticsViewWear(chain->statics, viewer));
+  PetscCall(ModesView(chain->modes, viewer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ChainViewFrf(Chain *chain, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StaticsViewWear(chain->statics, viewer));
+  PetscCall(FrfView(chain->frf, viewer));
+  PetscFunctionReturn(0);
+}
+
+/* A step of an analysis that is one call, and a view */
 #define STEP(name, call)                                                                                               \
   static PetscErrorCode name(Chain *chain)                                                                             \
+  {                                                                                                                    \
+    PetscFunctionBeginUser;                                                                                            \
+    PetscCall(call);                                                                                                   \
+    PetscFunctionReturn(0);                                                                                            \
+  }
+
+#define SHOW(name, call)                                                                                               \
+  static PetscErrorCode name(Chain *chain, PetscViewer viewer)                                                         \
   {                                                                                                                    \
     PetscFunctionBeginUser;                                                                                            \
     PetscCall(call);                                                                                                   \
@@ -175,26 +214,32 @@ STEP(ChainSolveFrf, FrfSolve(chain->frf))
 STEP(ChainSolveMap, MapSolve(chain->map, chain->results))
 STEP(ChainJudgeMap, MapJudge(chain->map))
 STEP(ChainSolveCycle, CycleSolve(chain->cycle, chain->results))
+SHOW(ChainViewStatics, StaticsView(chain->statics, viewer))
+SHOW(ChainViewSweep, SweepView(chain->sweep, viewer))
+SHOW(ChainViewSample, SampleView(chain->sample, viewer))
+SHOW(ChainViewMap, MapView(chain->map, viewer))
+SHOW(ChainViewCycle, CycleView(chain->cycle, viewer))
 
 /* The bits of `does` hold in every such run; what hangs on options add() and scope.c add. Those in time write as they
    go, and look for checkpoints before they begin */
 #define LINEAR (USES_DAMPING | USES_SPIN)
 const AnalysisRow chain_analyses[N_ANALYSES] = {
-  [ANALYSIS_MODES]     = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, .uses = LINEAR},
-  [ANALYSIS_SWEEP]     = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep,
-                          .add = ChainAddSweep, .uses = LINEAR},
-  [ANALYSIS_STATIC]    = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics,
-                          .does = RUN_EQUILIBRIUM, .uses = USES_LOADS},
-  [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainJudgeReduced,
-                          .does = RUN_HISTORY, .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
-  [ANALYSIS_FRF]    = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, .does = RUN_EPS | RUN_PEP,
-                       .uses = LINEAR | USES_PLACES},
-  [ANALYSIS_MAP]    = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainJudgeMap,
-                       .uses = USES_LOADS | USES_DAMPING},
-  [ANALYSIS_CYCLE]  = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, .add = ChainAddCycle,
+  [ANALYSIS_MODES]  = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, ChainViewModes,
+                       .uses = LINEAR},
+  [ANALYSIS_SWEEP]  = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep, ChainViewSweep,
+                       .add = ChainAddSweep, .uses = LINEAR},
+  [ANALYSIS_STATIC] = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics, ChainViewStatics,
+                       .does = RUN_EQUILIBRIUM, .uses = USES_LOADS},
+  [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainViewTransient,
+                          ChainJudgeReduced, .does = RUN_HISTORY, .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
+  [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, ChainViewFrf,
+                          .does = RUN_EPS | RUN_PEP, .uses = LINEAR | USES_PLACES},
+  [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainViewMap, ChainJudgeMap,
+                          .uses = USES_LOADS | USES_DAMPING},
+  [ANALYSIS_CYCLE]  = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, ChainViewCycle, .add = ChainAddCycle,
                        .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
   [ANALYSIS_SAMPLE] = {SQUEAL_SWEEP, SHOWN_SAMPLE, ChainForgetPencil, ChainSolveSample, ChainWriteSample,
-                       .add = ChainAddSample, .uses = LINEAR},
+                       ChainViewSample, .add = ChainAddSample, .uses = LINEAR},
   [ANALYSIS_CHECK]  = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
 };
 

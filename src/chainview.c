@@ -10,21 +10,6 @@ static PetscBool ChainShows(const Chain *chain, Shown what)
   return !in || in >> chain->analysis & 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The run in time */
-static PetscErrorCode TransientView(Chain *chain, PetscViewer viewer)
-{
-  PetscBool reduced;
-
-  PetscFunctionBeginUser;
-  PetscCall(ReducedIsAsked(chain->reduced, &reduced));
-  PetscCall(OperatorsViewOmitted(chain->operators, viewer));
-  if (reduced)
-    PetscCall(ReducedView(chain->reduced, viewer));
-  else
-    PetscCall(DynamicsView(chain->dynamics, viewer));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
 {
   Scope scope;
@@ -37,15 +22,8 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));
   if (what == SHOWN_OPERATORS) PetscCall(ChainLinearise(chain));
   if (what == SHOWN_OPERATORS) PetscCall(PencilView(chain->pencil, viewer));
-  if (what == SHOWN_STATICS) PetscCall(StaticsView(chain->statics, viewer));
-  if (what == SHOWN_MODES || what == SHOWN_FRF) PetscCall(StaticsViewWear(chain->statics, viewer));
-  if (what == SHOWN_MODES) PetscCall(ModesView(chain->modes, viewer));
-  if (what == SHOWN_SWEEP) PetscCall(SweepView(chain->sweep, viewer));
-  if (what == SHOWN_FRF) PetscCall(FrfView(chain->frf, viewer));
-  if (what == SHOWN_DYNAMICS) PetscCall(TransientView(chain, viewer));
-  if (what == SHOWN_MAP) PetscCall(MapView(chain->map, viewer));
-  if (what == SHOWN_SAMPLE) PetscCall(SampleView(chain->sample, viewer));
-  if (what == SHOWN_CYCLE) PetscCall(CycleView(chain->cycle, viewer));
+  for (int a = 0; a < N_ANALYSES; a++)
+    if (chain_analyses[a].shown == what) PetscCall(chain_analyses[a].view(chain, viewer));
   PetscFunctionReturn(0);
 }
 

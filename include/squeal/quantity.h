@@ -10,7 +10,7 @@
 #include <squeal/options.h>
 #include <stddef.h>
 
-/* What a run computes, -analysis; its words (quantity/visit.c) are in the same order */
+/* What a run computes, -analysis, and its words */
 typedef enum {
   ANALYSIS_MODES,
   ANALYSIS_SWEEP,
@@ -23,7 +23,11 @@ typedef enum {
   ANALYSIS_CHECK,
   N_ANALYSES
 } Analysis;
-extern const char *const AnalysisNames[N_ANALYSES + 1]; /* NULL at the end */
+static const char *const AnalysisNames[N_ANALYSES + 1] = {
+  [ANALYSIS_MODES] = "modes",         [ANALYSIS_SWEEP] = "sweep",   [ANALYSIS_STATIC] = "static",
+  [ANALYSIS_TRANSIENT] = "transient", [ANALYSIS_FRF] = "frf",       [ANALYSIS_MAP] = "map",
+  [ANALYSIS_CYCLE] = "cycle",         [ANALYSIS_SAMPLE] = "sample", [ANALYSIS_CHECK] = "check",
+}; /* NULL at the end */
 
 /* What a run does, as bits: who reads a row. The first N_ANALYSES are the analyses */
 typedef enum {

@@ -4,9 +4,6 @@
 #include "row.h"
 #include <string.h>
 
-const char *const AnalysisNames[N_ANALYSES + 1] = {"modes", "sweep", "static", "transient", "frf",
-                                                   "map",   "cycle", "sample", "check",     NULL};
-
 /* What a run does within an analysis */
 static const struct {
   unsigned    bit;
