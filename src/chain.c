@@ -363,7 +363,7 @@ PetscErrorCode ChainSetUp(Chain *chain, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(ChainAssemble(chain));
   PetscCall(ChainConnect(chain, viewer));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-terms", &terms));
+  PetscCall(OperatorsHaveTerms(chain->operators, &terms));
   if (chain->model) PetscCall(ContactCheckBodies(chain->contact, terms));
   PetscFunctionReturn(0);
 }

@@ -17,6 +17,7 @@ static PetscErrorCode ShownView(Chain *chain, Shown what, PetscViewer viewer)
   PetscFunctionBeginUser;
   PetscCall(ChainGetScope(chain, &scope));
   if (what == SHOWN_MODEL) PetscCall(ModelView(chain->model, viewer));
+  if (what == SHOWN_MODEL) PetscCall(OperatorsViewSuperelements(chain->operators, viewer));
   if (what == SHOWN_MODEL) PetscCall(StaticsViewStages(chain->statics, viewer));
   if (what == SHOWN_MODEL) PetscCall(ScopeView(&scope, viewer));
   if (what == SHOWN_CONTACT) PetscCall(ContactView(chain->contact, viewer));

@@ -61,8 +61,7 @@ ONLY = (r"src/model", re.compile(r"\b(DMPlexGet\w*Stratum|DMPlexGet(Vertex|Cell|
 # Options that are read without a row, and why
 UNROWED = dict.fromkeys("skip_petscrc help help_list help_all help_json".split(), "asked by base/ before all else") | \
     dict.fromkeys("ts_dt eps_type pc_factor_mat_ordering_type".split(),
-                  "PETSc's own: looked at, read by PETSc") | \
-    {"terms": "whether it is given"}
+                  "PETSc's own: looked at, read by PETSc")
 # Functions that refuse an option of the command line outside its row (OptionsRefuse*()), and what no row's condition can know
 REFUSED = {"QuantitiesRefuse": "the rows themselves",
            "OptionsDropOf": "names of a list that is not there: they have no rows",

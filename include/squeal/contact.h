@@ -292,6 +292,19 @@ PetscErrorCode ContactGetTies(Contact contact, PetscInt *n, const ContactTie **t
     collective; after ContactSetUp(). @*/
 PetscErrorCode ContactGetLinks(Contact contact, PetscInt *n, const ContactLink **links);
 
+/* A place that is no node of the mesh, and the nodes that it follows on a surface */
+typedef struct {
+  PetscReal       x[3];     /* m */
+  PetscInt        n_master; /* 0 where its arm is too long */
+  ContactLinkNode master[CONTACT_MAX_MASTER];
+  PetscReal       off; /* length of the arm, m */
+} ContactFollower;
+
+/*@ ContactFollow - what n places, the same on all ranks, follow on a surface, as the slaves of ties do; the longest arm
+    is distance (m), or 5 % of the size of a facet for 0. Collective. @*/
+PetscErrorCode ContactFollow(Contact contact, const char set[], PetscReal distance, PetscInt n,
+                             ContactFollower place[]);
+
 /*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on
    nodes that
     follow others to these, f_i += follow_i' f, but in directions that a support holds. Collective. @*/

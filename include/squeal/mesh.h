@@ -23,7 +23,14 @@ typedef struct {
   const char *const    *part;       /* [n_parts] names */
   PetscInt              n_own, first_own; /* unknowns of this rank: first_own to first_own + n_own - 1 */
   PetscInt              n_unknowns;       /* of all ranks */
+  PetscInt              n_apart;          /* of these that no node has, the last ones, all of the last rank */
 } Mesh;
+
+/* How many of the unknowns that no node has are this rank's, its last ones */
+static inline PetscInt MeshCountApart(const Mesh *mesh)
+{
+  return mesh->first_own + mesh->n_own == mesh->n_unknowns ? PetscMin(mesh->n_apart, mesh->n_own) : 0;
+}
 
 /* Faces of a surface: node[first[f] .. first[f + 1]) are the local nodes of face f, corners first, counter-clockwise
    seen from outside of the body, then mid-side nodes (after corner i that between corners i and i + 1), then the middle

@@ -148,6 +148,10 @@ PetscErrorCode ModelKeepSlabs(Model model);
     collective. @*/
 PetscErrorCode ModelHoldMotions(Model model);
 
+/*@ ModelAddUnknowns - adds n unknowns that no node has, of superelements: the last ones, all of the last rank. Call
+    before ModelSetUp(). Not collective, same call on all ranks. @*/
+PetscErrorCode ModelAddUnknowns(Model model, PetscInt n);
+
 /*@ ModelCheckGiven - raises PETSC_ERR_USER_INPUT where the options tell of no mesh. Collective. @*/
 PetscErrorCode ModelCheckGiven(Model model);
 
@@ -164,9 +168,12 @@ PetscErrorCode ModelSetUp(Model model);
 /*@ ModelGetComm - the ranks that share the model. Not collective. @*/
 PetscErrorCode ModelGetComm(Model model, MPI_Comm *comm);
 
-/*@ ModelGetDM - the mesh with its layout of unknowns (borrowed). Rooms hand it to PETSc, and take what is in it from
-    ModelGetMesh(). Not collective. @*/
+/*@ ModelGetDM - the mesh with its layout of the unknowns that nodes have (borrowed). Rooms hand it to PETSc, and take
+    what is in it from ModelGetMesh(). Not collective. @*/
 PetscErrorCode ModelGetDM(Model model, DM *dm);
+
+/*@ ModelCreateVec - a vector of all unknowns. Collective; after ModelSetUp(). The caller destroys it. @*/
+PetscErrorCode ModelCreateVec(Model model, Vec *u);
 
 /*@ ModelGetMesh - what this rank has of the mesh, after ModelSetUp() (borrowed). Not collective. @*/
 PetscErrorCode ModelGetMesh(Model model, const Mesh **mesh);

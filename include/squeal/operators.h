@@ -24,6 +24,7 @@ typedef struct {
   PetscBool       closed;       /* lower itself is a value: alpha, beta, stiffness, viscosity, force may be 0 */
   PetscBool       length;       /* it is the size of the row's vector, hence not negative */
   PetscBool       divides;      /* something is divided by it: beyond the row's limits it is not 0 */
+  PetscBool       damps;        /* its term is damping, which its unit does not tell */
   PetscBool       body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
   PetscBool state;   /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
@@ -60,6 +61,15 @@ PetscErrorCode OperatorsHaveMatrices(Operators operators, PetscBool *have);
 
 /*@ OperatorsHaveNodes - whether unknowns are those of nodes, of a model or of -operators_nodes. Not collective. @*/
 PetscErrorCode OperatorsHaveNodes(Operators operators, PetscBool *have);
+
+/*@ OperatorsHaveTerms - whether -terms or -superelements may hold or join anything. Not collective. @*/
+PetscErrorCode OperatorsHaveTerms(Operators operators, PetscBool *have);
+
+/*@ OperatorsCountSuperelements - how many there are. Not collective. @*/
+PetscInt OperatorsCountSuperelements(Operators operators);
+
+/*@ OperatorsViewSuperelements - a line of each. Collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsViewSuperelements(Operators operators, PetscViewer viewer);
 
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);

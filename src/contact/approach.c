@@ -182,13 +182,11 @@ PetscErrorCode ContactCreateApproach(Contact contact, PetscInt interface, Vec *d
 {
   const ContactInterface *c = &contact->interfaces[interface];
   BelowList               slave, master;
-  DM                      dm;
 
   PetscFunctionBeginUser;
   PetscCall(BelowGather(contact->model, contact->comm, c->slave, &slave));
   PetscCall(BelowGather(contact->model, contact->comm, c->master, &master));
-  PetscCall(ModelGetDM(contact->model, &dm));
-  PetscCall(DMCreateGlobalVector(dm, d));
+  PetscCall(ModelCreateVec(contact->model, d));
   PetscCall(VecSet(*d, 0));
   PetscCall(VecSetOption(*d, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE)); /* held directions */
   PetscCall(PairsAdd(contact, interface, &slave, &master, *d));

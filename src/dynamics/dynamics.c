@@ -150,6 +150,9 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscFunctionBeginUser;
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
+  PetscCheck(!OperatorsCountSuperelements(d->operators), d->comm, PETSC_ERR_SUP,
+             "-superelements are not supported in time on the mesh, whose mass matrix would have to be factored: take "
+             "-dynamics_model reduced");
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
   PetscCall(ModelGetMesh(d->model, &d->mesh));

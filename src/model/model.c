@@ -90,6 +90,14 @@ PetscErrorCode ModelKeepSlabs(Model model)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelAddUnknowns(Model model, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelAddUnknowns() must come before ModelSetUp()");
+  model->n_apart += n;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelCheckGiven(Model model)
 {
   PetscFunctionBeginUser;

@@ -15,6 +15,36 @@ PetscErrorCode ModelCreateNodal(Model model, Vec *nodal)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelCreateVec(Model model, Vec *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecCreate(model->comm, u));
+  PetscCall(VecSetSizes(*u, model->mesh.n_own, model->mesh.n_unknowns));
+  PetscCall(VecSetType(*u, VECSTANDARD));
+  PetscFunctionReturn(0);
+}
+
+/* Values of the unknowns that nodes have, into a local vector of the DM, whose global ones have no others */
+static PetscErrorCode UnknownsTake(Model model, Vec u, Vec local)
+{
+  const PetscScalar *value;
+  Vec                global;
+
+  PetscFunctionBeginUser;
+  if (!model->mesh.n_apart) {
+    PetscCall(DMGlobalToLocal(model->dm, u, INSERT_VALUES, local));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(DMGetGlobalVector(model->dm, &global));
+  PetscCall(VecGetArrayRead(u, &value));
+  PetscCall(VecPlaceArray(global, value));
+  PetscCall(DMGlobalToLocal(model->dm, global, INSERT_VALUES, local));
+  PetscCall(VecResetArray(global));
+  PetscCall(VecRestoreArrayRead(u, &value));
+  PetscCall(DMRestoreGlobalVector(model->dm, &global));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[])
 {
   const PetscScalar *value;
@@ -23,7 +53,7 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[])
   PetscFunctionBeginUser;
   PetscCall(DMGetLocalVector(model->dm, &local));
   PetscCall(VecSet(local, 0)); /* the held displacements, which vectors of the unknowns do not have */
-  if (u) PetscCall(DMGlobalToLocal(model->dm, u, INSERT_VALUES, local));
+  if (u) PetscCall(UnknownsTake(model, u, local));
   PetscCall(VecGetArrayRead(local, &value));
   PetscCall(PetscArraycpy(nodal, value, 3 * model->mesh.n_nodes));
   PetscCall(VecRestoreArrayRead(local, &value));

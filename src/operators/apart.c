@@ -72,7 +72,9 @@ static PetscErrorCode PointOfBodies(Operators operators, PetscInt n, const Opera
 
     PetscCall(OperatorsUnitIsGyration(parameter[i].unit, &gyrates));
     if (apart) PetscCall(ParameterJoins(operators, &parameter[i], &joins));
-    still[i] = (gyrates && parameter[i].body) || joins ? 0 : p[i]; /* a contact that turns is none of them */
+    still[i] = ((gyrates || parameter[i].damps) && parameter[i].body) || joins
+                 ? 0
+                 : p[i]; /* a contact that turns is none of them */
   }
   PetscFunctionReturn(0);
 }

@@ -2,8 +2,10 @@
    Operators: life cycle, parameters, and the matrices of the bodies alone. A mesh makes terms (bodies/assemble.c,
    points/joint.c, bodies/spin.c), matrices from files are terms themselves (files/); K, M and C of any point p are
    sums of them (terms/sum.c). Parameters stand in the order: those of the parts, N_PART_PARAMETERS each, springs and
-   dashpots, bushings and points, spins, contacts, loads; other files count on the first two (bodies/force.c).
+   dashpots, bushings and points, superelements, spins, contacts, loads; other files count on the first two
+   (bodies/force.c).
 */
+#include "operators/superelement/superelement.h"
 #include "operators/files/matrixterm.h"
 #include "operators/files/nodetable.h"
 #include "base/events.h"
@@ -25,6 +27,7 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
   PetscFunctionBeginUser;
   operators->model   = model;
   operators->contact = contact;
+  PetscCall(SuperelementsAddUnknowns(operators));
   PetscFunctionReturn(0);
 }
 
@@ -40,6 +43,9 @@ PetscErrorCode OperatorsSetFromOptions(Operators operators)
   PetscCheck(have || !operators->nodes[0], operators->comm, PETSC_ERR_USER_INPUT,
              "-operators_nodes %s is of matrices that are loaded; a mesh knows its nodes", operators->nodes);
   if (have) PetscCall(QuantitiesRead(operators->comm, &operators_loaded, operators));
+  PetscCall(SuperelementsSetFromOptions(operators));
+  PetscCheck(!have || !operators->n_superelements, operators->comm, PETSC_ERR_USER_INPUT,
+             "-superelements need a mesh, and are not used beside matrices that are loaded; give -terms for these");
   PetscCall(MatrixTermsAddParameters(operators));
   PetscFunctionReturn(0);
 }
@@ -51,6 +57,7 @@ PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visito
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisitList(visitor, &operators_terms, operators->n_named, operators->named));
   PetscCall(MatrixTermsVisitParameters(operators, visitor));
+  PetscCall(SuperelementsVisit(operators, visitor));
   PetscCall(QuantitiesVisit(visitor, &operators_matrices, NULL, operators, NULL));
   PetscCall(QuantitiesVisit(visitor, &operators_quantities, NULL, operators, NULL));
   PetscCall(OperatorsHaveMatrices(operators, &have));
@@ -90,12 +97,21 @@ PetscErrorCode OperatorsHaveNodes(Operators operators, PetscBool *have)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsHaveTerms(Operators operators, PetscBool *have)
+{
+  PetscFunctionBeginUser;
+  *have = operators->n_named || operators->n_superelements ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
 {
   PetscFunctionBeginUser;
   *have = operators->load[OPERATOR_C][0] || operators->n_dense[OPERATOR_C] ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt t = 0; t < operators->n_named; t++)
     if (operators->named[t].kind == OPERATORS_DAMPING) *have = PETSC_TRUE;
+  for (PetscInt i = 0; i < operators->n_superelements; i++)
+    if (operators->superelements[i].file[SUPERELEMENT_C][0]) *have = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -107,6 +123,7 @@ PetscErrorCode OperatorsSetUp(Operators operators)
   PetscCall(EventBegin(EVENT_ASSEMBLE));
   if (operators->model) {
     PetscCall(OperatorsAssemble(operators));
+    PetscCall(SuperelementsSetUp(operators));
     PetscCall(OperatorsCreateDependents(operators));
     PetscCall(OperatorsAddSpinParameters(operators));
     for (PetscInt i = 0; i < operators->parameters.n; i++) operators->parameters.list[i].body = PETSC_TRUE;
@@ -172,6 +189,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(ParametersDestroy(&o->parameters));
   PetscCall(MatrixTermsDestroy(o));
   PetscCall(CloudDestroy(o));
+  PetscCall(SuperelementsDestroy(o));
   PetscCall(PetscFree(*operators));
   PetscFunctionReturn(0);
 }

@@ -45,17 +45,19 @@ struct _p_Operators {
   Model    model; /* NULL for loaded or dense matrices */
   Contact  contact;
   /* set by options */
-  char                  load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
-  int                   save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
-  PetscReal            *dense[N_OPERATORS];   /* [n_dense] entries of -operators_dense_k and the like, by rows */
-  PetscInt              n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
-  PetscBool             lump, omit;
-  OperatorsFactors      factors;
-  PetscReal             loaded_mu; /* -contact_mu of loaded or dense matrices */
-  PetscInt              n_named;   /* matrices of -terms */
-  struct _p_MatrixTerm *named;
-  char                  nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
-  struct _p_Cloud      *cloud;                     /* their points, NULL without */
+  char                    load[N_OPERATORS][PETSC_MAX_PATH_LEN], save[PETSC_MAX_PATH_LEN];
+  int                     save_lock; /* descriptor of that folder while this run writes into it; 0 and below: none */
+  PetscReal              *dense[N_OPERATORS];   /* [n_dense] entries of -operators_dense_k and the like, by rows */
+  PetscInt                n_dense[N_OPERATORS]; /* entries given: the square of the number of unknowns; 0 for none */
+  PetscBool               lump, omit;
+  OperatorsFactors        factors;
+  PetscReal               loaded_mu; /* -contact_mu of loaded or dense matrices */
+  PetscInt                n_named;   /* matrices of -terms */
+  struct _p_MatrixTerm   *named;
+  PetscInt                n_superelements;
+  struct _p_Superelement *superelements;
+  char                    nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
+  struct _p_Cloud        *cloud;                     /* their points, NULL without */
   /* built by OperatorsSetUp() */
   Parameters           parameters;     /* at the values of the scene */
   PetscInt             wear_time;      /* parameter, -1 for none */
@@ -86,6 +88,14 @@ static inline const PetscReal *OperatorsPoint(Operators operators, const PetscRe
 {
   return p ? p : operators->parameters.p;
 }
+
+/* superelement.c - whether a parameter is one of a superelement */
+PETSC_INTERN PetscBool OperatorsIsOfSuperelement(Operators operators, PetscInt parameter);
+/* matrixfile.c - adds a matrix to the present part */
+PETSC_INTERN PetscErrorCode MatrixAddChecksum(Mat A, Checksum checksum);
+
+/* equations.c - the longest side of the box of all nodes, m. Collective. */
+PETSC_INTERN PetscErrorCode MeshSize(MPI_Comm comm, const Mesh *mesh, PetscReal *size);
 
 /* frictionfactor.c - the friction coefficient of largest absolute value at p, 0 without any */
 PETSC_INTERN PetscReal OperatorsLargestMu(Operators operators, const PetscReal p[]);
@@ -124,11 +134,12 @@ PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 /* joint.c - which local nodes belong to a part; the caller frees them */
 PETSC_INTERN PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, PetscBool **on);
 
-/* joint.c, dependents.c, equations.c - raise an error for a point with mass, or joined rigidly, for a tie, and for
-   equations, on a part that spins.
+/* joint.c, dependents.c, equations.c, place.c - raise an error for a point with mass, or joined rigidly, for a tie, for
+   equations, and for a superelement, on a part that spins.
    Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningEquations(Operators operators, PetscInt part);
+PETSC_INTERN PetscErrorCode OperatorsCheckSpinningSuperelements(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningPoints(Operators operators, PetscInt part);
 
 /* dependents.c - Z and E of points that are joined rigidly, of ties and of equations, where matrices are made; raises

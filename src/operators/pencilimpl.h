@@ -43,8 +43,8 @@ struct _p_Pencil {
   Terms    causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
   PetscInt n_causes;
   PencilCause *cause;
-  PetscBool    keeps_apart; /* joining was formed */
-  TermsSum     joining;     /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
+  PetscBool    keeps_apart;   /* joining was formed */
+  TermsSum     joining;       /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
   PetscBool    mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool    released;      /* the terms are gone */
   PetscBool    has_factors;   /* left' right was formed at the present point */
@@ -99,6 +99,6 @@ PETSC_INTERN PetscErrorCode PencilDestroyNullSpaces(Pencil pencil);
 /* matrixfile.c - opens a file of PETSc's; an error where a mass matrix has negative eigenvalues of its symmetric part
    beyond rounding. Singular: some are zero to rounding, beside those of unknowns without any mass */
 PETSC_INTERN PetscErrorCode MatrixViewerOpen(MPI_Comm comm, const char file[], PetscFileMode mode, PetscViewer *viewer);
-PETSC_INTERN PetscErrorCode MassCheck(Mat M, PetscBool *singular);
+PETSC_INTERN PetscErrorCode MassCheck(Mat M, const char whose[], PetscBool *singular);
 /* matrixterm.c - the same of the mass at the present point, where it depends on parameters, which may be of any sign */
 PETSC_INTERN PetscErrorCode PencilCheckMass(Pencil pencil, Mat M);

@@ -19,7 +19,7 @@
    Nodes of both surfaces need no equation. A direction in which a support holds the slave needs none where it holds the
    nodes of the facet as well.
 */
-#include "contact/contactimpl.h"
+#include "tie.h"
 #include "kernels/contact/arm.h"
 
 /* of the size of a facet: the largest distance where none is given; gaps of meshes of one curved surface, whose
@@ -53,8 +53,7 @@ static void FailureTake(PetscReal value, const PetscReal x[3], PetscReal *worst,
   for (int d = 0; d < 3; d++) where[d] = x[d];
 }
 
-/* The arm from a foot to a node, m; returns its length */
-static PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, const PetscReal x[3], PetscReal arm[3])
+PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, const PetscReal x[3], PetscReal arm[3])
 {
   PetscReal w[CONTACT_MAX_MASTER], point[3], length;
 
@@ -66,11 +65,8 @@ static PetscReal FootGetArm(const ContactFacet *facet, const ContactFoot *foot, 
   return length;
 }
 
-/* The nodes that a link follows, with their matrices A_i = w_i I + (turning of the facet by node i) x arm, [3][3] by
-   rows, room for those of a facet; their number. Those with A_i = 0 are left out: on matching meshes without a gap one
-   node of weight 1 remains. A node of weight 0 stays where the arm needs its part of the turning. */
-static PetscInt LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
-                              ContactLinkNode master[])
+PetscInt LinkSetMaster(const ContactSurface *surface, const ContactFoot *foot, const PetscReal arm[3],
+                       ContactLinkNode master[])
 {
   const ContactFacet *facet = &surface->facet[foot->facet];
   PetscReal           w[CONTACT_MAX_MASTER], A[CONTACT_MAX_MASTER][9];
@@ -125,10 +121,9 @@ typedef struct {
   PetscReal      held, held_x[3]; /* 1 where a support holds the slave alone, and there, m */
 } TieWork;
 
-/* The longest arm that is allowed on a facet, m */
-static PetscReal TieReach(const ContactTie *tie, const ContactFacet *facet)
+PetscReal TieReach(PetscReal distance, const ContactFacet *facet)
 {
-  return tie->distance > 0 ? tie->distance : TIE_SHARE * facet->size;
+  return distance > 0 ? distance : TIE_SHARE * facet->size;
 }
 
 /* Counts a node that lies beyond the border of the master: its arm is not along the normal */
@@ -161,7 +156,7 @@ static void LinkMake(TieWork *work, PetscInt v, ContactLink *link, ContactLinkNo
   ContactFootFind(&work->master, link->x, &foot);
   facet = foot.facet < 0 ? NULL : &work->master.facet[foot.facet];
   if (facet) foot.distance = FootGetArm(facet, &foot, link->x, arm);
-  if (!facet || foot.distance > TieReach(tie, facet)) {
+  if (!facet || foot.distance > TieReach(tie->distance, facet)) {
     TieFar *far = facet && foot.across > 0 ? &work->beside : &work->far;
 
     far->n++;

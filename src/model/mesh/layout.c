@@ -1,6 +1,7 @@
 /*
    Layout of the unknowns: three displacements per node, of which those that a support fixes, or a motion that is held
-   prescribes, are constrained in the section of the DM, hence absent from global vectors and matrices.
+   prescribes, are constrained in the section of the DM, hence absent from global vectors and matrices. Unknowns that no
+   node has come after all of these, on the last rank.
 */
 #include "model/modelimpl.h"
 
@@ -56,9 +57,12 @@ static PetscErrorCode UnknownsNumber(Model model, PetscBool fixed[][3])
 {
   PetscInt    *unknown;
   PetscSection global;
+  PetscMPIInt  rank, size;
   Vec          u;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(model->comm, &size));
   PetscCall(DMGetGlobalSection(model->dm, &global));
   PetscCall(PetscMalloc1(3 * model->mesh.n_nodes, &unknown));
   for (PetscInt v = 0; v < model->mesh.n_nodes; v++) {
@@ -74,6 +78,9 @@ static PetscErrorCode UnknownsNumber(Model model, PetscBool fixed[][3])
   PetscCall(VecGetSize(u, &model->mesh.n_unknowns));
   PetscCall(VecGetOwnershipRange(u, &model->mesh.first_own, NULL));
   PetscCall(DMRestoreGlobalVector(model->dm, &u));
+  model->mesh.n_apart = model->n_apart;
+  model->mesh.n_unknowns += model->n_apart;
+  if (rank == size - 1) model->mesh.n_own += model->n_apart;
   PetscFunctionReturn(0);
 }
 

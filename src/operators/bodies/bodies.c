@@ -6,17 +6,11 @@
 
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u)
 {
-  const Mesh *mesh;
-
   PetscFunctionBeginUser;
-  if (operators->model) {
-    PetscCall(ModelGetMesh(operators->model, &mesh));
-    PetscCall(VecCreate(operators->comm, u));
-    PetscCall(VecSetSizes(*u, mesh->n_own, mesh->n_unknowns));
-    PetscCall(VecSetType(*u, VECSTANDARD));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(MatCreateVecs(operators->terms.term[0].A, u, NULL));
+  if (operators->model)
+    PetscCall(ModelCreateVec(operators->model, u));
+  else
+    PetscCall(MatCreateVecs(operators->terms.term[0].A, u, NULL));
   PetscFunctionReturn(0);
 }
 

@@ -1,10 +1,10 @@
 /*
    Internal forces of a displacement: f = sum over cells of K_e u_e (N), with Young's moduli at the point p, and those
-   of bushings and points, at all nodes. Where supports hold a direction f is the force that they exert, as far as no
-   load acts there. Displacements are taken relative to the first node of each cell: a translation gives no force, while
-   in the assembled matrix its rounding resists like a spring of some 1e-16 of the stiffness.
+   of bushings, points and superelements, at all nodes. Where supports hold a direction f is the force that they exert,
+   as far as no load acts there. Displacements are taken relative to the first node of each cell: a translation gives no
+   force, while in the assembled matrix its rounding resists like a spring of some 1e-16 of the stiffness.
 */
-#include "operators/operatorsimpl.h"
+#include "operators/superelement/superelement.h"
 
 /* Adds the forces of local cell c, f_i += sum_j K_ij (u_j - u_0), u_0 of its first node; u (m) and f (N) hold three
    values per local node. The rows of K_e sum to 0 over the nodes in each direction, so that u_0 takes nothing away
@@ -61,6 +61,7 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
 {
   const Mesh *mesh;
   PetscReal  *displacement;
+  Vec         joined;
 
   PetscFunctionBeginUser;
   PetscCheck(operators->model, operators->comm, PETSC_ERR_ARG_WRONGSTATE,
@@ -69,6 +70,17 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
   PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
   PetscCall(ModelGetNodal(operators->model, u, displacement));
   PetscCall(OperatorsForcesOf(operators, p, displacement, local));
+  if (operators->n_superelements) {
+    PetscScalar *force;
+
+    PetscCall(ModelCreateNodal(operators->model, &joined));
+    PetscCall(VecGetArray(joined, &force));
+    PetscCall(SuperelementsAddForces(operators, OperatorsPoint(operators, p), u, displacement, force));
+    PetscCall(VecRestoreArray(joined, &force));
+    PetscCall(ModelSumShared(operators->model, joined));
+    PetscCall(VecAXPY(local, 1, joined));
+    PetscCall(VecDestroy(&joined));
+  }
   PetscCall(PetscFree(displacement));
   PetscFunctionReturn(0);
 }
@@ -116,6 +128,7 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) total[d] = 0;
   if (!operators->model || !ModelHasGravity(operators->model)) PetscFunctionReturn(0);
+  PetscCall(SuperelementsCheckWeight(operators));
   PetscCall(ModelGetMesh(operators->model, &mesh));
   PetscCall(ModelGetScene(operators->model, &scene));
   PetscCall(ModelCreateNodal(operators->model, &weight));
@@ -140,7 +153,7 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
 }
 
 /* Nodal values, complete at every node, into the rows of this rank; held directions have none, and their values are
-   left behind. */
+   left behind; unknowns that no node has become 0. */
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
 {
   const PetscScalar *force;
@@ -156,6 +169,7 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec f)
 
     if (mesh->unknown[i] >= 0 && row >= 0 && row < mesh->n_own) value[row] = force[i];
   }
+  for (PetscInt row = mesh->n_own - MeshCountApart(mesh); row < mesh->n_own; row++) value[row] = 0;
   PetscCall(VecRestoreArray(f, &value));
   PetscCall(VecRestoreArrayRead(local, &force));
   PetscFunctionReturn(0);
@@ -193,5 +207,6 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Ve
   PetscCall(OperatorsTakeNodal(operators, local, f));
   PetscCall(VecDestroy(&local));
   PetscCall(OperatorsAddSpringForces(operators, OperatorsPoint(operators, p), u, f));
+  PetscCall(SuperelementsAddForcesApart(operators, OperatorsPoint(operators, p), u, f));
   PetscFunctionReturn(0);
 }

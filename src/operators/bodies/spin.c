@@ -219,6 +219,7 @@ static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[],
   PetscCall(OperatorsCheckSpinningPoints(o, part));
   PetscCall(OperatorsCheckSpinningTies(o, part));
   PetscCall(OperatorsCheckSpinningEquations(o, part));
+  PetscCall(OperatorsCheckSpinningSuperelements(o, part));
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
   PetscCall(MatCreateVecs(K, &u, &f));

@@ -5,7 +5,7 @@
 */
 #include "base/file.h"
 #include "matrixterm.h"
-#include "operators/pencilimpl.h"
+#include "operators/superelement/superelement.h"
 #include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,38 +21,12 @@ PetscErrorCode           OperatorsLoadFromOptions(Operators o)
   PetscFunctionReturn(0);
 }
 
-/* Rows of a matrix in any order: one number a row, of its number, columns and values, so that the sum does not hang
-   on how the rows are spread over the ranks */
-static PetscErrorCode MatrixAddChecksum(Mat A, Checksum c)
-{
-  PetscInt  begin, end;
-  uint64_t *piece;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(A, &begin, &end));
-  PetscCall(PetscMalloc1(end - begin, &piece));
-  for (PetscInt row = begin; row < end; row++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           n;
-    uint64_t          *sum = &piece[row - begin];
-
-    PetscCall(MatGetRow(A, row, &n, &columns, &values));
-    *sum = ChecksumBytes(CHECKSUM_BEGIN, &row, sizeof(row));
-    *sum = ChecksumBytes(*sum, columns, (size_t)n * sizeof(*columns));
-    *sum = ChecksumBytes(*sum, values, (size_t)n * sizeof(*values));
-    PetscCall(MatRestoreRow(A, row, &n, &columns, &values));
-  }
-  PetscCall(ChecksumAddPieces(c, end - begin, piece));
-  PetscCall(PetscFree(piece));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
 {
   PetscFunctionBeginUser;
   PetscCall(ChecksumSetPart(c, "matrices"));
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){o->lump}));
+  PetscCall(SuperelementsAddChecksum(o, c));
   if (o->model) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, 1, &o->loaded_mu));
   PetscCall(MatrixTermsAddChecksum(o, c));
@@ -130,7 +104,7 @@ PetscErrorCode OperatorsLoad(Operators o)
   PetscFunctionBeginUser;
   for (int i = 0; i < N_OPERATORS; i++) PetscCall(OperatorsReadMatrix(o, i, &A[i]));
   PetscCall(OperatorsCheckMatrices(o, A));
-  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M], &o->mass_singular));
+  if (!o->n_named) PetscCall(MassCheck(A[OPERATOR_M], "", &o->mass_singular));
   for (int i = OPERATOR_K; i <= OPERATOR_C && o->symmetric; i++)
     if (A[i]) PetscCall(MatrixIsSymmetric(A[i], &o->symmetric));
   PetscCall(OperatorsAddMatrices(o, A));

@@ -196,7 +196,7 @@ static PetscErrorCode MassCountPivots(Mat S, Vec diagonal, PetscReal shift, Pets
 
 /* Unknowns of all ranks without any mass; an error for one with mass that is not positive on the diagonal: e_i' M
    e_i > 0 is necessary for definiteness, and cheap. S is twice the symmetric part, hence the half in the message. */
-static PetscErrorCode MassCountEmpty(Mat S, PetscInt *empty)
+static PetscErrorCode MassCountEmpty(Mat S, const char whose[], PetscInt *empty)
 {
   const PetscScalar *value;
   const PetscInt    *column;
@@ -222,15 +222,15 @@ static PetscErrorCode MassCountEmpty(Mat S, PetscInt *empty)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &fault[0], 1, MPI_DOUBLE, MPI_MIN, PetscObjectComm((PetscObject)S)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &fault[1], 1, MPI_DOUBLE, MPI_MAX, PetscObjectComm((PetscObject)S)));
   PetscCheck(fault[1] < 0, PetscObjectComm((PetscObject)S), PETSC_ERR_USER_INPUT,
-             "the mass matrix has %.6g on its diagonal, such as in row %.0f: it must be positive definite", fault[0],
-             fault[1]);
+             "%sthe mass matrix has %.6g on its diagonal, such as in row %.0f: it must be positive definite", whose,
+             fault[0], fault[1]);
   PetscFunctionReturn(0);
 }
 
 /* S = M + M', twice the symmetric part: only its signs count. A diagonal S needs no factors: |S|_F is then |diag S|.
    Else the pivots of S - 1e-10 diag(S) tell whether directions have no mass, and, where they do, those of S + 1e-10
    diag(S) whether any has a negative one. Rows without entries (multipliers) count in both, and are taken off. */
-PetscErrorCode MassCheck(Mat M, PetscBool *singular)
+PetscErrorCode MassCheck(Mat M, const char whose[], PetscBool *singular)
 {
   PetscInt  empty, bad = 0;
   PetscReal norm, largest;
@@ -240,7 +240,7 @@ PetscErrorCode MassCheck(Mat M, PetscBool *singular)
   PetscFunctionBeginUser;
   PetscCall(MatTranspose(M, MAT_INITIAL_MATRIX, &S));
   PetscCall(MatAYPX(S, 1, M, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MassCountEmpty(S, &empty));
+  PetscCall(MassCountEmpty(S, whose, &empty));
   PetscCall(MatCreateVecs(S, &diagonal, NULL));
   PetscCall(MatGetDiagonal(S, diagonal));
   PetscCall(VecNorm(diagonal, NORM_2, &largest));
@@ -251,9 +251,9 @@ PetscErrorCode MassCheck(Mat M, PetscBool *singular)
   PetscCall(VecDestroy(&diagonal));
   bad -= bad ? empty : 0;
   PetscCheck(bad <= 0, PetscObjectComm((PetscObject)M), PETSC_ERR_USER_INPUT,
-             "the mass matrix has %" PetscInt_FMT
+             "%sthe mass matrix has %" PetscInt_FMT
              " negative eigenvalues: it must be positive definite, or have no mass along some directions",
-             bad);
+             whose, bad);
   PetscCall(MatDestroy(&S));
   PetscFunctionReturn(0);
 }
@@ -302,5 +302,32 @@ PetscErrorCode MatrixReadFile(MPI_Comm comm, const char option[], const char fil
   PetscCall(MatSetType(*A, MATAIJ));
   PetscCall(MatLoad(*A, viewer));
   PetscCall(PetscViewerDestroy(&viewer));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of a matrix in any order: one number a row, of its number, columns and values, so that the sum does not hang
+   on how the rows are spread over the ranks */
+PetscErrorCode MatrixAddChecksum(Mat A, Checksum c)
+{
+  PetscInt  begin, end;
+  uint64_t *piece;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &begin, &end));
+  PetscCall(PetscMalloc1(end - begin, &piece));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+    uint64_t          *sum = &piece[row - begin];
+
+    PetscCall(MatGetRow(A, row, &n, &columns, &values));
+    *sum = ChecksumBytes(CHECKSUM_BEGIN, &row, sizeof(row));
+    *sum = ChecksumBytes(*sum, columns, (size_t)n * sizeof(*columns));
+    *sum = ChecksumBytes(*sum, values, (size_t)n * sizeof(*values));
+    PetscCall(MatRestoreRow(A, row, &n, &columns, &values));
+  }
+  PetscCall(ChecksumAddPieces(c, end - begin, piece));
+  PetscCall(PetscFree(piece));
   PetscFunctionReturn(0);
 }

@@ -91,7 +91,7 @@ static PetscErrorCode MatrixTermsCheckSystem(Operators o)
              n[OPERATORS_MASS] ? "stiffness" : "mass");
   PetscCall(TermsSumForm(&o->terms, &mass, o->parameters.p, &sum));
   PetscCheck(sum.A, o->comm, PETSC_ERR_USER_INPUT, "the mass matrix is zero with these values of the parameters");
-  PetscCall(MassCheck(sum.A, &o->mass_singular));
+  PetscCall(MassCheck(sum.A, "", &o->mass_singular));
   PetscCall(TermsSumDestroy(&sum));
   PetscFunctionReturn(0);
 }
@@ -143,7 +143,7 @@ PetscErrorCode PencilCheckMass(Pencil pencil, Mat M)
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < base->n && !pencil->operators->model; t++)
     if (base->term[t].kind == OPERATORS_MASS && base->term[t].n) varies = PETSC_TRUE;
-  if (varies) PetscCall(MassCheck(M, &pencil->mass_singular));
+  if (varies) PetscCall(MassCheck(M, "", &pencil->mass_singular));
   PetscFunctionReturn(0);
 }
 

@@ -115,8 +115,7 @@ static PetscErrorCode EquationsRead(MPI_Comm comm, const char file[], const Mesh
   PetscFunctionReturn(0);
 }
 
-/* The longest side of the box of all nodes, m */
-static PetscErrorCode MeshSize(MPI_Comm comm, const Mesh *mesh, PetscReal *size)
+PetscErrorCode MeshSize(MPI_Comm comm, const Mesh *mesh, PetscReal *size)
 {
   PetscReal most[6] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL,
                        -PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL};
