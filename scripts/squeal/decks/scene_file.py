@@ -53,10 +53,9 @@ def model_lines(deck, units, mesh, equations):
     if equations:
         rows.append(f"equations: {quoted(equations)}")
     if any(deck.materials[section.material].loss for section in deck.sections if section.material):
-        low, high = (value / units.time for value in deck.modes[1:3]) if deck.modes else (0.0, 0.0)
-        middle = (low * high)**0.5 if low > 0 and high > 0 else high / 2 if high > 0 else 1000.0
-        why = "the middle of the band" if high > 0 else "no band is in the file: give the frequency that matters"
-        rows.append(f"loss_frequency: {middle:.6g}  # Hz, where loss factors are exact: {why}")
+        low, high = (value / units.time for value in deck.modes[1:3])
+        middle = (low * high)**0.5 if low > 0 else high / 2
+        rows.append(f"loss_frequency: {middle:.6g}  # Hz, where loss factors are exact: the middle of the band")
     if deck.gravity is None and len(rows) == 1:
         return [f"model: {{{rows[0]}}}"]
     if deck.gravity is not None:
