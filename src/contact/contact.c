@@ -202,6 +202,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCall(InterfaceCheckFaces(contact, i));
     PetscCall(ContactGapsSet(contact, i));
   }
+  PetscCall(ContactLengthsWarn(contact));
   PetscCall(ContactSetUpTies(contact));
   PetscCallMPI(MPI_Allreduce(&contact->n_pairs, &contact->n_pairs_all, 1, MPIU_INT, MPI_SUM, contact->comm));
   PetscCall(EventEnd(EVENT_PAIR));

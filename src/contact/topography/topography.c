@@ -14,6 +14,7 @@
 #include <string.h>
 
 #define GAPS_NEAR  1e-4
+#define GAPS_LEAST 1e-4    /* mm: gaps that are all smaller, 0.1 um, are in m */
 #define GAPS_CHUNK 1000000 /* rows that are sent at once: the count of bytes is an int */
 
 enum { GAPS_X, GAPS_GAP = 3, GAPS_INTERFACE, N_GAPS };
@@ -149,6 +150,39 @@ static PetscErrorCode GapsCheckLines(Contact contact, const ContactInterface *c,
                " slave nodes; give places with more digits",
                c->name, c->gap_file, (double)x[0], (double)x[1], (double)x[2], used[i]);
   }
+  PetscFunctionReturn(0);
+}
+
+/* Warns of a length that is in m where the scene is in mm */
+static PetscErrorCode LengthWarn(Contact contact, const char option[], PetscReal length)
+{
+  const char *unit;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(contact->model, "m", &unit));
+  if (strcmp(unit, "mm") || length == 0 || length >= GAPS_LEAST) PetscFunctionReturn(0);
+  PetscCall(PetscFPrintf(contact->comm, stderr,
+                         "squeal: warning: -%s: %.3g mm at most, of a scene in mm: is it in m?\n", option,
+                         (double)length));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactLengthsWarn(Contact contact)
+{
+  PetscBool wears = PETSC_FALSE;
+  char      option[256];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < contact->n_interfaces; i++) {
+    const ContactInterface *c    = &contact->interfaces[i];
+    PetscReal               most = 0;
+
+    for (PetscInt k = 0; k < c->n_gaps; k++) most = PetscMax(most, PetscAbsReal(c->gaps[k].gap));
+    PetscCall(PetscSNPrintf(option, sizeof(option), "%s_gap", c->name));
+    PetscCall(LengthWarn(contact, option, most));
+    if (ContactWears(c)) wears = PETSC_TRUE;
+  }
+  if (wears) PetscCall(LengthWarn(contact, "wear_depth", contact->wear.depth));
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,9 @@ extern const QuantityTable wear_quantities;
 PETSC_INTERN PetscErrorCode ContactGapsRead(MPI_Comm comm, ContactInterface *c);
 PETSC_INTERN PetscErrorCode ContactGapsSet(Contact contact, PetscInt interface);
 
+/* Warns of gaps of files, and of a worn depth, that are in m where the scene is in mm. Collective. */
+PETSC_INTERN PetscErrorCode ContactLengthsWarn(Contact contact);
+
 /* wear.c - raises the error for wear of an interface that cannot wear so; quadratic: its slave has faces of second
    order. Collective. */
 PETSC_INTERN PetscErrorCode ContactWearCheck(MPI_Comm comm, const ContactInterface *c, PetscBool quadratic);
