@@ -156,15 +156,15 @@ static PetscErrorCode QualityNoise(const Quality *q, ComplexVec x, PetscReal *no
 static PetscErrorCode QualityIsSlowing(const Quality *q, PetscReal size, ComplexVec x, PetscReal noise,
                                        PetscBool *slowing)
 {
-  PetscReal energy, mass, length, force;
+  PetscReal energy, mass, length, force; /* the last two squared */
 
   PetscFunctionBeginUser;
   PetscCall(VecDot(x.r, q->z.r, &energy));
   PetscCall(VecDot(x.r, q->Mx.r, &mass));
-  PetscCall(VecNorm(x.r, NORM_2, &length));
-  PetscCall(VecNorm(q->z.r, NORM_2, &force));
+  PetscCall(VecDot(x.r, x.r, &length)); /* VecNorm() may remember that of a time before x was filled */
+  PetscCall(VecDot(q->z.r, q->z.r, &force));
   *slowing = PetscAbsReal(energy) <= QUALITY_ENERGY * size * size * mass + QUALITY_NOISE * noise &&
-                 force <= QUALITY_NULL * q->norms[0] * length
+                 force <= PetscSqr(QUALITY_NULL * q->norms[0]) * length
                ? PETSC_TRUE
                : PETSC_FALSE;
   PetscFunctionReturn(0);
