@@ -4,7 +4,7 @@
 
       r = f - K u - G'l + S' D l  (N),   e = w - G u  (m),
 
-   corrections obey the same small system with rhs = G K_a^-1 (r + kappa G'e) - e at the same status. Several load
+   corrections obey the same small system of f = r and with e in its rows (small.c) at the same status. Several load
    steps matter for Coulomb's law only, where slip counts from the step before.
 */
 #include "staticsimpl.h"
@@ -82,42 +82,38 @@ static PetscErrorCode EquilibriumResidual(const Active *a, Vec u, Vec r)
   PetscFunctionReturn(0);
 }
 
-/* K_a^-1 (r + kappa G'e) of the residuals, into the work vector of the compliance, m, and e [rows], m. What r has
-   along free motions is taken out before: the pins would answer it with reactions. */
-static PetscErrorCode EquilibriumMissing(const Active *a, PetscReal e[])
+/* r (N) and e [rows] (m). What r has along free motions is taken out: the pins would answer it with reactions. */
+static PetscErrorCode EquilibriumMissing(const Active *a, Vec r, PetscReal e[])
 {
-  Vec r;
-
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(a->u, &r));
   PetscCall(EquilibriumResidual(a, a->u, r));
   PetscCall(HoldRelieve(&a->compliance->hold, r));
   PetscCall(ComplianceGetRows(a->compliance, a->u, e));
   for (PetscInt i = 0; i < a->rows->n; i++) e[i] = a->w[i] - e[i];
-  PetscCall(ComplianceSolve(a->compliance, 0, r, NULL, e, a->compliance->u));
-  PetscCall(VecDestroy(&r));
   PetscFunctionReturn(0);
 }
 
 /* Displacements, and refinements of them and of the pairs */
 static PetscErrorCode EquilibriumRefine(Active *a)
 {
-  PetscReal *e, *rhs;
+  PetscReal *e;
+  Vec        r;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(a->rows->n, &e, a->rows->n, &rhs));
+  PetscCall(PetscMalloc1(a->rows->n, &e));
+  PetscCall(VecDuplicate(a->u, &r));
   for (int i = 0; i < EQUILIBRIUM_REFINE; i++) {
     PetscCall(ComplianceSolve(a->compliance, 1, a->f, a->l, a->w, a->u));
-    PetscCall(EquilibriumMissing(a, e));
-    PetscCall(ComplianceGetRows(a->compliance, a->compliance->u, rhs));
-    for (PetscInt k = 0; k < a->rows->n; k++) rhs[k] -= e[k];
-    PetscCall(ActiveCorrect(a, rhs));
+    PetscCall(EquilibriumMissing(a, r, e));
+    PetscCall(ActiveCorrect(a, r, e));
   }
   PetscCall(ComplianceSolve(a->compliance, 1, a->f, a->l, a->w, a->u));
   PetscCall(HoldProject(&a->compliance->hold, a->u));
-  PetscCall(EquilibriumMissing(a, e));
+  PetscCall(EquilibriumMissing(a, r, e));
+  PetscCall(ComplianceSolve(a->compliance, 0, r, NULL, e, a->compliance->u));
   PetscCall(VecAXPY(a->u, 1, a->compliance->u));
-  PetscCall(PetscFree2(e, rhs));
+  PetscCall(VecDestroy(&r));
+  PetscCall(PetscFree(e));
   PetscFunctionReturn(0);
 }
 
@@ -177,6 +173,7 @@ PetscErrorCode EquilibriumBegin(Statics s, Active *a)
 PetscErrorCode EquilibriumFree(Active *a)
 {
   PetscFunctionBeginUser;
+  if (!a->compliance->W) PetscFunctionReturn(0);
   PetscCall(ComplianceSolve(a->compliance, 0, a->f, NULL, NULL, a->u));
   PetscCall(ComplianceGetRows(a->compliance, a->u, a->free));
   PetscFunctionReturn(0);

@@ -80,12 +80,13 @@ typedef struct {
 typedef struct _StatusFactor *StatusFactor;
 
 /* The factorisation of K_a = K + kappa G'G + pins, and W = kappa G K_a^-1 G', V = kappa G K_a^-1 S', by columns, on
-   every rank; NULL where they would be too large */
+   every rank; NULL where they would be too large. Then factors of a status take the place of those of K_a. */
 typedef struct {
   const PairRows *rows;
   PetscReal       kappa; /* N/m */
   Hold            hold;
-  ShiftInvert     inverse;    /* of K_a, or of Z'K_a Z where there is Z */
+  ShiftInvert     inverse;    /* of K_a, or of Z'K_a Z where there is Z; none while the status stands for it */
+  Mat             Ka;         /* which stays; NULL where there are W and V */
   Mat             Z, E;       /* OperatorsGetDependents() */
   Vec             reduced[2]; /* work where there is Z */
   PetscReal      *W, *V;      /* [rows][rows] by columns, of all ranks */
@@ -146,7 +147,7 @@ typedef struct {
   PetscReal         scale;      /* m, of the contact displacements; what is below `rounding` of it decides nothing */
   PetscReal         rounding;
   ContactStatus    *status;    /* [n_pairs] to begin with, then as found */
-  PetscReal        *free;      /* [rows] w without contact forces, kappa-held: G K_a^-1 f */
+  PetscReal        *free;      /* [rows] w without contact forces, kappa-held: G K_a^-1 f; where there is W */
   PetscReal        *l, *w;     /* [rows] contact forces over kappa, m; displacements of the rows, m */
   PetscBool         hasty;     /* the iteration gives up soon, since other ways follow */
   ActiveOutcome     first;     /* of the iteration with the whole friction */
@@ -154,7 +155,6 @@ typedef struct {
   PetscBool         passing;   /* the state is one on the way: whether bodies jam is asked at the end of it */
   PetscBool         tentative; /* laws are tangents of others: whether bodies jam is asked at the last ones alone */
   PetscBool         far;       /* GMRES on K_a alone takes too long */
-  PetscBool         settled;   /* no status has changed */
   PetscBool         reversed;  /* the system of the last iteration has a determinant of the wrong sign */
 } Active;
 
@@ -274,15 +274,19 @@ PETSC_INTERN PetscErrorCode HoldProject(const Hold *hold, Vec u);
 PETSC_INTERN PetscErrorCode HoldRelieve(const Hold *hold, Vec f);
 PETSC_INTERN PetscErrorCode HoldDestroy(Hold *hold);
 
-/* compliance.c - factors, and forms W and V for up to max_rows rows; y = kappa G K_a^-1 (G'(l - w) - S' (slide l)) + w
-   for rows l, w, y; u = K_a^-1 (f - kappa (G'(l - w) - S' (slide l))), f may be NULL; b += kappa (S' (slide l) - G'(l -
-   w)), l and w may be NULL without friction, w with it; w = G u */
+/* compliance.c - factors, and forms W and V for up to max_rows rows; y = w - G u; u of the forces f - kappa (G'l -
+   S' (slide l)) on the bodies, f may be NULL, held at w by the pairs of K_a or of the status that stands for it (X = 1
+   and no slide in K_a): u = K_s^-1 b, b = f + kappa (G'(X w - l) + S' slide (l - X w)); b less f is added; l and w may
+   be NULL without friction, w with it; w = G u */
 PETSC_INTERN PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const PairRows *rows,
                                              PetscInt max_rows, Progress *progress, Compliance *c);
 PETSC_INTERN PetscErrorCode ComplianceApply(const Compliance *c, PetscReal friction, const PetscReal l[],
                                             const PetscReal w[], PetscReal y[]);
 PETSC_INTERN PetscErrorCode ComplianceSolve(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[],
                                             const PetscReal w[], Vec u);
+/* r = f - (K + pins) u - kappa (G'l - S' (slide l)), N, where Ka stayed */
+PETSC_INTERN PetscErrorCode ComplianceResidual(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[],
+                                               Vec u, Vec r);
 /* Takes forces that hold rigid sets together out of a residual, N: E Z'r */
 PETSC_INTERN PetscErrorCode ComplianceDropConstraint(const Compliance *c, Vec r);
 PETSC_INTERN PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[],
@@ -302,17 +306,15 @@ PETSC_INTERN PetscErrorCode PivotSolve(const Compliance *c, PetscReal friction, 
 /* repeat.c - whether the iterate was there before, among the last ones seen; remembers it */
 PETSC_INTERN PetscErrorCode RepeatFind(const Active *active, Repeat *seen, PetscBool *repeats);
 
-/* activeset.c - one small system at the present status, for l and w, or of what is added to them;
-   the largest contact displacement, force or gap, m */
-PETSC_INTERN PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], PetscReal l[],
-                                         PetscReal w[], SmallOutcome *outcome);
+/* activeset.c - l and w of one small system at the present status; the largest contact displacement, force or gap, m */
+PETSC_INTERN PetscErrorCode ActiveLinear(Active *active, PetscReal l[], PetscReal w[], SmallOutcome *outcome);
 PETSC_INTERN PetscErrorCode ActiveFindScale(Active *active);
 /* Iterates from the present status at the present friction; sure changes fewer pairs at a time */
 PETSC_INTERN PetscErrorCode ActiveIterate(Active *active, PetscBool sure, ActiveOutcome *outcome);
 /* Whether the small system at the present status and a factor of friction has a determinant of the wrong sign */
 PETSC_INTERN PetscErrorCode ActiveIsReversed(Active *active, PetscReal friction, PetscBool *reversed);
-/* One correction of l and w at the status reached, for a residual rhs [rows] of the small system */
-PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, const PetscReal rhs[]);
+/* One correction of l and w at the status reached, for what is left of the forces, r (N), and e = w - G u [rows] (m) */
+PETSC_INTERN PetscErrorCode ActiveCorrect(Active *active, Vec r, const PetscReal e[]);
 
 /* activeset.c - whether many iterations are worth their time */
 PETSC_INTERN PetscBool ActiveIsFew(const Active *active);

@@ -100,16 +100,16 @@ static PetscErrorCode ComplianceTakeRows(const Compliance *c, Mat R, Mat Y, Pets
   PetscFunctionReturn(0);
 }
 
-/* u = K_a^-1 b */
+/* u = K_a^-1 b, K_s^-1 b where a status stands for it */
 static PetscErrorCode ComplianceInvert(const Compliance *c, Vec b, Vec u)
 {
   PetscFunctionBeginUser;
   if (c->Z) {
     PetscCall(MatMultTranspose(c->Z, b, c->reduced[0]));
-    PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, c->reduced[0], c->reduced[1]));
+    PetscCall(StatusFactorSolve(c->status, c->reduced[0], c->reduced[1]));
     PetscCall(MatMult(c->Z, c->reduced[1], u));
   } else {
-    PetscCall(ShiftInvertSolve(&c->inverse, PETSC_FALSE, b, u));
+    PetscCall(StatusFactorSolve(c->status, b, u));
   }
   PetscFunctionReturn(0);
 }
@@ -201,7 +201,10 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
     PetscCall(ComplianceProject(c->Z, &pencil.M));
   }
   PetscCall(ShiftInvertCreate(&pencil, 0, PETSC_FALSE, progress, &c->inverse));
-  PetscCall(MatDestroy(&pencil.K));
+  if (rows->n_all <= max_rows)
+    PetscCall(MatDestroy(&pencil.K));
+  else
+    c->Ka = pencil.K;
   PetscCall(MatDestroy(&pencil.M));
   PetscCall(MatDestroy(&c->inverse.term[0])); /* which is factored once, from a copy */
   PetscCall(MatCreateVecs(K, &c->u, &c->b));
@@ -214,21 +217,50 @@ PetscErrorCode ComplianceCreate(Operators operators, const PetscReal p[], const 
 PetscErrorCode ComplianceAddForces(const Compliance *c, PetscReal friction, const PetscReal l[], const PetscReal w[],
                                    Vec b)
 {
-  const PairRows *rows = c->rows;
-  PetscScalar    *value;
+  const PairRows  *rows  = c->rows;
+  const PetscReal *slide = StatusFactorSlide(c->status); /* NULL on a rank without rows too */
+  PetscReal       *Xw;
+  PetscScalar     *value;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(rows->n, &Xw));
+  if (w) StatusFactorHold(c->status, w, Xw);
   PetscCall(VecGetArray(c->row, &value));
-  for (PetscInt i = 0; i < rows->n; i++) value[i] = c->kappa * ((w ? w[i] : 0) - (l ? l[i] : 0));
+  for (PetscInt i = 0; i < rows->n; i++) value[i] = c->kappa * (Xw[i] - (l ? l[i] : 0));
   PetscCall(VecRestoreArray(c->row, &value));
   PetscCall(MatMultTransposeAdd(rows->G, c->row, b, b));
-  if (!rows->S || friction == 0) PetscFunctionReturn(0);
-  PetscCall(VecSet(c->row, 0));
-  PetscCall(VecGetArray(c->row, &value));
-  for (PetscInt p = 0; p < rows->n_pairs; p++)
-    value[rows->first[p]] = c->kappa * friction * rows->slide[p] * l[rows->first[p]];
-  PetscCall(VecRestoreArray(c->row, &value));
-  PetscCall(MatMultTransposeAdd(rows->S, c->row, b, b));
+  if (rows->S && (friction != 0 || StatusFactorServes(c->status))) {
+    PetscCall(VecSet(c->row, 0));
+    PetscCall(VecGetArray(c->row, &value));
+    for (PetscInt p = 0; p < rows->n_pairs; p++) {
+      const PetscInt i = rows->first[p];
+
+      if (friction != 0) value[i] = c->kappa * friction * rows->slide[p] * l[i];
+      if (slide) value[i] -= c->kappa * slide[i] * Xw[i];
+    }
+    PetscCall(VecRestoreArray(c->row, &value));
+    PetscCall(MatMultTransposeAdd(rows->S, c->row, b, b));
+  }
+  PetscCall(PetscFree(Xw));
+  PetscFunctionReturn(0);
+}
+
+/* (K + pins) u = K_a u - kappa G'G u; where there is Z it is E Z'K_a Z E'u, with q = E'u */
+PetscErrorCode ComplianceResidual(const Compliance *c, PetscReal friction, Vec f, const PetscReal l[], Vec u, Vec r)
+{
+  PetscFunctionBeginUser;
+  if (c->Z) {
+    PetscCall(MatMultTranspose(c->E, u, c->reduced[0]));
+    PetscCall(MatMult(c->Ka, c->reduced[0], c->reduced[1]));
+    PetscCall(MatMult(c->E, c->reduced[1], r));
+  } else {
+    PetscCall(MatMult(c->Ka, u, r));
+  }
+  PetscCall(VecAYPX(r, -1, f));
+  PetscCall(MatMult(c->rows->G, u, c->row));
+  PetscCall(VecScale(c->row, c->kappa));
+  PetscCall(MatMultTransposeAdd(c->rows->G, c->row, r, r));
+  PetscCall(ComplianceAddForces(c, friction, l, NULL, r));
   PetscFunctionReturn(0);
 }
 
@@ -269,6 +301,7 @@ PetscErrorCode ComplianceDestroy(Compliance *c)
   PetscFunctionBeginUser;
   PetscCall(StatusFactorDestroy(&c->status));
   PetscCall(ShiftInvertDestroy(&c->inverse));
+  PetscCall(MatDestroy(&c->Ka));
   PetscCall(HoldDestroy(&c->hold));
   PetscCall(VecDestroy(&c->u));
   PetscCall(VecDestroy(&c->b));

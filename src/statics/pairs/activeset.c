@@ -133,8 +133,15 @@ static void LawsGuess(const Active *a, const LawRow law[], PetscReal z[])
   }
 }
 
-PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], PetscReal l[], PetscReal w[],
-                            SmallOutcome *outcome)
+/* What is left of a solution, f - K u - G'l + S' D l (N) and w - G u [rows] */
+typedef struct {
+  Vec              r;
+  const PetscReal *e;
+} LinearLeft;
+
+/* l and w for the forces f, or what is added to them for what is left */
+static PetscErrorCode ActiveSolveLinear(Active *a, const LinearLeft *left, PetscReal l[], PetscReal w[],
+                                        SmallOutcome *outcome)
 {
   LawRow    *law;
   PetscReal *z;
@@ -143,22 +150,29 @@ PetscErrorCode ActiveLinear(Active *a, PetscBool added, const PetscReal rhs[], P
   PetscCall(PetscMalloc1(a->rows->n, &law));
   PetscCall(PetscCalloc1(a->rows->n, &z));
   LawsSet(a, law);
-  if (added)
+  if (left)
     LawsShift(a, law);
   else
     LawsGuess(a, law, z);
   PetscCall(SmallSolve(&(SmallSystem){.compliance = a->compliance,
                                       .friction   = a->friction,
                                       .law        = law,
-                                      .rhs        = rhs,
+                                      .f          = left ? left->r : a->f,
+                                      .e          = left ? left->e : NULL,
+                                      .added      = left ? PETSC_TRUE : PETSC_FALSE,
+                                      .free       = a->free,
                                       .rtol       = a->rtol,
-                                      .last       = a->settled,
                                       .n_factored = &a->n_factored,
                                       .far        = &a->far},
                        z, l, w, outcome, &a->reversed));
   PetscCall(PetscFree(law));
   PetscCall(PetscFree(z));
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode ActiveLinear(Active *a, PetscReal l[], PetscReal w[], SmallOutcome *outcome)
+{
+  return ActiveSolveLinear(a, NULL, l, w, outcome);
 }
 
 PetscErrorCode ActiveFindScale(Active *a)
@@ -328,9 +342,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
     if (n_changed && !(sure && guard.linear)) PetscCall(RepeatFind(a, &seen, &repeats));
     PetscCall(PetscArraycpy(l, a->l, a->rows->n));
     PetscCall(PetscArraycpy(w, a->w, a->rows->n));
-    a->settled = !n_changed && !a->tentative && ActiveMayReverse(a, a->friction) ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, &small));
-    a->settled = PETSC_FALSE;
+    PetscCall(ActiveLinear(a, a->l, a->w, &small));
     if (small != SMALL_GOOD || repeats) {
       *outcome = repeats ? ACTIVE_REPEATS : small == SMALL_UNSOLVED ? ACTIVE_UNSOLVED : ACTIVE_SINGULAR;
       break;
@@ -351,7 +363,7 @@ PetscErrorCode ActiveIterate(Active *a, PetscBool sure, ActiveOutcome *outcome)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ActiveCorrect(Active *a, const PetscReal rhs[])
+PetscErrorCode ActiveCorrect(Active *a, Vec r, const PetscReal e[])
 {
   PetscReal   *l, *w;
   SmallOutcome outcome;
@@ -359,7 +371,7 @@ PetscErrorCode ActiveCorrect(Active *a, const PetscReal rhs[])
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(a->rows->n, &l, a->rows->n, &w));
   a->rtol = CORRECT;
-  PetscCall(ActiveLinear(a, PETSC_TRUE, rhs, l, w, &outcome));
+  PetscCall(ActiveSolveLinear(a, &(LinearLeft){r, e}, l, w, &outcome));
   for (PetscInt i = 0; i < a->rows->n && outcome == SMALL_GOOD; i++) {
     a->l[i] += l[i];
     a->w[i] += w[i];

@@ -4,14 +4,19 @@
 
       K_s = K_a + kappa (G'(X - I) - S' D X) G,   X = P Q_e^-1,   Q_e = Q + REFACTOR_YIELD P,
 
-   so that an open pair drops out of K_s, and one that is rigid (Q = 0) gets a spring of kappa / REFACTOR_YIELD. The
-   small system with Q_e in the place of Q, a z = r, is solved by
+   so that an open pair drops out of K_s, and one that is rigid (Q = 0) gets a spring of kappa / REFACTOR_YIELD. K_s
+   takes the place of K_a, whose factors go, exactly and for the laws of any status: with w = G u
 
-      K_s u = -kappa (G'(X - I) - S' D X) r,   z = Q_e^-1 (r + G u),
+      K_s u = f - kappa G'(l - X w) + kappa S' (D l - D_s X w),
 
-   and is the preconditioner of GMRES on the small system itself, which that spring changes by REFACTOR_YIELD alone: a
-   handful of steps, whatever the number of pairs. All statuses have one pattern, hence one symbolic analysis. Where u
-   = Z q, G Z, S Z and Z'K_a Z stand for G, S and K_a.
+   D_s = D when K_s was made, are the same equations as with X = I, D_s = 0. At the laws of K_s l - X w is but
+   REFACTOR_YIELD X l, so that the small system, multiplied by Q_e^-1, is I and a little: GMRES takes a handful of
+   steps, whatever the number of pairs, and as many more as rows have other laws. All statuses have one pattern, hence
+   one symbolic analysis. Where u = Z q, G Z, S Z and Z'K_a Z stand for G, S and K_a.
+
+   What friction adds to K_s makes it unsymmetric, D_s and the force along the slip by l_n in X (all else in X is
+   symmetric: P and Q of a pair commute). Left out of K_s, it costs GMRES some ten steps, while LDL' takes half of the
+   memory and of the flops of LU: it is put in where GMRES does not do without, and for the determinant.
 
    The determinant of the small system with Q_e is det K_s det Q_e / det K_a, of which det K_a > 0 and det Q_e > 0 (a
    triangle of blocks, of which that across the slip is (1 - alpha) E + e e' or more): the sign of det K_s tells whether
@@ -22,23 +27,23 @@
 
 /* compliance of rigid pairs over 1 / kappa: it leaves as many digits to rounding, and costs GMRES two or three steps */
 #define REFACTOR_YIELD 1e-5
-/* change of X over X from which on the law of a pair is another one */
+/* change of (1 + X)^-1, 0 of a rigid pair and 1 of an open one, from which on the law of a pair is another one */
 #define REFACTOR_OTHER 0.5
-/* the same, up to which the factors and their determinant are those of the law */
+/* change of X over X, up to which the factors and their determinant are those of the law */
 #define REFACTOR_SAME 1e-6
 
 struct _StatusFactor {
-  const Compliance *compliance;
-  ShiftInvert       inverse;   /* of K_s */
-  PetscBool         symmetric; /* K_s is */
-  PetscBool         stands;    /* there are factors, of the laws X */
-  Mat               G, S, K;   /* S NULL without sliding pairs */
-  PetscReal        *X, *Qinv;  /* [rows][3] rows of the block of each pair */
-  PetscReal        *slide;     /* [rows] D times the factor of friction */
-  Vec               q, b;      /* work: unknowns that are factored */
+  Compliance *compliance;
+  ShiftInvert inverse;   /* of K_s */
+  PetscBool   symmetric; /* K_s always is: there is no friction */
+  PetscBool   whole;     /* K_s has friction, or there is none */
+  PetscBool   stands;    /* there are factors, of the laws X */
+  Mat         G, S, K;   /* S NULL without sliding pairs */
+  PetscReal  *X, *Qinv;  /* [rows][3] rows of the block of each pair */
+  PetscReal  *slide;     /* [rows] D times the factor of friction */
 };
 
-PetscErrorCode StatusFactorCreate(const Compliance *c, StatusFactor *factor)
+PetscErrorCode StatusFactorCreate(Compliance *c, StatusFactor *factor)
 {
   const PetscInt n = c->rows->n;
   StatusFactor   f;
@@ -58,8 +63,6 @@ PetscErrorCode StatusFactorCreate(const Compliance *c, StatusFactor *factor)
     f->G = c->rows->G;
     f->S = c->rows->S;
   }
-  PetscCall(MatCreateVecs(f->G, &f->q, NULL));
-  PetscCall(VecDuplicate(f->q, &f->b));
   PetscFunctionReturn(0);
 }
 
@@ -73,20 +76,23 @@ PetscErrorCode StatusFactorDestroy(StatusFactor *factor)
   PetscCall(MatDestroy(&f->G));
   PetscCall(MatDestroy(&f->S));
   PetscCall(MatDestroy(&f->K));
-  PetscCall(VecDestroy(&f->q));
-  PetscCall(VecDestroy(&f->b));
   PetscCall(PetscFree3(f->X, f->Qinv, f->slide));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(0);
 }
 
-/* X and Q_e^-1 of a pair, [d][3] */
-static PetscErrorCode LawCondense(const LawRow law[], PetscReal X[], PetscReal Qinv[])
+/* X and Q_e^-1 of a pair, [d][3]; without friction by the normal force where not whole */
+static PetscErrorCode LawCondense(const LawRow from[], PetscBool whole, PetscReal X[], PetscReal Qinv[])
 {
-  const PetscInt d = law[0].d;
+  const PetscInt d = from[0].d;
+  LawRow         law[3];
   PetscReal      Q[9], inverse[9];
 
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d; i++) {
+    law[i] = from[i];
+    if (i && !whole) law[i].P[0] = law[i].Q[0] = 0;
+  }
   for (PetscInt i = 0; i < d; i++)
     for (PetscInt k = 0; k < d; k++) {
       Q[k * d + i]       = law[i].Q[k] + REFACTOR_YIELD * law[i].P[k];
@@ -114,22 +120,48 @@ static PetscReal LawChange(PetscInt d, const PetscReal X[], const PetscReal Y[])
   return difference / largest;
 }
 
+/* Whether the law of a pair has gone from X to another one, Y: how soft it is as its bodies feel it, to which springs
+   of kappa are neither stiff nor soft */
+static PetscErrorCode LawIsOther(PetscInt d, const PetscReal X[], const PetscReal Y[], PetscBool *other)
+{
+  PetscReal A[2][9], soft[2][9];
+  PetscBool singular;
+
+  PetscFunctionBeginUser;
+  *other = PETSC_FALSE;
+  for (PetscInt i = 0; i < d; i++)
+    for (PetscInt k = 0; k < d; k++) {
+      A[0][k * d + i]    = X[3 * i + k] + (i == k);
+      A[1][k * d + i]    = Y[3 * i + k] + (i == k);
+      soft[0][k * d + i] = soft[1][k * d + i] = i == k;
+    }
+  for (int j = 0; j < 2; j++) {
+    PetscCall(DenseSolveWith(d, A[j], d, soft[j], &singular));
+    if (singular) *other = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < d * d; i++)
+    if (PetscAbsReal(soft[0][i] - soft[1][i]) > REFACTOR_OTHER) *other = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StatusFactorCompare(StatusFactor f, const SmallSystem *s, FactorDistance *d)
 {
   const PairRows *rows = f->compliance->rows;
   PetscReal       X[9] = {0}, unused[9], largest = 0;
 
   PetscFunctionBeginUser;
-  *d = (FactorDistance){.stands = f->stands};
+  *d = (FactorDistance){.stands = f->stands, .whole = f->whole};
   for (PetscInt p = 0; p < rows->n_pairs && f->stands; p++) {
     const PetscInt first = rows->first[p];
     PetscReal      change;
+    PetscBool      other;
 
-    PetscCall(LawCondense(&s->law[first], X, unused));
+    PetscCall(LawCondense(&s->law[first], f->whole, X, unused));
     change = LawChange(rows->law[p].d, &f->X[3 * first], X);
-    d->n_other += change > REFACTOR_OTHER ? rows->law[p].d : 0;
+    PetscCall(LawIsOther(rows->law[p].d, &f->X[3 * first], X, &other));
+    d->n_other += other ? rows->law[p].d : 0;
     largest = PetscMax(largest, change);
-    largest = PetscMax(largest, PetscAbsReal(s->friction * s->law[first].slide - f->slide[first]));
+    if (f->whole) largest = PetscMax(largest, PetscAbsReal(s->friction * s->law[first].slide - f->slide[first]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_other, 1, MPIU_INT, MPI_SUM, rows->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPI_MAX, rows->comm));
@@ -174,44 +206,86 @@ static PetscErrorCode LawAdd(const StatusFactor f, PetscBool slide, MatStructure
   PetscFunctionReturn(0);
 }
 
+static PetscBool StatusFactorIsSymmetric(StatusFactor f)
+{
+  return f->symmetric || !f->whole ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* K_s, in place from the second time on */
 static PetscErrorCode StatusFactorForm(StatusFactor f)
 {
   const MatStructure pattern = f->K ? SUBSET_NONZERO_PATTERN : DIFFERENT_NONZERO_PATTERN;
-  Mat                Ka;
+  Mat                Ka      = f->compliance->Ka;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPGetOperators(f->compliance->inverse.ksp, &Ka, NULL));
+  if (!Ka) PetscCall(KSPGetOperators(f->compliance->inverse.ksp, &Ka, NULL));
   if (f->K)
     PetscCall(MatCopy(Ka, f->K, SUBSET_NONZERO_PATTERN));
   else
     PetscCall(MatDuplicate(Ka, MAT_COPY_VALUES, &f->K));
   PetscCall(LawAdd(f, PETSC_FALSE, pattern));
-  if (f->S) PetscCall(LawAdd(f, PETSC_TRUE, pattern));
-  PetscCall(MatSetOption(f->K, MAT_SYMMETRIC, f->symmetric));
+  if (f->S && f->whole) PetscCall(LawAdd(f, PETSC_TRUE, pattern));
+  PetscCall(MatSetOption(f->K, MAT_SYMMETRIC, StatusFactorIsSymmetric(f)));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StatusFactorSet(StatusFactor f, const SmallSystem *s, PetscBool *singular)
+/* Factors of a matrix of this shape, K_a or K_s */
+static PetscErrorCode StatusFactorMake(StatusFactor f, Mat K, PetscBool symmetric, ShiftInvert *inverse,
+                                       PetscBool *singular)
 {
-  const PairRows *rows   = f->compliance->rows;
-  PencilMatrices  pencil = {.symmetric = f->symmetric};
+  PencilMatrices pencil = {.symmetric = symmetric, .K = K};
 
   PetscFunctionBeginUser;
+  inverse->comm = f->compliance->rows->comm;
+  inverse->even = symmetric;
+  inverse->bare = PETSC_TRUE;
+  PetscCall(ShiftInvertFactor(&pencil, inverse, singular));
+  PetscFunctionReturn(0);
+}
+
+/* Factors of K_a again, where those of a status have failed */
+static PetscErrorCode StatusFactorFallBack(StatusFactor f)
+{
+  PetscBool singular;
+
+  PetscFunctionBeginUser;
+  PetscCall(StatusFactorMake(f, f->compliance->Ka, PETSC_TRUE, &f->compliance->inverse, &singular));
+  PetscCall(ShiftInvertRegular(f->compliance->rows->comm, (PetscBool)!singular, 0));
+  PetscFunctionReturn(0);
+}
+
+/* Another K_s than before, with or without friction: matrix and factors of that go */
+static PetscErrorCode StatusFactorTurn(StatusFactor f, PetscBool whole)
+{
+  PetscFunctionBeginUser;
+  if (f->symmetric) whole = PETSC_TRUE;
+  if (f->whole == whole) PetscFunctionReturn(0);
+  f->whole = whole;
+  PetscCall(ShiftInvertDestroy(&f->inverse));
+  PetscCall(MatDestroy(&f->K));
+  PetscFunctionReturn(0);
+}
+
+/* Two sets of factors would take twice the memory: those of K_a go before */
+PetscErrorCode StatusFactorSet(StatusFactor f, const SmallSystem *s, PetscBool whole, PetscBool *singular)
+{
+  Compliance     *c    = f->compliance;
+  const PairRows *rows = c->rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(StatusFactorTurn(f, whole));
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt i = rows->first[p];
 
-    PetscCall(LawCondense(&s->law[i], &f->X[3 * i], &f->Qinv[3 * i]));
-    f->slide[i] = s->friction * s->law[i].slide;
+    PetscCall(LawCondense(&s->law[i], f->whole, &f->X[3 * i], &f->Qinv[3 * i]));
+    f->slide[i] = f->whole ? s->friction * s->law[i].slide : 0;
   }
   PetscCall(StatusFactorForm(f));
-  pencil.K        = f->K;
-  f->inverse.comm = rows->comm;
-  f->inverse.even = f->symmetric;
-  f->inverse.bare = PETSC_TRUE;
-  PetscCall(ShiftInvertFactor(&pencil, &f->inverse, singular));
+  if (!c->W) PetscCall(KSPDestroy(&c->inverse.ksp));
+  PetscCall(StatusFactorMake(f, f->K, StatusFactorIsSymmetric(f), &f->inverse, singular));
   f->stands = *singular ? PETSC_FALSE : PETSC_TRUE;
   (*s->n_factored)++;
+  if (*singular && !c->W) PetscCall(StatusFactorFallBack(f));
   PetscFunctionReturn(0);
 }
 
@@ -223,14 +297,14 @@ PetscErrorCode SmallIsReversed(const SmallSystem *s, PetscBool *reversed)
 
   PetscFunctionBeginUser;
   PetscCall(StatusFactorCompare(f, s, &d));
-  if (!d.same) PetscCall(StatusFactorSet(f, s, &singular));
+  if (!d.same || !d.whole) PetscCall(StatusFactorSet(f, s, PETSC_TRUE, &singular));
   *reversed = PETSC_FALSE;
   if (!singular) PetscCall(ShiftInvertIsNegative(&f->inverse, reversed));
   PetscFunctionReturn(0);
 }
 
 /* out = A in of each pair, blocks A [rows][3] */
-static void BlocksMult(const PairRows *rows, const PetscReal A[], const PetscScalar in[], PetscScalar out[])
+static void BlocksMult(const PairRows *rows, const PetscReal A[], const PetscReal in[], PetscReal out[])
 {
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const PetscInt first = rows->first[p];
@@ -242,48 +316,39 @@ static void BlocksMult(const PairRows *rows, const PetscReal A[], const PetscSca
   }
 }
 
-/* b = kappa (S' D X r - G'(X - I) r); Xr is work */
-static PetscErrorCode StatusFactorForces(StatusFactor f, Vec r, Vec Xr)
+PetscBool StatusFactorServes(StatusFactor f)
 {
-  const PairRows    *rows  = f->compliance->rows;
-  const PetscReal    kappa = f->compliance->kappa;
-  const PetscScalar *in;
-  PetscScalar       *out;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(r, &in));
-  PetscCall(VecGetArray(Xr, &out));
-  BlocksMult(rows, f->X, in, out);
-  for (PetscInt i = 0; i < rows->n; i++) out[i] = kappa * (in[i] - out[i]);
-  PetscCall(VecRestoreArray(Xr, &out));
-  PetscCall(MatMultTranspose(f->G, Xr, f->b));
-  if (f->S) {
-    PetscCall(VecGetArray(Xr, &out));
-    BlocksMult(rows, f->X, in, out);
-    for (PetscInt i = 0; i < rows->n; i++) out[i] *= kappa * f->slide[i];
-    PetscCall(VecRestoreArray(Xr, &out));
-    PetscCall(MatMultTransposeAdd(f->S, Xr, f->b, f->b));
-  }
-  PetscCall(VecRestoreArrayRead(r, &in));
-  PetscFunctionReturn(0);
+  return f->stands && !f->compliance->W ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode StatusFactorApply(StatusFactor f, Vec r, Vec z)
+const PetscReal *StatusFactorSlide(StatusFactor f)
 {
-  const PetscScalar *in;
-  PetscScalar       *out;
-  Vec                w;
+  return StatusFactorServes(f) ? f->slide : NULL;
+}
 
+void StatusFactorHold(StatusFactor f, const PetscReal w[], PetscReal Xw[])
+{
+  const PairRows *rows = f->compliance->rows;
+
+  if (StatusFactorServes(f))
+    BlocksMult(rows, f->X, w, Xw);
+  else
+    for (PetscInt i = 0; i < rows->n; i++) Xw[i] = w[i];
+}
+
+void StatusFactorScale(StatusFactor f, const PetscReal r[], PetscReal z[])
+{
+  const PairRows *rows = f->compliance->rows;
+
+  if (StatusFactorServes(f))
+    BlocksMult(rows, f->Qinv, r, z);
+  else
+    for (PetscInt i = 0; i < rows->n; i++) z[i] = r[i];
+}
+
+PetscErrorCode StatusFactorSolve(StatusFactor f, Vec b, Vec u)
+{
   PetscFunctionBeginUser;
-  PetscCall(StatusFactorForces(f, r, z));
-  PetscCall(ShiftInvertSolve(&f->inverse, PETSC_FALSE, f->b, f->q));
-  PetscCall(VecDuplicate(r, &w));
-  PetscCall(MatMultAdd(f->G, f->q, r, w));
-  PetscCall(VecGetArrayRead(w, &in));
-  PetscCall(VecGetArray(z, &out));
-  BlocksMult(f->compliance->rows, f->Qinv, in, out);
-  PetscCall(VecRestoreArray(z, &out));
-  PetscCall(VecRestoreArrayRead(w, &in));
-  PetscCall(VecDestroy(&w));
+  PetscCall(ShiftInvertSolve(StatusFactorServes(f) ? &f->inverse : &f->compliance->inverse, PETSC_FALSE, b, u));
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,7 @@
 /*
    The small system of the pairs, w + (W - V D) l - W w = rhs with l = P z + p0, w = Q z + q0, for z:
 
-      [Q + (W - V D) P - W Q] z = rhs - q0 - (W - V D) p0 + W q0.
+      [Q + (W - V D) P - W Q] z = rhs - q0 - (W - V D) p0 + W q0,   rhs = G K_a^-1 (f + kappa G'e) - e.
 
    Dense, it is factored by LAPACK on every rank alike, or solved by least squares where it is singular; too large for
    that, it is solved by GMRES, each application of W and V one pair of triangular solves. The determinant is positive
@@ -79,18 +79,37 @@ static PetscErrorCode SmallSolveLeast(PetscInt n, PetscReal A[], PetscReal z[], 
   PetscFunctionReturn(0);
 }
 
+/* rhs [rows] */
+static PetscErrorCode SmallRightHand(const SmallSystem *s, PetscReal rhs[])
+{
+  const Compliance *c = s->compliance;
+
+  PetscFunctionBeginUser;
+  if (!s->added) {
+    PetscCall(PetscArraycpy(rhs, s->free, c->rows->n));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ComplianceSolve(c, 0, s->f, NULL, s->e, c->u));
+  PetscCall(ComplianceGetRows(c, c->u, rhs));
+  for (PetscInt i = 0; i < c->rows->n; i++) rhs[i] -= s->e[i];
+  PetscFunctionReturn(0);
+}
+
 /* z of this rank's rows [rows] */
 static PetscErrorCode SmallSolveDense(const SmallSystem *s, PetscReal z[], SmallOutcome *outcome, PetscBool *reversed)
 {
   const PairRows *rows = s->compliance->rows;
   const PetscInt  n    = rows->n_all;
   LawRow         *all_law;
-  PetscReal      *A, *all;
+  PetscReal      *A, *all, *rhs;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(rows->n, &rhs));
+  PetscCall(SmallRightHand(s, rhs));
   PetscCall(PetscCalloc1(n * n, &A));
   PetscCall(GatherRecords(rows->comm, rows->n, sizeof(LawRow), s->law, NULL, &all_law));
-  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), s->rhs, NULL, &all));
+  PetscCall(GatherRecords(rows->comm, rows->n, sizeof(PetscReal), rhs, NULL, &all));
+  PetscCall(PetscFree(rhs));
   SmallAddColumn(s->compliance, s->friction, n, all_law, -1, all);
   for (PetscInt j = 0; j < n; j++) SmallAddColumn(s->compliance, s->friction, n, all_law, j, &A[j * n]);
   PetscCall(SmallFactor(n, A, all, outcome, reversed));

@@ -10,14 +10,15 @@ typedef struct {
   PetscReal P[3], Q[3], p0, q0, slide;
 } LawRow;
 
-/* w + W_mu l - W w = rhs with the laws */
+/* w + (W - V D) l - W w = G K_a^-1 f with the laws; with e: of w = G u + e, that is with w + e in the place of w */
 typedef struct {
   const Compliance *compliance;
   PetscReal         friction;   /* factor of all friction coefficients */
   const LawRow     *law;        /* [rows] */
-  const PetscReal  *rhs;        /* [rows] m */
+  Vec               f;          /* N */
+  PetscBool         added;      /* f and e are what is left of a solution */
+  const PetscReal  *e, *free;   /* [rows] m: e where added; G K_a^-1 f, where not and there is W */
   PetscReal         rtol;       /* of GMRES, where the system is not dense */
-  PetscBool         last;       /* its determinant will be asked for, which takes factors at these laws */
   PetscInt         *n_factored; /* counts factorisations */
   PetscBool        *far;        /* K_a alone takes more solves than a factorisation costs */
 } SmallSystem;
@@ -44,18 +45,25 @@ PETSC_INTERN PetscErrorCode SmallSolve(const SmallSystem *system, PetscReal z[],
                                        SmallOutcome *outcome, PetscBool *reversed);
 /* gmres.c - z [rows] of this rank from a guess of it, where W is NULL */
 PETSC_INTERN PetscErrorCode SmallSolveSparse(const SmallSystem *system, PetscReal z[], SmallOutcome *outcome);
-/* refactor.c - room for factors of the bodies with the pairs at a status; factors at the laws of a system, or a
-   singular matrix; how far its laws are from those that were factored; z = A^-1 r of the small system at these, but for
-   a slight compliance of rigid pairs. Collective. */
+/* refactor.c - room for factors of the bodies with the pairs at a status; factors at the laws of a system, with the
+   whole of friction or without, in the place of those of K_a where W is NULL, or a singular matrix; how far its laws
+   are from those that were factored; u = K_s^-1 b, or K_a^-1 b. Not collective: whether they stand for K_a; Xw = X w
+   and their slide (NULL for none), z = Q_e^-1 r; where they do not, X = Q_e = 1. */
 typedef struct {
   PetscBool stands;  /* there are factors */
-  PetscBool same;    /* and they are of these laws */
+  PetscBool same;    /* and they are of these laws, */
+  PetscBool whole;   /* of their friction too */
   PetscInt  n_other; /* rows of pairs with another law, over all ranks */
 } FactorDistance;
-PETSC_INTERN PetscErrorCode StatusFactorCreate(const Compliance *c, StatusFactor *factor);
-PETSC_INTERN PetscErrorCode StatusFactorSet(StatusFactor factor, const SmallSystem *system, PetscBool *singular);
-PETSC_INTERN PetscErrorCode StatusFactorCompare(StatusFactor factor, const SmallSystem *system, FactorDistance *d);
-PETSC_INTERN PetscErrorCode StatusFactorApply(StatusFactor factor, Vec r, Vec z);
+PETSC_INTERN PetscErrorCode   StatusFactorCreate(Compliance *c, StatusFactor *factor);
+PETSC_INTERN PetscErrorCode   StatusFactorSet(StatusFactor factor, const SmallSystem *system, PetscBool whole,
+                                              PetscBool *singular);
+PETSC_INTERN PetscErrorCode   StatusFactorCompare(StatusFactor factor, const SmallSystem *system, FactorDistance *d);
+PETSC_INTERN PetscBool        StatusFactorServes(StatusFactor factor);
+PETSC_INTERN void             StatusFactorHold(StatusFactor factor, const PetscReal w[], PetscReal Xw[]);
+PETSC_INTERN const PetscReal *StatusFactorSlide(StatusFactor factor);
+PETSC_INTERN void             StatusFactorScale(StatusFactor factor, const PetscReal r[], PetscReal z[]);
+PETSC_INTERN PetscErrorCode   StatusFactorSolve(StatusFactor factor, Vec b, Vec u);
 /* refactor.c - reversed of any small system: the sign of its determinant by such factors */
 PETSC_INTERN PetscErrorCode SmallIsReversed(const SmallSystem *system, PetscBool *reversed);
 PETSC_INTERN PetscErrorCode StatusFactorDestroy(StatusFactor *factor);

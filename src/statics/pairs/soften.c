@@ -141,7 +141,7 @@ static PetscErrorCode SoftenStep(Active *a, const Kept *from, PetscReal drag, Pe
   PetscFunctionBeginUser;
   *falls = PETSC_FALSE;
   DragSet(a, drag);
-  PetscCall(ActiveLinear(a, PETSC_FALSE, a->free, a->l, a->w, small));
+  PetscCall(ActiveLinear(a, a->l, a->w, small));
   DragSet(a, 0);
   if (*small == SMALL_GOOD) {
     PetscCall(ActiveFindScale(a));
