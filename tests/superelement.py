@@ -10,6 +10,7 @@ carrier.csv  table of its unknowns, those of its nodes on the block by place, al
 bad_FAULT.csv  the same with a fault, of FAULTS
 above.msh, above.csv  the carrier 1 mm above the block and turned by half a face, whose places follow the block's top
 touching.csv  two unknowns where the block and the base have a node each
+point.csv, point.bin  the six motions of a point, and their stiffness
 two.csv      two internal unknowns; even.bin, skew.bin, flat.bin, negative.bin, light.bin matrices for it
 """
 
@@ -107,6 +108,9 @@ def main():
     corner = rest[0][rest[1]["block_bottom"][0, 0]]
     (folder / "touching.csv").write_text("unknown,node,direction,x,y,z\n1,1,x,{0},{1},{2}\n2,1,y,{0},{1},{2}\n".format(*corner))
     (folder / "nan.bin").write_bytes(np.array([1211216, 1, 1, 1, 1, 0], ">i4").tobytes() + np.array([np.nan], ">f8").tobytes())
+    write_matrix(folder / "point.bin", csr_matrix(np.diag([1e7, 2e7, 3e7, 1e4, 2e4, 3e4])))
+    (folder / "point.csv").write_text("unknown,node,direction,x,y,z\n" + "".join(
+        f"{6 - i},7,{direction},0.01,0.02,0.13\n" for i, direction in enumerate("rz ry rx z y x".split())))
     (folder / "two.csv").write_text("unknown,node,direction,x,y,z\n1,1,internal,,,\n2,1,0,,,\n")
     for name, values in MATRICES.items():
         write_matrix(folder / f"{name}.bin", csr_matrix(np.array(values, float)))
