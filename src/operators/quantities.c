@@ -33,9 +33,9 @@ static const Quantity rows[] = {
    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak "
    "for",
    NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors, .in = RUN_LINEAR, .idle = OperatorsIdleFactors,
-   .unread =
-     "; it belongs to -analysis modes, sweep and frf: modes beside reduced models have exact contact, which needs "
-     "LU"},
+   .unread = "; it belongs to -analysis modes, sweep, frf and sample: modes beside reduced models have exact contact, "
+             "which needs "
+             "LU"},
   {"-operators_save", "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)", NULL, QUANTITY_TEXT,
    OPERATORS_OPTION(save), .path = "folder"},
   {"-operators_nodes", "of matrices without a mesh: table unknown,node,direction,x,y,z of their nodes", NULL,
