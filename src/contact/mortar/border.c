@@ -11,14 +11,15 @@
 
       r_k >= BORDER_PART min(1, R_k),   R_k the largest r of the nodes of the faces around it.
 
-   Of a strip of the part e of a face of first order, the nodes beyond have r = e^2, and get pairs from e = 0.47 on;
+   Of a strip of the part e of a face of first order, the nodes beyond have r = e^2, and get pairs from e = 0.61 on:
+   from there on they agree best with a slave that ends at the border itself, and below they make frequencies too high;
    where all of a surface has less over the master, as faces larger than the master have, the most covered nodes have
    pairs. q are those nodes of the face that keep their pairs; where a face has none, those of the nearest faces. Every
    rank decides for all nodes, from sums that do not hang on the ranks.
 */
 #include "mortarimpl.h"
 
-#define BORDER_PART  0.22 /* no simple fraction, such as meshes have: rounding decides nothing */
+#define BORDER_PART  0.37 /* no simple fraction, such as meshes have: rounding decides nothing */
 #define BORDER_BARE  1e-6 /* r of a node whose faces only touch the master */
 #define BORDER_RINGS 20   /* of faces around one, in which nodes that keep their pairs are looked for */
 
