@@ -90,6 +90,9 @@ def nastran(folder, program, solid):
          decks_joined.deck(solid, ref + lump + coupled + "*KINEMATIC\n"))
     same(folder, program, "RBE3 with CONM2", ("bdf", decks_joined.nastran(solid, spread + heavy)),
          decks_joined.deck(solid, ref + lump + coupled + "*DISTRIBUTING\n"))
+    uneven = decks_joined.continued("RBE3", 90002, "", 9001, 123456, "1.0", 123, *right[:-1], "3.0", 123, right[-1])
+    lines, _ = brought(folder, decks_joined.nastran(solid, uneven + heavy), "bdf")
+    check("RBE3 of unequal weights: said", sum("its nodes have unequal weights" in line for line in lines) == 1, lines)
     held = "".join(decks_joined.HELD_BY.splitlines(True)[5:10])
     same(folder, program, "RBE2 with CBUSH", ("bdf", decks_joined.nastran(solid, rigid + [
         "CBUSH,90005,5,9001,,,,,0", "PBUSH,5,K,0.,900.,0."])), decks_joined.deck(solid, ref + coupled + "*KINEMATIC\n" + held))

@@ -39,6 +39,9 @@ class Places:
             if group and group.how == "point" and group.rigid and id(group) not in self.rigid:
                 self.rigid.add(id(group))
                 rows.append(("join", "rigid", f"{group.place} {group.words}"))
+            elif group and not group.rigid and group.shares is not None and numpy.ptp(group.shares) > 0:
+                self.deck.differ(group.place, f"{group.words}: its nodes have unequal weights; the point of the scene, which has "
+                                              "a mass, a spring or a load, follows all of them alike")
             rows.append(("at", ("length", tuple(self.deck.x[node])), str(place)))
             self.names[node] = self.assembly.things.new((group.name if group else "") or f"point_{written}")
         return self.rows[node]
