@@ -22,7 +22,7 @@ static const Quantity rows[] = {
    QUANTITY_NAMES, STAGE(sliding), COUNT(n_sliding)},
   {"-interferences", "contacts whose interference begins to act, and stays", NULL, QUANTITY_NAMES, STAGE(interferences),
    COUNT(n_interferences)},
-  {"-ends", "loads that cease to act", NULL, QUANTITY_NAMES, STAGE(ends), COUNT(n_ends)},
+  {"-ends", "loads and interferences that cease to act", NULL, QUANTITY_NAMES, STAGE(ends), COUNT(n_ends)},
 };
 
 static const QuantityTable stages = {"Stage", "statics.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
@@ -121,6 +121,14 @@ static PetscErrorCode StageSetWhole(Statics s, const ModelScene *scene, PetscInt
 
 #define STAGE_LISTS 4
 
+/* The list of what ends: that of the interferences for a contact, else that of the loads */
+static PetscInt StageEnding(const StageTarget target[], const char name[])
+{
+  for (PetscInt j = 0; j < target[3].n; j++)
+    if (!strcmp(TargetName(&target[3], j), name)) return 3;
+  return 0;
+}
+
 /* What acts in stage k, from the one before it: of contacts first 0 or 1 */
 static PetscErrorCode StageSet(Statics s, PetscInt k, StageTarget target[], PetscBool *const named[])
 {
@@ -141,11 +149,12 @@ static PetscErrorCode StageSet(Statics s, PetscInt k, StageTarget target[], Pets
   PetscFunctionBeginUser;
   for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(change); c++)
     for (PetscInt i = 0; i < change[c].n; i++) {
-      StageTarget *t = &target[change[c].list];
+      const PetscInt list = c ? change[c].list : StageEnding(target, change[c].name[i]);
+      StageTarget   *t    = &target[list];
 
       PetscCall(StageChange(s->comm, stage, change[c].option, change[c].name[i], change[c].acts, t));
       for (PetscInt j = 0; j < t->n; j++)
-        if (!strcmp(TargetName(t, j), change[c].name[i])) named[change[c].list][j] = PETSC_TRUE;
+        if (!strcmp(TargetName(t, j), change[c].name[i])) named[list][j] = PETSC_TRUE;
     }
   PetscFunctionReturn(0);
 }
