@@ -207,6 +207,8 @@ PetscErrorCode SamplePoints(Sample s)
     PetscCall(PointsExceeding(s, &n, list));
   }
   PetscCall(PetscFree(list));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->n_divided, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->n_large, 1, MPIU_INT, MPI_SUM, s->comm));
   PetscCheck(s->box.whole || !n, s->comm, PETSC_ERR_NOT_CONVERGED,
              "-sample_rtol %.6g was not reached at %" PetscInt_FMT " of the %" PetscInt_FMT
              " points; raise -sample_rtol or -sample_max_solutions",
