@@ -39,7 +39,7 @@ const QuantityList sample_list = {
   SampleVariableCheck,    .in = RUN_SAMPLE};
 
 static const Quantity rows[] = {
-  {"-sample_count", "samples", NULL, QUANTITY_INT, SAMPLE_AT(n), .initial = 1000, QUANTITY_POSITIVE},
+  {"-sample_count", "samples", NULL, QUANTITY_INT, SAMPLE_AT(n), .initial = 1000, QUANTITY_WITHIN(1, 10000000)},
   {"-sample_sequence", "scrambled sequence of Sobol, Latin hypercube, or random numbers", NULL, QUANTITY_WORD,
    SAMPLE_AT(kind), .initial = SEQUENCE_SOBOL, .words = sequences},
   {"-sample_seed", "another one draws other samples; the same on any number of ranks", NULL, QUANTITY_INT,

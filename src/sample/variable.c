@@ -25,7 +25,11 @@ static PetscErrorCode TableReadFile(const char file[], Distribution *d, Csv *csv
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(TABLE_MOST, &d->value, TABLE_MOST, &d->probability));
   CsvOpen(csv, file, 2, columns, 2);
-  while (CsvNext(csv) && d->n < TABLE_MOST) {
+  while (CsvNext(csv)) {
+    if (d->n == TABLE_MOST) {
+      (void)snprintf(csv->fault, sizeof(csv->fault), "more than %d rows", TABLE_MOST);
+      break;
+    }
     d->value[d->n]       = CsvReal(csv, 0, PETSC_FALSE);
     d->probability[d->n] = CsvReal(csv, 1, PETSC_FALSE);
     d->n++;
@@ -34,12 +38,27 @@ static PetscErrorCode TableReadFile(const char file[], Distribution *d, Csv *csv
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for points that are no distribution */
+static PetscErrorCode TableCheck(MPI_Comm comm, const SampleVariable *v, const Distribution *d)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(d->n >= 2, comm, PETSC_ERR_USER_INPUT, "-%s_table %s: two rows are needed at least", v->name, v->table);
+  for (PetscInt k = 1; k < d->n; k++)
+    PetscCheck(d->value[k] > d->value[k - 1] && d->probability[k] > d->probability[k - 1], comm, PETSC_ERR_USER_INPUT,
+               "-%s_table %s: value and probability must ascend, which %.6g, %.6g behind %.6g, %.6g do not", v->name,
+               v->table, (double)d->value[k], (double)d->probability[k], (double)d->value[k - 1],
+               (double)d->probability[k - 1]);
+  PetscCheck(d->probability[0] == 0 && d->probability[d->n - 1] == 1, comm, PETSC_ERR_USER_INPUT,
+             "-%s_table %s: probability must go from 0 to 1, not from %.6g to %.6g", v->name, v->table,
+             (double)d->probability[0], (double)d->probability[d->n - 1]);
+  PetscFunctionReturn(0);
+}
+
 /* Reads a table, alike on all ranks */
 static PetscErrorCode TableRead(MPI_Comm comm, const SampleVariable *v, Distribution *d)
 {
   PetscMPIInt rank;
-  Csv         csv     = {0};
-  PetscBool   ascends = PETSC_TRUE;
+  Csv         csv = {0};
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -50,11 +69,7 @@ static PetscErrorCode TableRead(MPI_Comm comm, const SampleVariable *v, Distribu
   PetscCallMPI(MPI_Bcast(&d->n, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(d->value, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
   PetscCallMPI(MPI_Bcast(d->probability, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
-  for (PetscInt k = 1; k < d->n; k++)
-    if (d->value[k] <= d->value[k - 1] || d->probability[k] <= d->probability[k - 1]) ascends = PETSC_FALSE;
-  PetscCheck(ascends && d->n >= 2 && d->probability[0] == 0 && d->probability[d->n - 1] == 1, comm,
-             PETSC_ERR_USER_INPUT, "-%s_table %s: value and probability must ascend, probability from 0 to 1", v->name,
-             v->table);
+  PetscCall(TableCheck(comm, v, d));
   PetscFunctionReturn(0);
 }
 
@@ -96,6 +111,23 @@ PetscErrorCode SampleVariableCheck(MPI_Comm comm, void *owner, void *record)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error where mean or peak are those of the scene, and its parameters have several values */
+static PetscErrorCode VariableCheckOwn(Sample s, const SampleVariable *v)
+{
+  const DistributionKind kind = v->distribution.kind;
+  const PetscBool normal = kind == DISTRIBUTION_NORMAL || kind == DISTRIBUTION_LOGNORMAL ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool given  = normal ? v->mean_given : (PetscBool)(kind != DISTRIBUTION_TRIANGULAR || v->peak_given);
+  const PetscReal first  = s->box.nominal[v->moved[0]];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 1; i < v->n_names && !given && !v->relative; i++)
+    PetscCheck(s->box.nominal[v->moved[i]] == first, s->comm, PETSC_ERR_USER_INPUT,
+               "-%s_%s is the value of the scene by default, but %s %.6g and %s %.6g differ: give it, or -%s_relative",
+               v->name, normal ? "mean" : "peak", v->names[0], (double)first, v->names[i],
+               (double)s->box.nominal[v->moved[i]], v->name);
+  PetscFunctionReturn(0);
+}
+
 /* Mean or peak are those of the scene where nothing is said, and the rest must fit them */
 static PetscErrorCode VariableComplete(Sample s, SampleVariable *v)
 {
@@ -103,6 +135,7 @@ static PetscErrorCode VariableComplete(Sample s, SampleVariable *v)
   const PetscReal own = v->relative ? 1 : s->box.nominal[v->moved[0]];
 
   PetscFunctionBeginUser;
+  PetscCall(VariableCheckOwn(s, v));
   if (!v->mean_given) d->mean = own;
   if (!v->peak_given) d->peak = own;
   PetscCheck(d->kind != DISTRIBUTION_LOGNORMAL || d->mean > 0, s->comm, PETSC_ERR_USER_INPUT,
@@ -111,7 +144,8 @@ static PetscErrorCode VariableComplete(Sample s, SampleVariable *v)
              PETSC_ERR_USER_INPUT, "-%s_peak %.6g must lie between -%s_lower %.6g and -%s_upper %.6g", v->name,
              (double)d->peak, v->name, (double)d->lower, v->name, (double)d->upper);
   PetscCheck(DistributionQuantile(d, 0.25) < DistributionQuantile(d, 0.75), s->comm, PETSC_ERR_USER_INPUT,
-             "-%s_lower and -%s_upper leave nothing of the distribution", v->name, v->name);
+             "-%s_lower %.6g and -%s_upper %.6g leave nothing of the distribution", v->name, (double)d->lower, v->name,
+             (double)d->upper);
   PetscFunctionReturn(0);
 }
 
@@ -201,6 +235,8 @@ static PetscErrorCode CorrelationsRead(Sample s)
     r = strtod(word[2], &end);
     PetscCheck(!*end && r > -1 && r < 1 && a != b, s->comm, PETSC_ERR_USER_INPUT,
                "-sample_correlations '%s' must be two variables and a number between -1 and 1", item[i]);
+    PetscCheck(s->factor[a * n + b] == 0, s->comm, PETSC_ERR_USER_INPUT,
+               "-sample_correlations '%s': these two have one already, %.6g", item[i], (double)s->factor[a * n + b]);
     s->factor[a * n + b] = s->factor[b * n + a] = r;
     PetscCall(PetscStrToArrayDestroy(n_words, word));
   }
@@ -219,6 +255,8 @@ PetscErrorCode SampleFindVariables(Sample s)
              "-sample_indices are those of independent variables: leave out -sample_correlations");
   PetscCheck(s->n_rows <= s->n, s->comm, PETSC_ERR_USER_INPUT,
              "-sample_indices %" PetscInt_FMT " must be at most -sample_count %" PetscInt_FMT, s->n_rows, s->n);
+  PetscCheck(s->n_verify <= s->n, s->comm, PETSC_ERR_USER_INPUT,
+             "-sample_verify %" PetscInt_FMT " must be at most -sample_count %" PetscInt_FMT, s->n_verify, s->n);
   s->sequence = (Sequence){s->kind, (uint64_t)s->seed, s->n, (s->n_rows ? 2 : 1) * s->n_variables, NULL};
   PetscCall(SequenceSetUp(&s->sequence));
   s->n_points = s->n + (s->n_rows ? (s->n_variables + 1) * s->n_rows : 0);

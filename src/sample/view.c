@@ -70,8 +70,8 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "sliding state: the %" PetscInt_FMT " pairs closed at the scene's own values, at all samples\n",
       s->box.n_closed));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "probability of growth:\n"));
-  for (PetscInt b = 0; b <= s->nominal.n; b++) PetscCall(BranchView(s, b, viewer));
+  PetscCall(PetscViewerASCIIPrintf(viewer, n ? "probability of growth:\n" : "no sample has a mode in the band\n"));
+  for (PetscInt b = 0; b <= s->nominal.n && n; b++) PetscCall(BranchView(s, b, viewer));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "branches: %" PetscInt_FMT " of %" PetscInt_FMT " modes are none of the scene's own for certain\n", lost,
     n));
