@@ -121,9 +121,14 @@ static PetscErrorCode PointsOfLining(MPI_Comm comm, const char name[], const cha
   const PetscReal h = law->parameter[TABLE_THICKNESS], modulus = law->parameter[TABLE_MODULUS];
   const PetscReal sample   = law->parameter[TABLE_SAMPLE] > 0 ? law->parameter[TABLE_SAMPLE] : 1;
   const PetscReal steepest = StrainsModulus(law, sample);
+  const PetscReal largest  = law->point[2 * (law->n_points - 1)] / sample;
 
   PetscFunctionBeginUser;
   if (h == 0) PetscFunctionReturn(0);
+  PetscCheck(largest < 1, comm, PETSC_ERR_USER_INPUT,
+             "%s has a strain of %.6g, must be below 1: strains are no percents, and compressions need "
+             "-%s_pressure_sample in the same unit",
+             option, (double)largest, name);
   PetscCheck(modulus == 0 || modulus > steepest, comm, PETSC_ERR_USER_INPUT,
              "-%s_pressure_modulus %.6g Pa must be above %.6g Pa, the largest modulus of a line of %s: the lining in "
              "the mesh takes a part of the strain; give it and the part in the mesh a larger modulus",

@@ -20,6 +20,7 @@
 
 #define EQUATION_NEAR  1e-6 /* of the size of the mesh: how near a line must be to its node */
 #define EQUATION_CHUNK 1000000
+#define EQUATION_WEAK  1e-9 /* of another coefficient: what follows would be rounding */
 #define NOT_FOUND      PETSC_MIN_INT
 
 enum { EQUATION_NUMBER, EQUATION_X, EQUATION_DIRECTION = 4, EQUATION_COEFFICIENT, EQUATION_PART, N_EQUATION_COLUMNS };
@@ -58,12 +59,20 @@ static void EquationRead(Csv *csv, const Mesh *mesh, EquationLine *line)
                    (int)line->direction + 1);
 }
 
-/* A fault where an equation has one line, begins with 0 or stands in two places */
+/* A fault where an equation begins with next to nothing or stands in two places. One of a single line holds it: u_1 = 0 */
 static void EquationsCheckLines(Csv *csv, PetscInt n, const EquationLine line[])
 {
+  PetscReal lead = 0;
+
   for (PetscInt i = 0; i < n && !csv->fault[0]; i++) {
     const PetscBool first = i == 0 || line[i].equation != line[i - 1].equation ? PETSC_TRUE : PETSC_FALSE;
 
+    if (first) lead = PetscAbsReal(line[i].coefficient);
+    if (lead < EQUATION_WEAK * PetscAbsReal(line[i].coefficient))
+      (void)snprintf(csv->fault, sizeof(csv->fault),
+                     "equation %d: the coefficient of its first line, which follows, is %.3g beside %.3g: begin with "
+                     "the largest",
+                     (int)line[i].equation, (double)lead, (double)line[i].coefficient);
     if (first && line[i].coefficient == 0)
       (void)snprintf(csv->fault, sizeof(csv->fault),
                      "equation %d: the coefficient of its first line, which follows, is 0", (int)line[i].equation);
