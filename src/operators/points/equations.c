@@ -59,7 +59,7 @@ static void EquationRead(Csv *csv, const Mesh *mesh, EquationLine *line)
                    (int)line->direction + 1);
 }
 
-/* A fault where an equation begins with next to nothing or stands in two places. One of a single line holds it: u_1 = 0 */
+/* A fault where an equation begins with next to nothing or stands in two places. A single line holds it: u_1 = 0 */
 static void EquationsCheckLines(Csv *csv, PetscInt n, const EquationLine line[])
 {
   PetscReal lead = 0;
