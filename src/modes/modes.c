@@ -52,7 +52,8 @@ PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static)
 PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth)
 {
   PetscFunctionBeginUser;
-  PetscCheck(modes->has_band, modes->comm, PETSC_ERR_USER_INPUT, "-modes_band must be given for a sweep: f1,f2 in Hz");
+  PetscCheck(modes->has_band, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_band must be given here, as f1,f2 in Hz: -modes_target is for -analysis modes");
   band[0] = modes->band[0];
   band[1] = modes->band[1];
   *growth = modes->growth > 0 ? modes->growth : 0.1 * 2 * PETSC_PI * band[1];

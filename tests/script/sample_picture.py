@@ -36,7 +36,14 @@ def main():
         count = [(abs(found - 255 * numpy.array(to_rgb(colour))) < 1.5).all(axis=1).sum() for colour in (VERMILION, BLUE)]
         require(count[0] > 1000 and count[1] < 100, f"the branch that grows, and no other: {count} points")
         fails("plot/sample", root / "nothing", [], "no such file")
-        (root / "made/indices.csv").write_text("branch\n")
+        index = root / "made/indices.csv"
+        index.write_text("branch,of,variable,total,total_error,slope,slope_error\n1,growth_rad_s,a,,,,\n1,growth_rad_s,b,,,,\n")
+        drawn("plot/sample", root / "made")
+        made = (root / "made/probability.csv").read_text().splitlines()
+        (root / "made/probability.csv").write_text(f"{made[0]}\n{made[-1]}\n")
+        fails("plot/sample", root / "made", [], "no branch has a mode in the band at any sample")
+        (root / "made/probability.csv").write_text("\n".join(made) + "\n")
+        index.write_text("branch\n")
         fails("plot/sample", root / "made", [], "no column of")
 
 
