@@ -14,6 +14,7 @@
    in turn, but not in a circle. Others that are held are 0.
 */
 #include "dependents.h"
+#include "nodesbyx.h"
 #include "base/csv.h"
 #include <stdlib.h>
 #include <string.h>
@@ -150,32 +151,21 @@ static PetscErrorCode NodesMarkParts(const Mesh *mesh, PetscBool **on)
   PetscFunctionReturn(0);
 }
 
-/* Nodes of this rank in ascending x */
 typedef struct {
-  const Mesh *mesh;
-  PetscInt   *order; /* [n_nodes] */
-  PetscReal  *x;     /* [n_nodes] of them, in this order */
-  PetscBool  *on;    /* [n_parts][n_nodes] which nodes each part has */
-  PetscReal   near;  /* m */
+  NodesByX   nodes;
+  PetscBool *on;   /* [n_parts][n_nodes] which nodes each part has */
+  PetscReal  near; /* m */
 } NodeSearch;
 
 /* The node of a line among those of this rank, and others near it: the largest number, the largest of their negative,
    and its unknown, -1 where it is held */
 static void EquationFindNode(const NodeSearch *s, const EquationLine *line, PetscInt found[4])
 {
-  const Mesh *mesh  = s->mesh;
-  PetscInt    begin = 0, end = mesh->n_nodes;
+  const Mesh *mesh = s->nodes.mesh;
 
-  while (begin < end) {
-    const PetscInt middle = begin + (end - begin) / 2;
-
-    if (s->x[middle] < line->x[0] - s->near)
-      begin = middle + 1;
-    else
-      end = middle;
-  }
-  for (; begin < mesh->n_nodes && s->x[begin] <= line->x[0] + s->near; begin++) {
-    const PetscInt   v    = s->order[begin];
+  for (PetscInt i = NodesByXBegin(&s->nodes, line->x[0] - s->near);
+       i < mesh->n_nodes && s->nodes.x[i] <= line->x[0] + s->near; i++) {
+    const PetscInt   v    = s->nodes.order[i];
     const PetscReal *at   = &mesh->x[3 * v];
     const PetscReal  away = PetscMax(PetscAbsReal(at[1] - line->x[1]), PetscAbsReal(at[2] - line->x[2]));
 
@@ -217,15 +207,13 @@ static PetscErrorCode EquationCheckNode(MPI_Comm comm, const char file[], const 
 static PetscErrorCode EquationsFind(MPI_Comm comm, const char file[], const Mesh *mesh, PetscInt n,
                                     const EquationLine line[], PetscInt found[])
 {
-  NodeSearch s = {.mesh = mesh};
+  NodeSearch s;
 
   PetscFunctionBeginUser;
   PetscCall(MeshSize(comm, mesh, &s.near));
   s.near *= EQUATION_NEAR;
   PetscCall(NodesMarkParts(mesh, &s.on));
-  PetscCall(PetscMalloc2(mesh->n_nodes, &s.x, mesh->n_nodes, &s.order));
-  for (PetscInt v = 0; v < mesh->n_nodes; v++) s.x[v] = mesh->x[3 * v], s.order[v] = v;
-  PetscCall(PetscSortRealWithArrayInt(mesh->n_nodes, s.x, s.order));
+  PetscCall(NodesByXCreate(mesh, &s.nodes));
   for (PetscInt i = 0; i < 4 * n; i++) found[i] = NOT_FOUND;
   for (PetscInt i = 0; i < n; i++) EquationFindNode(&s, &line[i], &found[4 * i]);
   for (PetscInt i = 0; i < 4 * n; i += EQUATION_CHUNK)
@@ -234,7 +222,7 @@ static PetscErrorCode EquationsFind(MPI_Comm comm, const char file[], const Mesh
   for (PetscInt i = 0; i < n; i++)
     PetscCall(
       EquationCheckNode(comm, file, &line[i], i == 0 || line[i].equation != line[i - 1].equation, &found[4 * i]));
-  PetscCall(PetscFree2(s.x, s.order));
+  PetscCall(NodesByXDestroy(&s.nodes));
   PetscCall(PetscFree(s.on));
   PetscFunctionReturn(0);
 }

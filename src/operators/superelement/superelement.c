@@ -140,11 +140,12 @@ static PetscErrorCode SuperelementCheckMass(Operators o, const Superelement *s)
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(who, sizeof(who), "superelement %s: ", s->name));
   if (s->A[SUPERELEMENT_M]) PetscCall(MassCheck(s->A[SUPERELEMENT_M], who, &singular));
-  if (s->A[SUPERELEMENT_M] && s->n_apart) PetscCall(SuperelementHasMassApart(o, s, who, &has));
+  if (s->A[SUPERELEMENT_M] && s->n_apart && s->scale[SUPERELEMENT_M] > 0)
+    PetscCall(SuperelementHasMassApart(o, s, who, &has));
   PetscCheck(has || !s->n_apart, o->comm, PETSC_ERR_USER_INPUT,
              "superelement %s: internal unknowns have no mass of their own along some direction: eliminate these where "
-             "the matrices are made, or give them a mass by -%s_m",
-             s->name, s->name);
+             "the matrices are made, or give them a mass by -%s_m and a positive -%s_m_scale",
+             s->name, s->name, s->name);
   PetscFunctionReturn(0);
 }
 
