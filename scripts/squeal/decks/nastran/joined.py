@@ -86,6 +86,8 @@ def spread(deck, mesh, table, row):
             numbers.append(int(word))
     if not numbers or not words[2].isdigit():
         raise place.wrong("RBE3 needs a point, and points that it is the mean of")
+    if not min(shares) > 0:
+        raise place.wrong(f"RBE3 {words[0]}: weight {min(shares):g} must be positive")
     nodes = mesh.nodes.need(numpy.array(numbers), "grid point", place)
     equal = len(set(shares)) == 1
     deck.joins.append(Join(f"rbe3_{words[0]}", point(mesh, int(words[2]), place), nodes, False, place, f"RBE3 {words[0]}",
