@@ -73,7 +73,7 @@ def check_scene(r):
         text = (r.folder / "out/scene.yaml").read_text()
         r.check(done.returncode == 0 and (r.folder / "out/modes.csv").exists(), f"modes on {ranks}", done)
         for word in ('contact_mu: "0.25"', 'squeal_view: "true"', 'modes_contact: "static"', "# versions: squeal ", "MUMPS",
-                     f"# cost: {ranks} rank", "# stages: Model ", "# completeness: none was found missing: ",
+                     f"# cost: {ranks} rank", "# stages: Model ", "# completeness: ",
                      "# contact_tolerance: 1e-05", "# command: ", "modes.csv"):
             r.check(word in text, f"scene.yaml on {ranks} says {word}", done)
         repeat = re.search(r"# repeat: (?:mpirun -n (\d+) )?squeal (.*)", text)

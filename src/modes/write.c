@@ -71,11 +71,11 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
                                      (double)(100 * ModeDampingRatio(m)), (double)(m->error / (2 * PETSC_PI)),
                                      (double)m->condition, (double)m->backward_error, m->label, mark[m->state]));
   }
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " modes", modes->n));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " mode%s", modes->n, modes->n == 1 ? "" : "s"));
   if (!modes->has_band) PetscCall(PetscViewerASCIIPrintf(viewer, " nearest to %.6g Hz", (double)modes->target));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " unstable", n[MODE_UNSTABLE]));
   if (n[MODE_NEUTRAL]) PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " neutral", n[MODE_NEUTRAL]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "; %s\n", modes->completeness));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\ncompleteness: %s\n", modes->completeness));
   PetscCall(ModesViewLimit(modes, n[MODE_NEUTRAL] ? PETSC_TRUE : PETSC_FALSE, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ModesViewCauses(modes, viewer));
   if (n[MODE_UNSTABLE]) PetscCall(ModesViewSensitivities(modes, viewer));

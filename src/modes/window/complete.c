@@ -24,11 +24,20 @@ static void CountReal(Modes modes, PetscInt *rows, PetscInt *pairs, PetscInt *at
   *pairs = *at_zero + (PetscMax(0, decays - *at_zero) + 1) / 2;
 }
 
+/* Whether the modes found are as many as those without friction and damping */
+static PetscBool Expected(Modes modes, const Window *window)
+{
+  PetscInt rows, pairs, at_zero;
+
+  CountReal(modes, &rows, &pairs, &at_zero);
+  return modes->n - rows + pairs == window->known.expected ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* The count without friction and damping, and why that of the rows may differ from it */
 static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, char text[], size_t size)
 {
   PetscInt rows, pairs, at_zero;
-  char     real[192] = "", other[128] = "", zeros[128] = "";
+  char     real[192] = "", other[160] = "", zeros[128] = "";
 
   PetscFunctionBeginUser;
   text[0] = '\0';
@@ -42,11 +51,14 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
                             "; %" PetscInt_FMT " of them do not oscillate and count as %" PetscInt_FMT " mode%s", rows,
                             pairs, pairs == 1 ? "" : "s"));
   if (modes->n - rows + pairs != window->known.expected)
-    PetscCall(PetscStrncpy(other, ", the others lie beyond that growth or have left the band", sizeof(other)));
+    PetscCall(PetscStrncpy(
+      other, " without friction and damping, the others lie beyond that growth or have left the band", sizeof(other)));
   if (modes->n - rows + pairs > window->known.expected)
-    PetscCall(PetscStrncpy(other, ", the others came into the band by friction, damping or spin", sizeof(other)));
-  PetscCall(PetscSNPrintf(text, size, "%s%s; inertia counts %" PetscInt_FMT " without friction and damping%s", zeros,
-                          real, window->known.expected, other));
+    PetscCall(PetscStrncpy(other,
+                           " without friction and damping, the others came into the band by friction, damping or spin",
+                           sizeof(other)));
+  PetscCall(PetscSNPrintf(text, size, "%s%s; %" PetscInt_FMT " mode%s expected from the inertia count%s", zeros, real,
+                          window->known.expected, window->known.expected == 1 ? "" : "s", other));
   PetscFunctionReturn(0);
 }
 
@@ -54,15 +66,14 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
 static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
                                          size_t size)
 {
-  char undamped[192] = "inertia counts the undamped modes in the band";
+  char undamped[192] = "the inertia count of the undamped modes is that of those found";
 
   PetscFunctionBeginUser;
   if (!window->route.counted)
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
                             (double)window->route.worst));
-  PetscCall(PetscSNPrintf(text, size,
-                          "none was found missing: %s; damping brings none from beyond them%s: strength %.2g of 1%s",
-                          undamped, region, (double)window->route.beyond, rest));
+  PetscCall(PetscSNPrintf(text, size, "%s; damping brings none from beyond them%s: strength %.2g of 1%s", undamped,
+                          region, (double)window->route.beyond, rest));
   PetscFunctionReturn(0);
 }
 
@@ -95,27 +106,25 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
     PetscCall(PetscSNPrintf(massless, sizeof(massless),
                             "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
                             (double)window->known.most));
-  if (!window->count)
+  if (!window->count && !Expected(modes, window))
     PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
   if (window->route.proven && window->count)
-    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia counts %" PetscInt_FMT " up to the outermost",
+    PetscCall(PetscSNPrintf(text, size, "proven by the inertia count, %" PetscInt_FMT " up to the outermost",
                             window->known.expected));
   else if (window->route.proven)
-    PetscCall(PetscSNPrintf(text, size, "none is missing: inertia counts %" PetscInt_FMT " in the band",
-                            window->known.expected));
+    PetscCall(
+      PetscSNPrintf(text, size, "proven by the inertia count, %" PetscInt_FMT " in the band", window->known.expected));
   else if (window->route.project && (modes->left || window->route.counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)
-    PetscCall(
-      PetscSNPrintf(text, size,
-                    "none was found missing: LAPACK finds the same about two shifts, from the matrices and from their "
-                    "transposes, to %.1e%s%s",
-                    (double)window->route.worst, region, frictionless));
+    PetscCall(PetscSNPrintf(
+      text, size, "LAPACK finds the same about two shifts, from the matrices and from their transposes, to %.1e%s%s",
+      (double)window->route.worst, region, frictionless));
   else if (modes->left)
-    PetscCall(PetscSNPrintf(text, size, "none was found missing: two independent searches agree to %.1e%s%s",
-                            (double)window->route.worst, region, frictionless));
+    PetscCall(PetscSNPrintf(text, size, "two independent searches agree to %.1e%s%s", (double)window->route.worst,
+                            region, frictionless));
   else
-    PetscCall(PetscSNPrintf(text, size, "completeness was not checked, since -modes_left is off%s", frictionless));
+    PetscCall(PetscSNPrintf(text, size, "not checked, since -modes_left is off%s", frictionless));
   PetscCall(PetscStrlcat(text, route, size));
   PetscCall(PetscStrlcat(text, massless, size));
   PetscFunctionReturn(0);
