@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""options/README.md has every option that the program tells by -help_json, with its default, unit, meaning and choices, as
+"""options/reference.md has every option that the program tells by -help_json, with its default, unit, meaning and choices, as
 scripts/manual --reference writes them, and an example of its own for each. Breaks when an option or a default changes and the
 page does not. -help shows the same options with the same sentences. What rows say may vary is what sweeps and maps offer.
 
@@ -16,7 +16,7 @@ SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.options import ask, options_of
 
-PAGE = SOURCE / "options/README.md"
+PAGE = SOURCE / "options/reference.md"
 VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
           "-rig_beam_elements", "3", "-contact_force", "10", "-contact_friction_damping"]
 # What could vary in that scene, were it given
@@ -64,7 +64,7 @@ def main():
         faults = [*faults_of(squeal, folder), *varied_faults(squeal, folder)]
     print("\n".join(faults) or "the page is that of the program")
     if faults:
-        print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/README.md PROGRAM")
+        print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/reference.md PROGRAM")
     return 1 if faults else 0
 
 

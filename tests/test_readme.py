@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the READMEs say of the repository is so: every path that they name exists, every test of the table in
+"""What the READMEs and pages say of the repository is so: every path that they name exists, every test of the table in
 tests/README.md is one, faults of tests/faults.py are in its other table and can be planted in the sources as they are, and
 README.md has at most 900 words. Breaks when a file is moved or changed and a README or a fault is forgotten. Exit status: 0, or 1.
 
@@ -21,8 +21,8 @@ LINK = re.compile(r"\]\(([^)#]+)\)")
 
 
 def readmes():
-    """Those of the top and of its folders, without what is built."""
-    return [ROOT / "README.md", *(path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("README.md")))]
+    """Those of the top and of its folders, without what is built, and the pages beside them."""
+    return [ROOT / "README.md", *(path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.md")))]
 
 
 def words(text):

@@ -5,7 +5,7 @@ than the page, leaves out a file that the page names, or when an error is more t
 
     test_tutorial.py SQUEAL MPIRUN hour|brake
 
-`hour` is options/tutorial.md, `brake` the part of options/README.md on a brake of one's own. Exit status 77, skipped,
+`hour` is options/tutorial.md, `brake` options/own_brake.md. Exit status 77, skipped,
 without the program gmsh."""
 
 import csv
@@ -17,13 +17,7 @@ import tempfile
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
-BRAKE = "Your own brake in 15 minutes"
 MINUTES = 15
-
-
-def part_of(page, title):
-    """The part of a page below a heading."""
-    return re.search(rf"^## {title}\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)[1]
 
 
 def blocks(text):
@@ -100,7 +94,7 @@ def check_brake(folder):
 
 # Text, names of the files in it by their language, what is checked at the end
 PAGES = {"hour": ((SOURCE / "options/tutorial.md").read_text(), {"geo": "brake.geo", "yaml": "brake.yaml"}, check_hour),
-         "brake": (part_of((SOURCE / "options/README.md").read_text(), BRAKE), {"geo": "own.geo", "yaml": "own.yaml"},
+         "brake": ((SOURCE / "options/own_brake.md").read_text(), {"geo": "own.geo", "yaml": "own.yaml"},
                    check_brake)}
 
 

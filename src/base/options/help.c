@@ -31,7 +31,7 @@ static const char most_used[] =
   "  -ts_max_time 10e-3         end of a transient, s\n"
   "  -squeal_view               says what was built and chosen, and the time of each stage\n"
   "All options with unit and default: squeal -help. Those of a scene's own names: squeal -options_file FILE -help.\n"
-  "The same in words, with an example of each: options/README.md. A first hour: options/tutorial.md.\n";
+  "The same in words, with an example of each: options/reference.md. A first hour: options/tutorial.md.\n";
 
 /* A scene with one name in every list, for -help where there is none */
 static const char names_of_all[] =
