@@ -17,7 +17,8 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("include/", "options/", "scripts/", "src/", "tests/")
 MOST_WORDS = 900
 CODE = re.compile(r"`([^`]+)`|^    (.*)$", re.MULTILINE)
-LINK = re.compile(r"\]\(([^)#]+)\)")
+LINK = re.compile(r"\]\(([^)#]*)(?:#([^)]*))?\)")
+FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
 def readmes():
@@ -40,15 +41,22 @@ def is_there(word):
     return True
 
 
+def anchors(page):
+    """What its headings are called in links, as on a web page of it."""
+    headings = re.findall(r"^#+ (.+)$", FENCED.sub("", page.read_text()), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
 def faults(readme):
     """What a README names that is not there."""
     text = readme.read_text()
     for word in words(text):
         if not is_there(word):
             yield f"there is no {word}"
-    for link in LINK.findall(text):
-        if "://" not in link and not (readme.parent / link).exists():
-            yield f"the link to {link} leads nowhere"
+    for link, anchor in LINK.findall(FENCED.sub("", text)):
+        target = readme.parent / link if link else readme
+        if "://" not in link and (not target.exists() or anchor and anchor not in anchors(target)):
+            yield f"the link to {link}#{anchor} leads nowhere"
 
 
 def unknown_tests():

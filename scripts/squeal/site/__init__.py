@@ -1,0 +1,1 @@
+"""Pages of the repository as a site."""
