@@ -3,9 +3,9 @@
 that has the repository's scripts and options and the program as built. Breaks when a command fails, says something else
 than the page, leaves out a file that the page names, or when an error is more than one line.
 
-    test_tutorial.py SQUEAL MPIRUN hour|brake
+    test_tutorial.py SQUEAL MPIRUN hour|brake|guides
 
-`hour` is options/tutorial.md, `brake` options/own_brake.md. Exit status 77, skipped,
+`hour` is options/tutorial.md, `brake` options/own_brake.md, `guides` options/guides.md. Exit status 77, skipped,
 without the program gmsh."""
 
 import csv
@@ -92,10 +92,32 @@ def check_brake(folder):
     return faults
 
 
+def check_guides(folder):
+    """The growth that the page asks to be trusted; an onset over friction where growth changes its sign; the files that it names."""
+    def rows(name):
+        with (folder / "results" / name).open() as lines:
+            return list(csv.DictReader(lines))
+
+    named = ["results/modes_causes.csv", "results/modes_feed_in.csv", "results/modes_effects.csv", "results/modes_effects.h5",
+             "brake.html", "results/friction/sweep.png", "results/cure/cure.csv", "results/check/check.h5"]
+    faults = [f"{path} is missing" for path in named if not (folder / path).exists()]
+    grows = [round(float(row["growth_rad_s"])) for row in rows("modes.csv") if row["unstable"] == "1"]
+    faults += [] if grows == [298] else [f"grows: {grows}"]
+    unstable = {float(row["value"]) for row in rows("friction/sweep.csv") if row["unstable"] == "1"}
+    quiet = {float(row["value"]) for row in rows("friction/sweep.csv")} - unstable
+    onsets = [float(row["critical_value"]) for row in rows("friction/onsets.csv")]
+    if not onsets or not max(quiet) < min(onsets) < min(unstable):
+        faults.append(f"onsets {onsets} between {max(quiet)} and {min(unstable)}")
+    if not 0.2 < float(rows("sample/probability.csv")[-1]["probability"]) < 0.4:
+        faults.append("probability of the oscillator is not 0.3085")
+    return faults
+
+
 # Text, names of the files in it by their language, what is checked at the end
 PAGES = {"hour": ((SOURCE / "options/tutorial.md").read_text(), {"geo": "brake.geo", "yaml": "brake.yaml"}, check_hour),
          "brake": ((SOURCE / "options/own_brake.md").read_text(), {"geo": "own.geo", "yaml": "own.yaml"},
-                   check_brake)}
+                   check_brake),
+         "guides": ((SOURCE / "options/guides.md").read_text(), {}, check_guides)}
 
 
 def main():
@@ -106,7 +128,9 @@ def main():
     text, files, check = PAGES[sys.argv[3]]
     faults = []
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        folder = Path(name)
+        folder = Path(name) / "share/squeal"  # scripts that are installed take the program of their prefix
+        (Path(name) / "bin").mkdir()
+        (Path(name) / "bin/squeal").symlink_to(squeal)
         shutil.copytree(SOURCE / "scripts", folder / "scripts")
         shutil.copytree(SOURCE / "options", folder / "options", ignore=shutil.ignore_patterns("*.msh", "*.png"))
         (folder / "scripts/run").write_text(f'#!/bin/sh\nexec "{mpirun}" -n 1 "{squeal}" "$@"\n')
