@@ -68,6 +68,26 @@ PetscErrorCode OperatorsHaveTerms(Operators operators, PetscBool *have);
 /*@ OperatorsCountSuperelements - how many there are. Not collective. @*/
 PetscInt OperatorsCountSuperelements(Operators operators);
 
+/*@ OperatorsCountParts - how many bodies have a name: the parts of OperatorsGetMesh(), then the superelements, which
+    are numbered on. Not collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsCountParts(Operators operators, PetscInt *n);
+
+/*@ OperatorsGetPartName - that of one of them (borrowed). Not collective. @*/
+PetscErrorCode OperatorsGetPartName(Operators operators, PetscInt part, const char **name);
+
+/*@ OperatorsMultiplySuperelementMass - f = M u with the mass of superelement k at p, from 0, in all unknowns; 0 without
+    mass. Collective. @*/
+PetscErrorCode OperatorsMultiplySuperelementMass(Operators operators, const PetscReal p[], PetscInt k, Vec u, Vec f);
+
+/*@ OperatorsMarkSuperelement - u = 1 at the unknowns of superelement k, or of those only that are apart from the mesh;
+    0 elsewhere. Collective. @*/
+PetscErrorCode OperatorsMarkSuperelement(Operators operators, PetscInt k, PetscBool apart, Vec u);
+
+/*@ OperatorsGetSuperelementForce - the sum of the forces (N) with which superelement k acts on the nodes of the mesh at
+    unknowns u and displacements [local nodes][3] (m), held ones too. Collective. @*/
+PetscErrorCode OperatorsGetSuperelementForce(Operators operators, const PetscReal p[], PetscInt k, Vec u,
+                                             const PetscReal displacement[], PetscReal force[3]);
+
 /*@ OperatorsViewSuperelements - a line of each. Collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsViewSuperelements(Operators operators, PetscViewer viewer);
 

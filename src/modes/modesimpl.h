@@ -108,7 +108,7 @@ struct _p_Modes {
   Mode           *mode;
   PetscReal      *residual; /* [n] |Q(lambda) x| in the norm of M^-1, at most, with x of M-norm one, (rad/s)^2 */
   PetscInt        n;
-  double         *part_percent;  /* participation of the parts [n][parts], NULL for matrices without a mesh */
+  double         *part_percent;  /* participation [n][parts and superelements], NULL for matrices without a mesh */
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
   PetscInt       *label_part;    /* the part that a mode is named after, -1 for none [n], NULL likewise */
   ModesWeights   *weights;       /* NULL: not weighed yet */
@@ -339,6 +339,10 @@ PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results 
 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */
 #define LABEL_TIE 1e-6
 
+/* superelement.c - y^T M_s x of superelement k, real and imaginary; x[1], y[1] NULL for zero, y[0] NULL for y =
+   conj(x). Collective */
+PETSC_INTERN PetscErrorCode LabelsShareSuperelement(Modes modes, Operators operators, PetscInt k, const Vec x[2],
+                                                    const Vec y[2], PetscReal share[2]);
 /* label_percent of what is named after an unknown */
 #define LABEL_UNKNOWN -1
 

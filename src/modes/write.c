@@ -90,16 +90,19 @@ PetscErrorCode ModesView(Modes modes, PetscViewer viewer)
 }
 
 /* Header of modes.csv; further columns only at its end, since others read it */
-static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsTable *table)
+static PetscErrorCode ModesOpenTable(Operators operators, PetscInt n_parts, const Mesh *mesh, Results results,
+                                     ResultsTable *table)
 {
-  char header[16384], column[256];
+  char        header[16384], column[256];
+  const char *name;
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(header,
                          "mode,freq_hz,growth_rad_s,damping_ratio,backward_error,condition,unstable,label,error_hz",
                          sizeof(header)));
-  for (PetscInt part = 0; mesh && part < mesh->n_parts; part++) {
-    PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", mesh->part[part]));
+  for (PetscInt part = 0; part < n_parts; part++) {
+    PetscCall(OperatorsGetPartName(operators, part, &name));
+    PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", name));
     PetscCall(PetscStrlcat(header, column, sizeof(header)));
   }
   if (mesh) PetscCall(PetscStrlcat(header, ",label_percent", sizeof(header)));
@@ -109,20 +112,22 @@ static PetscErrorCode ModesOpenTable(const Mesh *mesh, Results results, ResultsT
 }
 
 /* modes.csv */
-static PetscErrorCode ModesWriteTable(Modes modes, const Mesh *mesh, Results results)
+static PetscErrorCode ModesWriteTable(Modes modes, Operators operators, const Mesh *mesh, Results results)
 {
   const ModeMechanism *mechanism;
+  PetscInt             n_parts;
   ResultsTable         table;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetMechanisms(modes, &mechanism));
-  PetscCall(ModesOpenTable(mesh, results, &table));
+  PetscCall(OperatorsCountParts(operators, &n_parts));
+  PetscCall(ModesOpenTable(operators, n_parts, mesh, results, &table));
   for (PetscInt i = 0; i < modes->n; i++) {
     const Mode *m             = &modes->mode[i];
     char        percent[2048] = "", number[32];
 
-    for (PetscInt part = 0; mesh && part < mesh->n_parts; part++) {
-      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * mesh->n_parts + part]));
+    for (PetscInt part = 0; part < n_parts; part++) {
+      PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * n_parts + part]));
       PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
     }
     if (mesh) {
@@ -183,7 +188,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));
   PetscCall(ModesBalance(modes));
-  PetscCall(ModesWriteTable(modes, mesh, results));
+  PetscCall(ModesWriteTable(modes, operators, mesh, results));
   PetscCall(EventBegin(EVENT_CAUSES));
   PetscCall(ModesWriteCauses(modes, results));
   PetscCall(ModesWriteFeedIn(modes, results));

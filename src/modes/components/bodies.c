@@ -1,6 +1,7 @@
 /*
-   Bodies: parts that a term of K or M connects, but for contact and bushings, or that follow others. A random vector r
-   that is zero outside of a part has A r and Z r exactly zero at what is not connected with it.
+   Bodies: parts, superelements among them, that a term of K or M connects, but for contact and bushings, or that follow
+   others. A random vector r that is zero outside of a part has A r and Z r exactly zero at what is not connected with
+   it.
 */
 #include "components.h"
 #include "solver/block/orthonormal.h"
@@ -13,13 +14,37 @@ static PetscReal Scatter(PetscInt unknown)
   return 1 + x - PetscFloorReal(x);
 }
 
-/* Part of each unknown of this rank, n_parts where no cell of this rank has it */
-static PetscErrorCode PartsOfUnknowns(const Mesh *mesh, Vec part)
+/* Unknowns apart are of their superelement */
+static PetscErrorCode PartsOfUnknownsApart(Operators operators, PetscInt n_parts, Vec part)
+{
+  const PetscScalar *own;
+  PetscScalar       *at;
+  PetscInt           n;
+  Vec                mark;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(part, &mark));
+  PetscCall(VecGetLocalSize(part, &n));
+  for (PetscInt k = 0; k < OperatorsCountSuperelements(operators); k++) {
+    PetscCall(OperatorsMarkSuperelement(operators, k, PETSC_TRUE, mark));
+    PetscCall(VecGetArrayRead(mark, &own));
+    PetscCall(VecGetArray(part, &at));
+    for (PetscInt i = 0; i < n; i++)
+      if (own[i] != 0) at[i] = n_parts + k;
+    PetscCall(VecRestoreArray(part, &at));
+    PetscCall(VecRestoreArrayRead(mark, &own));
+  }
+  PetscCall(VecDestroy(&mark));
+  PetscFunctionReturn(0);
+}
+
+/* Part of each unknown of this rank, `none` where no cell of this rank has it */
+static PetscErrorCode PartsOfUnknowns(Operators operators, const Mesh *mesh, PetscInt none, Vec part)
 {
   PetscScalar *at;
 
   PetscFunctionBeginUser;
-  PetscCall(VecSet(part, mesh->n_parts));
+  PetscCall(VecSet(part, none));
   PetscCall(VecGetArray(part, &at));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     for (PetscInt k = 3 * mesh->cell_first[c]; k < 3 * mesh->cell_first[c + 1]; k++) {
@@ -28,6 +53,7 @@ static PetscErrorCode PartsOfUnknowns(const Mesh *mesh, Vec part)
       if (own >= 0 && own < mesh->n_own) at[own] = mesh->cell_part[c];
     }
   PetscCall(VecRestoreArray(part, &at));
+  PetscCall(PartsOfUnknownsApart(operators, mesh->n_parts, part));
   PetscFunctionReturn(0);
 }
 
@@ -122,6 +148,28 @@ static PetscErrorCode PartsJoinFollowers(Operators operators, Vec part, PetscInt
   PetscFunctionReturn(0);
 }
 
+/* What superelements join, also those that have no unknown but those of nodes; they stand last before what has no
+   part */
+static PetscErrorCode PartsJoinSuperelements(Operators operators, Vec part, PetscInt n, PetscInt joined[])
+{
+  const PetscInt n_super = OperatorsCountSuperelements(operators);
+  Vec            mark;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(part, &mark));
+  for (PetscInt k = 0; k < n_super; k++) {
+    const PetscInt p   = n - 1 - n_super + k;
+    PetscInt      *row = &joined[p * n], any = 0;
+
+    PetscCall(OperatorsMarkSuperelement(operators, k, PETSC_FALSE, mark));
+    PetscCall(PartsMark(part, mark, row));
+    for (PetscInt q = 0; q < n; q++) any = PetscMax(any, row[q]);
+    row[p] = any;
+  }
+  PetscCall(VecDestroy(&mark));
+  PetscFunctionReturn(0);
+}
+
 /* joined[p][q] of n parts: whether p is connected with q; with itself: whether it has unknowns */
 static PetscErrorCode PartsJoin(Pencil pencil, Operators operators, PetscInt n, Vec part, PetscInt joined[])
 {
@@ -132,6 +180,7 @@ static PetscErrorCode PartsJoin(Pencil pencil, Operators operators, PetscInt n, 
   PetscCall(PartsScatter(part, n, &R));
   PetscCall(PartsMarkAll(part, R, n, joined));
   PetscCall(PartsJoinFollowers(operators, part, n, R, joined));
+  PetscCall(PartsJoinSuperelements(operators, part, n, joined));
   PetscCall(MatDuplicate(R, MAT_DO_NOT_COPY_VALUES, &AR));
   PetscCall(PencilGetTermsApart(pencil, &n_terms, &terms));
   for (PetscInt t = 0; t < n_terms; t++) {
@@ -166,18 +215,20 @@ static PetscInt FreeBodiesNumber(PetscInt n, const PetscInt joined[], PetscInt b
 }
 
 /* Names of the bodies; what has no part is called so */
-static PetscErrorCode FreeBodiesName(const Mesh *mesh, const PetscInt body[], FreeBodies *bodies)
+static PetscErrorCode FreeBodiesName(Operators operators, PetscInt n_parts, const PetscInt body[], FreeBodies *bodies)
 {
-  char name[1024];
+  char        name[1024];
+  const char *part;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(bodies->n, &bodies->name));
   for (PetscInt b = 0; b < bodies->n; b++) {
     name[0] = 0;
-    for (PetscInt p = 0; p < mesh->n_parts; p++) {
+    for (PetscInt p = 0; p < n_parts; p++) {
       if (body[p] != b) continue;
+      PetscCall(OperatorsGetPartName(operators, p, &part));
       PetscCall(PetscStrlcat(name, name[0] ? "+" : "", sizeof(name)));
-      PetscCall(PetscStrlcat(name, mesh->part[p], sizeof(name)));
+      PetscCall(PetscStrlcat(name, part, sizeof(name)));
     }
     PetscCall(PetscStrallocpy(name[0] ? name : "no part", &bodies->name[b]));
   }
@@ -188,7 +239,7 @@ PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies **found)
 {
   FreeBodies        *bodies;
   const PetscScalar *at;
-  PetscInt           n, n_own, *joined, *body;
+  PetscInt           n, n_parts, n_own, *joined, *body;
   Operators          operators;
   const Mesh        *mesh;
   Vec                part;
@@ -196,22 +247,23 @@ PetscErrorCode FreeBodiesFind(Pencil pencil, FreeBodies **found)
   PetscFunctionBeginUser;
   PetscCall(PencilGetOperators(pencil, &operators));
   PetscCall(OperatorsGetMesh(operators, &mesh));
-  n = mesh->n_parts + 1;
+  PetscCall(OperatorsCountParts(operators, &n_parts));
+  n = n_parts + 1;
   PetscCall(PetscCalloc1(1, found));
   bodies = *found;
   PetscCall(PetscCalloc2(n * n, &joined, n, &body));
   PetscCall(OperatorsCreateVec(operators, &part));
-  PetscCall(PartsOfUnknowns(mesh, part));
+  PetscCall(PartsOfUnknowns(operators, mesh, n_parts, part));
   PetscCall(PartsJoin(pencil, operators, n, part, joined));
   bodies->n = FreeBodiesNumber(n, joined, body);
-  PetscCall(FreeBodiesName(mesh, body, bodies));
+  PetscCall(FreeBodiesName(operators, n_parts, body, bodies));
   PetscCall(VecGetLocalSize(part, &n_own));
   PetscCall(PetscMalloc1(n_own, &bodies->of));
   PetscCall(VecGetArrayRead(part, &at));
   for (PetscInt i = 0; i < n_own; i++) bodies->of[i] = body[(PetscInt)at[i]];
   PetscCall(VecRestoreArrayRead(part, &at));
-  PetscCall(PetscMalloc1(mesh->n_parts, &bodies->of_part));
-  PetscCall(PetscArraycpy(bodies->of_part, body, mesh->n_parts));
+  PetscCall(PetscMalloc1(n_parts, &bodies->of_part));
+  PetscCall(PetscArraycpy(bodies->of_part, body, n_parts));
   PetscCall(VecDestroy(&part));
   PetscCall(PetscFree2(joined, body));
   PetscFunctionReturn(0);

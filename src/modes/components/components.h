@@ -3,12 +3,12 @@
 
 #include "modes/modesimpl.h"
 
-/* Parts that share nodes, ties or rigid points are one body */
+/* Parts, superelements after those of the mesh, that share nodes, ties or rigid points are one body */
 struct _p_FreeBodies {
   PetscInt  n;
   char    **name;    /* [n] the names of its parts with + between */
   PetscInt *of;      /* [unknowns of this rank] body of each */
-  PetscInt *of_part; /* [parts] body of each, -1 for a part without unknowns */
+  PetscInt *of_part; /* [parts, superelements] body of each, -1 for one without unknowns */
 };
 
 /* Free modes of one frequency, which are any basis of a plane: they have one share */

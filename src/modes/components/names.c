@@ -224,16 +224,16 @@ PetscErrorCode ComponentsLabel(Modes modes)
 {
   const FreeBodies *bodies = &modes->components->bodies;
   Operators         operators;
-  const Mesh       *mesh;
+  const char       *name;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetOperators(modes->pencil, &operators));
-  PetscCall(OperatorsGetMesh(operators, &mesh));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscInt part = modes->label_part[i];
 
-    if (part >= 0 && bodies->of_part[part] >= 0)
-      PetscCall(ModeLabel(modes, i, mesh->part[part], bodies->of_part[part]));
+    if (part < 0 || bodies->of_part[part] < 0) continue;
+    PetscCall(OperatorsGetPartName(operators, part, &name));
+    PetscCall(ModeLabel(modes, i, name, bodies->of_part[part]));
   }
   PetscFunctionReturn(0);
 }

@@ -30,13 +30,16 @@
 
 /* Participation of the parts and the disc's fit of all modes, summed over ranks */
 typedef struct {
-  PetscInt          n_parts, n_vertices, disc; /* disc = its part, or -1 */
-  PetscBool         by_unknown;                /* what is no disc is named after the unknown that moves most */
-  PetscReal *const *mass;                      /* [part][local node] (borrowed) */
-  PetscReal        *share;                     /* [mode][part][2]: y^T M_p x, real and imaginary */
-  PetscReal        *energy;                    /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
-  PetscReal        *x[2], *y[2];               /* nodal values of one mode, real and imaginary [local nodes][3] */
-  Disc             *frame;                     /* of the weights; NULL without a disc */
+  Operators         operators;
+  PetscInt          n_parts, n_mesh; /* all with a name; of these in the mesh, the first; others are superelements */
+  PetscMPIInt       rank;
+  PetscInt          n_vertices, disc; /* disc = its part, or -1 */
+  PetscBool         by_unknown;       /* what is no disc is named after the unknown that moves most */
+  PetscReal *const *mass;             /* [part][local node] (borrowed) */
+  PetscReal        *share;            /* [mode][part][2]: y^T M_p x, real and imaginary */
+  PetscReal        *energy;           /* [mode][2]: the ring's kinetic energy of x, all and out of plane */
+  PetscReal        *x[2], *y[2];      /* nodal values of one mode, real and imaginary [local nodes][3] */
+  Disc             *frame;            /* of the weights; NULL without a disc */
 } Labels;
 
 /* sum_v m_v a_v . b_v */
@@ -62,7 +65,7 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
   PetscCall(OperatorsGetNodal(operators, yr ? yr : xr, l->y[0]));
   PetscCall(OperatorsGetNodal(operators, yr ? yi : xi, l->y[1]));
   for (PetscInt v = 0; v < 3 * l->n_vertices && !yr; v++) l->y[1][v] = -l->y[1][v];
-  for (PetscInt part = 0; part < l->n_parts; part++) {
+  for (PetscInt part = 0; part < l->n_mesh; part++) {
     const PetscInt   n     = l->n_vertices;
     const PetscReal *m     = l->mass[part];
     PetscReal       *share = &l->share[2 * (i * l->n_parts + part)];
@@ -72,6 +75,12 @@ static PetscErrorCode LabelsAdd(Modes modes, Operators operators, PetscInt i, La
     if (!xi && !(yr ? yi : xi)) continue; /* real */
     share[0] -= WeightedDot(n, m, l->y[1], l->x[1]);
     share[1] = WeightedDot(n, m, l->y[0], l->x[1]) + WeightedDot(n, m, l->y[1], l->x[0]);
+  }
+  for (PetscInt k = 0; k < l->n_parts - l->n_mesh; k++) {
+    PetscReal *share = &l->share[2 * (i * l->n_parts + l->n_mesh + k)];
+
+    PetscCall(LabelsShareSuperelement(modes, operators, k, (Vec[2]){xr, xi}, (Vec[2]){yr, yi}, share));
+    if (l->rank) share[0] = share[1] = 0; /* it is that of all ranks */
   }
   at = 2 * (i * l->n_parts + l->disc);
   if (l->disc >= 0 && (l->share[at] != 0 || l->share[at + 1] != 0)) /* a free mode of another body does not move it */
@@ -101,13 +110,14 @@ static PetscErrorCode LabelDisc(const Labels *l, PetscInt i, Mode *mode, double 
 }
 
 /* Writes the name of mode i, its participation and what its name explains, both in per cent */
-static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh, PetscInt i)
+static PetscErrorCode LabelWrite(Modes modes, const Labels *l, PetscInt i)
 {
   double *const share = &modes->part_percent[i * l->n_parts], *explained = &modes->label_percent[i];
   PetscReal     total = 0;
   PetscInt      most  = 0;
   Mode         *mode  = &modes->mode[i];
   PetscBool     rigid = mode->rigid || mode->slowing ? PETSC_TRUE : PETSC_FALSE, unnamed = PETSC_TRUE;
+  const char   *name;
 
   PetscFunctionBeginUser;
   for (PetscInt part = 0; part < l->n_parts; part++) {
@@ -120,8 +130,9 @@ static PetscErrorCode LabelWrite(Modes modes, const Labels *l, const Mesh *mesh,
   *explained = total > 0 ? share[most] / total : 0;
   if (l->disc >= 0 && share[l->disc] > (1 + LABEL_TIE) * DISC_SHARE * total && !rigid)
     PetscCall(LabelDisc(l, i, mode, explained, &unnamed));
+  PetscCall(OperatorsGetPartName(l->operators, most, &name));
   if (unnamed && (!l->by_unknown || rigid))
-    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", mesh->part[most], rigid ? " rigid" : ""));
+    PetscCall(PetscSNPrintf(mode->label, sizeof(mode->label), "%s%s", name, rigid ? " rigid" : ""));
   for (PetscInt part = 0; part < l->n_parts; part++) share[part] = total > 0 ? 100 * (share[part] / total) : 0;
   modes->label_part[i] = unnamed && !l->by_unknown && !rigid ? most : -1;
   *explained           = unnamed && l->by_unknown && !rigid ? LABEL_UNKNOWN : 100 * *explained;
@@ -252,7 +263,10 @@ static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh 
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetModel(operators, &model, &contact));
-  l->n_parts    = mesh->n_parts;
+  l->operators = operators;
+  l->n_mesh    = mesh->n_parts;
+  PetscCall(OperatorsCountParts(operators, &l->n_parts));
+  PetscCallMPI(MPI_Comm_rank(modes->comm, &l->rank));
   l->n_vertices = mesh->n_nodes;
   PetscCall(PetscCalloc2(2 * modes->n * l->n_parts, &l->share, 2 * modes->n, &l->energy));
   PetscCall(PetscMalloc4(3 * l->n_vertices, &l->x[0], 3 * l->n_vertices, &l->x[1], 3 * l->n_vertices, &l->y[0],
@@ -288,8 +302,8 @@ PetscErrorCode ModesLabel(Modes modes)
     PetscCall(ModesLabelUnknowns(modes));
     PetscFunctionReturn(0);
   }
-  n = modes->n * mesh->n_parts;
   PetscCall(LabelsCreate(modes, operators, mesh, &l));
+  n            = modes->n * l.n_parts;
   l.by_unknown = !model && mesh->n_parts == 1 ? PETSC_TRUE : PETSC_FALSE; /* better than one name for all */
   if (l.by_unknown) PetscCall(ModesLabelUnknowns(modes));
   for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelsAdd(modes, operators, i, &l));
@@ -302,7 +316,7 @@ PetscErrorCode ModesLabel(Modes modes)
   PetscCall(PetscMalloc1(n, &modes->part_percent));
   PetscCall(PetscMalloc1(modes->n, &modes->label_percent));
   PetscCall(PetscMalloc1(modes->n, &modes->label_part));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, mesh, i));
+  for (PetscInt i = 0; i < modes->n; i++) PetscCall(LabelWrite(modes, &l, i));
   PetscCall(LabelsDestroy(&l));
   PetscFunctionReturn(0);
 }

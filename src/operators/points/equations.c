@@ -203,6 +203,25 @@ static PetscErrorCode EquationCheckNode(MPI_Comm comm, const char file[], const 
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for an equation whose first displacement stands in it again: others that do are added up */
+static PetscErrorCode EquationsCheckFirst(MPI_Comm comm, const char file[], PetscInt n, const EquationLine line[],
+                                          const PetscInt found[])
+{
+  PetscInt first = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 1; i < n; i++) {
+    if (line[i].equation != line[i - 1].equation) first = i;
+    PetscCheck(i == first || found[4 * i + 2] != found[4 * first + 2], comm, PETSC_ERR_USER_INPUT,
+               "-model_equations %s: equation %" PetscInt_FMT
+               " names the displacement of its first line twice, direction %" PetscInt_FMT
+               " at %.9g, %.9g, %.9g m: give it once, with the sum of its coefficients",
+               file, line[i].equation, line[i].direction + 1, (double)line[i].x[0], (double)line[i].x[1],
+               (double)line[i].x[2]);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* The unknown of each line, on all ranks: found[4 i + 2] */
 static PetscErrorCode EquationsFind(MPI_Comm comm, const char file[], const Mesh *mesh, PetscInt n,
                                     const EquationLine line[], PetscInt found[])
@@ -222,6 +241,7 @@ static PetscErrorCode EquationsFind(MPI_Comm comm, const char file[], const Mesh
   for (PetscInt i = 0; i < n; i++)
     PetscCall(
       EquationCheckNode(comm, file, &line[i], i == 0 || line[i].equation != line[i - 1].equation, &found[4 * i]));
+  PetscCall(EquationsCheckFirst(comm, file, n, line, found));
   PetscCall(NodesByXDestroy(&s.nodes));
   PetscCall(PetscFree(s.on));
   PetscFunctionReturn(0);

@@ -51,22 +51,28 @@ static PetscErrorCode SuperelementMultiply(Operators o, Mat A, PetscInt n, Petsc
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SuperelementAddForce(Operators o, const PetscReal p[], const Superelement *s, Vec u,
+                                    const PetscReal displacement[], PetscReal force[])
+{
+  PetscReal *q;
+
+  PetscFunctionBeginUser;
+  if (!s->A[SUPERELEMENT_K]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(s->n, &q));
+  PetscCall(SuperelementMotion(o, s, u, displacement, q));
+  PetscCall(SuperelementMultiply(o, s->A[SUPERELEMENT_K], s->n, q));
+  for (PetscInt k = 0; k < s->n_shares; k++)
+    force[s->share[k].at] += p[s->index[SUPERELEMENT_K]] * s->share[k].weight * q[s->share[k].row];
+  PetscCall(PetscFree(q));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SuperelementsAddForces(Operators o, const PetscReal p[], Vec u, const PetscReal displacement[],
                                       PetscReal force[])
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n_superelements; i++) {
-    const Superelement *s = &o->superelements[i];
-    PetscReal          *q;
-
-    if (!s->A[SUPERELEMENT_K]) continue;
-    PetscCall(PetscMalloc1(s->n, &q));
-    PetscCall(SuperelementMotion(o, s, u, displacement, q));
-    PetscCall(SuperelementMultiply(o, s->A[SUPERELEMENT_K], s->n, q));
-    for (PetscInt k = 0; k < s->n_shares; k++)
-      force[s->share[k].at] += p[s->index[SUPERELEMENT_K]] * s->share[k].weight * q[s->share[k].row];
-    PetscCall(PetscFree(q));
-  }
+  for (PetscInt i = 0; i < o->n_superelements; i++)
+    PetscCall(SuperelementAddForce(o, p, &o->superelements[i], u, displacement, force));
   PetscFunctionReturn(0);
 }
 

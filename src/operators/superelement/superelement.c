@@ -149,6 +149,20 @@ static PetscErrorCode SuperelementCheckMass(Operators o, const Superelement *s)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error where unknowns apart have no stiffness at all: they would float at any place */
+static PetscErrorCode SuperelementCheckStiffness(Operators o, const Superelement *s)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!s->n_apart || s->file[SUPERELEMENT_K][0], o->comm, PETSC_ERR_USER_INPUT,
+             "superelement %s: its %" PetscInt_FMT " internal unknowns have no stiffness: give -%s_k", s->name,
+             s->n_apart, s->name);
+  PetscCheck(!s->n_apart || s->scale[SUPERELEMENT_K] > 0, o->comm, PETSC_ERR_USER_INPUT,
+             "superelement %s: -%s_k_scale %.6g leaves its %" PetscInt_FMT
+             " internal unknowns without stiffness: it must be positive",
+             s->name, s->name, (double)s->scale[SUPERELEMENT_K], s->n_apart);
+  PetscFunctionReturn(0);
+}
+
 /* Reads a matrix, of the size that the table says */
 static PetscErrorCode SuperelementLoad(Operators o, Superelement *s, int i)
 {
@@ -221,6 +235,7 @@ static PetscErrorCode SuperelementAddTerm(Operators o, Superelement *s, int i, M
   s->index[i] = -1;
   if (!s->file[i][0]) PetscFunctionReturn(0);
   PetscCall(ParametersAdd(&o->parameters, s->name, scale[i], &like, &s->index[i]));
+  if (s->n_apart && i != SUPERELEMENT_C) o->parameters.list[s->index[i]].closed = PETSC_FALSE;
   if (!B) PetscFunctionReturn(0);
   PetscCall(MatPtAP(s->A[i], B, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &A));
   PetscCall(MatProductClear(A));
@@ -251,17 +266,13 @@ PetscErrorCode SuperelementsSetUp(Operators o)
       PetscCall(SuperelementLoad(o, s, i));
       if (s->A[i]) like = s->A[i];
     }
+    PetscCall(SuperelementCheckStiffness(o, s));
     if (!o->omit) PetscCall(SuperelementCheckMass(o, s));
     if (like) PetscCall(SuperelementCreateB(o, s, like, &B));
     for (int i = 0; i < N_SUPERELEMENT; i++) PetscCall(SuperelementAddTerm(o, s, i, B));
     PetscCall(MatDestroy(&B));
   }
   PetscFunctionReturn(0);
-}
-
-PetscInt OperatorsCountSuperelements(Operators o)
-{
-  return o->n_superelements;
 }
 
 PetscErrorCode SuperelementsCheckWeight(Operators o)

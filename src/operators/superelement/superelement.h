@@ -77,8 +77,10 @@ PETSC_INTERN PetscErrorCode NodesFindNearest(MPI_Comm comm, const Mesh *mesh, co
 /* place.c - the shares of all unknowns that are not apart. Collective. */
 PETSC_INTERN PetscErrorCode SuperelementPlace(Operators operators, Superelement *s);
 
-/* force.c - adds c B' K_s B u of all superelements to forces [nodes][3], each at the rank that owns the node; to the
-   unknowns apart of f. Collective. */
+/* force.c - adds c B' K_s B u of one superelement to forces [nodes][3], each at the rank that owns the node; of all of
+   them; to the unknowns apart of f. Collective. */
+PETSC_INTERN PetscErrorCode SuperelementAddForce(Operators operators, const PetscReal p[], const Superelement *s, Vec u,
+                                                 const PetscReal displacement[], PetscReal force[]);
 PETSC_INTERN PetscErrorCode SuperelementsAddForces(Operators operators, const PetscReal p[], Vec u,
                                                    const PetscReal displacement[], PetscReal force[]);
 PETSC_INTERN PetscErrorCode SuperelementsAddForcesApart(Operators operators, const PetscReal p[], Vec u, Vec f);

@@ -4,10 +4,10 @@
 
       reaction = sum K_e u_e + k u - load - contact force,
 
-   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings and points are among K_e u_e.
-   What is left at nodes that ties make follow others acts on these.
-   Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points and loads sum to zero;
-   reactions.csv lists them all.
+   u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings, points and superelements are
+   among K_e u_e. What is left at nodes that ties make follow others acts on these.
+   Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points, superelements and loads
+   sum to zero; reactions.csv lists them all.
 */
 #include "statics/staticsimpl.h"
 
@@ -167,6 +167,27 @@ static PetscErrorCode ReactionsFindJoints(Statics s, Vec displacement)
   PetscFunctionReturn(0);
 }
 
+/* Rows of superelements: what they exert on the mesh */
+static PetscErrorCode ReactionsFindSuperelements(Statics s, Vec displacement)
+{
+  const PetscReal *u;
+  const Mesh      *mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(s->model, &mesh));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  for (PetscInt k = 0; k < OperatorsCountSuperelements(s->operators); k++) {
+    const char *name;
+    PetscReal   force[3];
+
+    PetscCall(OperatorsGetPartName(s->operators, mesh->n_parts + k, &name));
+    PetscCall(OperatorsGetSuperelementForce(s->operators, s->p, k, s->u, u, force));
+    PetscCall(ReactionAdd(s, name, "superelement", force, NULL));
+  }
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscFunctionReturn(0);
+}
+
 /* Rows of supports, motions and springs */
 static PetscErrorCode ReactionsFindHolders(Statics s)
 {
@@ -200,6 +221,7 @@ static PetscErrorCode ReactionsFindHolders(Statics s)
     PetscCall(ReactionAdd(s, scene->springs[i].name, "spring", force, NULL));
   }
   PetscCall(ReactionsFindJoints(s, u));
+  PetscCall(ReactionsFindSuperelements(s, u));
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&unbalance));
   PetscFunctionReturn(0);
