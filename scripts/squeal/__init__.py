@@ -5,10 +5,8 @@ import os
 import signal
 import sys
 
-# Before numpy and matplotlib are read: one BLAS thread, as squeal itself has it; pictures go to files, not to a screen
-os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
-os.environ["MPLBACKEND"] = "Agg"
-
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
+OWN = tuple(os.path.join(ROOT, folder, "") for folder in ("scripts", "tests"))
 STOPPED = 130  # exit status after ^C, as of a shell
 
 
@@ -35,6 +33,10 @@ def end_uncaught(kind, error, trace):
     sys.__excepthook__(kind, error, trace)
 
 
-sys.excepthook = end_uncaught
-if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not where nohup or & ignores it
-    signal.signal(signal.SIGINT, interrupt)
+if os.path.isfile(sys.argv[0]) and os.path.realpath(sys.argv[0]).startswith(OWN):  # programs of others keep what they have
+    # Before numpy and matplotlib are read: one BLAS thread, as squeal itself has it; pictures go to files, not to a screen
+    os.environ["OPENBLAS_NUM_THREADS"] = os.environ["OMP_NUM_THREADS"] = "1"
+    os.environ["MPLBACKEND"] = "Agg"
+    sys.excepthook = end_uncaught
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not where nohup or & ignores it
+        signal.signal(signal.SIGINT, interrupt)

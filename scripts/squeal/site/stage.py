@@ -3,7 +3,7 @@
 import re
 import shutil
 
-GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/README.md")),
+GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/README.md", "scripts/python.md")),
           ("By question", ("options/README.md", "options/guides.md", "options/gallery.md", "options/modes.md", "options/static.md",
                            "options/sweeps.md", "options/time.md", "options/models.md")),
           ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/reference.md",
