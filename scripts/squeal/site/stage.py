@@ -6,7 +6,7 @@ import shutil
 GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/README.md", "scripts/python.md")),
           ("By question", ("options/README.md", "options/guides.md", "options/gallery.md", "options/modes.md", "options/static.md",
                            "options/sweeps.md", "options/time.md", "options/models.md")),
-          ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/reference.md",
+          ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/columns.md", "options/reference.md",
                          "include/theory.md", "include/glossary.md")),
           ("Checks and speed", ("tests/README.md", "scripts/bench/README.md", "scripts/study/README.md")),
           ("Developers", ("src/README.md", "include/changelog.md")))
