@@ -41,6 +41,8 @@ static const Quantity views[N_SHOWN] = {
   VIEW(SHOWN_DYNAMICS, "-dynamics_view", "show bodies, step and balances of a run in time", RUN_TRANSIENT),
   VIEW(SHOWN_MAP, "-map_view", "show regimes and cost of a map", RUN_MAP),
   VIEW(SHOWN_SAMPLE, "-sample_view", "show what samples tell", RUN_SAMPLE),
+  VIEW(SHOWN_SUPERELEMENT, "-superelement_view", "show sizes and errors of the superelement that is made",
+       RUN_SUPERELEMENT),
   VIEW(SHOWN_CYCLE, "-cycle_view", "show cycles, their stability and errors", RUN_CYCLE),
 };
 const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
@@ -147,6 +149,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(SampleSetFromOptions(chain->sample));
   PetscCall(FrfCreate(comm, &chain->frf));
   PetscCall(FrfSetFromOptions(chain->frf));
+  PetscCall(SubstructureCreate(comm, &chain->substructure));
+  PetscCall(SubstructureSetFromOptions(chain->substructure));
   PetscFunctionReturn(0);
 }
 
@@ -167,6 +171,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(CycleDestroy(&chain->cycle));
   PetscCall(ReducedDestroy(&chain->reduced));
   PetscCall(DynamicsDestroy(&chain->dynamics));
+  PetscCall(SubstructureDestroy(&chain->substructure));
   PetscCall(FrfDestroy(&chain->frf));
   PetscCall(SampleDestroy(&chain->sample));
   PetscCall(SweepDestroy(&chain->sweep));
@@ -221,6 +226,7 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscCall(SweepVisit(chain->sweep, visitor));
   PetscCall(SampleVisit(chain->sample, visitor));
   PetscCall(FrfVisit(chain->frf, visitor));
+  PetscCall(SubstructureVisit(chain->substructure, visitor));
   PetscCall(SolverVisit(visitor));
   PetscFunctionReturn(0);
 }
@@ -344,6 +350,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(MapSetModes(chain->map, chain->modes));
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));
+  PetscCall(SubstructureSetOperators(chain->substructure, chain->operators, chain->p));
   PetscCall(FrfSetOperators(chain->frf, chain->operators));
   PetscCall(FrfSetModes(chain->frf, chain->modes));
   PetscCall(FrfSetResults(chain->frf, chain->results, sliding ? chain->statics : NULL));

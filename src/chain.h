@@ -16,30 +16,32 @@ typedef enum {
   SHOWN_MAP,
   SHOWN_CYCLE,
   SHOWN_SAMPLE,
+  SHOWN_SUPERELEMENT,
   N_SHOWN
 } Shown;
 
 /* The chain of a run: options, model, contact, operators, statics, pencil, then modes, sweep, frequency response or
    dynamics; and results */
 typedef struct {
-  Model       model; /* NULL for matrices without a mesh */
-  Contact     contact;
-  Operators   operators;
-  PetscReal  *p; /* values of the parameters: those of the scene, and what statics identify */
-  Statics     statics;
-  Pencil      pencil; /* at p, where modes, a file or a view ask for it */
-  Modes       modes;
-  Sweep       sweep;
-  Sample      sample;
-  Frf         frf;
-  Dynamics    dynamics;
-  ReducedRun  reduced; /* the same runs on few coordinates, where asked for */
-  Map         map;
-  LimitCycle  cycle; /* limit cycles of it */
-  Results     results;
-  Analysis    analysis;
-  PetscBool   view;
-  PetscViewer viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
+  Model        model; /* NULL for matrices without a mesh */
+  Contact      contact;
+  Operators    operators;
+  PetscReal   *p; /* values of the parameters: those of the scene, and what statics identify */
+  Statics      statics;
+  Pencil       pencil; /* at p, where modes, a file or a view ask for it */
+  Modes        modes;
+  Sweep        sweep;
+  Sample       sample;
+  Frf          frf;
+  Dynamics     dynamics;
+  ReducedRun   reduced; /* the same runs on few coordinates, where asked for */
+  Map          map;
+  LimitCycle   cycle;        /* limit cycles of it */
+  Substructure substructure; /* parts as a superelement */
+  Results      results;
+  Analysis     analysis;
+  PetscBool    view;
+  PetscViewer  viewer[N_SHOWN]; /* of what the options below ask for and is not shown yet */
 } Chain;
 
 /* An analysis: NULL for what it has not */

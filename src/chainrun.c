@@ -213,11 +213,14 @@ STEP(ChainJudgeReduced, ReducedJudgeVerified(chain->reduced))
 STEP(ChainSolveFrf, FrfSolve(chain->frf))
 STEP(ChainSolveMap, MapSolve(chain->map, chain->results))
 STEP(ChainJudgeMap, MapJudge(chain->map))
+STEP(ChainSolveSubstructure, SubstructureSolve(chain->substructure))
+STEP(ChainWriteSubstructure, SubstructureWrite(chain->substructure, chain->results))
 STEP(ChainSolveCycle, CycleSolve(chain->cycle, chain->results))
 SHOW(ChainViewStatics, StaticsView(chain->statics, viewer))
 SHOW(ChainViewSweep, SweepView(chain->sweep, viewer))
 SHOW(ChainViewSample, SampleView(chain->sample, viewer))
 SHOW(ChainViewMap, MapView(chain->map, viewer))
+SHOW(ChainViewSubstructure, SubstructureView(chain->substructure, viewer))
 SHOW(ChainViewCycle, CycleView(chain->cycle, viewer))
 
 /* The bits of `does` hold in every such run; what hangs on options add() and scope.c add. Those in time write as they
@@ -240,7 +243,9 @@ const AnalysisRow chain_analyses[N_ANALYSES] = {
                        .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
   [ANALYSIS_SAMPLE] = {SQUEAL_SWEEP, SHOWN_SAMPLE, ChainForgetPencil, ChainSolveSample, ChainWriteSample,
                        ChainViewSample, .add = ChainAddSample, .uses = LINEAR},
-  [ANALYSIS_CHECK]  = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
+  [ANALYSIS_SUPERELEMENT] = {SQUEAL_MODES, SHOWN_SUPERELEMENT, NULL, ChainSolveSubstructure, ChainWriteSubstructure,
+                             ChainViewSubstructure, .does = RUN_FACTORS | RUN_EPS, .uses = USES_DAMPING},
+  [ANALYSIS_CHECK]        = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)

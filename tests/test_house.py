@@ -42,6 +42,7 @@ CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW["sample"] = BELOW["sweep"] | {"sample"}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
+BELOW["substructure"] = BELOW["modes"] | {"substructure"}
 BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
 BELOW["map"] = BELOW["reduced"] | {"map"}
 BELOW |= {"results": {"base", "quantity", "kernels", "results"},

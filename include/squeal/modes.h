@@ -102,6 +102,9 @@ PetscErrorCode ModesGetRoutes(Modes modes, PetscBool *may_project, PetscBool *ma
 /*@ ModesSetBand - another band, Hz. Not collective. @*/
 PetscErrorCode ModesSetBand(Modes modes, const PetscReal band[2]);
 
+/*@ ModesAllowNone - a band may have no mode, which is an error otherwise. Not collective. @*/
+PetscErrorCode ModesAllowNone(Modes modes);
+
 /*@ ModesWant - whether the options ask for the modes nearest to a frequency, and for left vectors. Not collective. @*/
 PetscErrorCode ModesWant(Modes modes, PetscBool *nearest, PetscBool *left);
 

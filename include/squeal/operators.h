@@ -52,6 +52,10 @@ PetscErrorCode OperatorsSetModel(Operators operators, Model model, Contact conta
 @*/
 PetscErrorCode OperatorsSetFromOptions(Operators operators);
 
+/*@ OperatorsSetMatrices - symmetric K and M, M positive definite, in place of a model; references are kept. Then they
+    are set up. Collective. @*/
+PetscErrorCode OperatorsSetMatrices(Operators operators, Mat K, Mat M);
+
 /*@ OperatorsVisit - shows the rows of its options. Collective. @*/
 PetscErrorCode OperatorsVisit(Operators operators, const QuantityVisitor *visitor);
 

@@ -162,6 +162,10 @@ PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter);
 /*@ OperatorsTermDerivative - the derivative of c(p) by one parameter. Not collective. @*/
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
 
+/*@ OperatorsGetTerms - the terms of bodies, springs and dashpots, joints and superelements, in all unknowns (borrowed,
+    until PencilReleaseTerms()). Not collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms);
+
 /*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name as
    one. Valid
     after PencilReleaseTerms() too. Collective. @*/

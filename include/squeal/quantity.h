@@ -20,29 +20,32 @@ typedef enum {
   ANALYSIS_MAP,
   ANALYSIS_CYCLE,
   ANALYSIS_SAMPLE,
+  ANALYSIS_SUPERELEMENT,
   ANALYSIS_CHECK,
   N_ANALYSES
 } Analysis;
 static const char *const AnalysisNames[N_ANALYSES + 1] = {
   [ANALYSIS_MODES] = "modes",         [ANALYSIS_SWEEP] = "sweep",   [ANALYSIS_STATIC] = "static",
   [ANALYSIS_TRANSIENT] = "transient", [ANALYSIS_FRF] = "frf",       [ANALYSIS_MAP] = "map",
-  [ANALYSIS_CYCLE] = "cycle",         [ANALYSIS_SAMPLE] = "sample", [ANALYSIS_CHECK] = "check",
+  [ANALYSIS_CYCLE] = "cycle",         [ANALYSIS_SAMPLE] = "sample", [ANALYSIS_SUPERELEMENT] = "superelement",
+  [ANALYSIS_CHECK] = "check",
 }; /* NULL at the end */
 
 /* What a run does, as bits: who reads a row. The first N_ANALYSES are the analyses */
 typedef enum {
-  RUN_MODES     = 1 << ANALYSIS_MODES,
-  RUN_SWEEP     = 1 << ANALYSIS_SWEEP,
-  RUN_STATIC    = 1 << ANALYSIS_STATIC,
-  RUN_TRANSIENT = 1 << ANALYSIS_TRANSIENT,
-  RUN_FRF       = 1 << ANALYSIS_FRF,
-  RUN_MAP       = 1 << ANALYSIS_MAP,
-  RUN_CYCLE     = 1 << ANALYSIS_CYCLE,
-  RUN_SAMPLE    = 1 << ANALYSIS_SAMPLE,
-  RUN_CHECK     = 1 << ANALYSIS_CHECK,
-  RUN_LINEAR    = RUN_MODES | RUN_SWEEP | RUN_FRF | RUN_SAMPLE,
-  RUN_IN_TIME   = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
-  RUN_MOVES     = RUN_LINEAR | RUN_IN_TIME,
+  RUN_MODES        = 1 << ANALYSIS_MODES,
+  RUN_SWEEP        = 1 << ANALYSIS_SWEEP,
+  RUN_STATIC       = 1 << ANALYSIS_STATIC,
+  RUN_TRANSIENT    = 1 << ANALYSIS_TRANSIENT,
+  RUN_FRF          = 1 << ANALYSIS_FRF,
+  RUN_MAP          = 1 << ANALYSIS_MAP,
+  RUN_CYCLE        = 1 << ANALYSIS_CYCLE,
+  RUN_SAMPLE       = 1 << ANALYSIS_SAMPLE,
+  RUN_SUPERELEMENT = 1 << ANALYSIS_SUPERELEMENT,
+  RUN_CHECK        = 1 << ANALYSIS_CHECK,
+  RUN_LINEAR       = RUN_MODES | RUN_SWEEP | RUN_FRF | RUN_SAMPLE,
+  RUN_IN_TIME      = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
+  RUN_MOVES        = RUN_LINEAR | RUN_IN_TIME,
   /* and what it does within them */
   RUN_EQUILIBRIUM = 1 << N_ANALYSES,       /* it finds an equilibrium */
   RUN_SLIDING     = RUN_EQUILIBRIUM << 1,  /* modes and their like about the sliding state */

@@ -13,6 +13,7 @@
 #include <squeal/sweep.h>
 #include <squeal/sample.h>
 #include <squeal/frf.h>
+#include <squeal/substructure.h>
 #include <squeal/projector.h>
 #include <squeal/dynamics.h>
 #include <squeal/reduced.h>

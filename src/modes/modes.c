@@ -49,6 +49,13 @@ PetscErrorCode ModesGetContact(Modes modes, PetscBool *is_static)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesAllowNone(Modes modes)
+{
+  PetscFunctionBeginUser;
+  modes->may_be_none = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModesGetBand(Modes modes, PetscReal band[2], PetscReal *growth)
 {
   PetscFunctionBeginUser;
@@ -219,6 +226,7 @@ PetscErrorCode ModesSolve(Modes modes)
   PetscCall(ModesReset(modes));
   PetscCall(LimitBegin(modes));
   PetscCall(FindAll(modes, &window, &none));
+  if (!modes->n && modes->may_be_none) PetscFunctionReturn(0);
   if (!modes->n) PetscCall(ComplainNone(modes, window.known.below));
   PetscCall(EventBegin(EVENT_LABEL));
   PetscCall(ModesLabel(modes));

@@ -91,6 +91,7 @@ struct _p_Modes {
   PetscReal unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
   PetscInt  most;            /* modes that a band may hold; 0: any number */
   PetscBool has_most;        /* given */
+  PetscBool may_be_none;     /* a band without modes is no error */
   PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, has_target, has_count, has_both, has_nearest, has_route, has_disc, left, keep, filters,
     sensitivities;

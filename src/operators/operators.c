@@ -153,6 +153,14 @@ PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const Op
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms)
+{
+  PetscFunctionBeginUser;
+  *n     = operators->terms.n;
+  *terms = operators->terms.term;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsGetSave(Operators operators, const char **folder)
 {
   PetscFunctionBeginUser;

@@ -8,6 +8,7 @@
 #include "dynamics/history/history.h"
 #include "dynamics/run/run.h"
 #include "base/algebra/dense.h"
+#include "base/algebra/gram.h"
 #include "solver/factor/shiftinvert.h"
 
 #define REDUCED_RTOL 1e-12 /* of the contact laws */
@@ -145,11 +146,9 @@ struct _p_ReducedRun {
   Checksum    scene; /* NULL until one is needed */
 };
 
-/* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns; X'Y of dense matrices of all
-   ranks, H [columns of X][columns of Y] by columns, on every rank */
-PETSC_INTERN void           ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
-PETSC_INTERN void           ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
-PETSC_INTERN PetscErrorCode ReducedGram(Mat X, Mat Y, PetscReal H[]);
+/* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns */
+PETSC_INTERN void ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
+PETSC_INTERN void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
 /* y += X coefficients. Collective */
 PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y);
 

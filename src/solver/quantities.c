@@ -33,7 +33,7 @@ static const char *SolverIdlePep(const void *owner, const QuantityRun *run)
   }
 #define EIGENVALUES(prefix, why)                                                                                       \
   {                                                                                                                    \
-    prefix, NULL, NULL, QUANTITY_PREFIX, .in = RUN_LINEAR | RUN_REDUCED, .idle = (why)                                 \
+    prefix, NULL, NULL, QUANTITY_PREFIX, .in = RUN_LINEAR | RUN_REDUCED | RUN_SUPERELEMENT, .idle = (why)              \
   }
 #define UNUSED(prefix)                                                                                                 \
   {                                                                                                                    \

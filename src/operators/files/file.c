@@ -58,6 +58,13 @@ static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsSetMatrices(Operators o, Mat K, Mat M)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsAddMatrices(o, (Mat[N_OPERATORS]){[OPERATOR_K] = K, [OPERATOR_M] = M}));
+  PetscFunctionReturn(0);
+}
+
 /* Raises an error for matrices that do not fit each other */
 static PetscErrorCode OperatorsCheckMatrices(Operators o, Mat A[N_OPERATORS])
 {

@@ -117,7 +117,7 @@ static PetscErrorCode ReducedKeepAlike(ReducedRun r)
              " of the scene: take a range nearer to the value of the scene, which must not be 0",
              n, (double)r->request.cutoff, m);
   PetscCall(PetscMalloc3(n * m, &A, n, &share, n, &order));
-  PetscCall(ReducedGram(r->reduction.MPhi, r->request.like->reduction.Phi, A));
+  PetscCall(BlockGram(r->reduction.MPhi, r->request.like->reduction.Phi, A));
   for (PetscInt i = 0; i < n; i++) {
     order[i] = i;
     share[i] = 0;
@@ -169,7 +169,7 @@ static PetscErrorCode ReducedCheckModes(ReducedRun r)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m * m, &H));
-  PetscCall(ReducedGram(r->reduction.Phi, r->reduction.MPhi, H));
+  PetscCall(BlockGram(r->reduction.Phi, r->reduction.MPhi, H));
   for (PetscInt i = 0; i < m * m; i++)
     r->reduction.orthonormal = PetscMax(r->reduction.orthonormal, PetscAbsReal(H[i] - (i % m == i / m)));
   PetscCall(PetscFree(H));
@@ -190,7 +190,7 @@ static PetscErrorCode ReducedSetDamping(ReducedRun r)
   PetscCall(MatDuplicate(r->reduction.Phi, MAT_DO_NOT_COPY_VALUES, &CPhi));
   PetscCall(BlockMultiply(C, r->reduction.Phi, CPhi));
   PetscCall(PetscMalloc1(m * m, &r->reduction.model.C));
-  PetscCall(ReducedGram(r->reduction.Phi, CPhi, r->reduction.model.C));
+  PetscCall(BlockGram(r->reduction.Phi, CPhi, r->reduction.model.C));
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < j; i++)
       r->reduction.model.C[i + m * j] = r->reduction.model.C[j + m * i] =

@@ -135,7 +135,7 @@ static PetscErrorCode PortsSetHits(ReducedRun r)
     r->reduction.hit_due[i] = hit.time;
     for (int d = 0; d < 3; d++) PetscCall(PortSetUnit(r, vertex, d, hit.impulse[d], i, J));
   }
-  PetscCall(ReducedGram(r->reduction.Phi, J, r->reduction.hits));
+  PetscCall(BlockGram(r->reduction.Phi, J, r->reduction.hits));
   PetscCall(MatDestroy(&J));
   PetscFunctionReturn(0);
 }
@@ -158,7 +158,7 @@ static PetscErrorCode PortsSetShapes(ReducedRun r)
   PetscCall(MatDenseRestoreArrayRead(GPhi, &value));
   PetscCall(MatDestroy(&GPhi));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->reduction.model.P, (PetscMPIInt)(m * n), MPIU_REAL, MPI_SUM, r->comm));
-  PetscCall(ReducedGram(r->reduction.Phi, r->reduction.others, &r->reduction.model.P[m * n]));
+  PetscCall(BlockGram(r->reduction.Phi, r->reduction.others, &r->reduction.model.P[m * n]));
   PetscFunctionReturn(0);
 }
 

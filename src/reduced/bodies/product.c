@@ -27,30 +27,6 @@ void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal 
   Multiply(A, PETSC_TRUE, X, Y);
 }
 
-/* H [b][a] = X'Y of blocks of unknowns, alike on all ranks up to the order of the sum; one reduction of a b
-   numbers. */
-PetscErrorCode ReducedGram(Mat X, Mat Y, PetscReal H[])
-{
-  const PetscScalar *x, *y;
-  PetscInt           n, a, b, ldx, ldy;
-  MPI_Comm           comm;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscObjectGetComm((PetscObject)X, &comm));
-  PetscCall(MatGetLocalSize(X, &n, NULL));
-  PetscCall(MatGetSize(X, NULL, &a));
-  PetscCall(MatGetSize(Y, NULL, &b));
-  PetscCall(MatDenseGetLDA(X, &ldx));
-  PetscCall(MatDenseGetLDA(Y, &ldy));
-  PetscCall(MatDenseGetArrayRead(X, &x));
-  PetscCall(MatDenseGetArrayRead(Y, &y));
-  ReducedTimesTransposed(&(DenseBlock){x, n, a, ldx}, &(DenseBlock){y, n, b, ldy}, H);
-  PetscCall(MatDenseRestoreArrayRead(Y, &y));
-  PetscCall(MatDenseRestoreArrayRead(X, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, H, (PetscMPIInt)(a * b), MPIU_REAL, MPI_SUM, comm));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y)
 {
   PetscInt n;

@@ -15,43 +15,15 @@
 #define RESIDUAL_BLOCK 64
 #define RESIDUAL_SHIFT 1e4 /* cut-off over the root of -s */
 
-/* X -= A (B'X), A and B [unknowns][m]: with A = Phi, B = M Phi it takes the modes out of displacements, the other
-   way round out of forces. */
-static PetscErrorCode ComplementOf(Mat A, Mat B, Mat X)
-{
-  const PetscScalar *a;
-  PetscScalar       *x, *product;
-  PetscInt           n, m, columns, lda, ldx;
-  PetscReal         *H;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetLocalSize(A, &n, NULL));
-  PetscCall(MatGetSize(A, NULL, &m));
-  PetscCall(MatGetSize(X, NULL, &columns));
-  PetscCall(PetscMalloc2(m * columns, &H, n * columns, &product));
-  PetscCall(ReducedGram(B, X, H));
-  PetscCall(MatDenseGetLDA(A, &lda));
-  PetscCall(MatDenseGetLDA(X, &ldx));
-  PetscCall(MatDenseGetArrayRead(A, &a));
-  ReducedTimes(&(DenseBlock){a, n, m, lda}, &(DenseBlock){H, m, columns, m}, product);
-  PetscCall(MatDenseRestoreArrayRead(A, &a));
-  PetscCall(MatDenseGetArray(X, &x));
-  for (PetscInt j = 0; j < columns; j++)
-    for (PetscInt i = 0; i < n; i++) x[j * ldx + i] -= product[j * n + i];
-  PetscCall(MatDenseRestoreArray(X, &x));
-  PetscCall(PetscFree2(H, product));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedApplyResidual(ReducedRun r, Mat B, Mat X)
 {
   Mat Z;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetDependents(r->run.operators, &Z, NULL));
-  PetscCall(ComplementOf(r->reduction.MPhi, r->reduction.Phi, B));
+  PetscCall(BlockTakeOut(r->reduction.MPhi, r->reduction.Phi, B));
   PetscCall(ShiftInvertApplyThrough(&r->reduction.inverse, Z, B, X));
-  PetscCall(ComplementOf(r->reduction.Phi, r->reduction.MPhi, X));
+  PetscCall(BlockTakeOut(r->reduction.Phi, r->reduction.MPhi, X));
   PetscFunctionReturn(0);
 }
 
@@ -101,7 +73,7 @@ static PetscErrorCode ResidualTake(ReducedRun r, Mat X, PetscInt first, PetscInt
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &A[first * N], (PetscMPIInt)(n * N), MPIU_REAL, MPI_SUM, r->comm));
   if (!n_others) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(n_others * n, &H));
-  PetscCall(ReducedGram(r->reduction.others, X, H));
+  PetscCall(BlockGram(r->reduction.others, X, H));
   for (PetscInt k = 0; k < n; k++)
     PetscCall(PetscArraycpy(&A[(first + k) * N + N - n_others], &H[k * n_others], n_others));
   PetscCall(PetscFree(H));
@@ -120,7 +92,7 @@ static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumn
   PetscFunctionBeginUser;
   if (!A) PetscFunctionReturn(0);
   PetscCall(BlockMultiply(D, c->X, c->B));
-  if (mixed) PetscCall(ReducedGram(r->reduction.Phi, c->B, &mixed[c->first * r->reduction.model.m]));
+  if (mixed) PetscCall(BlockGram(r->reduction.Phi, c->B, &mixed[c->first * r->reduction.model.m]));
   PetscCall(ReducedApplyResidual(r, c->B, c->Y));
   PetscCall(ResidualTake(r, c->Y, c->first, 3 * r->reduction.model.n_pairs, A));
   PetscFunctionReturn(0);

@@ -87,7 +87,7 @@ static PetscErrorCode FamilyAlign(CycleFamily *f, ReducedRun at, PetscReal value
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(m * m, &A, m * m, &V, m * m, &S, m, &w));
-  PetscCall(ReducedGram(at->reduction.MPhi, f->scene->reduction.Phi, A));
+  PetscCall(BlockGram(at->reduction.MPhi, f->scene->reduction.Phi, A));
   ReducedTimesTransposed(&(DenseBlock){A, m, m, m}, &(DenseBlock){A, m, m, m}, V);
   PetscCall(DenseSymmetricEigen(m, V, NULL, w, NULL));
   PetscCheck(w[0] > FAMILY_ALIKE * w[m - 1], f->scene->comm, PETSC_ERR_USER_INPUT,

@@ -53,7 +53,7 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
   PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->request.cutoff, c->p, &h->bodies));
   h->bodies->motion.state.time = c->reduced->motion.state.time; /* loads and sliding are those of then */
   PetscCall(PetscMalloc1(h->bodies->reduction.model.m * h->m, &h->T));
-  PetscCall(ReducedGram(h->bodies->reduction.MPhi, c->reduced->reduction.Phi, h->T));
+  PetscCall(BlockGram(h->bodies->reduction.MPhi, c->reduced->reduction.Phi, h->T));
   PetscCall(HigherCopy(c, h->bodies, &h->cycle));
   n = h->cycle->flow.n;
   PetscCall(PetscCalloc3(n, &h->at.x, n * n, &h->at.M, n, &h->along.x));

@@ -53,7 +53,7 @@ static PetscErrorCode StartProject(ReducedRun r, Vec x, PetscReal coordinates[],
   PetscCall(VecGetArrayRead(x, &value));
   PetscCall(MatCreateDense(r->comm, n, PETSC_DECIDE, PETSC_DETERMINE, 1, (PetscScalar *)value, &X));
   PetscCall(PetscMalloc1(r->reduction.model.m, &sum));
-  PetscCall(ReducedGram(r->reduction.MPhi, X, sum));
+  PetscCall(BlockGram(r->reduction.MPhi, X, sum));
   if (square) *square = 0;
   for (PetscInt k = 0; k < r->reduction.model.m; k++) {
     coordinates[k] += sum[k];

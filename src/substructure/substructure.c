@@ -1,0 +1,171 @@
+/*
+   Substructure: life cycle, options, and the flow: parts -> interface -> basis T -> T'A T -> modes and their errors.
+*/
+#include "substructureimpl.h"
+#include <math.h>
+#include <string.h>
+
+#define SUBSTRUCTURE_BEYOND 3 /* times the end of the band: the cut-off where none is given */
+
+PetscErrorCode SubstructureCreate(MPI_Comm comm, Substructure *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, s));
+  (*s)->comm = comm;
+  PetscCall(QuantitiesInit(&substructure_quantities, *s));
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error for a band that is none, and a cut-off within it */
+static PetscErrorCode SubstructureCheckBand(Substructure s)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!s->has_band || s->band[0] < s->band[1], s->comm, PETSC_ERR_USER_INPUT,
+             "-superelement_band %.6g,%.6g Hz must begin below its end", (double)s->band[0], (double)s->band[1]);
+  PetscCheck(
+    !s->has_cutoff || !s->has_band || s->cutoff > s->band[1], s->comm, PETSC_ERR_USER_INPUT,
+    "-superelement_cutoff %.6g Hz must be above the end of -superelement_band, %.6g Hz: modes up to it are kept",
+    (double)s->cutoff, (double)s->band[1]);
+  if (!s->has_cutoff) s->cutoff = SUBSTRUCTURE_BEYOND * s->band[1];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubstructureSetFromOptions(Substructure s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesRead(s->comm, &substructure_quantities, s));
+  PetscCall(SubstructureCheckBand(s));
+  for (PetscInt i = 0; i < s->n_formats; i++) {
+    PetscInt k = 0;
+
+    while (substructure_formats[k] && strcmp(substructure_formats[k], s->formats[i])) k++;
+    PetscCheck(substructure_formats[k], s->comm, PETSC_ERR_USER_INPUT,
+               "-superelement_formats '%s' is none of squeal, market, nastran, abaqus", s->formats[i]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubstructureVisit(Substructure s, const QuantityVisitor *visitor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(QuantitiesVisit(visitor, &substructure_quantities, NULL, s, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubstructureSetOperators(Substructure s, Operators operators, const PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  s->operators = operators;
+  s->p         = p;
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where options do not say what to make */
+static PetscErrorCode SubstructureCheck(Substructure s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, &s->model, NULL));
+  PetscCheck(s->model, s->comm, PETSC_ERR_SUP,
+             "-analysis superelement needs a mesh: matrices that are loaded tell no parts");
+  PetscCheck(s->n_parts, s->comm, PETSC_ERR_USER_INPUT,
+             "-superelement_parts must be given: the parts that become the superelement");
+  PetscCheck(s->has_band, s->comm, PETSC_ERR_USER_INPUT,
+             "-superelement_band must be given: f1,f2 in Hz, in which the superelement is to be right");
+  PetscCheck(s->n_sets, s->comm, PETSC_ERR_USER_INPUT,
+             "-superelement_sets must be given: the sets whose nodes are joined to others, such as bolts and ring");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubstructureSolve(Substructure s)
+{
+  PetscInt n_inside;
+
+  PetscFunctionBeginUser;
+  PetscCall(SubstructureCheck(s));
+  PetscCall(BodyCreate(s));
+  PetscCall(InterfaceCreate(s, s->method == SUBSTRUCTURE_NONE ? PETSC_TRUE : PETSC_FALSE));
+  s->n = s->interface.n + s->interface.n_kept;
+  PetscCallMPI(MPI_Allreduce(&s->interface.n_inside, &n_inside, 1, MPIU_INT, MPI_SUM, s->comm));
+  if (n_inside && s->method == SUBSTRUCTURE_FIXED) PetscCall(FixedCreateBasis(s));
+  if (n_inside && s->method == SUBSTRUCTURE_FREE) PetscCall(FreeCreateBasis(s));
+  PetscCall(SubstructureReduce(s));
+  PetscCall(SubstructureMeasure(s));
+  PetscFunctionReturn(0);
+}
+
+/* The largest relative error of the modes in the band with an interface free or held; -1 where there are none */
+static PetscReal SubstructureWorst(const Substructure s, PetscBool held, PetscInt *n, PetscReal *at)
+{
+  PetscReal worst = -1;
+
+  *n = 0;
+  for (PetscInt k = 0; k < s->n_modes; k++) {
+    const SubstructureMode *mode     = &s->mode[k];
+    const PetscReal         relative = mode->frequency > 0 ? mode->error / mode->frequency : 0;
+
+    if (mode->held != held) continue;
+    ++*n;
+    if (relative > worst) *at = mode->frequency;
+    worst = PetscMax(worst, relative);
+  }
+  return worst;
+}
+
+PetscErrorCode SubstructureView(Substructure s, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "superelement: %" PetscInt_FMT " unknowns of", s->body.n));
+  for (PetscInt i = 0; i < s->n_parts; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s", i ? "," : "", s->parts[i]));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, " become %" PetscInt_FMT ": %" PetscInt_FMT " of %" PetscInt_FMT " nodes of the interface, %" PetscInt_FMT,
+    s->n, s->interface.n, s->interface.n_nodes, s->n - s->interface.n));
+  if (s->method == SUBSTRUCTURE_NONE)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " inside: nothing is reduced\n"));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, " modes below %.6g Hz with it %s\n", (double)s->cutoff,
+                                     s->method == SUBSTRUCTURE_FIXED ? "held" : "free"));
+  if (s->interface.n_held)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "  supports hold %" PetscInt_FMT " displacements of these nodes: hold them where it is used, too\n",
+      s->interface.n_held));
+  for (int held = 0; held < 2; held++) {
+    PetscInt        n;
+    PetscReal       at    = 0;
+    const PetscReal worst = SubstructureWorst(s, held ? PETSC_TRUE : PETSC_FALSE, &n, &at);
+
+    if (n)
+      PetscCall(PetscViewerASCIIPrintf(
+        viewer,
+        "  interface %s: %" PetscInt_FMT " modes in %.6g to %.6g Hz, largest estimated error %.2g of the frequency, at "
+        "%.6g Hz\n",
+        held ? "held" : "free", n, (double)s->band[0], (double)s->band[1], (double)worst, (double)at));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubstructureDestroy(Substructure *substructure)
+{
+  Substructure s = *substructure;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  for (PetscInt j = 0; j < s->body.n_matrices && s->A; j++) PetscCall(MatDestroy(&s->A[j]));
+  PetscCall(PetscFree(s->A));
+  PetscCall(MatDestroy(&s->K));
+  PetscCall(MatDestroy(&s->M));
+  PetscCall(MatDestroy(&s->C));
+  PetscCall(MatDestroy(&s->T));
+  PetscCall(ShiftInvertDestroy(&s->inside));
+  PetscCall(InterfaceDestroy(&s->interface));
+  PetscCall(BodyDestroy(&s->body));
+  PetscCall(PetscFree(s->mode));
+  for (PetscInt i = 0; i < s->n_parts; i++) PetscCall(PetscFree(s->parts[i]));
+  for (PetscInt i = 0; i < s->n_sets; i++) PetscCall(PetscFree(s->sets[i]));
+  for (PetscInt i = 0; i < s->n_formats; i++) PetscCall(PetscFree(s->formats[i]));
+  PetscCall(PetscFree(s->parts));
+  PetscCall(PetscFree(s->sets));
+  PetscCall(PetscFree(s->formats));
+  PetscCall(PetscFree(*substructure));
+  PetscFunctionReturn(0);
+}
