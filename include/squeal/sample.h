@@ -8,7 +8,9 @@
    each branch follow mean, deviation and quantiles of frequency and growth, the probability that it grows with its
    interval, and which variables they depend on (indices of Sobol, regression).
 
-   The contact status is that of the scene's own values.
+   With statics each sample has its own sliding state. A status is a class of points; all are projected on one basis.
+
+   In place of samples there may be conditions of a test from a file, each with its modes, counted in frequency bands.
 */
 #pragma once
 
@@ -36,7 +38,7 @@ PetscErrorCode SampleVisit(Sample sample, const QuantityVisitor *visitor);
 /*@
    SampleSetRooms - what it computes with (referenced until SampleDestroy()): the system, affine in its parameters, the
    point p of the scene's own values, the solver of the full problems with its band, and the statics whose sliding state
-   at p is taken, or NULL: all pairs are closed. Collective.
+   at each point is taken, or NULL: all pairs are closed. Collective.
 @*/
 PetscErrorCode SampleSetRooms(Sample sample, Operators operators, const PetscReal p[], Modes modes, Statics statics);
 
@@ -49,7 +51,8 @@ PetscErrorCode SampleSolve(Sample sample, Results results);
 /*@ SampleView - what a person wants to know first. Collective. @*/
 PetscErrorCode SampleView(Sample sample, PetscViewer viewer);
 
-/*@ SampleWrite - samples.csv, samples_modes.csv, probability.csv, indices.csv. Collective. @*/
+/*@ SampleWrite - samples.csv, samples_modes.csv, probability.csv, indices.csv; of conditions conditions.csv and
+    conditions_bands.csv. Collective. @*/
 PetscErrorCode SampleWrite(Sample sample, Results results);
 
 /*@ SampleDestroy - frees it. Collective. @*/

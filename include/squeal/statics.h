@@ -122,6 +122,35 @@ PetscErrorCode StaticsSolveWorn(Statics statics, const PetscReal p[]);
 @*/
 PetscErrorCode StaticsSolveSliding(Statics statics, const PetscReal p[], SlidingState *state);
 
+/* A point p of the parameters of the operators, number i of many */
+typedef PetscErrorCode (*StaticsPoint)(void *ctx, PetscInt i, PetscReal p[]);
+
+/* How the equilibria at many points were found */
+typedef struct {
+  PetscInt  n_mesh;    /* points solved on the mesh */
+  PetscInt  n_vectors; /* of the basis, 0 where all points were */
+  PetscReal ratio;     /* largest true error of a closing beside its estimate, where both were known; 0 for none */
+} StaticsMany;
+
+/*@
+   StaticsSolveMany - which pairs are closed in the sliding state at n points. Collective.
+
+   Where all laws are linear at a status (pairs that slide as they are told or have no friction, penalty contact), most
+   points are solved on a basis of equilibria at some of them (statics/many/many.c); points whose status is nearer to a
+   change than the estimated error are solved on the mesh. Else all are.
+
+   Input Parameters:
++  n   - points
+.  get - tells them, ctx its context
+   Output Parameters:
++  closed - [n][local pairs] 1 closed, 0 open
+-  how    - what it took
+
+   Errors: those of StaticsSolveSliding().
+@*/
+PetscErrorCode StaticsSolveMany(Statics statics, PetscInt n, StaticsPoint get, void *ctx, char closed[],
+                                StaticsMany *how);
+
 /*@ StaticsRelease - frees the factorisation that StaticsSolve() keeps for the next call, at the same bodies, and the
     matrices of OperatorsGetBodies(). Collective. @*/
 PetscErrorCode StaticsRelease(Statics statics);

@@ -85,10 +85,45 @@ PetscErrorCode SubspaceAddTerm(Subspace *s, Mat A, PetscBool symmetric, PetscBoo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
+/* The rows of a term, and room for what they make of the vectors */
+static PetscErrorCode TermSetPairs(MPI_Comm comm, Mat left, Mat right, SubspaceTerm *term)
+{
+  Vec pairs;
+
+  PetscFunctionBeginUser;
+  term->left  = left;
+  term->right = right;
+  PetscCall(MatCreateVecs(left, NULL, &pairs));
+  for (int i = 0; i < 2; i++) {
+    PetscCall(BVCreate(comm, &term->image[i]));
+    PetscCall(BVSetType(term->image[i], BVMAT));
+    PetscCall(BVSetSizesFromVec(term->image[i], pairs, 1));
+  }
+  PetscCall(VecDestroy(&pairs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubspaceAddProduct(Subspace *s, Mat A, Mat left, Mat right)
 {
   SubspaceTerm *term;
-  Vec           pairs;
+  PetscInt      same = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc(sizeof(*s->term) * (size_t)(s->n_terms + 1), &s->term));
+  while (same < s->n_terms && s->term[same].A != A) same++;
+  term  = &s->term[s->n_terms];
+  *term = (SubspaceTerm){.A = A, .same = same, .product = PETSC_TRUE};
+  PetscCall(PetscObjectReference((PetscObject)A));
+  if (same == s->n_terms) {
+    PetscCall(EntryRowsCreate(A, &term->rows));
+    PetscCall(TermSetPairs(s->comm, left, right, term));
+  }
+  s->n_terms++;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
+{
 
   PetscFunctionBeginUser;
   PetscCall(
@@ -96,16 +131,7 @@ PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
   PetscCall(SubspaceAddTerm(s, pencil->C, pencil->symmetric, PETSC_FALSE));
   PetscCall(SubspaceAddTerm(s, pencil->M, pencil->symmetric, PETSC_FALSE));
   if (!pencil->left) PetscFunctionReturn(0);
-  term        = &s->term[SUBSPACE_K];
-  term->left  = pencil->left;
-  term->right = pencil->right;
-  PetscCall(MatCreateVecs(pencil->left, NULL, &pairs));
-  for (int i = 0; i < 2; i++) {
-    PetscCall(BVCreate(s->comm, &term->image[i]));
-    PetscCall(BVSetType(term->image[i], BVMAT));
-    PetscCall(BVSetSizesFromVec(term->image[i], pairs, 1));
-  }
-  PetscCall(VecDestroy(&pairs));
+  PetscCall(TermSetPairs(s->comm, pencil->left, pencil->right, &s->term[SUBSPACE_K]));
   PetscFunctionReturn(0);
 }
 

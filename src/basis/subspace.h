@@ -8,13 +8,13 @@
 
 /* A, or A + left' right, on the basis */
 typedef struct {
-  Mat        A, transposed; /* references; A' is A itself where it is symmetric, NULL where A goes by its rows */
-  PetscBool  symmetric;
-  PetscInt   same;        /* the first term with this matrix, which has its rows */
-  Mat        left, right; /* borrowed, a row for each closed pair, A symmetric; NULL for none */
-  BV         image[2];    /* left V, right V */
-  EntryRows  rows;        /* of A, where these are looked at */
-  PetscReal *small;       /* [n * n], column-major */
+  Mat        A, transposed;      /* references; A' is A itself where it is symmetric, NULL where A goes by its rows */
+  PetscBool  symmetric, product; /* product: A is left' right, and goes by these */
+  PetscInt   same;               /* the first term with this matrix, which has its rows */
+  Mat        left, right;        /* borrowed, a row for each closed pair, A symmetric; NULL for none */
+  BV         image[2];           /* left V, right V */
+  EntryRows  rows;               /* of A, where these are looked at */
+  PetscReal *small;              /* [n * n], column-major */
 } SubspaceTerm;
 
 /* The first three terms of a pencil. Without damping there is no C: A and small are NULL. */
@@ -39,6 +39,8 @@ PETSC_INTERN PetscErrorCode SubspaceCreate(Mat like, Mat M, PetscReal loose, Sub
 /* A further term while there are no columns; symmetric = it is known to be; sparse = by the rows that have entries,
    where these are few. A NULL: an empty one */
 PETSC_INTERN PetscErrorCode SubspaceAddTerm(Subspace *space, Mat A, PetscBool symmetric, PetscBool sparse);
+/* One that is a product of few rows, A = left' right: a column more costs products with these alone */
+PETSC_INTERN PetscErrorCode SubspaceAddProduct(Subspace *space, Mat A, Mat left, Mat right);
 /* K, C and M of a pencil, the first terms */
 PETSC_INTERN PetscErrorCode SubspaceAddPencil(Subspace *space, const PencilMatrices *pencil);
 /* What the block (overwritten) holds beyond V, but for directions shorter than drop: beside its longest column where

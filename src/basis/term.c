@@ -165,6 +165,13 @@ static PetscErrorCode RowsExtend(const Subspace *s, PetscInt t, PetscInt k, BV b
   PetscFunctionReturn(0);
 }
 
+/* Zeros in the last m columns and rows of small [k][k] */
+static void TermClear(PetscInt k, PetscInt m, PetscReal small[])
+{
+  for (PetscInt c = k - m; c < k; c++)
+    for (PetscInt r = 0; r < k; r++) small[c * k + r] = small[r * k + c] = 0;
+}
+
 PetscErrorCode SubspaceTermsExtend(Subspace *s, PetscInt k, BV block)
 {
   TermProducts products;
@@ -180,8 +187,9 @@ PetscErrorCode SubspaceTermsExtend(Subspace *s, PetscInt k, BV block)
   for (PetscInt t = 0; t < s->n_terms; t++) {
     SubspaceTerm *term = &s->term[t];
 
+    if (term->product && term->left) TermClear(k, m, term->small);
     if (term->left) PetscCall(PairsExtend(s, k, block, term));
-    if (term->A && !term->transposed) PetscCall(RowsExtend(s, t, k, block));
+    if (term->A && !term->transposed && !(term->product && term->left)) PetscCall(RowsExtend(s, t, k, block));
   }
   PetscFunctionReturn(0);
 }

@@ -18,23 +18,6 @@
 /* Halvings of the way from the nominal point, where branches are in doubt */
 #define FOLLOW_DEPTH 3
 
-/* Raises the error for a value that a parameter cannot have, of the samples that are solved */
-static PetscErrorCode SamplesCheckValues(Sample s)
-{
-  PetscReal *p;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->box.n_parameters, &p));
-  for (PetscInt i = 0; i < s->n_points; i++) {
-    PetscCall(SampleParameters(s, i, p));
-    for (PetscInt k = 0; k < s->n_variables; k++)
-      for (PetscInt m = 0; m < s->variable[k].n_names; m++)
-        PetscCall(OperatorsCheckParameter(s->operators, s->variable[k].moved[m], p[s->variable[k].moved[m]]));
-  }
-  PetscCall(PetscFree(p));
-  PetscFunctionReturn(0);
-}
-
 /* Makes the basis good at the nominal point and at most SAMPLE_TRAIN of the list [n] */
 static PetscErrorCode BasisGrow(Sample s, PetscInt n, const PetscInt list[])
 {
@@ -191,7 +174,6 @@ PetscErrorCode SamplePoints(Sample s)
   PetscInt *list, n = s->n_points;
 
   PetscFunctionBeginUser;
-  PetscCall(SamplesCheckValues(s));
   PetscCall(PetscCalloc1(s->n_points, &s->point));
   PetscCall(PetscMalloc1(s->n_points, &list));
   for (PetscInt i = 0; i < n; i++) list[i] = i;

@@ -1,9 +1,10 @@
 /* Options of samples */
 #include "sampleimpl.h"
 
-#define SAMPLE_AT(member)   QUANTITY_AT(struct _p_Sample, member)
-#define VARIABLE_AT(member) QUANTITY_AT(SampleVariable, member)
-#define GIVEN(member)       .given = offsetof(SampleVariable, member)
+#define SAMPLE_AT(member)    QUANTITY_AT(struct _p_Sample, member)
+#define VARIABLE_AT(member)  QUANTITY_AT(SampleVariable, member)
+#define SAMPLE_GIVEN(member) .given = offsetof(struct _p_Sample, member)
+#define GIVEN(member)        .given = offsetof(SampleVariable, member)
 
 static const char *const kinds[] = {
   [DISTRIBUTION_NORMAL] = "normal",         [DISTRIBUTION_LOGNORMAL] = "lognormal", [DISTRIBUTION_UNIFORM] = "uniform",
@@ -38,12 +39,35 @@ const QuantityList sample_list = {
   sizeof(SampleVariable), &variables,
   SampleVariableCheck,    .in = RUN_SAMPLE};
 
+static const Quantity column_rows[] = {
+  {"-parameters", "options of the scene that take its value, e.g. piston_pressure; these, or it names one itself", NULL,
+   QUANTITY_NAMES, VARIABLE_AT(names), .count = offsetof(SampleVariable, n_names)},
+  {"-column", "column of the file; default the name itself", NULL, QUANTITY_TEXT, VARIABLE_AT(source)},
+  {"-scale", "what its numbers are multiplied by, besides the unit in brackets", NULL, QUANTITY_REAL,
+   VARIABLE_AT(scale), .initial = 1},
+  {"-relative", "its numbers are factors of the scene's own value of each parameter", NULL, QUANTITY_BOOL,
+   VARIABLE_AT(relative)},
+  {"-table", "CSV file with columns value, factor: of the scene's own value, straight between, as of a temperature",
+   NULL, QUANTITY_PATH, VARIABLE_AT(table), .path = "file"},
+};
+static const QuantityTable columns = {"Column of conditions", "sample.h", PETSC_STATIC_ARRAY_LENGTH(column_rows),
+                                      column_rows, .in = RUN_SAMPLE};
+
+const QuantityList sample_columns = {
+  "-sample_columns",
+  "columns of -sample_conditions that are no parameter of their name, each the prefix of what it is",
+  sizeof(SampleVariable),
+  &columns,
+  SampleColumnCheck,
+  .in = RUN_SAMPLE};
+
 static const Quantity rows[] = {
-  {"-sample_count", "samples", NULL, QUANTITY_INT, SAMPLE_AT(n), .initial = 1000, QUANTITY_WITHIN(1, 10000000)},
+  {"-sample_count", "samples", NULL, QUANTITY_INT, SAMPLE_AT(n), .initial = 1000, QUANTITY_WITHIN(1, 10000000),
+   SAMPLE_GIVEN(n_given)},
   {"-sample_sequence", "scrambled sequence of Sobol, Latin hypercube, or random numbers", NULL, QUANTITY_WORD,
-   SAMPLE_AT(kind), .initial = SEQUENCE_SOBOL, .words = sequences},
+   SAMPLE_AT(kind), .initial = SEQUENCE_SOBOL, .words = sequences, SAMPLE_GIVEN(kind_given)},
   {"-sample_seed", "another one draws other samples; the same on any number of ranks", NULL, QUANTITY_INT,
-   SAMPLE_AT(seed), .initial = 1, QUANTITY_NOT_NEGATIVE},
+   SAMPLE_AT(seed), .initial = 1, QUANTITY_NOT_NEGATIVE, SAMPLE_GIVEN(seed_given)},
   {"-sample_correlations", "of the normal scores of two variables, e.g. a:b:0.5,a:c:-0.2", NULL, QUANTITY_TEXT,
    SAMPLE_AT(correlations)},
   {"-sample_indices", "rows of the design for indices of Sobol, each one solution more than there are variables", NULL,
@@ -56,6 +80,17 @@ static const Quantity rows[] = {
    QUANTITY_NOT_NEGATIVE},
   {"-sample_groups", "ranks that share the samples (0: all; the full solutions use all ranks)", NULL, QUANTITY_INT,
    SAMPLE_AT(box.n_groups), QUANTITY_NOT_NEGATIVE},
+  {"-sample_conditions",
+   "CSV file of conditions in place of samples: condition, direction (forward, reverse), and columns named like "
+   "options "
+   "of the scene, with a unit in brackets, as piston_pressure [bar]",
+   NULL, QUANTITY_PATH, SAMPLE_AT(file), .path = "file"},
+  {"-sample_ignore", "columns of that file that are left out", NULL, QUANTITY_NAMES, SAMPLE_AT(ignored),
+   .count = offsetof(struct _p_Sample, n_ignored)},
+  {"-sample_bands",
+   "edges of the frequency bands in which conditions are counted; default some ten between those of "
+   "-modes_band",
+   "Hz", QUANTITY_LIST, SAMPLE_AT(edge), QUANTITY_NOT_NEGATIVE, .count = offsetof(struct _p_Sample, n_edges)},
 };
 const QuantityTable sample_quantities = {"Samples", "sample.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows,
                                          .in = RUN_SAMPLE};

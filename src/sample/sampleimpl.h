@@ -2,6 +2,7 @@
 #pragma once
 
 #include <squeal/sample.h>
+#include "conditions/conditions.h"
 #include "draw/distribution.h"
 #include "draw/sequence.h"
 #include "statistics/estimate.h"
@@ -22,6 +23,10 @@ typedef struct {
   PetscBool    mean_given, deviation_given, lower_given, upper_given, peak_given;
   char         table[PETSC_MAX_PATH_LEN];
   PetscInt    *moved; /* [n_names] indices of the parameters */
+  /* of a column of conditions, whose table are factors: its name, its place, what it is multiplied by */
+  char      source[64];
+  PetscInt  column;
+  PetscReal scale;
 } SampleVariable;
 
 /* One eigenvalue of a sample */
@@ -37,6 +42,13 @@ typedef struct {
   PetscReal   worst; /* largest estimated relative error, but for rounding */
 } SamplePoint;
 
+/* A full solution beside the basis */
+typedef struct {
+  FullCheck found;
+  PetscInt  n_closed;    /* pairs closed in its sliding state, -1 without */
+  PetscBool same_status; /* which is that of the point */
+} SampleCheck;
+
 /* What is known of a branch; the last one is of all modes: the fastest growth */
 typedef struct {
   PetscInt  n, n_unstable, n_surely, n_possibly; /* samples that have it; that grow, beyond their error, within it */
@@ -46,11 +58,11 @@ typedef struct {
 } SampleBranch;
 
 struct _p_Sample {
-  PetscInt   n_verify; /* full solutions to compare with */
-  FullCheck *check;    /* [n_verify] */
-  MPI_Comm   comm;
-  Operators  operators;
-  Box        box;
+  PetscInt     n_verify; /* full solutions to compare with */
+  SampleCheck *check;    /* [n_verify] */
+  MPI_Comm     comm;
+  Operators    operators;
+  Box          box;
   /* set by options */
   PetscInt        n_variables;
   SampleVariable *variable;
@@ -58,6 +70,17 @@ struct _p_Sample {
   char            correlations[SAMPLE_MAX_TEXT];
   PetscInt        n, n_rows, seed; /* samples; rows of the design of the indices, 0 for none */
   char            varied[SAMPLE_MAX_TEXT];
+  PetscBool       n_given, kind_given, seed_given, drawn; /* drawn: there were -sample_variables beside a file */
+  char            file[PETSC_MAX_PATH_LEN];               /* of conditions, "" for samples */
+  PetscInt        n_ignored, n_edges, n_columns;
+  SampleVariable *column;  /* [n_columns] of -sample_columns; with a file they are among `variable` */
+  char          **ignored; /* [n_ignored] columns of the file */
+  PetscReal       edge[CONDITIONS_MAX_BANDS];
+  /* of conditions */
+  ConditionTable conditions;
+  PetscInt       n_reversed, n_bands;
+  PetscInt      *reversed; /* [n_reversed] parameters that turn with the disc */
+  ConditionBand *band;     /* [n_bands] the last one is of all */
   /* results */
   Sequence       sequence;
   PetscReal     *factor; /* [n_variables][n_variables] L of the correlations L L', or NULL */
@@ -67,18 +90,46 @@ struct _p_Sample {
   PetscInt       n_large;        /* points that were solved on the whole basis */
   SampleBranch  *branch;         /* [nominal.n + 1] */
   PetscInt       n_divided;      /* solutions that following the branches took */
-  PetscLogDouble seconds[2];     /* basis, points */
+  PetscLogDouble seconds[2];     /* basis and points; full solutions beside them */
 };
 
 extern const QuantityTable sample_quantities;
-extern const QuantityList  sample_list;
+extern const QuantityList  sample_list, sample_columns;
+
+/* A number as text, empty where it is none */
+typedef struct {
+  char text[32];
+} ShortText;
+
+static inline ShortText SampleNumber(PetscReal value)
+{
+  ShortText number = {""};
+
+  if (!PetscIsInfOrNanReal(value)) (void)snprintf(number.text, sizeof(number.text), "%.15g", (double)value);
+  return number;
+}
+
+/* conditions/columns.c - what -sample_columns say is checked, one record after the other; columns of the file as
+   variables; parameters that turn with the disc; all parameters p at condition i, those of the scene before */
+PETSC_INTERN PetscErrorCode SampleColumnCheck(MPI_Comm comm, void *owner, void *record);
+PETSC_INTERN PetscErrorCode ConditionsSetColumns(Sample sample);
+PETSC_INTERN PetscErrorCode ConditionsFindReversed(Sample sample);
+PETSC_INTERN PetscErrorCode ConditionsGet(Sample sample, PetscInt i, PetscReal p[]);
+/* conditions/bands.c - what all conditions do in each frequency band */
+PETSC_INTERN PetscErrorCode SampleBands(Sample sample);
+/* conditions/write.c */
+PETSC_INTERN PetscErrorCode ConditionsWrite(Sample sample, Results results);
+PETSC_INTERN PetscErrorCode ConditionsView(Sample sample, PetscViewer viewer);
 
 /* variable.c - raises errors for what no distribution can be, and finds the parameters; values [n_variables] of
    point i, and all parameters p there */
 PETSC_INTERN PetscErrorCode SampleFindVariables(Sample sample);
+PETSC_INTERN PetscErrorCode SamplesCheckValues(Sample sample);
 PETSC_INTERN PetscErrorCode SampleVariableCheck(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal value[]);
 PETSC_INTERN PetscErrorCode SampleParameters(Sample sample, PetscInt i, PetscReal p[]);
+/* All but what its status is: StaticsPoint of the sample as context */
+PETSC_INTERN PetscErrorCode SampleGet(void *sample, PetscInt i, PetscReal p[]);
 /* points.c - the basis and all points on it */
 PETSC_INTERN PetscErrorCode SamplePoints(Sample sample);
 /* Modes at p on the model of fewer vectors, where it is good enough, or on the whole basis; their branches [modes->n]

@@ -159,15 +159,14 @@ static PetscErrorCode VariableFind(Sample s, SampleVariable *v)
   PetscFunctionBeginUser;
   PetscCall(OperatorsGetParameters(s->operators, &n, &list));
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameters", v->name));
+  if (s->file[0] && !v->source[0]) PetscCall(PetscStrncpy(option, "-sample_conditions: column", sizeof(option)));
   PetscCall(PetscMalloc1(v->n_names, &v->moved));
   for (PetscInt i = 0; i < v->n_names; i++) {
     PetscCall(GridParameterFind(s->comm, s->operators, option, v->names[i], &v->moved[i]));
     PetscCall(
       GridParameterCheck(s->comm, s->operators, s->box.statics ? PETSC_TRUE : PETSC_FALSE, option, v->names[i]));
-    PetscCheck(!list[v->moved[i]].state, s->comm, PETSC_ERR_USER_INPUT,
-               "%s %s changes modes through the sliding state alone, which is that of the scene for all samples; leave "
-               "it out",
-               option, v->names[i]);
+    PetscCheck(s->box.statics || !list[v->moved[i]].state, s->comm, PETSC_ERR_USER_INPUT,
+               "%s %s changes modes through the sliding state alone: give -modes_contact static", option, v->names[i]);
     PetscCheck(!v->relative || s->box.nominal[v->moved[i]] != 0, s->comm, PETSC_ERR_USER_INPUT,
                "-%s_relative: %s is 0 in this scene, and so is any factor of it; give -%s another value", v->name,
                v->names[i], v->names[i]);
@@ -178,7 +177,7 @@ static PetscErrorCode VariableFind(Sample s, SampleVariable *v)
                    s->variable[k].name);
   }
   PetscCall(OperatorsCheckMoved(s->operators, option, v->n_names, v->moved));
-  PetscCall(VariableComplete(s, v));
+  if (!s->file[0]) PetscCall(VariableComplete(s, v));
   PetscFunctionReturn(0);
 }
 
@@ -248,15 +247,22 @@ static PetscErrorCode CorrelationsRead(Sample s)
 PetscErrorCode SampleFindVariables(Sample s)
 {
   PetscFunctionBeginUser;
-  PetscCheck(s->n_variables, s->comm, PETSC_ERR_USER_INPUT, "-analysis sample needs -sample_variables");
+  PetscCheck(s->n_variables || s->file[0], s->comm, PETSC_ERR_USER_INPUT,
+             "-analysis sample needs -sample_variables, or -sample_conditions");
   for (PetscInt k = 0; k < s->n_variables; k++) PetscCall(VariableFind(s, &s->variable[k]));
+  PetscCheck(s->n_verify <= s->n, s->comm, PETSC_ERR_USER_INPUT,
+             "-sample_verify %" PetscInt_FMT " must be at most %s %" PetscInt_FMT, s->n_verify,
+             s->file[0] ? "the number of conditions," : "-sample_count", s->n);
+  s->n_points = s->n;
+  if (s->file[0]) {
+    PetscCall(ConditionsFindReversed(s));
+    PetscFunctionReturn(0);
+  }
   PetscCall(CorrelationsRead(s));
   PetscCheck(!s->factor || !s->n_rows, s->comm, PETSC_ERR_USER_INPUT,
              "-sample_indices are those of independent variables: leave out -sample_correlations");
   PetscCheck(s->n_rows <= s->n, s->comm, PETSC_ERR_USER_INPUT,
              "-sample_indices %" PetscInt_FMT " must be at most -sample_count %" PetscInt_FMT, s->n_rows, s->n);
-  PetscCheck(s->n_verify <= s->n, s->comm, PETSC_ERR_USER_INPUT,
-             "-sample_verify %" PetscInt_FMT " must be at most -sample_count %" PetscInt_FMT, s->n_verify, s->n);
   s->sequence = (Sequence){s->kind, (uint64_t)s->seed, s->n, (s->n_rows ? 2 : 1) * s->n_variables, NULL};
   PetscCall(SequenceSetUp(&s->sequence));
   s->n_points = s->n + (s->n_rows ? (s->n_variables + 1) * s->n_rows : 0);
@@ -292,12 +298,18 @@ PetscErrorCode SampleValues(Sample s, PetscInt i, PetscReal value[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SampleParameters(Sample s, PetscInt i, PetscReal p[])
+/* All parameters of the operators at point i; ctx is the sample */
+PetscErrorCode SampleGet(void *ctx, PetscInt i, PetscReal p[])
 {
+  Sample    s = ctx;
   PetscReal value[SAMPLE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(p, s->box.nominal, s->box.n_parameters));
+  PetscCall(PetscArraycpy(p, s->box.nominal, s->box.n_base));
+  if (s->file[0]) {
+    PetscCall(ConditionsGet(s, i, p));
+    PetscFunctionReturn(0);
+  }
   PetscCall(SampleValues(s, i, value));
   for (PetscInt k = 0; k < s->n_variables; k++) {
     const SampleVariable *v = &s->variable[k];
@@ -305,5 +317,62 @@ PetscErrorCode SampleParameters(Sample s, PetscInt i, PetscReal p[])
     for (PetscInt m = 0; m < v->n_names; m++)
       p[v->moved[m]] = v->relative ? value[k] * s->box.nominal[v->moved[m]] : value[k];
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SampleParameters(Sample s, PetscInt i, PetscReal p[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(SampleGet(s, i, p));
+  BoxPutStatus(&s->box, i, p);
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a value that a parameter cannot have, with the sample or condition and the variable */
+static PetscErrorCode PointCheckValue(Sample s, PetscInt i, const SampleVariable *v, PetscInt k, const PetscReal p[])
+{
+  const OperatorsParameter *list;
+  PetscInt                  n;
+  PetscBool                 above, below;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(s->operators, &n, &list));
+  above = p[k] > list[k].upper ? PETSC_TRUE : PETSC_FALSE;
+  below = p[k] > list[k].lower || (list[k].closed && p[k] == list[k].lower) ? PETSC_FALSE : PETSC_TRUE;
+  PetscCheck((!above && !below) || !s->file[0], s->comm, PETSC_ERR_USER_INPUT,
+             "-sample_conditions %s, condition %s, column %s: %s %.6g %s must %s %.6g", s->file,
+             s->conditions.name[PetscMin(i, s->n - 1)], s->conditions.head[v->column], list[k].name, (double)p[k],
+             list[k].unit,
+             above            ? "be at most"
+             : list[k].closed ? "be at least"
+                              : "exceed",
+             (double)(above ? list[k].upper : list[k].lower));
+  PetscCheck((!above && !below) || s->file[0], s->comm, PETSC_ERR_USER_INPUT,
+             "sample %" PetscInt_FMT ", -sample_variables %s: %s %.6g %s must %s %.6g; give -%s_lower, -%s_upper or "
+             "another distribution",
+             i + 1, v->name, list[k].name, (double)p[k], list[k].unit,
+             above            ? "be at most"
+             : list[k].closed ? "be at least"
+                              : "exceed",
+             (double)(above ? list[k].upper : list[k].lower), v->name, v->name);
+  PetscCall(OperatorsCheckParameter(s->operators, k, p[k]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SamplesCheckValues(Sample s)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->box.n_base, &p));
+  for (PetscInt i = 0; i < s->n_points; i++) {
+    PetscCall(SampleGet(s, i, p));
+    for (PetscInt k = 0; k < s->n_variables; k++)
+      for (PetscInt m = 0; m < s->variable[k].n_names; m++)
+        PetscCall(PointCheckValue(s, i, &s->variable[k], s->variable[k].moved[m], p));
+    for (PetscInt m = 0; m < s->n_reversed; m++)
+      PetscCall(OperatorsCheckParameter(s->operators, s->reversed[m], p[s->reversed[m]]));
+  }
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }

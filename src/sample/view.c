@@ -36,21 +36,51 @@ static PetscInt ModesLost(Sample s, PetscInt *n)
 static PetscErrorCode VerifiedView(Sample s, PetscViewer viewer)
 {
   PetscReal error = 0, ratio = 0;
-  PetscInt  n = 0, n_beyond = 0;
+  PetscInt  n = 0, n_beyond = 0, n_other = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n_verify; k++) {
-    error = PetscMax(error, s->check[k].error);
-    ratio = PetscMax(ratio, s->check[k].ratio);
-    n += s->check[k].n_full;
-    n_beyond += s->check[k].n_beyond;
+    const FullCheck *c = &s->check[k].found;
+
+    error = PetscMax(error, c->error);
+    ratio = PetscMax(ratio, c->ratio);
+    n += c->n_full;
+    n_beyond += c->n_beyond;
+    n_other += s->check[k].same_status ? 0 : 1;
   }
   if (s->n_verify)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "checked by full solutions at %" PetscInt_FMT " points: largest true error %.1e, at most %.2g of what is stated; "
+      "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond it; %.3g s each\n",
+      s->n_verify, (double)error, (double)ratio, n_beyond, n, s->seconds[1] / (double)s->n_verify));
+  if (n_other)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " of them have another contact status on the mesh\n", n_other));
+  PetscFunctionReturn(0);
+}
+
+/* Contact statuses, and how they were found */
+static PetscErrorCode StatusesView(Sample s, PetscViewer viewer)
+{
+  const StaticsMany *how   = &s->box.equilibria;
+  PetscInt           least = BoxClosed(&s->box, 0), most = least;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_points; i++) {
+    least = PetscMin(least, BoxClosed(&s->box, i));
+    most  = PetscMax(most, BoxClosed(&s->box, i));
+  }
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "sliding state at each point: %" PetscInt_FMT " statuses, %" PetscInt_FMT
+                                   " to %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed, %" PetscInt_FMT
+                                   " groups of pairs that open and close together\n",
+                                   s->box.statuses.n, least, most, s->box.statuses.n_pairs, s->box.groups_of.n_groups));
+  if (how->n_vectors)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "checked by full solutions at %" PetscInt_FMT
-                                     " samples: largest true error %.1e, at most %.2g of what is stated; "
-                                     "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond it\n",
-                                     s->n_verify, (double)error, (double)ratio, n_beyond, n));
+                                     "  %" PetscInt_FMT " equilibria on the mesh, the others on %" PetscInt_FMT
+                                     " of their vectors (true error at most %.2g of the estimate)\n",
+                                     how->n_mesh, how->n_vectors, (double)how->ratio));
   PetscFunctionReturn(0);
 }
 
@@ -63,15 +93,19 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
   PetscFunctionBeginUser;
   lost = ModesLost(s, &n);
   for (PetscInt i = 0; i < s->n_points; i++) worst = PetscMax(worst, s->point[i].worst);
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "%" PetscInt_FMT " samples of %" PetscInt_FMT " variables, %s, seed %" PetscInt_FMT "\n", s->n,
-    s->n_variables, sequences[s->kind], s->seed));
-  if (s->box.statics)
+  if (s->file[0])
+    PetscCall(ConditionsView(s, viewer));
+  else
     PetscCall(PetscViewerASCIIPrintf(
-      viewer, "sliding state: the %" PetscInt_FMT " pairs closed at the scene's own values, at all samples\n",
-      s->box.n_closed));
-  PetscCall(PetscViewerASCIIPrintf(viewer, n ? "probability of growth:\n" : "no sample has a mode in the band\n"));
-  for (PetscInt b = 0; b <= s->nominal.n && n; b++) PetscCall(BranchView(s, b, viewer));
+      viewer, "%" PetscInt_FMT " samples of %" PetscInt_FMT " variables, %s, seed %" PetscInt_FMT "\n", s->n,
+      s->n_variables, sequences[s->kind], s->seed));
+  if (s->box.statics) PetscCall(StatusesView(s, viewer));
+  if (!n || !s->file[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s\n",
+                                     n            ? "probability of growth:"
+                                     : s->file[0] ? "no condition has a mode in the band"
+                                                  : "no sample has a mode in the band"));
+  for (PetscInt b = 0; b <= s->nominal.n && n && !s->file[0]; b++) PetscCall(BranchView(s, b, viewer));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "branches: %" PetscInt_FMT " of %" PetscInt_FMT " modes are none of the scene's own for certain\n", lost,
     n));

@@ -1,18 +1,9 @@
 /* The tables of samples */
 #include "sampleimpl.h"
 
-/* ShortText as text, empty where there is none */
-typedef struct {
-  char text[32];
-} ShortText;
-
-static ShortText TextOrEmpty(PetscReal value)
-{
-  ShortText number = {""};
-
-  if (!PetscIsInfOrNanReal(value)) (void)snprintf(number.text, sizeof(number.text), "%.15g", (double)value);
-  return number;
-}
+#define VERIFY_COLUMNS                                                                                                 \
+  "modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,error_estimate,freq_hz,full_error,"              \
+  "modes_beyond_error,worst_ratio,n_closed,same_status"
 
 /* Names of the variables behind the first columns, which end in a comma */
 static PetscErrorCode VariableColumns(Sample s, const char first[], size_t size, char columns[])
@@ -31,10 +22,11 @@ static PetscErrorCode SamplesWrite(Sample s, Results results)
 {
   ResultsTable table;
   char         columns[SAMPLE_MAX_TEXT];
-  PetscReal    row[6 + SAMPLE_MAX_VARIABLES];
+  PetscReal    row[7 + SAMPLE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
-  PetscCall(VariableColumns(s, "sample,modes,unstable,freq_hz,growth_rad_s,error_rad_s", sizeof(columns), columns));
+  PetscCall(
+    VariableColumns(s, "sample,modes,unstable,freq_hz,growth_rad_s,error_rad_s,n_closed", sizeof(columns), columns));
   PetscCall(ResultsTableOpen(results, "samples", columns, &table));
   for (PetscInt i = 0; i < s->n; i++) {
     const SampleMode *m          = SampleFind(s, i, s->nominal.n);
@@ -51,8 +43,9 @@ static PetscErrorCode SamplesWrite(Sample s, Results results)
     row[3] = m ? m->omega / (2 * PETSC_PI) : NAN;
     row[4] = m ? m->sigma : NAN;
     row[5] = m ? m->error : NAN;
-    PetscCall(SampleValues(s, i, &row[6]));
-    PetscCall(ResultsTableNumbers(table, 6 + s->n_variables, row));
+    row[6] = s->box.statics ? (PetscReal)BoxClosed(&s->box, i) : NAN;
+    PetscCall(SampleValues(s, i, &row[7]));
+    PetscCall(ResultsTableNumbers(table, 7 + s->n_variables, row));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -70,7 +63,7 @@ static PetscErrorCode ModesRows(Sample s, Results results)
       const SampleMode *m = &s->point[i].mode[k];
 
       PetscCall(ResultsTableRow(table, "%d,%s,%.15g,%.15g,%.15g,%s", (int)i + 1,
-                                TextOrEmpty(m->branch < 0 ? NAN : m->branch + 1).text,
+                                SampleNumber(m->branch < 0 ? NAN : m->branch + 1).text,
                                 (double)(m->omega / (2 * PETSC_PI)), (double)m->sigma, (double)m->error,
                                 ModeStateName(ModesLimitJudge(&s->box.limit, m->sigma, m->omega, m->error))));
     }
@@ -89,7 +82,7 @@ static Quantiles QuantilesText(const Moments *m)
   size_t    n = 0;
 
   for (int k = 0; k < N_QUANTILES; k++)
-    n += (size_t)snprintf(q.text + n, sizeof(q.text) - n, "%s%s", k ? "," : "", TextOrEmpty(m->quantile[k]).text);
+    n += (size_t)snprintf(q.text + n, sizeof(q.text) - n, "%s%s", k ? "," : "", SampleNumber(m->quantile[k]).text);
   return q;
 }
 
@@ -102,11 +95,11 @@ static PetscErrorCode ProbabilityRow(Sample s, PetscInt b, ResultsTable table)
 
   PetscFunctionBeginUser;
   PetscCall(ResultsTableRow(
-    table, "%s,\"%s\",%s,%s,%d,%s,%s,%s,%s,%s,%s,%d,%s,%.15g,%.15g,%d", any ? "any" : TextOrEmpty(b + 1).text,
-    branch->label, TextOrEmpty(cimag(lambda) / (2 * PETSC_PI)).text, TextOrEmpty(creal(lambda)).text, (int)branch->n,
-    TextOrEmpty(f->mean).text, TextOrEmpty(f->deviation).text, QuantilesText(f).text, TextOrEmpty(g->mean).text,
-    TextOrEmpty(g->deviation).text, QuantilesText(g).text, (int)branch->n_unstable,
-    TextOrEmpty(branch->n ? (PetscReal)branch->n_unstable / (PetscReal)branch->n : NAN).text,
+    table, "%s,\"%s\",%s,%s,%d,%s,%s,%s,%s,%s,%s,%d,%s,%.15g,%.15g,%d", any ? "any" : SampleNumber(b + 1).text,
+    branch->label, SampleNumber(cimag(lambda) / (2 * PETSC_PI)).text, SampleNumber(creal(lambda)).text, (int)branch->n,
+    SampleNumber(f->mean).text, SampleNumber(f->deviation).text, QuantilesText(f).text, SampleNumber(g->mean).text,
+    SampleNumber(g->deviation).text, QuantilesText(g).text, (int)branch->n_unstable,
+    SampleNumber(branch->n ? (PetscReal)branch->n_unstable / (PetscReal)branch->n : NAN).text,
     (double)branch->interval[0], (double)branch->interval[1], (int)(branch->n_possibly - branch->n_surely)));
   PetscFunctionReturn(0);
 }
@@ -146,11 +139,11 @@ static PetscErrorCode IndexRows(Sample s, PetscInt b, PetscReal value[], Results
 
       for (PetscInt j = 0; j < s->n_variables; j++) rank += PetscAbsReal(index[j].slope) > PetscAbsReal(v->slope);
       PetscCall(ResultsTableRow(
-        table, "%s,\"%s\",%s,%s,%s,%s,%s,%s,%d,%s,%s,%s,%s", b == s->nominal.n ? "any" : TextOrEmpty(b + 1).text,
-        s->branch[b].label, which ? "growth_rad_s" : "freq_hz", s->variable[k].name, TextOrEmpty(v->first).text,
-        TextOrEmpty(v->first_error).text, TextOrEmpty(v->total).text, TextOrEmpty(v->total_error).text, (int)n_rows,
-        TextOrEmpty(v->slope).text, TextOrEmpty(v->slope_error).text,
-        TextOrEmpty(PetscIsNanReal(v->slope) ? NAN : rank).text, TextOrEmpty(r_squared).text));
+        table, "%s,\"%s\",%s,%s,%s,%s,%s,%s,%d,%s,%s,%s,%s", b == s->nominal.n ? "any" : SampleNumber(b + 1).text,
+        s->branch[b].label, which ? "growth_rad_s" : "freq_hz", s->variable[k].name, SampleNumber(v->first).text,
+        SampleNumber(v->first_error).text, SampleNumber(v->total).text, SampleNumber(v->total_error).text, (int)n_rows,
+        SampleNumber(v->slope).text, SampleNumber(v->slope_error).text,
+        SampleNumber(PetscIsNanReal(v->slope) ? NAN : rank).text, SampleNumber(r_squared).text));
     }
   }
   PetscFunctionReturn(0);
@@ -181,17 +174,17 @@ static PetscErrorCode SamplesVerifyWrite(Sample s, Results results)
 
   PetscFunctionBeginUser;
   if (!s->n_verify) PetscFunctionReturn(0);
-  PetscCall(ResultsTableOpen(results, "samples_verify",
-                             "sample,modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,error_estimate,"
-                             "freq_hz,full_error,modes_beyond_error,worst_ratio",
-                             &table));
+  PetscCall(ResultsTableOpen(results, s->file[0] ? "conditions_verify" : "samples_verify",
+                             s->file[0] ? "condition," VERIFY_COLUMNS : "sample," VERIFY_COLUMNS, &table));
   for (PetscInt k = 0; k < s->n_verify; k++) {
-    const FullCheck *c = &s->check[k];
+    const FullCheck *c = &s->check[k].found;
 
-    PetscCall(ResultsTableRow(table, "%d,%d,%d,%d,%d,%.15g,%.15g,%.15g,%.15g,%d,%.15g", (int)SampleVerified(s, k) + 1,
-                              (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced,
-                              (double)c->error, (double)c->estimate, (double)(c->omega / (2 * PETSC_PI)),
-                              (double)c->full, (int)c->n_beyond, (double)c->ratio));
+    PetscCall(ResultsTableRow(table, "%d,%d,%d,%d,%d,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d",
+                              (int)SampleVerified(s, k) + 1, (int)c->n_full, (int)c->n_reduced, (int)c->n_unstable_full,
+                              (int)c->n_unstable_reduced, (double)c->error, (double)c->estimate,
+                              (double)(c->omega / (2 * PETSC_PI)), (double)c->full, (int)c->n_beyond, (double)c->ratio,
+                              SampleNumber(s->check[k].n_closed < 0 ? NAN : (PetscReal)s->check[k].n_closed).text,
+                              (int)s->check[k].same_status));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -201,6 +194,10 @@ PetscErrorCode SampleWrite(Sample s, Results results)
 {
   PetscFunctionBeginUser;
   PetscCall(SamplesVerifyWrite(s, results));
+  if (s->file[0]) {
+    PetscCall(ConditionsWrite(s, results));
+    PetscFunctionReturn(0);
+  }
   PetscCall(SamplesWrite(s, results));
   PetscCall(ModesRows(s, results));
   PetscCall(ProbabilityWrite(s, results));

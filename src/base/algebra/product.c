@@ -11,6 +11,7 @@
 #define BLOCK_WIDTH 32 /* columns side by side; or STRIP or LANES, where there are no more */
 #define STRIP       16
 #define LANES       8
+#define FEW_ENTRIES 1  /* a column of A has on average: fewer are multiplied as they stand */
 #define PACK_ROWS   48 /* rows whose products are unpacked together */
 #define PACK_STEP   8
 
@@ -180,19 +181,64 @@ static PetscErrorCode ApplyRows(Mat A, PetscInt first, PetscInt m, PetscInt widt
   PetscFunctionReturn(0);
 }
 
+/* A with few entries: packing the columns would cost more than the products. Y [m][ldy] */
+static PetscErrorCode ApplyFew(Mat A, PetscInt m, PetscInt ldx, const PetscScalar x[], Mat Y)
+{
+  PetscInt           ldy, n;
+  const PetscInt    *ia, *ja;
+  const PetscScalar *a;
+  PetscScalar       *y;
+  PetscBool          done;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetLDA(Y, &ldy));
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &ia, &ja, &done));
+  PetscCheck(done, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no rows of a sequential sparse matrix");
+  PetscCall(MatSeqAIJGetArrayRead(A, &a));
+  PetscCall(MatDenseGetArray(Y, &y));
+  for (PetscInt j = 0; j < m; j++)
+    for (PetscInt i = 0; i < n; i++) {
+      PetscScalar sum = 0;
+
+      for (PetscInt k = ia[i]; k < ia[i + 1]; k++) sum += a[k] * x[(size_t)j * ldx + ja[k]];
+      y[(size_t)j * ldy + i] = sum;
+    }
+  PetscCall(PetscLogFlops(2. * ia[n] * m));
+  PetscCall(MatDenseRestoreArray(Y, &y));
+  PetscCall(MatSeqAIJRestoreArrayRead(A, &a));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &ia, &ja, &done));
+  PetscFunctionReturn(0);
+}
+
+/* Whether it has */
+static PetscErrorCode EntriesAreFew(Mat A, PetscBool *few)
+{
+  PetscInt n_columns;
+  MatInfo  info;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(A, NULL, &n_columns));
+  PetscCall(MatGetInfo(A, MAT_LOCAL, &info));
+  *few = info.nz_used < FEW_ENTRIES * (PetscReal)n_columns ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 /* On one rank: columns are packed once for all n matrices. */
 static PetscErrorCode ApplySequential(PetscInt n, const Mat A[], Mat X, const Mat Y[])
 {
   PetscInt           n_rows, n_columns, ldx;
   const PetscScalar *x;
   PetscScalar       *packed;
+  PetscBool          few = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(X, &n_rows, &n_columns));
   PetscCall(MatDenseGetLDA(X, &ldx));
   PetscCall(MatDenseGetArrayRead(X, &x));
-  PetscCall(PetscMalloc1((size_t)n_rows * BLOCK_WIDTH, &packed));
-  for (PetscInt first = 0; first < n_columns; first += BLOCK_WIDTH) {
+  if (n == 1) PetscCall(EntriesAreFew(A[0], &few));
+  if (few) PetscCall(ApplyFew(A[0], n_columns, ldx, x, Y[0]));
+  PetscCall(PetscMalloc1(few ? 0 : (size_t)n_rows * BLOCK_WIDTH, &packed));
+  for (PetscInt first = 0; first < n_columns && !few; first += BLOCK_WIDTH) {
     const PetscInt m     = PetscMin(BLOCK_WIDTH, n_columns - first);
     const PetscInt width = m <= LANES ? LANES : m <= STRIP ? STRIP : BLOCK_WIDTH;
 

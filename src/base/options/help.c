@@ -42,7 +42,8 @@ static const char names_of_all[] =
   "-probes probe -probe_at 0,0,0 -motions motion -motion_set S -motion_directions z "
   "-circles circle -circle_radius 1 -circle_count 8 -impulses impulse -impulse_at 0,0,0 "
   "-impulse_impulse 0,0,1 -modes_changes change -change_at 0,0,0 -change_mass 1 -terms term -superelements body "
-  "-ties tie -tie_surfaces S,M -stages stage -stage_loads load -sample_variables variable -variable_deviation 1";
+  "-ties tie -tie_surfaces S,M -stages stage -stage_loads load -sample_variables variable -variable_deviation 1 "
+  "-sample_columns column";
 
 void SquealGetVersions(SquealVersions *versions)
 {

@@ -12,10 +12,10 @@
 #define MAX_SHOWN 160  /* characters of a list that are shown */
 
 /* All lists of a scene */
-static const char *const lists[] = {"-parts",    "-supports",         "-springs",      "-dashpots", "-loads",
-                                    "-contacts", "-probes",           "-motions",      "-impulses", "-circles",
-                                    "-joints",   "-points",           "-terms",        "-ties",     "-modes_changes",
-                                    "-stages",   "-sample_variables", "-superelements"};
+static const char *const lists[] = {
+  "-parts",         "-supports", "-springs",          "-dashpots",      "-loads",         "-contacts", "-probes",
+  "-motions",       "-impulses", "-circles",          "-joints",        "-points",        "-terms",    "-ties",
+  "-modes_changes", "-stages",   "-sample_variables", "-superelements", "-sample_columns"};
 
 /* Whether a name can be a prefix: a letter, then letters, digits and underscores */
 static PetscBool NameIsIdentifier(const char name[])

@@ -36,7 +36,10 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   for (PetscInt t = 0; t < basis->reduced.n_terms; t++) {
     const OperatorsTerm *term = &basis->reduced.term[t];
 
-    PetscCall(SubspaceAddTerm(&basis->space, term->A, term->symmetric, PETSC_TRUE));
+    if (term->left)
+      PetscCall(SubspaceAddProduct(&basis->space, term->A, term->left, term->right));
+    else
+      PetscCall(SubspaceAddTerm(&basis->space, term->A, term->symmetric, PETSC_TRUE));
   }
   PetscFunctionReturn(0);
 }

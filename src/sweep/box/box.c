@@ -2,39 +2,12 @@
    A basis over a box. Points are chosen by the greedy choice of a sweep (basis/greedy.c) among those that are given,
    whatever their number of parameters: by their distances first, then by the estimated error.
 
-   The contact status is that of the sliding state at the nominal point, and stays at all others.
+   The contact status of a point is that of its own sliding state (status.c).
 */
 #include "box.h"
 
 #define BOX_GUARD                                                                                                      \
   0.03 /* as basis/greedy.c holds modes beyond the band, so that branches are followed across its ends */
-
-/* The pencil about the sliding state at the nominal point, or with all pairs closed */
-static PetscErrorCode BoxLinearise(Box *box)
-{
-  SlidingState state;
-  PetscBool    affine;
-  PetscInt     n_closed = 0;
-
-  PetscFunctionBeginUser;
-  box->n_closed = -1;
-  if (!box->statics) {
-    PetscCall(OperatorsLinearise(box->operators, NULL, &box->pencil));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(StaticsIsAffine(box->statics, &affine));
-  PetscCheck(affine, box->comm, PETSC_ERR_SUP,
-             "a basis about the sliding state: pairs that hold by friction, friction damping, the stiffness of a "
-             "-contact_pressure_law, -static_geometric and -static_follower change with it from point to point; give "
-             "-modes_contact all");
-  PetscCall(StaticsSolveSliding(box->statics, box->nominal, &state));
-  PetscCall(StaticsRelease(box->statics));
-  for (PetscInt i = 0; i < state.n_pairs; i++) n_closed += state.group[i] >= 0 ? 1 : 0;
-  PetscCallMPI(MPI_Allreduce(&n_closed, &box->n_closed, 1, MPIU_INT, MPI_SUM, box->comm));
-  PetscCall(OperatorsLinearise(box->operators, &state, &box->pencil));
-  PetscCall(SlidingStateDestroy(&state));
-  PetscFunctionReturn(0);
-}
 
 /* Room for samples is that of the full solutions and of the points that are only looked at */
 static PetscErrorCode BoxBeginGreedy(Box *box)
@@ -55,7 +28,7 @@ static PetscErrorCode BoxBeginGreedy(Box *box)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoxSetUp(Box *box)
+PetscErrorCode BoxSetUp(Box *box, PetscInt n, StaticsPoint get, void *ctx)
 {
   PetscReal   band[2];
   PetscMPIInt size;
@@ -67,8 +40,7 @@ PetscErrorCode BoxSetUp(Box *box)
   box->window.high = 2 * PETSC_PI * band[1];
   PetscCallMPI(MPI_Comm_size(box->comm, &size));
   box->groups = (PointGroups){box->comm, box->n_groups ? box->n_groups : size, NULL};
-  PetscCall(BoxLinearise(box));
-  PetscCall(PencilGetParameters(box->pencil, &box->n_parameters, NULL, NULL));
+  PetscCall(BoxLinearise(box, n, get, ctx));
   PetscCall(PencilSetParameters(box->pencil, box->nominal));
   PetscCall(ModesSetPencil(box->modes, box->pencil));
   PetscCall(BasisCreate(box->comm, box->pencil, &box->basis));
@@ -222,5 +194,8 @@ PetscErrorCode BoxDestroy(Box *box)
   PetscCall(GreedyDestroy(&box->greedy));
   PetscCall(BasisDestroy(&box->basis));
   PetscCall(PencilDestroy(&box->pencil));
+  PetscCall(StatusListDestroy(&box->statuses));
+  PetscCall(PetscFree(box->groups_of.closed));
+  PetscCall(PetscFree(box->status));
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "sweep/basis/greedy.h"
+#include "sweep/grid/groups.h"
 #include "sweep/track/track.h"
 #include <squeal/statics.h>
 
@@ -13,13 +14,17 @@ typedef struct {
   MPI_Comm    comm;
   Operators   operators;
   Modes       modes;
-  Statics     statics; /* about whose sliding state at the nominal point the pencil is, held at all others; or NULL */
-  PetscReal  *nominal; /* [n_parameters] copied by the caller, freed by BoxDestroy() */
+  Statics     statics; /* about whose sliding state at each point the pencil is, or NULL: all pairs are closed */
+  PetscReal  *nominal; /* [n_base] allocated by the caller, freed by BoxDestroy(); [n_parameters] from BoxSetUp() on */
   PetscReal   rtol;
   const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt    max_solutions, n_groups;
   /* */
-  PetscInt      n_parameters, n_closed; /* n_closed: pairs closed in the sliding state, -1 without statics */
+  PetscInt      n_base, n_parameters; /* parameters of the operators; of the pencil, with those of the statuses */
+  StatusList    statuses;             /* empty without statics */
+  PetscInt     *status;               /* [points of BoxSetUp() + 1] of each, of the nominal point in the end */
+  StaticsMany   equilibria;           /* how they were found */
+  StatusPencil  groups_of;            /* the parameters of the statuses */
   Pencil        pencil;
   ReducedWindow window; /* of the eigenvalues asked for */
   ModesLimit    limit;
@@ -31,9 +36,16 @@ typedef struct {
   Reduced       small; /* of fewer vectors, for many points; n_used is 0 where there is none */
 } Box;
 
-/* The pencil, and the basis where it is the whole space. Collective.
-   Errors: PETSC_ERR_SUP where the sliding state makes the pencil not affine. */
-PETSC_INTERN PetscErrorCode BoxSetUp(Box *box);
+/* The statuses at n points, the pencil that holds at all of them, and the basis where it is the whole space. `get`
+   tells all parameters p [n_base] of a point. Collective.
+   Errors: PETSC_ERR_SUP where sliding states make the pencil not affine. */
+PETSC_INTERN PetscErrorCode BoxSetUp(Box *box, PetscInt n, StaticsPoint get, void *ctx);
+/* status.c - statuses of n points and of the nominal one, behind them, and the pencil that holds at all. Collective. */
+PETSC_INTERN PetscErrorCode BoxLinearise(Box *box, PetscInt n, StaticsPoint get, void *ctx);
+/* Puts the status of point i, as BoxSetUp() had it, into p [n_parameters]. Not collective. */
+PETSC_INTERN void BoxPutStatus(const Box *box, PetscInt i, PetscReal p[]);
+/* Pairs that are closed there, of all ranks; -1 without statics */
+PETSC_INTERN PetscInt BoxClosed(const Box *box, PetscInt i);
 /* Enlarges the basis until all n points [n][n_parameters] are estimated within rtol, the first of them by the
    eigensolver. Collective. Errors: PETSC_ERR_NOT_CONVERGED. */
 PETSC_INTERN PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[]);

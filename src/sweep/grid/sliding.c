@@ -8,6 +8,7 @@
    bracket become places of the sweep themselves. A further status found on the way becomes a segment of its own.
 */
 #include "sweep/sweepimpl.h"
+#include "sweep/grid/groups.h"
 
 /* Of a sweep, each a contact problem of statics. */
 #define MAX_BISECTIONS 30
@@ -101,77 +102,46 @@ PetscBool SweepClosedRange(Sweep sweep, PetscInt *least, PetscInt *most)
 }
 
 /* Groups with the exact constraint are no affine terms */
-static PetscErrorCode StatusGroupsCheck(Sweep sweep, const PetscInt group[])
+static PetscErrorCode StatusGroupsComplain(Sweep sweep)
 {
   const PetscReal          *value = sweep->grid.value[0];
   const OperatorsParameter *parameters;
-  const ContactPair        *pair;
-  Contact                   contact;
-  PetscInt                  n, n_all, least, most;
-  PetscBool                 exact = PETSC_FALSE;
+  PetscInt                  n, least, most;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, NULL, &contact));
-  PetscCall(ContactGetPairs(contact, &n, &n_all, &pair));
-  for (PetscInt p = 0; p < n; p++) {
-    PetscReal   mu;
-    PressureLaw law;
-
-    PetscCall(OperatorsGetInterface(sweep->operators, NULL, pair[p].interface, &mu, &law));
-    if (group[p] > 0 && PetscIsInfReal(PressureSlope(&law, 0))) exact = PETSC_TRUE;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &exact, 1, MPIU_BOOL, MPI_LOR, sweep->comm));
   (void)SweepClosedRange(sweep, &least, &most);
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));
-  PetscCheck(
-    !exact, sweep->comm, PETSC_ERR_SUP,
+  SETERRQ(
+    sweep->comm, PETSC_ERR_SUP,
     "a sweep about the sliding state with -contact_law constraint: which pairs are closed changes between %s %.6g and "
     "%.6g (%" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
     "); give -contact_law penalty, -sweep_method full or -modes_contact all",
     parameters[sweep->grid.parameter[0][0]].name, (double)value[0], (double)value[sweep->grid.n[0] - 1], least, most,
-    n_all);
-  PetscFunctionReturn(0);
-}
-
-/* Forms the matrices with all groups closed, with and without friction, so that their pattern holds every term,
-   whichever point comes first: no later sum then meets an entry without a place. */
-static PetscErrorCode StatusGroupsFormPattern(Sweep sweep)
-{
-  const SweepGrid *grid = &sweep->grid;
-  PencilMatrices   matrices;
-  PetscReal       *p;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(grid->n_parameters, &p));
-  GridFill(grid, &grid->place[grid->n_places - 1], p);
-  for (PetscInt g = 1; g <= grid->n_groups; g++) p[grid->n_parameters - g] = 1;
-  PetscCall(PencilSetParameters(sweep->pencil, p));
-  PetscCall(PencilGetMatrices(sweep->pencil, &matrices));
-  PetscCall(PencilGetFrictionless(sweep->pencil, &matrices));
-  PetscCall(PetscFree(p));
-  PetscFunctionReturn(0);
+    sweep->statuses.n_pairs);
 }
 
 /* Makes the pencil with the groups, and gives the grid the values of their parameters */
 static PetscErrorCode StatusGroupsSet(Sweep sweep)
 {
   SweepGrid   *grid = &sweep->grid;
-  PetscInt    *group;
-  SlidingState state;
+  StatusPencil made;
+  PetscReal   *p;
+  PetscBool    exact;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(sweep->statuses.n_local, &group));
-  PetscCall(StatusListGroup(&sweep->statuses, group, &grid->n_groups, &grid->closed));
-  if (grid->n_groups) PetscCall(StatusGroupsCheck(sweep, group));
-  PetscCall(SlidingStateCreate(sweep->statuses.n_local, grid->n_groups, group, &state));
-  PetscCall(OperatorsLinearise(sweep->operators, &state, &sweep->pencil));
-  PetscCall(SlidingStateDestroy(&state));
-  PetscCall(PetscFree(group));
-  PetscCall(PencilGetParameters(sweep->pencil, &grid->n_parameters, NULL, NULL));
+  PetscCall(StatusPencilCreate(&sweep->statuses, sweep->operators, &exact, &made));
+  if (exact) PetscCall(StatusGroupsComplain(sweep));
+  sweep->pencil      = made.pencil;
+  grid->n_groups     = made.n_groups;
+  grid->closed       = made.closed;
+  grid->n_parameters = made.n_parameters;
   PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));
   for (PetscInt g = 0; g < grid->n_groups; g++)
     grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[sweep->base_status * grid->n_groups + g];
-  PetscCall(StatusGroupsFormPattern(sweep));
+  PetscCall(PetscMalloc1(grid->n_parameters, &p));
+  GridFill(grid, &grid->place[grid->n_places - 1], p);
+  PetscCall(StatusPencilFormPattern(&made, p));
+  PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,51 @@
+/* Private to statics/: equilibria at many points on a basis of those at some of them */
+#pragma once
+
+#include "statics/staticsimpl.h"
+#include "basis/subspace.h"
+
+/* The contact problem on the basis, alike on every rank: K = sum_t c_t A_t, rows g of the pairs and s of their
+   friction. Vectors 0 .. n_less - 1 make the model that the error is estimated with */
+typedef struct {
+  PetscInt    n, n_less, n_pairs, n_terms;
+  PetscReal **A;     /* [n_terms] [n][n] N/m */
+  PetscReal  *G, *S; /* [n][n_pairs], one column a vector */
+} ManyModel;
+
+/* A point: coefficients of the terms, forces on the basis, stiffness (N/m), friction and gap (m) of each pair */
+typedef struct {
+  PetscReal *c, *f, *k, *slide, *gap;
+} ManyPoint;
+
+/* What was found there */
+typedef struct {
+  PetscBool found;   /* the statuses settled */
+  PetscReal error;   /* m: largest change of a closing by the vectors that the model of n_less has not */
+  PetscReal nearest; /* m: least distance of a closing from 0 */
+} ManyAnswer;
+
+/* manydense.c - closed [n_pairs] and closings w - gap [n_pairs], m, from the closed pairs to begin with. Not
+   collective. */
+PETSC_INTERN PetscErrorCode ManySolve(const ManyModel *model, const ManyPoint *point, char closed[],
+                                      PetscReal closing[], ManyAnswer *answer);
+
+/* The basis on the mesh */
+typedef struct {
+  Statics   statics;
+  Pencil    bodies; /* all pairs open */
+  PetscInt  n_terms;
+  PetscInt *term; /* [n_terms] of the pencil's, those of the stiffness */
+  Subspace  space;
+  PetscReal scale; /* m, of displacements */
+  PetscInt  n_blocks, *block_end;
+  ManyModel model;
+} ManyBasis;
+
+/* manybasis.c - from the equilibrium that the statics have just found; good is false where its bodies are not those
+   terms */
+PETSC_INTERN PetscErrorCode ManyBasisCreate(Statics statics, ManyBasis *basis, PetscBool *good);
+/* Adds the equilibrium that the statics have just found */
+PETSC_INTERN PetscErrorCode ManyBasisAdd(ManyBasis *basis);
+/* The point p on the basis, with arrays of the caller: c [n_terms], f [n], k, slide, gap [n_pairs]. Collective. */
+PETSC_INTERN PetscErrorCode ManyBasisPoint(const ManyBasis *basis, const PetscReal p[], ManyPoint *point);
+PETSC_INTERN PetscErrorCode ManyBasisDestroy(ManyBasis *basis);

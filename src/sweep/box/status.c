@@ -1,0 +1,117 @@
+/*
+   Contact statuses of the points of a box. A status is a class of points; pairs that are open in some classes and
+   closed in others are affine terms of one pencil (grid/groups.c), so that a class is a value of the parameters
+   closed_g, 0 or 1, and all classes are projected on one basis.
+*/
+#include "box.h"
+
+/* Whom BoxLinearise() asks for points, with the nominal one behind them */
+typedef struct {
+  const Box   *box;
+  PetscInt     n;
+  StaticsPoint get;
+  void        *ctx;
+} PointsAndNominal;
+
+static PetscErrorCode PointGet(void *ctx, PetscInt i, PetscReal p[])
+{
+  const PointsAndNominal *points = ctx;
+
+  PetscFunctionBeginUser;
+  if (i < points->n)
+    PetscCall(points->get(points->ctx, i, p));
+  else
+    PetscCall(PetscArraycpy(p, points->box->nominal, points->box->n_base));
+  PetscFunctionReturn(0);
+}
+
+/* The status of each of n points as a number of the list */
+static PetscErrorCode StatusesNumber(Box *box, PetscInt n, const char closed[])
+{
+  const PetscInt n_local = box->statuses.n_local;
+  PetscBool     *row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &box->status));
+  PetscCall(PetscMalloc1(n_local, &row));
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt k = 0; k < n_local; k++) row[k] = closed[i * n_local + k] ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(StatusListAdd(&box->statuses, row, &box->status[i]));
+  }
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
+/* Statuses of n points from statics */
+static PetscErrorCode StatusesFind(Box *box, PetscInt n, PointsAndNominal *points)
+{
+  const ContactPair *pair;
+  Contact            contact;
+  PetscInt           n_local, n_all;
+  PetscBool          affine;
+  char              *closed;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsIsAffine(box->statics, &affine));
+  PetscCheck(affine, box->comm, PETSC_ERR_SUP,
+             "a basis about the sliding state: pairs that hold by friction, friction damping, the stiffness of a "
+             "-contact_pressure_law, -static_geometric and -static_follower change with it from point to point; give "
+             "-modes_contact all");
+  PetscCall(OperatorsGetModel(box->operators, NULL, &contact));
+  PetscCall(ContactGetPairs(contact, &n_local, &n_all, &pair));
+  PetscCall(StatusListCreate(box->comm, n_local, &box->statuses));
+  PetscCall(PetscMalloc1(n * n_local, &closed));
+  PetscCall(StaticsSolveMany(box->statics, n, PointGet, points, closed, &box->equilibria));
+  PetscCall(StaticsRelease(box->statics));
+  PetscCall(StatusesNumber(box, n, closed));
+  PetscCall(PetscFree(closed));
+  PetscFunctionReturn(0);
+}
+
+/* The pencil of all statuses, with room for their parameters at the nominal point */
+static PetscErrorCode StatusesLinearise(Box *box, PetscInt n)
+{
+  PetscReal *p;
+  PetscBool  exact;
+
+  PetscFunctionBeginUser;
+  PetscCall(StatusPencilCreate(&box->statuses, box->operators, &exact, &box->groups_of));
+  PetscCheck(!exact, box->comm, PETSC_ERR_SUP,
+             "a basis about the sliding state with -contact_law constraint: which pairs are closed changes from point "
+             "to point; give -contact_law penalty or -modes_contact all");
+  box->pencil       = box->groups_of.pencil;
+  box->n_parameters = box->groups_of.n_parameters;
+  PetscCall(PetscRealloc((size_t)box->n_parameters * sizeof(*box->nominal), &box->nominal));
+  BoxPutStatus(box, n, box->nominal);
+  PetscCall(PetscMalloc1(box->n_parameters, &p));
+  PetscCall(PetscArraycpy(p, box->nominal, box->n_parameters));
+  PetscCall(StatusPencilFormPattern(&box->groups_of, p));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxLinearise(Box *box, PetscInt n, StaticsPoint get, void *ctx)
+{
+  PetscFunctionBeginUser;
+  if (box->statics) {
+    PetscCall(StatusesFind(box, n + 1, &(PointsAndNominal){box, n, get, ctx}));
+    PetscCall(StatusesLinearise(box, n));
+  } else {
+    PetscCall(OperatorsLinearise(box->operators, NULL, &box->pencil));
+    PetscCall(PencilGetParameters(box->pencil, &box->n_parameters, NULL, NULL));
+  }
+  PetscFunctionReturn(0);
+}
+
+void BoxPutStatus(const Box *box, PetscInt i, PetscReal p[])
+{
+  const PetscInt n_groups = box->groups_of.n_groups;
+
+  for (PetscInt g = 0; g < n_groups; g++)
+    p[box->n_parameters - n_groups + g] = box->groups_of.closed[box->status[i] * n_groups + g];
+}
+
+PetscInt BoxClosed(const Box *box, PetscInt i)
+{
+  return box->statics ? box->statuses.n_closed[box->status[i]] : -1;
+}
