@@ -217,6 +217,9 @@ PETSC_INTERN PetscErrorCode FreeBodiesDestroy(FreeBodies **bodies);
    asked for. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteSensitivities(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ModesViewSensitivities(Modes modes, PetscViewer viewer);
+/* Whether the matrices follow a parameter at once: neither the sliding state nor the stress of a spin alone depends on
+   it */
+PETSC_INTERN PetscBool ModesParameterIsListed(const OperatorsParameter *parameter);
 
 /* growth/effects.c - modes_effects.csv, and fields, where modes are unstable. Collective */
 PETSC_INTERN PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, const Mesh *mesh, Results results);
@@ -226,6 +229,7 @@ PETSC_INTERN PetscErrorCode ModesWriteEffects(Modes modes, Operators operators, 
 PETSC_INTERN PetscErrorCode ChangesSetFromOptions(Modes modes);
 PETSC_INTERN PetscErrorCode ChangesVisit(Modes modes, const QuantityVisitor *visitor);
 PETSC_INTERN PetscErrorCode ChangesView(Modes modes, PetscViewer viewer);
+PETSC_INTERN PetscBool      ChangeHasParameter(const Modes modes, PetscInt i);
 PETSC_INTERN PetscErrorCode ChangesWrite(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ChangesReset(Modes modes);
 PETSC_INTERN PetscErrorCode ChangesDestroy(Modes modes);
@@ -372,5 +376,7 @@ PETSC_INTERN PetscErrorCode NullIterate(Modes modes, const PencilMatrices *penci
 /* rigid/decays.c - decays of rigid motions without the rounding of K. Collective */
 PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);
 
-/* label.c - names of the shapes */
+/* label.c - names of the shapes; the disc, NULL for none, and the masses of its nodes [local nodes] on this rank, kg
+   (borrowed) */
 PETSC_INTERN PetscErrorCode ModesLabel(Modes modes);
+PETSC_INTERN PetscErrorCode ModesFindDisc(Modes modes, const struct _p_Disc **disc, const PetscReal **mass);

@@ -2,6 +2,7 @@
 """modes_changed.csv beside other methods:
 
     changes.py full RESULTS MATRICES MU    all modes of changed matrices by scipy's Arnoldi method on the linearised problem
+    changes.py anew RESULTS CHANGE OTHER    all modes of a change beside modes.csv of another run
     changes.py absorber RESULTS CHANGE RATIO    the response of a mass with Den Hartog's absorber, made of the eigenvalues
 
 full: the changes of scene.yaml are added to the matrices of -operators_save; each mode of the band stands in the table once, no farther
@@ -29,6 +30,11 @@ LARGEST = 2e-3  # of a frequency, that an error may state
 OVERLAP = 2e-4  # of the table: it has four digits
 
 
+def matrices(folder, mu):
+    """K with friction, C and M of -operators_save."""
+    return matrix(folder / "K.bin") + mu * matrix(folder / "H.bin"), matrix(folder / "C.bin"), matrix(folder / "M.bin")
+
+
 def table(folder):
     """Change -> eigenvalues and errors, rad/s, and the mode before with its overlap."""
     found = {}
@@ -40,28 +46,88 @@ def table(folder):
     return found
 
 
-class Brake:
-    """The matrices of a run, and which unknown each node has."""
+# flat sets of the built-in brake: their part and height, m
+SURFACES = {"beam_top": ("beam", 0.11), "pad_face": ("pad", 0.0)}
 
-    def __init__(self, results, folder, mu):
+
+def tributary(values):
+    """Share of each of its levels in a line."""
+    levels = numpy.unique(values.round(9))
+    width = numpy.gradient(levels, edge_order=1) * numpy.where(numpy.isin(levels, (levels[0], levels[-1])), 0.5, 1)
+    return width[numpy.searchsorted(levels, values.round(9))]
+
+
+def surfaces(brake):
+    """Nodes of the flat sets, which are grids, and their shares in the area."""
+    found = {}
+    for name, (part, height) in SURFACES.items():
+        nodes = numpy.flatnonzero(brake.of[brake.scene.names("parts").index(part)] & (abs(brake.places[:, 2] - height) < 1e-9))
+        share = tributary(brake.places[nodes, 0]) * tributary(brake.places[nodes, 1])
+        found[name] = nodes, share / share.sum()
+    return found
+
+
+class Brake:
+    """The matrices of a run, and which unknown each node has. `sets` are nodes and shares of sets by name, `slopes` what a percent of
+    a parameter adds to K, C and M, by name."""
+
+    def __init__(self, results, folder, mu, sets=None, slopes=None):
         self.scene = Provenance(results / "scene.yaml")
-        self.K, self.M = matrix(folder / "K.bin") + mu * matrix(folder / "H.bin"), matrix(folder / "M.bin")
-        self.C = matrix(folder / "C.bin")
+        self.K, self.C, self.M = matrices(folder, mu)
+        self.sets, self.slopes = sets or {}, slopes or {}
         self.places, self.of = nodes_of(results / "modes_effects.h5")
         with h5py.File(results / "modes.h5") as file:
+            grid = file["VTKHDF"]
+            self.cells = grid["Connectivity"][()].reshape(-1, 8) if set(grid["Types"][()]) == {12} else None
+            self.part_of_cell = grid["CellData/part"][()]
             free = numpy.flatnonzero(sum(abs(shape[()]).reshape(-1) for key, shape in file["VTKHDF/PointData"].items()
                                          if key[-3:] in ("_re", "_im")) > 0)
         self.number = numpy.full(3 * len(self.places), -1)
         self.number[free] = numpy.arange(len(free))
 
+    def column(self, node, direction):
+        """A direction at the unknowns of a node."""
+        numbers = self.number[3 * node:3 * node + 3]
+        moves = numbers >= 0
+        return scipy.sparse.csc_matrix((direction[moves], (numbers[moves], numpy.zeros(moves.sum(), int))), (self.M.shape[0], 1))
+
     def vector(self, name, end, direction):
         """The unit vector along a direction at the node of an end."""
         part = self.scene.names("parts").index(self.scene.value(f"{name}_{'to_' if end == 'to' else ''}part"))
         at = [float(x) for x in self.scene.value(f"{name}_{end}").split(",")]
-        node = int(numpy.argmin(((self.places - at)**2).sum(1) + ~self.of[part]))
-        numbers = self.number[3 * node:3 * node + 3]
-        moves = numbers >= 0
-        return scipy.sparse.csc_matrix((direction[moves], (numbers[moves], numpy.zeros(moves.sum(), int))), (self.M.shape[0], 1))
+        return self.column(int(numpy.argmin(((self.places - at)**2).sum(1) + ~self.of[part])), direction)
+
+    def ring(self, inner, outer, part=0):
+        """Nodes of a disc of bricks about the z axis between two radii, and their shares in the mass: an eighth of each brick's volume,
+        by Gauss's rule."""
+        x, volume = self.places[self.cells[self.part_of_cell == part]], numpy.zeros(len(self.places))
+        corners = numpy.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
+        size = 0
+        for point in corners / math.sqrt(3):
+            slope = numpy.array([[corner[i] / 8 * math.prod(1 + corner[j] * point[j] for j in range(3) if j != i) for corner in corners]
+                                 for i in range(3)])
+            size = size + numpy.linalg.det(slope @ x)
+        numpy.add.at(volume, self.cells[self.part_of_cell == part], size[:, None] / 8)
+        radius = numpy.hypot(*self.places[:, :2].T)
+        nodes = numpy.flatnonzero((radius > inner - 1e-7) & (radius < outer + 1e-7) & (volume > 0))
+        return nodes, volume[nodes] / volume[nodes].sum()
+
+    def layer(self, name):
+        """Nodes and shares of a change over many, None for one at a node."""
+        if f"{name}_ring" in self.scene.given:
+            return self.ring(*(float(x) for x in self.scene.value(f"{name}_ring").split(",")))
+        return self.sets.get(self.scene.value(f"{name}_set"))
+
+    def products(self, name, axis):
+        """The matrix that an amount of one is along an axis, and the vector a of a a' where it is one."""
+        if layer := self.layer(name):
+            columns = [self.column(node, axis) * math.sqrt(share) for node, share in zip(*layer)]
+            block = scipy.sparse.hstack(columns, "csc")
+            return block @ block.T, None
+        a = self.vector(name, "at", axis)
+        if f"{name}_to" in self.scene.given:
+            a = a - self.vector(name, "to", axis)
+        return a @ a.T, a
 
     def changed(self, name):
         """K, C and M with a change and those made with it."""
@@ -70,16 +136,21 @@ class Brake:
             size = [self.scene.number(f"{name}_{word}") for word in ("stiffness", "viscosity", "mass")]
             axes = [numpy.array([float(x) for x in self.scene.value(f"{name}_direction").split(",")])] if sum(size[:2]) else numpy.eye(3)
             hangs = size[2] > 0 and sum(size[:2]) > 0
+            if parameter := self.scene.value(f"{name}_parameter"):
+                percent, axes = self.scene.number(f"{name}_percent"), []
+                parts = [(percent * slope).tocsc() for slope in self.slopes[parameter]]
+                for part in parts:
+                    part.resize(K.shape)
+                K, C, M = (A + part for A, part in zip((K, C, M), parts))
             for axis in axes:
-                axis = axis / numpy.linalg.norm(axis)
-                a = self.vector(name, "at", axis)
-                if f"{name}_to" in self.scene.given:
-                    a = a - self.vector(name, "to", axis)
-                a.resize(K.shape[0], 1)
+                product, a = self.products(name, axis / numpy.linalg.norm(axis))
+                product.resize(K.shape)
                 if hangs:  # the motion of the mass is a further unknown
+                    a.resize(K.shape[0], 1)
                     K, C, M = (scipy.sparse.block_diag([A, [[value]]], "csc") for A, value in zip((K, C, M), (0, 0, size[2])))
                     a = scipy.sparse.vstack([a, [[-1]]], "csc")
-                K, C, M = (A + value * (a @ a.T) for A, value in zip((K, C, M), (*size[:2], 0 if hangs else size[2])))
+                    product = a @ a.T
+                K, C, M = (A + value * product for A, value in zip((K, C, M), (*size[:2], 0 if hangs else size[2])))
             name = self.scene.value(f"{name}_with")
         return K, C, M
 
@@ -133,6 +204,7 @@ class Brake:
 def full(results, folder, mu):
     """Each change beside its full solution."""
     brake, worst, largest = Brake(results, folder, mu), 0, 0
+    brake.sets = surfaces(brake)
     edges = [2 * math.pi * float(edge) for edge in brake.scene.value("modes_band").split(",")]
     band = edges[0] + EDGE * edges[1], edges[1] * (1 - EDGE)
     old = sorted(brake.shapes("", band, 2 * max(map(len, table(results).values()))), key=lambda entry: entry[0].imag)
@@ -154,6 +226,16 @@ def full(results, folder, mu):
     return worst <= 1 and largest <= LARGEST
 
 
+def anew(results, name, other):
+    """A change beside a run with it."""
+    with (other / "modes.csv").open(newline="") as file:
+        exact = [complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])) for row in csv.DictReader(file)]
+    rows = sorted(table(results)[name], key=lambda row: row[0].imag)
+    off = [min(abs(value - one) for one in exact) / (error + LOOSE * abs(value)) for value, error, _ in rows]
+    print(f"{name}: {len(rows)} modes, off by {max(off):.2g} of the stated error at most")
+    return len(rows) == len(exact) and max(off) <= 1
+
+
 def absorber(results, name, ratio):
     """|k - m w^2 + i w c| / |ratio prod(i w - lambda)| at the fixed points, with the damping that the sum of eigenvalues tells."""
     values = numpy.array([value for value, _, _ in table(results)[name]])
@@ -172,5 +254,6 @@ def absorber(results, name, ratio):
 
 if __name__ == "__main__":
     word, folder, *rest = sys.argv[1:]
-    passed = full(Path(folder), Path(rest[0]), float(rest[1])) if word == "full" else absorber(Path(folder), rest[0], float(rest[1]))
+    passed = (full(Path(folder), Path(rest[0]), float(rest[1])) if word == "full" else
+              anew(Path(folder), rest[0], Path(rest[1])) if word == "anew" else absorber(Path(folder), rest[0], float(rest[1])))
     sys.exit(0 if passed else 1)

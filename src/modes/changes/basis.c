@@ -10,8 +10,12 @@
 */
 #include "changes.h"
 #include "solver/block/orthonormal.h"
+#include <complex.h>
 
-#define CHANGE_STEPS 4 /* of the chains; what the last two change tells the error (dense.c) */
+#define SPREAD_FEW     8    /* forces of layers and parameters that are answered in as many steps as those at nodes */
+#define SPREAD_ALIKE   1e-6 /* of an amount: answers to terms whose amounts are in one ratio serve smaller ones too */
+#define SPREAD_ANSWERS 4    /* times as many answers to many forces as there are modes, at most */
+#define CHANGE_STEPS   4    /* of the chains; what the last two change tells the error (dense.c) */
 
 /* Coordinates [n][columns of the space] of vectors */
 static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
@@ -32,41 +36,53 @@ static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const V
   PetscFunctionReturn(0);
 }
 
-/* Coordinates of the right vectors of all modes */
-static PetscErrorCode SpaceKeepBefore(Modes modes, ChangeSpace *s)
+/* Coordinates of the right or left vectors of all modes, zeros where there are no left ones */
+static PetscErrorCode SpaceKeepVectors(Modes modes, ChangeSpace *s, int left, PetscReal **coordinates)
 {
-  Vec *a, x[2], like;
+  Vec *a, x[4], like;
 
   PetscFunctionBeginUser;
-  s->n_before = modes->n;
   PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
   PetscCall(VecDuplicateVecs(like, 2 * modes->n, &a));
   for (PetscInt i = 0; i < modes->n; i++) {
-    PetscCall(ModesGetVectors(modes, i, &x[0], &x[1], NULL, NULL));
+    PetscCall(ModesGetVectors(modes, i, &x[0], &x[1], &x[2], &x[3]));
     for (int part = 0; part < 2; part++)
-      if (x[part]) PetscCall(PencilRestrict(modes->pencil, x[part], a[2 * i + part]));
+      if (x[2 * left + part]) PetscCall(PencilRestrict(modes->pencil, x[2 * left + part], a[2 * i + part]));
   }
-  PetscCall(SpaceCoordinates(s, 2 * modes->n, a, &s->before));
-  PetscCall(PetscMalloc1(modes->n, &s->length));
-  for (PetscInt i = 0; i < modes->n; i++) PetscCall(ChangeMeasureBefore(s, i, &s->length[i]));
+  PetscCall(SpaceCoordinates(s, 2 * modes->n, a, coordinates));
   PetscCall(VecDestroyVecs(2 * modes->n, &a));
   PetscCall(VecDestroy(&like));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_terms, ChangeSpace *s)
+static PetscErrorCode SpaceKeepBefore(Modes modes, ChangeSpace *s)
+{
+  PetscFunctionBeginUser;
+  s->n_before = modes->n;
+  PetscCall(SpaceKeepVectors(modes, s, 0, &s->before));
+  PetscCall(SpaceKeepVectors(modes, s, 1, &s->after));
+  PetscCall(PetscMalloc2(modes->n, &s->length, modes->n, &s->lambda));
+  for (PetscInt i = 0; i < modes->n; i++) {
+    s->lambda[i] = CMPLX(modes->mode[i].sigma, modes->mode[i].omega);
+    PetscCall(ChangeMeasureBefore(s, i, &s->length[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_forces, PetscBool spread, ChangeSpace *s)
 {
   const ShiftInvert *factor;
   PencilMatrices     pencil;
-  PetscInt           n, most;
+  PetscInt           n, most, answers;
 
   PetscFunctionBeginUser;
   *s = (ChangeSpace){.owner = modes->pencil};
   PetscCall(ModesGetFactor(modes, &factor));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
   PetscCall(ModesCountVectors(modes, &n));
-  most = 2 * n + CHANGE_STEPS * most_terms;
-  PetscCall(ModesSpaceCreate(&pencil, n + 2 * CHANGE_STEPS * most_terms, &s->space));
+  answers = CHANGE_STEPS * (most_forces + (spread ? SPREAD_FEW : 0)) + (spread ? SPREAD_ANSWERS * modes->n : 0);
+  most    = 2 * n + answers;
+  PetscCall(ModesSpaceCreate(&pencil, n + 2 * answers, &s->space));
   PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_FALSE, most, &s->right));
   PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
   s->right.n_solves = s->left.n_solves = &s->n_solves;
@@ -84,58 +100,206 @@ static PetscErrorCode SpaceForget(ChangeSpace *s)
 {
   PetscFunctionBeginUser;
   PetscCall(SubspaceTruncate(&s->space.space, s->n_modes));
-  PetscCall(VecDestroyVecs(s->n_forces, &s->force));
-  for (int i = 0; i < 2; i++) PetscCall(PetscFree(s->side[i]));
-  s->n_forces = 0;
+  for (int i = 0; i < 2; i++) {
+    for (PetscInt t = 0; t < s->n_terms; t++) PetscCall(PetscFree(s->side[i][t]));
+    PetscCall(PetscFree(s->side[i]));
+  }
+  PetscCall(ChangeDestroyTerms(s->n_terms, &s->term));
+  s->n_terms = 0;
   PetscFunctionReturn(0);
 }
 
-/* Whether the answers to the terms are there: those of another amount at the same place */
+/* Whether two terms are of one kind: those of another amount at the same place; *ratio = of their amounts, which one
+   for all that have matrices must have */
+static PetscErrorCode TermsAreAlike(const ChangeTerm *a, const ChangeTerm *b, PetscReal *ratio, PetscBool *alike)
+{
+  const PetscReal from[] = {a->mass, a->viscosity, a->stiffness}, to[] = {b->mass, b->viscosity, b->stiffness};
+
+  PetscFunctionBeginUser;
+  *alike = PETSC_FALSE;
+  if (!a->force != !b->force) PetscFunctionReturn(0);
+  if (a->force) {
+    PetscCall(VecEqual(a->force, b->force, alike));
+    PetscFunctionReturn(0);
+  }
+  if (a->layer != b->layer || (a->A != b->A && !a->layer)) PetscFunctionReturn(0);
+  if (a->A != b->A) PetscCall(MatEqual(a->A, b->A, alike));
+  if (a->A != b->A && !*alike) PetscFunctionReturn(0);
+  for (int k = 0; k < 3 && *ratio == 0; k++)
+    if (from[k] != 0) *ratio = to[k] / from[k];
+  *alike = PetscAbsReal(*ratio) <= 1 + SPREAD_ALIKE ? PETSC_TRUE : PETSC_FALSE; /* what repeats them is of that size */
+  for (int k = 0; k < 3; k++)
+    if (PetscAbsReal(to[k] - *ratio * from[k]) > SPREAD_ALIKE * PetscAbsReal(to[k])) *alike = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Whether the answers to the terms are there */
 static PetscErrorCode SpaceAnswers(const ChangeSpace *s, PetscInt n, const ChangeTerm terms[], PetscBool *answers)
 {
+  PetscReal ratio = 0;
+
   PetscFunctionBeginUser;
-  *answers = s->n_forces == n ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt j = 0; j < n && *answers; j++) PetscCall(VecEqual(s->force[j], terms[j].force, answers));
+  *answers = s->n_terms == n ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt j = 0; j < n && *answers; j++) PetscCall(TermsAreAlike(&s->term[j], &terms[j], &ratio, answers));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SpaceKeepForces(ChangeSpace *s, PetscInt n, const ChangeTerm terms[])
+static PetscErrorCode SpaceKeepTerms(ChangeSpace *s, PetscInt n, const ChangeTerm terms[])
 {
   PetscFunctionBeginUser;
-  s->n_forces = n;
-  PetscCall(VecDuplicateVecs(terms[0].force, n, &s->force));
-  for (PetscInt j = 0; j < n; j++) PetscCall(VecCopy(terms[j].force, s->force[j]));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n, const ChangeTerm terms[])
-{
-  Vec      *a[2], like;
-  PetscBool answers;
-
-  PetscFunctionBeginUser;
-  PetscCall(SpaceAnswers(s, n, terms, &answers));
-  if (answers) PetscFunctionReturn(0);
-  PetscCall(SpaceForget(s));
-  PetscCall(SpaceKeepForces(s, n, terms));
-  PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
-  for (int i = 0; i < 2; i++) {
-    PetscCall(VecDuplicateVecs(like, n, &a[i]));
-    for (PetscInt j = 0; j < n; j++)
-      PetscCall(PencilProjectForce(s->owner, i ? PETSC_TRUE : PETSC_FALSE, terms[j].force, a[i][j]));
+  s->n_terms = n;
+  PetscCall(PetscMalloc1(n, &s->term));
+  PetscCall(PetscArraycpy(s->term, terms, n));
+  for (PetscInt j = 0; j < n; j++) {
+    if (terms[j].force) PetscCall(PetscObjectReference((PetscObject)terms[j].force));
+    if (terms[j].A) PetscCall(PetscObjectReference((PetscObject)terms[j].A));
   }
-  PetscCall(ModesKrylovRestart(&s->right, s->n_states[0], n, a[0]));
-  PetscCall(ModesKrylovRestart(&s->left, s->n_states[1], s->space.pencil.symmetric ? 0 : n, a[1]));
-  for (int step = 0; step < CHANGE_STEPS; step++) {
+  for (int i = 0; i < 2; i++) PetscCall(PetscCalloc1(n, &s->side[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Chains of so many steps from forces, behind what the space holds; first[] of the last two */
+static PetscErrorCode SpaceStep(ChangeSpace *s, int steps, const ChangeForces forces[2])
+{
+  const PetscInt n[2] = {forces[0].n, s->space.pencil.symmetric ? 0 : forces[1].n};
+
+  PetscFunctionBeginUser;
+  if (n[0] + n[1] == 0) PetscFunctionReturn(0);
+  PetscCall(ModesKrylovRestart(&s->right, s->right.n, n[0], forces[0].force));
+  PetscCall(ModesKrylovRestart(&s->left, s->left.n, n[1], forces[1].force));
+  for (int step = 0; step < steps; step++) {
     s->first[0] = step ? s->first[1] : s->space.space.n;
     s->first[1] = s->space.space.n;
     PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
   }
-  for (int i = 0; i < 2; i++) {
-    PetscCall(SpaceCoordinates(s, n, a[i], &s->side[i]));
-    PetscCall(VecDestroyVecs(n, &a[i]));
+  PetscFunctionReturn(0);
+}
+
+/* Forces at nodes in the equations of the pencil, Zl' a, or Zr' a of the left side, in front of others */
+static PetscErrorCode SpaceTakeForces(const ChangeSpace *s, PetscBool left, ChangeForces *forces)
+{
+  Vec     *all, like;
+  PetscInt m = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_terms + forces->n, &all));
+  PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
+  for (PetscInt t = 0; t < s->n_terms; t++) {
+    if (!s->term[t].force) continue;
+    PetscCall(VecDuplicate(like, &all[m]));
+    PetscCall(PencilProjectForce(s->owner, left, s->term[t].force, all[m++]));
   }
+  for (PetscInt j = 0; j < forces->n; j++) all[m++] = forces->force[j];
+  PetscCall(PetscFree(forces->force));
   PetscCall(VecDestroy(&like));
+  *forces = (ChangeForces){m, all};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ForcesDestroy(ChangeForces forces[2])
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++) {
+    for (PetscInt j = 0; j < forces[i].n; j++) PetscCall(VecDestroy(&forces[i].force[j]));
+    PetscCall(PetscFree(forces[i].force));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Coordinates of the forces at nodes, and V' A V, in place of older ones */
+static PetscErrorCode SpaceTakeSides(ChangeSpace *s, const ChangeForces forces[2])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt t = 0, k = 0; t < s->n_terms; t++) {
+    if (!s->term[t].force) continue;
+    for (int i = 0; i < 2; i++) {
+      PetscCall(PetscFree(s->side[i][t]));
+      PetscCall(SpaceCoordinates(s, 1, &forces[i].force[k], &s->side[i][t]));
+    }
+    k++;
+  }
+  PetscCall(ChangeSpaceProject(s));
+  PetscFunctionReturn(0);
+}
+
+/* Those from number `from` on, as far as there are any */
+static ChangeForces ForcesFrom(const ChangeForces *all, PetscInt from)
+{
+  return (ChangeForces){PetscMax(0, all->n - from), all->force + PetscMin(from, all->n)};
+}
+
+/* A step with what the modes of the changed system exert beyond the forces that have been answered, of which those from
+   `nodes` on are orthonormal; the error counts it as the last step */
+static PetscErrorCode SpaceRepeat(ChangeSpace *s, const ChangeRange *range, PetscInt nodes,
+                                  const ChangeForces forces[2])
+{
+  const PetscInt first[2] = {s->first[0], s->first[1]};
+  ChangeVectors  v[2];
+  ChangeForces   more[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(SpaceTakeSides(s, forces));
+  PetscCall(ChangeSolveVectors(s, range, v));
+  for (int i = 0; i < 2; i++) {
+    const ChangeForces known = ForcesFrom(&forces[i], nodes);
+
+    PetscCall(ChangeSpaceForces(s, &v[i], &known, &more[i]));
+  }
+  PetscCall(SpaceStep(s, 1, more));
+  s->first[0] = more[0].n + more[1].n ? first[1] : first[0];
+  PetscCall(ForcesDestroy(more));
+  for (int i = 0; i < 2; i++) PetscCall(PetscFree(v[i].x));
+  PetscCall(PetscFree(v[0].lambda));
+  PetscFunctionReturn(0);
+}
+
+/* Answers to forces at nodes in CHANGE_STEPS steps, to few others in one less and a repetition; to many in one step of
+   their own, all of which the error counts. Those from `nodes` on are no nodes' */
+static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, PetscInt nodes,
+                                  const ChangeForces forces[2])
+{
+  const ChangeForces own[2]    = {{nodes, forces[0].force}, {nodes, forces[1].force}},
+                     spread[2] = {ForcesFrom(&forces[0], nodes), ForcesFrom(&forces[1], nodes)};
+  const PetscInt many          = PetscMax(spread[0].n, spread[1].n);
+  PetscInt       first[2];
+
+  PetscFunctionBeginUser;
+  s->first[0] = s->first[1] = s->space.space.n;
+  s->right.n                = s->n_states[0];
+  s->left.n                 = s->n_states[1];
+  PetscCall(SpaceStep(s, many ? CHANGE_STEPS - 1 : CHANGE_STEPS, many > SPREAD_FEW ? own : forces));
+  if (many && many <= SPREAD_FEW) {
+    PetscCall(SpaceRepeat(s, range, nodes, forces));
+  } else if (many) {
+    PetscCall(PetscArraycpy(first, s->first, 2));
+    PetscCall(SpaceStep(s, 1, spread));
+    PetscCall(PetscArraycpy(s->first, first, 2));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[], const ChangeRange *range)
+{
+  PetscInt     nodes = 0;
+  ChangeForces forces[2];
+  PetscBool    answers;
+
+  PetscFunctionBeginUser;
+  PetscCall(SpaceAnswers(s, n_terms, terms, &answers));
+  if (answers) PetscFunctionReturn(0);
+  PetscCall(SpaceForget(s));
+  PetscCall(SpaceKeepTerms(s, n_terms, terms));
+  for (PetscInt t = 0; t < n_terms; t++) nodes += terms[t].force ? 1 : 0;
+  for (int i = 0; i < 2; i++) {
+    const PetscBool left = i ? PETSC_TRUE : PETSC_FALSE;
+
+    PetscCall(ChangeSpaceForces(
+      s, &(ChangeVectors){s->n_before, s->n_modes, s->lambda, left ? s->after : s->before, left}, NULL, &forces[i]));
+    PetscCall(SpaceTakeForces(s, left, &forces[i]));
+  }
+  PetscCall(SpaceAnswer(s, range, nodes, forces));
+  PetscCall(SpaceTakeSides(s, forces));
+  PetscCall(ForcesDestroy(forces));
   PetscFunctionReturn(0);
 }
 
@@ -144,7 +308,8 @@ PetscErrorCode ChangeSpaceDestroy(ChangeSpace *s)
   PetscFunctionBeginUser;
   PetscCall(SpaceForget(s));
   PetscCall(PetscFree(s->before));
-  PetscCall(PetscFree(s->length));
+  PetscCall(PetscFree(s->after));
+  PetscCall(PetscFree2(s->length, s->lambda));
   PetscCall(ModesKrylovDestroy(&s->right));
   PetscCall(ModesKrylovDestroy(&s->left));
   PetscCall(ModesSpaceDestroy(&s->space));

@@ -40,7 +40,7 @@ static PetscErrorCode ChangeTry(Modes modes, ChangeSpace *space, const ChangeRan
   PetscFunctionBeginUser;
   PetscCall(ModesGetLimit(modes, &limit));
   PetscCall(ChangeCreateTerms(modes, i, &n, &terms));
-  PetscCall(ChangeSpaceRespond(space, n, terms));
+  PetscCall(ChangeSpaceRespond(space, n, terms, range));
   PetscCall(ChangeSolve(space, n, terms, range, changed));
   for (PetscInt k = 0; k < changed->n; k++) {
     ChangedMode *m = &changed->mode[k];
@@ -74,12 +74,13 @@ PetscErrorCode ModesFindChanges(Modes modes)
 {
   const ChangeRange range = RangeOf(modes);
   ChangeSpace       space;
-  PetscInt          most = 0;
+  PetscInt          most   = 0;
+  PetscBool         spread = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n_changes; i++) most = PetscMax(most, ChangeMostTerms(modes, i));
+  for (PetscInt i = 0; i < modes->n_changes; i++) most = PetscMax(most, ChangeMostForces(modes, i, &spread));
   PetscCall(PetscCalloc1(modes->n_changes, &modes->changed));
-  PetscCall(ChangeSpaceCreate(modes, most, &space));
+  PetscCall(ChangeSpaceCreate(modes, most, spread, &space));
   for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeTry(modes, &space, &range, i));
   PetscCall(ChangeSpaceDestroy(&space));
   PetscFunctionReturn(0);
@@ -99,6 +100,21 @@ static PetscInt ChangedWorst(const struct _p_ModesChanged *changed, PetscInt *n_
   return worst;
 }
 
+/* What was found of where it acts */
+static PetscErrorCode ChangeViewPlace(const struct _p_ModesChange *change, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  if (change->has_at)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (node at %.6g, %.6g, %.6g m)", (double)change->x[0][0],
+                                     (double)change->x[0][1], (double)change->x[0][2]));
+  if (change->set[0] || change->has_ring)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (%" PetscInt_FMT " nodes of %s%s)", change->n_nodes,
+                                     change->set[0] ? "set " : "the disc", change->set));
+  if (change->parameter[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (%s %.6g)", change->parameter, (double)change->value));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
@@ -110,9 +126,7 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
 
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "with %s%s%s", change->name, change->with[0] ? " and " : "", change->with));
-    if (change->has_at)
-      PetscCall(PetscViewerASCIIPrintf(viewer, " (node at %.6g, %.6g, %.6g m)", (double)change->x[0][0],
-                                       (double)change->x[0][1], (double)change->x[0][2]));
+    PetscCall(ChangeViewPlace(change, viewer));
     PetscCall(
       PetscViewerASCIIPrintf(viewer, ": %" PetscInt_FMT " modes, %" PetscInt_FMT " unstable", changed->n, n_unstable));
     if (worst >= 0)

@@ -1,30 +1,10 @@
 /*
-   Whether a change makes sense, and where it acts. Along the unit vector d at a node a is d at its unknowns, less d at
-   those of the other end, so that a'u is the motion between the ends. A point mass acts along x, y and z.
+   Where a change at nodes acts. Along the unit vector d at a node a is d at its unknowns, less d at those of the other
+   end, so that a'u is the motion between the ends. A point mass acts along x, y and z.
 */
 #include "changes.h"
 #include "base/algebra/vec3.h"
 #include <string.h>
-
-PetscErrorCode ChangeCheck(MPI_Comm comm, void *owner, void *record)
-{
-  const ModesChange change = record;
-  const PetscBool   spring = change->stiffness > 0 || change->viscosity > 0 ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool   to     = change->has_to || change->to_unknown[0] ? PETSC_TRUE : PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  (void)owner;
-  PetscCheck(change->has_at != (change->unknown[0] != 0), comm, PETSC_ERR_USER_INPUT,
-             "-%s_at x,y,z (m) must be given, or -%s_unknown of matrices without a mesh", change->name, change->name);
-  PetscCheck(change->mass > 0 || spring, comm, PETSC_ERR_USER_INPUT,
-             "change %s changes nothing: give -%s_mass, -%s_stiffness or -%s_viscosity, a positive number",
-             change->name, change->name, change->name, change->name);
-  PetscCheck(!(change->mass > 0 && to), comm, PETSC_ERR_USER_INPUT,
-             "-%s_to is the other end of a spring or dashpot: leave out -%s_mass", change->name, change->name);
-  PetscCheck(spring || !change->has_direction, comm, PETSC_ERR_USER_INPUT,
-             "-%s_direction is of a spring or dashpot: a point mass acts along all", change->name);
-  PetscFunctionReturn(0);
-}
 
 /* Unknowns of one end, 3 of a node (-1: held), 1 of a matrix; the place of the node */
 static PetscErrorCode EndFind(Modes modes, Operators operators, struct _p_ModesChange *change, int end, PetscInt *n,
@@ -58,9 +38,7 @@ static PetscErrorCode EndFind(Modes modes, Operators operators, struct _p_ModesC
   PetscFunctionReturn(0);
 }
 
-/* The direction of a spring or dashpot as a unit vector */
-static PetscErrorCode DirectionFind(Modes modes, const struct _p_ModesChange *change, PetscInt n,
-                                    PetscReal direction[3])
+PetscErrorCode ChangeGetDirection(Modes modes, const struct _p_ModesChange *change, PetscInt n, PetscReal direction[3])
 {
   const PetscReal length = PetscSqrtReal(Vec3Dot(change->direction, change->direction));
 
@@ -97,8 +75,7 @@ static PetscErrorCode TermFill(Modes modes, const struct _p_ModesChange *change,
   PetscFunctionReturn(0);
 }
 
-/* The terms of one change, behind n that there are */
-static PetscErrorCode ChangeAddTerms(Modes modes, struct _p_ModesChange *change, PetscInt *n, ChangeTerm terms[])
+PetscErrorCode ChangeAddForces(Modes modes, ModesChange change, PetscInt *n, ChangeTerm terms[])
 {
   const PetscBool alone =
     change->mass > 0 && !(change->stiffness > 0 || change->viscosity > 0) ? PETSC_TRUE : PETSC_FALSE;
@@ -111,7 +88,7 @@ static PetscErrorCode ChangeAddTerms(Modes modes, struct _p_ModesChange *change,
   PetscCall(EndFind(modes, operators, change, 0, &n_unknowns, unknown[0]));
   if (change->has_to || change->to_unknown[0]) PetscCall(EndFind(modes, operators, change, 1, &n_unknowns, unknown[1]));
   if (!alone) {
-    PetscCall(DirectionFind(modes, change, n_unknowns, direction));
+    PetscCall(ChangeGetDirection(modes, change, n_unknowns, direction));
     PetscCall(TermFill(modes, change, n_unknowns, unknown, direction, &terms[(*n)++]));
     PetscFunctionReturn(0);
   }
@@ -124,31 +101,5 @@ static PetscErrorCode ChangeAddTerms(Modes modes, struct _p_ModesChange *change,
   PetscCheck(held < n_unknowns, modes->comm, PETSC_ERR_USER_INPUT,
              "-%s_mass does nothing: the node at %.6g, %.6g, %.6g m is held", change->name, (double)change->x[0][0],
              (double)change->x[0][1], (double)change->x[0][2]);
-  PetscFunctionReturn(0);
-}
-
-PetscInt ChangeMostTerms(const Modes modes, PetscInt i)
-{
-  PetscInt most = 0;
-
-  for (PetscInt k = i; k >= 0; k = modes->change[k].before) most += CHANGE_TERMS;
-  return most;
-}
-
-PetscErrorCode ChangeCreateTerms(Modes modes, PetscInt i, PetscInt *n, ChangeTerm **terms)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(ChangeMostTerms(modes, i), terms));
-  *n = 0;
-  for (PetscInt k = i; k >= 0; k = modes->change[k].before)
-    PetscCall(ChangeAddTerms(modes, &modes->change[k], n, *terms));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ChangeDestroyTerms(PetscInt n, ChangeTerm **terms)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < n; k++) PetscCall(VecDestroy(&(*terms)[k].force));
-  PetscCall(PetscFree(*terms));
   PetscFunctionReturn(0);
 }

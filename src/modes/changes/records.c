@@ -28,6 +28,11 @@ PetscErrorCode ChangesSetFromOptions(Modes modes)
   PetscFunctionReturn(0);
 }
 
+PetscBool ChangeHasParameter(const Modes modes, PetscInt i)
+{
+  return modes->change[i].parameter[0] ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ChangesVisit(Modes modes, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
@@ -48,8 +53,8 @@ PetscErrorCode ChangesDestroy(Modes modes)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < modes->n_changes; i++) {
     ModesChange change = &modes->change[i];
-    char      **own[]  = {&change->name, &change->part,    &change->to_part,
-                          &change->with, &change->unknown, &change->to_unknown};
+    char      **own[]  = {&change->name,    &change->part,       &change->to_part, &change->with,
+                          &change->unknown, &change->to_unknown, &change->set,     &change->parameter};
 
     for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(own); k++) PetscCall(PetscFree(*own[k]));
   }

@@ -26,11 +26,12 @@ PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted)
 {
   PetscFunctionBeginUser;
   *wanted = modes->sensitivities;
+  for (PetscInt i = 0; i < modes->n_changes; i++)
+    if (ChangeHasParameter(modes, i)) *wanted = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
-/* Whether the matrices follow it at once: neither the sliding state nor the stress of a spin alone depends on it */
-static PetscBool ParameterIsListed(const OperatorsParameter *q)
+PetscBool ModesParameterIsListed(const OperatorsParameter *q)
 {
   return q->state || q->internal || q->stressing ? PETSC_FALSE : PETSC_TRUE;
 }
@@ -62,7 +63,7 @@ static PetscErrorCode SensitivityWrite(PetscInt i, const OperatorsParameter q[],
   for (PetscInt j = 0; j < s->n; j++) {
     const PetscReal hz = cimag(s->by[j]) / (2 * PETSC_PI), growth = creal(s->by[j]), percent = p[j] / 100;
 
-    if (!ParameterIsListed(&q[j])) continue;
+    if (!ModesParameterIsListed(&q[j])) continue;
     PetscCall(ResultsTableRow(table, "%d,%s,%.15g,%s,%.15g,%.15g,%.15g,%.15g,%.3g", (int)i + 1, q[j].name, (double)p[j],
                               q[j].unit, (double)(hz + 0), (double)(growth + 0), (double)(hz * percent + 0),
                               (double)(growth * percent + 0), (double)(s->error / 100)));
@@ -80,7 +81,7 @@ static PetscInt SensitivityNext(const OperatorsParameter q[], const PetscReal p[
   for (PetscInt j = 0; j < s->n; j++) {
     const PetscReal size = PetscAbsReal(p[j] * creal(s->by[j]));
 
-    if (shown[j] || !ParameterIsListed(&q[j]) || !(size > most)) continue;
+    if (shown[j] || !ModesParameterIsListed(&q[j]) || !(size > most)) continue;
     most = size;
     next = j;
   }

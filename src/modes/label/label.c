@@ -255,6 +255,27 @@ static PetscErrorCode LabelsFindDisc(Modes modes, Model model, Contact contact, 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModesFindDisc(Modes modes, const Disc **disc, const PetscReal **mass)
+{
+  Labels      l = {0};
+  const Mesh *mesh;
+  Operators   operators;
+  Model       model;
+  Contact     contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsGetModel(operators, &model, &contact));
+  PetscCall(OperatorsGetMesh(operators, &mesh));
+  l.n_vertices = mesh->n_nodes;
+  PetscCall(LabelsWeigh(modes, mesh, &l.mass));
+  PetscCall(LabelsFindDisc(modes, model, contact, mesh, &l));
+  modes->weights->has_disc = PETSC_TRUE;
+  *disc                    = l.frame;
+  *mass                    = l.frame ? l.mass[l.disc] : NULL;
+  PetscFunctionReturn(0);
+}
+
 /* Masses, room and the disc */
 static PetscErrorCode LabelsCreate(Modes modes, Operators operators, const Mesh *mesh, Labels *l)
 {
