@@ -111,6 +111,7 @@ def main():
     write_matrix(folder / "point.bin", csr_matrix(np.diag([1e7, 2e7, 3e7, 1e4, 2e4, 3e4])))
     (folder / "point.csv").write_text("unknown,node,direction,x,y,z\n" + "".join(
         f"{6 - i},7,{direction},0.01,0.02,0.13\n" for i, direction in enumerate("rz ry rx z y x".split())))
+    (folder / "middle.csv").write_text((folder / "point.csv").read_text().replace("0.01,0.02,0.13", "0,0,0.1"))
     (folder / "two.csv").write_text("unknown,node,direction,x,y,z\n1,1,internal,,,\n2,1,0,,,\n")
     for name, values in MATRICES.items():
         write_matrix(folder / f"{name}.bin", csr_matrix(np.array(values, float)))

@@ -80,11 +80,11 @@ def spellings():
     yield "a star alone", PLAIN.replace("*STEP", "*\n*STEP"), ("'*': of no keyword",)
     yield "a support of a node that is not there", PLAIN.replace(HELD, HELD + "99, 1, 3\n"), ("node 99 is not in the file",)
     yield "directions held one by one", PLAIN.replace("FIX, 1, 3\n", "FIX, 1\nFIX, 2\nFIX, 3\n"), ()
+    yield "an element with temperature", PLAIN.replace("C3D8I", "C3D8T"), ("C3D8T: its temperature is no unknown of squeal",)
     yield "a beam beside solids", PLAIN.replace(HELD, (
-        "*ELEMENT, TYPE=B31, ELSET=ROD\n101, 9,11\n*BEAM SECTION, ELSET=ROD, MATERIAL=M, SECTION=RECT\n0.5, 0.5\n1., 0., 0.\n"
+        "*ELEMENT, TYPE=B31, ELSET=ROD\n101, 9,11\n*BEAM SECTION, ELSET=ROD, MATERIAL=M, SECTION=HEX\n0.5, 0.5\n1., 0., 0.\n"
         "*SURFACE, NAME=SS\nROD, SPOS\n") + HELD), (
-            "*ELEMENT, TYPE=B31: 1 elements", "the elements of ROD are none", "*SURFACE SS has no faces",
-            "*BEAM SECTION: not in the scene; let its program")
+            "the elements of ROD are none", "*SURFACE SS has no faces", "*BEAM SECTION ROD: a section, or a direction")
     yield "cyclic symmetry is no glue", PLAIN.replace(HELD, (
         "*SURFACE, NAME=A\nE, S1\n*SURFACE, NAME=B\nE, S2\n*TIE, NAME=T, CYCLIC SYMMETRY\nA, B\n") + HELD), (
             "*TIE, CYCLIC SYMMETRY: not read",)

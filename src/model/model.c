@@ -95,6 +95,7 @@ PetscErrorCode ModelAddUnknowns(Model model, PetscInt n)
   PetscFunctionBeginUser;
   PetscCheck(!model->dm, model->comm, PETSC_ERR_ARG_WRONGSTATE, "ModelAddUnknowns() must come before ModelSetUp()");
   model->n_apart += n;
+  model->has_superelements = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

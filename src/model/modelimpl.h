@@ -42,6 +42,7 @@ struct _p_Model {
   char      *together[MODEL_MAX_NAMES]; /* sets whose cells stay on one rank */
   PetscBool  hold_motions;              /* the directions of motions are no unknowns */
   PetscInt   n_apart;                   /* unknowns that no node has */
+  PetscBool  has_superelements;         /* points may be there for them alone */
   PetscBool  keep_slabs;                /* swept bodies are cut between slabs, and no set is kept together */
   /* built by ModelSetUp() */
   DM          dm;

@@ -37,6 +37,7 @@ class Result:
     points: dict = field(default_factory=dict)  # name -> nodes
     into: numpy.ndarray = None  # node of the deck -> that of the deck which it became by ties
     joined: object = None  # what joins nodes, of joined/
+    beams: object = None  # the superelement of joined/beams.py
     assembly: object = None
     entries: list = field(default_factory=list)
 
@@ -276,7 +277,7 @@ def assemble(deck, size):
     result.joined = Holds(deck, Groups(deck, used[merged], merged)).run()
     add_supports(assembly, result.joined.supports)
     add_springs(assembly)
-    add_joined(assembly, result.joined)
+    result.beams = add_joined(assembly, result.joined)
     add_loads(assembly, result.joined.loads)
     add_contacts(assembly)
     add_ties(assembly)

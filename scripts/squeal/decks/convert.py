@@ -11,6 +11,7 @@ from .ansys.read import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
 from .joined.entries import write_equations
+from ..mesh.petsc_matrix import write_matrix
 from .mesh.gmsh_file import write_mesh
 from .mesh.meshes import MED, read_meshes
 from .nastran.read import read_nastran
@@ -57,6 +58,25 @@ def check_name(path):
         raise BadInput(f"{path}: has a line break, another control character or no UTF-8 in its name; give it another")
 
 
+def add_files(result, output):
+    """Names of the files of the superelement of beams, which its entry gets too; none without."""
+    if not result.beams:
+        return {}
+    files = {key: output.with_name(f"{output.name}_beams{end}") for key, end in (("k", "_k.bin"), ("m", "_m.bin"), ("table", ".csv"))}
+    entry, = (entry for entry in result.entries if entry.kind == "superelements")
+    entry.rows[:0] = [(key, ("file", path), str(result.beams.place)) for key, path in files.items()]
+    return files
+
+
+def write_beams(result, units, files):
+    """Matrices and table of the superelement, in SI."""
+    if not files:
+        return
+    write_matrix(files["k"], result.beams.matrix(0, units))
+    write_matrix(files["m"], result.beams.matrix(1, units))
+    files["table"].write_text(result.beams.table(result.assembly.deck.x, units), encoding="utf-8")
+
+
 def convert(path, units=None, output=None, strict=False, subcase=None):
     """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
     chosen = named(units) if units else None
@@ -85,6 +105,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         raise BadInput(f"{path}:1: places are not finite")
     mesh, scene, table = (output.with_name(output.name + ending) for ending in (".msh", ".yaml", "_equations.csv"))
     equations = table if result.joined.follows else None
+    files = add_files(result, output)
     lines, notes = scene_lines(deck, result, chosen, why, (mesh, equations)), [printable(note) for note in remarks(deck)]
     missing = deck.missing()
     if strict and missing:
@@ -93,6 +114,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         write_mesh(mesh, result)
         if equations:
             write_equations(table, result)
+        write_beams(result, chosen, files)
         write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None
@@ -100,5 +122,9 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     if strict and differs:
         raise BadInput(f"{path}:1: {differs} (--strict)")
     cells = sum(len(block.ids) for block in result.blocks)
+    if result.beams:
+        balance.append(f"beams: a superelement of {len(result.beams.words)} unknowns, {result.beams.mass * chosen.mass:.6g} kg, "
+                       "which are in no part above")
+    written = " ".join(map(str, filter(None, (mesh, scene, equations, *files.values()))))
     return [printable(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
-            f"{len(result.points)} sets of nodes", *notes, *balance, " ".join(map(str, filter(None, (mesh, scene, equations))))]
+            f"{len(result.points)} sets of nodes", *notes, *balance, written]

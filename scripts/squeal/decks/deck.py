@@ -132,6 +132,39 @@ class Link:
 
 
 @dataclass
+class Profile:
+    """Section of a beam: second moments of deflection along axes 1 and 2, of torsion; shares of the area that bear shear."""
+    area: float
+    bend_1: float
+    bend_2: float
+    torsion: float
+    shear_1: float
+    shear_2: float
+
+
+@dataclass
+class Beam:
+    """A straight beam between two nodes; axis 1 is the part of `along` across it."""
+    nodes: tuple
+    place: Place
+    words: str
+    material: str
+    profile: Profile
+    along: tuple
+    written: bool = False  # whether it is in the scene
+
+
+@dataclass
+class OneWay:
+    """A mass that resists motion d of a node alone."""
+    node: int
+    d: int
+    value: float
+    place: Place
+    words: str
+
+
+@dataclass
 class Equation:
     """sum of coefficient times motion d (0 to 5) of a node is 0: terms (node, d, coefficient)."""
     terms: list
@@ -251,7 +284,7 @@ class Deck:
         self.node_sets, self.cell_sets, self.surfaces = {}, {}, {}  # name -> (indices or faces [n][2], Place)
         self.materials, self.sections = {}, []
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
-        self.joins, self.lumps, self.links, self.equations = [], [], [], []
+        self.joins, self.lumps, self.links, self.equations, self.beams, self.one_way = [], [], [], [], [], []
         self.shells, self.dummies = [], None  # of mesh/shells.py
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)

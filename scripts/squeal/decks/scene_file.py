@@ -7,7 +7,7 @@ import numpy
 from ..tables import quoted, whole
 
 MOST_ALIKE = 3
-LISTS = ("parts", "supports", "springs", "motions", "joints", "points", "loads", "contacts", "ties")
+LISTS = ("parts", "supports", "springs", "motions", "joints", "points", "superelements", "loads", "contacts", "ties")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
            "mass": lambda u: u.mass, "inertia": lambda u: u.mass * u.length**2, "moment": lambda u: u.force * u.length,
@@ -22,6 +22,8 @@ def shown(value, units):
     if isinstance(value, str):
         return f'"{value}"' if "," in value else value
     kind, values = value
+    if kind == "file":
+        return quoted(values)
     factors = itertools.cycle(numpy.atleast_1d(FACTORS[kind](units)))
     words = [f"{number * factor:.15g}" for number, factor in zip(values, factors)]
     return words[0] if len(words) == 1 else '"' + ",".join(words) + '"'

@@ -116,6 +116,7 @@ static PetscErrorCode JointAsked(Model model, const Joint *joint, char turns[MAX
   turns[0] = '\0';
   if (what) PetscCall(PetscSNPrintf(turns, MAX_OPTION, "-%s_%s", joint->name, what));
   *any = what || JointIsGiven(3, joint->stiffness) || JointIsGiven(3, joint->viscosity) || joint->mass > 0;
+  if (joint->is_point && model->has_superelements) *any = PETSC_TRUE; /* one may be joined to it */
   for (PetscInt i = 0; i < s->n_loads; i++) {
     if (!s->loads[i].on_point || &s->points[s->loads[i].point] != joint) continue;
     *any = PETSC_TRUE;
@@ -138,7 +139,7 @@ static PetscBool JointIsLoaded(const ModelScene *s, const Joint *joint)
 static PetscErrorCode JointCheckFree(Model model, const Joint *joint)
 {
   const ModelMean *mean = &joint->mean;
-  PetscBool        acts = joint->rigid, asked[6]; /* operators/points/rigid.c refuses rigid sets that are held */
+  PetscBool        asked[6], acts = joint->rigid; /* operators/points/rigid.c refuses rigid sets that are held */
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++)
@@ -154,7 +155,8 @@ static PetscErrorCode JointCheckFree(Model model, const Joint *joint)
       if (asked[k] && mean->b[6 * i + k] != 0) acts = PETSC_TRUE;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &acts, 1, MPIU_BOOL, MPI_LOR, model->comm));
-  PetscCheck(acts || JointIsLoaded(&model->scene, joint), model->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(acts || JointIsLoaded(&model->scene, joint) || (joint->is_point && model->has_superelements), model->comm,
+             PETSC_ERR_USER_INPUT,
              "%s %s does nothing: supports hold all of %s%s%s in its directions; name a set that is free to move",
              joint->is_point ? "point" : "bushing", joint->name, joint->set[0], joint->set[1][0] ? " and " : "",
              joint->set[1]);

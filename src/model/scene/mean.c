@@ -104,7 +104,7 @@ static PetscErrorCode MeanAddRows(Model model, MeanSet *m, const ModelMeanWish *
     "-%s_at in the middle of it, %.6g,%.6g,%.6g m",
     wish->owner, wish->option, wish->set, wish->owner, (double)m->middle[0], (double)m->middle[1],
     (double)m->middle[2]);
-  if (!wish->turns[0] && away <= close) { /* nothing asks for the rotation */
+  if (!wish->turns[0] && away <= close && !model->has_superelements) { /* nothing asks for the rotation */
     PetscCall(PetscArrayzero(m->inverse, 9));
     at = m->middle;
   }

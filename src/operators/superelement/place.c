@@ -50,12 +50,23 @@ static PetscErrorCode ShareAddNumber(SuperelementPlaces *p, PetscInt row, PetscI
   PetscFunctionReturn(0);
 }
 
-/* The motions of a point */
-static PetscErrorCode ShareAddPoint(SuperelementPlaces *p, PetscInt row, const ModelMean *mean, PetscInt motion)
+/* A motion of a point, which a set on one line has not */
+static PetscErrorCode ShareAddPoint(SuperelementPlaces *p, PetscInt row, const Joint *point, PetscInt motion)
 {
+  const ModelMean *mean = &point->mean;
+  PetscReal        most = 0;
+
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < 3 * mean->n; i++)
+  for (PetscInt i = 0; i < 3 * mean->n; i++) {
     PetscCall(ShareAdd(p, row, mean->vertex[i / 3], (int)(i % 3), mean->b[6 * i + motion]));
+    most = PetscMax(most, PetscAbsReal(mean->b[6 * i + motion]));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, p->operators->comm));
+  PetscCheck(most > 0, p->operators->comm, PETSC_ERR_USER_INPUT,
+             "superelement %s: unknown %" PetscInt_FMT
+             " is a rotation at point %s, the nodes of whose set %s stand on one line or in one place, where they have "
+             "none: name a surface",
+             p->s->name, row + 1, point->name, point->set[0]);
   PetscFunctionReturn(0);
 }
 
@@ -240,7 +251,7 @@ static PetscErrorCode PlacesTake(SuperelementPlaces *p)
     const SuperelementRow *row  = &p->s->row[k];
     const NearestNode     *node = &p->found[i];
 
-    if (p->point[i] >= 0) PetscCall(ShareAddPoint(p, k, &scene->points[p->point[i]].mean, row->direction));
+    if (p->point[i] >= 0) PetscCall(ShareAddPoint(p, k, &scene->points[p->point[i]], row->direction));
     if (p->point[i] >= 0 || node->number < 0) continue;
     PetscCheck(!node->twice, p->operators->comm, PETSC_ERR_USER_INPUT,
                "superelement %s: unknown %" PetscInt_FMT " of node %" PetscInt_FMT

@@ -2,6 +2,7 @@
 
 import numpy
 
+from .beams import KINDS as BEAMS
 from .material import axis_of, first_row, numbers
 from .sets import NONE, reader_nodes, surface_of
 from .words import choice, label
@@ -9,7 +10,8 @@ from ..deck import Equation, Join, Lump
 from ..mesh.faces import surface_nodes
 from ..text import real, whole
 
-NAMED = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DCOUP3D": "DISTRIBUTING COUPLING", "CONN3D2": "CONNECTOR SECTION"}
+NAMED = {"MASS": "MASS", "ROTARYI": "ROTARY INERTIA", "DCOUP3D": "DISTRIBUTING COUPLING", "CONN3D2": "CONNECTOR SECTION",
+         **dict.fromkeys(BEAMS, "BEAM SECTION")}
 WEIGHTS = {"UNIFORM": lambda r: numpy.ones(len(r)), "LINEAR": lambda r: 1 - r, "QUADRATIC": lambda r: 1 - r**2,
            "CUBIC": lambda r: 1 - 3 * r**2 + 2 * r**3}
 

@@ -2,6 +2,7 @@
 
 import numpy
 
+from .beams import KINDS as BEAMS
 from .sets import NONE, join
 from .words import choice
 from ..deck import Block, Place, shape_of
@@ -23,10 +24,12 @@ TYPES = {
 HYBRID = "C3D4", "C3D8", "C3D8R", "C3D8I", "C3D10", "C3D10M", "C3D20", "C3D20R", "C3D6", "C3D15"
 TYPES |= {f"{name}H": (TYPES[name][0], f"{name}H (hybrid) becomes {TYPES[name][0]} of squeal without a pressure of its own")
           for name in HYBRID}
+COUPLED = "C3D4", "C3D6", "C3D8", "C3D8R", "C3D10", "C3D10M", "C3D20", "C3D20R"
+TYPES |= {f"{name}T": (TYPES[name][0], f"{name}T: its temperature is no unknown of squeal; else as {name}") for name in COUPLED}
 SHELLS = {"S3": 3, "S3R": 3, "S3RS": 3, "STRI3": 3, "S4": 4, "S4R": 4, "S4RS": 4, "S4R5": 4, "S6": 6,
           "STRI65": 6, "S8": 8, "S8R": 8, "S8R5": 8}
 HOLDERS = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2, "DASHPOT1": 1, "DASHPOT2": 2, "DASHPOTA": 2, "MASS": 1, "ROTARYI": 1,
-           "CONN3D2": 2, "DCOUP3D": 1}  # elements of one or two nodes that join or load them
+           "CONN3D2": 2, "DCOUP3D": 1} | BEAMS  # elements of one or two nodes that join or load them
 
 
 def check_ids(ids, lines, file, what):

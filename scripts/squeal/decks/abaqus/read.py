@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from ...tables import BadInput
-from . import joined as abaqus_joined, loads as abaqus_loads, material as abaqus_material, mesh as abaqus_mesh
+from . import beams as abaqus_beams, joined as abaqus_joined, loads as abaqus_loads, material as abaqus_material, mesh as abaqus_mesh
 from . import model as abaqus_model, sets as abaqus_sets
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from ..deck import NOT_NEEDED, Deck, Index, Place
@@ -26,7 +26,6 @@ PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of th
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
 INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this",
            "PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
-           "BEAM SECTION": "let its program write a superelement of these elements",
            "SHELL GENERAL SECTION": "its shells have no thickness",
            "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
@@ -43,7 +42,8 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "DASHPOT": {"ELSET"}, "MASS": {"ELSET"}, "ROTARY INERTIA": {"ELSET"},
          "COUPLING": {"REF NODE", "SURFACE", "CONSTRAINT NAME", "ORIENTATION", "INFLUENCE RADIUS"}, "KINEMATIC": set(),
          "DISTRIBUTING": {"WEIGHTING METHOD", "COUPLING"}, "KINEMATIC COUPLING": {"REF NODE", "ORIENTATION"},
-         "EQUATION": set(), "MPC": set(),
+         "EQUATION": set(), "MPC": set(), "BEAM SECTION": {"ELSET", "MATERIAL", "SECTION", "TEMPERATURE"},
+         "BEAM GENERAL SECTION": {"ELSET", "SECTION", "DENSITY"},
          "RIGID BODY": {"REF NODE", "ROT NODE", "NSET", "ELSET", "PIN NSET", "TIE NSET"},
          "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
@@ -67,7 +67,8 @@ def listed(do):
 
 
 CARDS = {keyword: listed(do) for keyword, do in (
-    abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS).items()}
+    abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS |
+    abaqus_beams.CARDS).items()}
 
 
 @dataclass

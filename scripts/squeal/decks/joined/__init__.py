@@ -4,5 +4,6 @@
   linear.py     linear equations, solved for displacements that follow others
   holds.py      reference nodes that are held, equations, supports in turned axes: as supports or equations of the scene
   entries.py    points, bushings and loads on points of the scene
+  beams.py      beams and masses along one direction, as a superelement; frames.py the matrices of a beam
   springs.py    springs and dashpots of Abaqus
 """

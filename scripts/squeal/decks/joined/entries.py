@@ -3,6 +3,7 @@ elements."""
 
 import numpy
 
+from .beams import add_beams, take_lump
 from .holds import note_idle
 
 
@@ -11,7 +12,7 @@ class Places:
 
     def __init__(self, assembly, joined):
         self.assembly, self.joined, self.deck = assembly, joined, assembly.deck
-        self.rows, self.names, self.sets, self.rigid = {}, {}, {}, set()  # of groups whose point joins them
+        self.rows, self.names, self.first, self.sets, self.rigid = {}, {}, {}, {}, set()  # the last: groups whose point joins them
 
     def set_of(self, node, group=None):
         """The set that moves with a node; "" for one that nothing moves with."""
@@ -43,18 +44,22 @@ class Places:
                 self.deck.differ(group.place, f"{group.words}: its nodes have unequal weights; the point of the scene, which has "
                                               "a mass, a spring or a load, follows all of them alike")
             rows.append(("at", ("length", tuple(self.deck.x[node])), str(place)))
-            self.names[node] = self.assembly.things.new((group.name if group else "") or f"point_{written}")
+            name = (group.name if group else "") or f"point_{written}"
+            first = self.first.setdefault(name, node) == node  # PETSc takes -name_2_join for -name_join
+            self.names[node] = self.assembly.things.new(name if first else f"{name}_n{node}")
         return self.rows[node]
 
 
 def add_joined(assembly, joined):
-    """Rigid groups, masses, loads on reference nodes, springs between nodes."""
+    """Rigid groups, masses, loads on reference nodes, springs between nodes; returns the superelement of beams, or None."""
     places = Places(assembly, joined)
     for group in joined.groups.groups:
         if group.rigid and group.how == "point":
             places.point(group.node, group.place, group)
+    body = add_beams(places)
     for lump in assembly.deck.lumps:
-        add_lump(places, lump)
+        if not take_lump(body, lump):
+            add_lump(places, lump)
     loads = [load for load in joined.loads if load.faces is not None]
     for load in joined.loads:
         if load.faces is None:
@@ -63,6 +68,7 @@ def add_joined(assembly, joined):
     finish_points(assembly, places)
     for link in assembly.deck.links:
         add_link(places, link)
+    return body
 
 
 def finish_points(assembly, places):

@@ -72,7 +72,8 @@ class Holds:
         """Supports of nodes of elements, and what holds others."""
         self.moves = {}
         used = self.joined.used = {int(node) for link in self.deck.links for node in link.nodes} | {
-            int(node) for equation in self.deck.equations for node, _, _ in equation.terms} | set(self.groups.of_node)
+            int(node) for equation in self.deck.equations for node, _, _ in equation.terms} | set(self.groups.of_node) | {
+                node for beam in self.deck.beams for node in beam.nodes}
         for support in self.deck.supports:
             inside = self.solid[support.nodes]
             if not inside.all() and not used.intersection(support.nodes[~inside].tolist()) and min(support.values) < 3:

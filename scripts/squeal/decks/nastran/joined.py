@@ -6,12 +6,12 @@ from .cards import named
 from .systems import SPACE
 from ..deck import Equation, Join, Lump
 
-KNOWN = {"RBE2", "RBE3", "RBAR", "CONM2", "CMASS2", "MPC", "MPCADD"}
+KNOWN = {"RBE2", "RBE3", "RBAR", "CONM2", "MPC", "MPCADD"}
 SOLID = {0, 1, 2}
 
 
 def read_joined(deck, tables, mesh, chosen):
-    for name, read in (("RBE2", rigid), ("RBAR", bar), ("RBE3", spread), ("CONM2", mass), ("CMASS2", scalar_mass)):
+    for name, read in (("RBE2", rigid), ("RBAR", bar), ("RBE3", spread), ("CONM2", mass)):
         for table in named(tables, name):
             for row in range(len(table)):
                 read(deck, mesh, table, row)
@@ -111,10 +111,6 @@ def mass(deck, mesh, table, row):
     tensor = axes.T @ numpy.array([[i11, -i21, -i31], [-i21, i22, -i32], [-i31, -i32, i33]]) @ axes
     values = tuple(tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].tolist())
     deck.lumps.append(Lump(node, place, f"CONM2 {words[0]}", at[3] * mesh.mass_factor, tuple(v * mesh.mass_factor for v in values), offset))
-
-
-def scalar_mass(deck, _, table, row):
-    deck.note(table.place(row), "CMASS2: a mass along one direction: not in the scene")
 
 
 def equation(deck, mesh, table, row):

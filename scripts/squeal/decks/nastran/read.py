@@ -4,14 +4,15 @@ import re
 
 from ...tables import BadInput
 from . import case as nastran_case, contact as nastran_contact, loads as nastran_loads, mesh as nastran_mesh, model as nastran_model
-from . import joined as nastran_joined, shells as nastran_shells, springs as nastran_springs, systems as nastran_systems
+from . import beams as nastran_beams, joined as nastran_joined, shells as nastran_shells, springs as nastran_springs
+from . import systems as nastran_systems
 from ..deck import Deck, Place
 from .cards import tables_of
 from ..text import read_bytes
 
 DEEPEST = 10
 KNOWN = (nastran_mesh.KNOWN | nastran_systems.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN | nastran_springs.KNOWN |
-         nastran_contact.KNOWN | nastran_case.KNOWN | nastran_joined.KNOWN | nastran_shells.KNOWN)
+         nastran_contact.KNOWN | nastran_case.KNOWN | nastran_joined.KNOWN | nastran_shells.KNOWN | nastran_beams.KNOWN)
 # A name, in quotes perhaps over several lines
 INCLUDE = re.compile(rb"^[ \t]*include[ \t]*=?[ \t]*"
                      rb"(?:'([^']{1,1000})'|\"([^\"]{1,1000})\"|([^'\"\n$]+))[^\n]*$", re.IGNORECASE | re.MULTILINE)
@@ -88,6 +89,7 @@ def read_nastran(path, subcase=None):
     chosen = nastran_case.Chosen(deck, tables, control, subcase)
     nastran_model.read_model(deck, tables, mesh, chosen)
     nastran_joined.read_joined(deck, tables, mesh, chosen)
+    nastran_beams.read_beams(deck, tables, mesh)
     nastran_springs.read_springs(deck, tables, mesh)
     nastran_loads.read_loads(deck, tables, mesh, chosen)
     nastran_contact.read_contact(deck, tables, mesh)
