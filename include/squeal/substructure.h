@@ -7,7 +7,8 @@
    to them is left out. q begins with the displacements u_b of the nodes of the interface, and goes on with modal
    coordinates. u_i is the rest, i inside.
 
-      fixed  u_i = -K_ii^-1 K_ib u_b + Phi eta; Phi the modes with the interface held (Craig and Bampton 1968)
+      fixed  u_i = -K_ii^-1 K_ib u_b + Phi eta + X zeta; Phi the modes with the interface held (Craig and Bampton 1968);
+             X static answers to the inertia of the static shapes, as many as -superelement_rtol asks for (inertia.c)
       free   u = Phi eta + R f; Phi the modes with the interface free, R the residual flexibility of what they leave
              out, f the forces on the interface, in whose place u_b stands (MacNeal 1971; Rubin 1975)
       none   q = u

@@ -5,7 +5,7 @@
 
 const char *const substructure_methods[] = {
   [SUBSTRUCTURE_FIXED] = "fixed", [SUBSTRUCTURE_FREE] = "free", [SUBSTRUCTURE_NONE] = "none", NULL};
-const char *const substructure_formats[] = {"squeal", NULL};
+const char *const substructure_formats[] = {"squeal", "market", "nastran", "abaqus", NULL};
 
 static const char *SubstructureIdleNone(const void *s, const QuantityRun *run)
 {
@@ -13,6 +13,14 @@ static const char *SubstructureIdleNone(const void *s, const QuantityRun *run)
   return ((const struct _p_Substructure *)s)->method == SUBSTRUCTURE_NONE
            ? "not used by -superelement_method none, which keeps all unknowns"
            : NULL;
+}
+
+static const char *SubstructureIdleRtol(const void *s, const QuantityRun *run)
+{
+  (void)run;
+  return ((const struct _p_Substructure *)s)->method == SUBSTRUCTURE_FIXED
+           ? NULL
+           : "not used without -superelement_method fixed, whose static shapes have them";
 }
 
 static const Quantity rows[] = {
@@ -27,8 +35,11 @@ static const Quantity rows[] = {
   {"-superelement_cutoff", "modes up to it are kept; default 3 times the end of the band", "Hz", QUANTITY_REAL,
    SUBSTRUCTURE_AT(cutoff), QUANTITY_POSITIVE, .given = offsetof(struct _p_Substructure, has_cutoff),
    .idle = SubstructureIdleNone},
-  {"-superelement_formats", "files to write: squeal", NULL, QUANTITY_NAMES, SUBSTRUCTURE_AT(formats),
-   .count = offsetof(struct _p_Substructure, n_formats)},
+  {"-superelement_rtol",
+   "fixed: relative error in the band, in any structure, that static answers to inertia keep; 0: none are added", NULL,
+   QUANTITY_REAL, SUBSTRUCTURE_AT(rtol), .initial = 1e-4, QUANTITY_NOT_NEGATIVE, .idle = SubstructureIdleRtol},
+  {"-superelement_formats", "files to write: squeal, market, nastran, abaqus; default squeal", NULL, QUANTITY_NAMES,
+   SUBSTRUCTURE_AT(formats), .count = offsetof(struct _p_Substructure, n_formats)},
 };
 
 const QuantityTable substructure_quantities = {"Superelement to make", "substructure.h",

@@ -12,6 +12,7 @@ PetscErrorCode SubstructureCreate(MPI_Comm comm, Substructure *s)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(1, s));
   (*s)->comm = comm;
+  (*s)->any  = -1;
   PetscCall(QuantitiesInit(&substructure_quantities, *s));
   PetscFunctionReturn(0);
 }
@@ -90,57 +91,6 @@ PetscErrorCode SubstructureSolve(Substructure s)
   if (n_inside && s->method == SUBSTRUCTURE_FREE) PetscCall(FreeCreateBasis(s));
   PetscCall(SubstructureReduce(s));
   PetscCall(SubstructureMeasure(s));
-  PetscFunctionReturn(0);
-}
-
-/* The largest relative error of the modes in the band with an interface free or held; -1 where there are none */
-static PetscReal SubstructureWorst(const Substructure s, PetscBool held, PetscInt *n, PetscReal *at)
-{
-  PetscReal worst = -1;
-
-  *n = 0;
-  for (PetscInt k = 0; k < s->n_modes; k++) {
-    const SubstructureMode *mode     = &s->mode[k];
-    const PetscReal         relative = mode->frequency > 0 ? mode->error / mode->frequency : 0;
-
-    if (mode->held != held) continue;
-    ++*n;
-    if (relative > worst) *at = mode->frequency;
-    worst = PetscMax(worst, relative);
-  }
-  return worst;
-}
-
-PetscErrorCode SubstructureView(Substructure s, PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "superelement: %" PetscInt_FMT " unknowns of", s->body.n));
-  for (PetscInt i = 0; i < s->n_parts; i++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s", i ? "," : "", s->parts[i]));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, " become %" PetscInt_FMT ": %" PetscInt_FMT " of %" PetscInt_FMT " nodes of the interface, %" PetscInt_FMT,
-    s->n, s->interface.n, s->interface.n_nodes, s->n - s->interface.n));
-  if (s->method == SUBSTRUCTURE_NONE)
-    PetscCall(PetscViewerASCIIPrintf(viewer, " inside: nothing is reduced\n"));
-  else
-    PetscCall(PetscViewerASCIIPrintf(viewer, " modes below %.6g Hz with it %s\n", (double)s->cutoff,
-                                     s->method == SUBSTRUCTURE_FIXED ? "held" : "free"));
-  if (s->interface.n_held)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  supports hold %" PetscInt_FMT " displacements of these nodes: hold them where it is used, too\n",
-      s->interface.n_held));
-  for (int held = 0; held < 2; held++) {
-    PetscInt        n;
-    PetscReal       at    = 0;
-    const PetscReal worst = SubstructureWorst(s, held ? PETSC_TRUE : PETSC_FALSE, &n, &at);
-
-    if (n)
-      PetscCall(PetscViewerASCIIPrintf(
-        viewer,
-        "  interface %s: %" PetscInt_FMT " modes in %.6g to %.6g Hz, largest estimated error %.2g of the frequency, at "
-        "%.6g Hz\n",
-        held ? "held" : "free", n, (double)s->band[0], (double)s->band[1], (double)worst, (double)at));
-  }
   PetscFunctionReturn(0);
 }
 

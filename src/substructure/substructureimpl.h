@@ -66,17 +66,20 @@ struct _p_Substructure {
   PetscInt           n_parts, n_sets, n_formats;
   char             **parts, **sets, **formats;
   PetscReal          band[2], cutoff; /* Hz */
+  PetscReal          rtol;            /* of a frequency; 0: none */
   PetscBool          has_band, has_cutoff;
   SubstructureMethod method;
   /* built by SubstructureSolve() */
   SubstructureBody      body;
   SubstructureInterface interface;
-  ShiftInvert           inside;  /* factors of K_ii, where there is something inside */
-  PetscInt              n_modal; /* modal coordinates */
-  PetscInt              n;       /* unknowns of the interface, those kept, and modal coordinates */
-  Mat                   T;       /* [rows][n] dense; NULL where nothing is reduced */
-  Mat                  *A;       /* [matrices of the body] T'A T */
-  Mat                   K, M, C; /* sums of them at p */
+  ShiftInvert           inside;    /* factors of K_ii, where there is something inside */
+  PetscInt              n_modal;   /* modal coordinates, those of answers to inertia behind those of modes */
+  PetscInt              n_inertia; /* of these answers to inertia */
+  PetscInt              n;         /* unknowns of the interface, those kept, and modal coordinates */
+  Mat                   T;         /* [rows][n] dense; NULL where nothing is reduced */
+  Mat                  *A;         /* [matrices of the body] T'A T */
+  Mat                   K, M, C;   /* sums of them at p */
+  PetscReal             any;       /* error of a frequency at the end of the band in any structure; -1: not known */
   PetscInt              n_modes;
   SubstructureMode     *mode; /* [n_modes] in the band, those with a free interface first */
   Progress              progress;
@@ -105,19 +108,29 @@ PETSC_INTERN PetscErrorCode InterfaceTakeInside(Substructure s, Mat A, Mat *insi
 PETSC_INTERN PetscErrorCode InterfaceScatter(Substructure s, Mat inside, PetscInt first, Mat all);
 PETSC_INTERN PetscErrorCode InterfaceGather(Substructure s, Mat all, Mat inside);
 
-/* modes.c - all modes of two matrices below a frequency, Hz. Collective. */
+/* shapes/modes.c - all modes of two matrices below a frequency, Hz. Collective. */
 PETSC_INTERN PetscErrorCode MatrixModesSolve(MPI_Comm comm, Mat K, Mat M, PetscReal cutoff, MatrixModes *modes);
 PETSC_INTERN PetscErrorCode MatrixModesDestroy(MatrixModes *modes);
-/* canon.c - their vectors as columns of a dense block, in a basis that does not hang on rounding: node [own rows of K]
-   tells place and direction of each. Collective. */
+/* shapes/canon.c - their vectors as columns of a dense block, in a basis that does not hang on rounding: node [own rows
+   of K] tells place and direction of each. Collective. */
 PETSC_INTERN PetscErrorCode MatrixModesTake(Substructure s, const MatrixModes *modes, const PetscInt node[], Mat *Phi);
 
-/* fixed.c, free.c - T. Collective. */
+/* The same for any vectors of n values, ascending: most of a cluster; Q [n][n] from P = X'M W [n][widest], which it
+   overwrites, W from the waves at the places of the unknowns */
+PETSC_INTERN PetscInt       CanonWidest(PetscInt n, const PetscReal kappa[]);
+PETSC_INTERN void           CanonTurn(PetscInt n, const PetscReal kappa[], PetscReal P[], PetscReal Q[]);
+PETSC_INTERN PetscErrorCode CanonSize(Substructure s, PetscReal *size);
+PETSC_INTERN PetscReal      CanonWave(const PetscReal x[3], PetscInt direction, PetscReal size, PetscInt j);
+
+/* shapes/inertia.c - answers to the inertia of the static shapes behind the modes of T. Collective. */
+PETSC_INTERN PetscErrorCode InertiaAdd(Substructure s);
+
+/* shapes/: fixed.c, free.c - T. Collective. */
 PETSC_INTERN PetscErrorCode FixedCreateBasis(Substructure s);
 PETSC_INTERN PetscErrorCode FreeCreateBasis(Substructure s);
-/* fixed.c - factors of K_ii, once. Collective. */
+/* shapes/fixed.c - factors of K_ii, once. Collective. */
 PETSC_INTERN PetscErrorCode FixedFactor(Substructure s);
-/* tall.c - room for T with the unknowns of the interface as they are. Collective. */
+/* shapes/tall.c - room for T with the unknowns of the interface as they are. Collective. */
 PETSC_INTERN PetscErrorCode TallCreate(Substructure s, PetscInt n_modal);
 
 /* reduce.c - T'A T of all matrices, and their sums. Collective. */
@@ -125,3 +138,6 @@ PETSC_INTERN PetscErrorCode SubstructureReduce(Substructure s);
 
 /* errors.c - modes in the band, and their errors. Collective. */
 PETSC_INTERN PetscErrorCode SubstructureMeasure(Substructure s);
+
+/* files/collect.c - a matrix on rank 0, NULL on the others. Collective. */
+PETSC_INTERN PetscErrorCode SubstructureCollect(Mat A, Mat *whole);

@@ -1,28 +1,6 @@
 /* Files of a superelement: the table of its unknowns, its modes with their errors, and its matrices */
-#include "substructureimpl.h"
-
-/* A matrix on rank 0, NULL on the others */
-static PetscErrorCode SubstructureCollect(Mat A, Mat *whole)
-{
-  PetscInt    n;
-  PetscMPIInt rank;
-  IS          all;
-  Mat        *part;
-  MPI_Comm    comm;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscObjectGetComm((PetscObject)A, &comm));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(MatGetSize(A, &n, NULL));
-  PetscCall(ISCreateStride(PETSC_COMM_SELF, rank ? 0 : n, 0, 1, &all));
-  PetscCall(MatCreateSubMatrices(A, 1, &all, &all, MAT_INITIAL_MATRIX, &part));
-  *whole = part[0];
-  PetscCall(PetscObjectReference((PetscObject)*whole));
-  PetscCall(MatDestroySubMatrices(1, &part));
-  PetscCall(ISDestroy(&all));
-  if (rank) PetscCall(MatDestroy(whole));
-  PetscFunctionReturn(0);
-}
+#include "files/text.h"
+#include <string.h>
 
 /* Numbers as PETSc's binary files have them, the highest byte first */
 static PetscErrorCode BytesTurn(void *values, PetscDataType type, PetscInt n)
@@ -127,16 +105,32 @@ static PetscErrorCode SubstructureWriteModes(Substructure s, Results results)
                               (double)mode->frequency, (double)mode->error,
                               (double)(mode->frequency > 0 ? mode->error / mode->frequency : 0)));
   }
+  if (s->any >= 0)
+    PetscCall(ResultsTableRow(table, "any,0,%.15g,%.15g,%.15g", (double)s->band[1], (double)(s->any * s->band[1]),
+                              (double)s->any));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
+}
+
+/* Whether a format is asked for: squeal's own where none is named */
+static PetscBool SubstructureHasFormat(const Substructure s, const char format[])
+{
+  for (PetscInt i = 0; i < s->n_formats; i++)
+    if (!strcmp(s->formats[i], format)) return PETSC_TRUE;
+  return s->n_formats ? PETSC_FALSE : (PetscBool)!strcmp(format, "squeal");
 }
 
 PetscErrorCode SubstructureWrite(Substructure s, Results results)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatrixWriteBinary(s, results, "superelement_k.bin", s->K));
-  PetscCall(MatrixWriteBinary(s, results, "superelement_m.bin", s->M));
-  PetscCall(MatrixWriteBinary(s, results, "superelement_c.bin", s->C));
+  if (SubstructureHasFormat(s, "squeal")) {
+    PetscCall(MatrixWriteBinary(s, results, "superelement_k.bin", s->K));
+    PetscCall(MatrixWriteBinary(s, results, "superelement_m.bin", s->M));
+    PetscCall(MatrixWriteBinary(s, results, "superelement_c.bin", s->C));
+  }
+  if (SubstructureHasFormat(s, "market")) PetscCall(MarketWrite(s, results));
+  if (SubstructureHasFormat(s, "nastran")) PetscCall(NastranWrite(s, results));
+  if (SubstructureHasFormat(s, "abaqus")) PetscCall(AbaqusWrite(s, results));
   PetscCall(SubstructureWriteTable(s, results));
   PetscCall(SubstructureWriteModes(s, results));
   PetscFunctionReturn(0);

@@ -2,8 +2,10 @@
 """Judges superelements that squeal made, without squeal: numpy and scipy on the matrices of the parts.
 
     made_superelement.py reference SAVED TABLE MADE METHOD CUTOFF   K.bin, M.bin of the part and the table of its unknowns; cut-off, Hz
+    made_superelement.py joined SAVED TABLE MADE       what the table says of any structure holds with 200 random ones on the interface
     made_superelement.py same MADE MADE TOLERANCE     matrices and tables of two runs
     made_superelement.py back MADE SAVED              K.bin and M.bin of SAVED are those of MADE, byte for byte
+    made_superelement.py formats MADE                 files of all formats, read by scipy and by small readers, are those of squeal
     made_superelement.py holds MADE MODES MODES       of two runs of one brake, the part as mesh and as superelement, modes differ by no
                                                       more than the superelement says, 1e-4 of the frequency, 1 % of the growth
 
@@ -16,6 +18,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import scipy.io
 import scipy.linalg
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
@@ -101,7 +104,7 @@ def reference(saved, lines, made, method, cutoff):
     if method == "none":
         same_sizes(k, K)
         check("eigenvalues of all unknowns", abs(hertz(k, m) / hertz(K, M) - 1).max(), 1e-11)
-        check("the block of the interface", abs(k[:b, :b] - K[np.ix_(on, on)]).max(), 0)
+        check("the block of the interface", abs(k[:b, :b] - K[np.ix_(on, on)]).max() / abs(K).max(), 1e-15)
         return
     T = basis(K, M, on, inside, method, float(cutoff))
     same_sizes(k, T.T @ T)
@@ -110,6 +113,31 @@ def reference(saved, lines, made, method, cutoff):
     check("all its frequencies", abs(hertz(k, m) / hertz(T.T @ K @ T, T.T @ M @ T) - 1).max(), 1e-8)
     exact = {"free": hertz(K, M), "held": hertz(K[np.ix_(inside, inside)], M[np.ix_(inside, inside)])}
     errors_hold(table(Path(made) / "superelement.csv"), exact)
+
+
+def joined(saved, lines, made):
+    K, M = (matrix(Path(saved) / f"{name}.bin") for name in "KM")
+    k, m = (matrix(Path(made) / f"superelement_{name}.bin") for name in "km")
+    on, _ = order(table(lines), table(Path(made) / "superelement_table.csv"))
+    said = [row for row in table(Path(made) / "superelement.csv") if row["interface"] == "any"][0]
+    band, relative, worst, random, b = float(said["frequency_hz"]), float(said["relative_error"]), 0, np.random.default_rng(1), len(on)
+    for _ in range(200):
+        few = random.integers(1, b)  # of low rank or full, soft or stiff, light or heavy
+        stiff, heavy = (random.normal(size=(b, few)) * 10 ** random.uniform(-3, 1) for _ in range(2))
+        adds = np.mean(np.diag(K)) * stiff @ stiff.T, np.mean(np.diag(M)) * heavy @ heavy.T
+        whole, used = [], []
+        for A, a, add in zip((K, M), (k, m), adds):
+            whole.append(A.copy())
+            used.append(a.copy())
+            whole[-1][np.ix_(on, on)] += add
+            used[-1][:b, :b] += add
+        f, g = hertz(*whole), hertz(*used)
+        inside = (f < band) & (f > 1)
+        if inside.any():
+            worst = max(worst, (((g[:len(f)] / f[:len(g)]) - 1)[inside[:len(g)]] / (f[inside] / band) ** 2).max() / relative)
+    if not worst:
+        sys.exit("error: no frequency was in the band")
+    check("largest error of a frequency beside what is said of any structure", worst, 1.05)
 
 
 def same(first, second, tolerance):
@@ -127,6 +155,67 @@ def back(made, saved):
             sys.exit(f"error: {saved}/{name}.bin is not what was written")
 
 
+def numbers(lines, made):
+    """Unknown of each (node, direction), as Nastran and Abaqus have them: direction 1 to 3, 0 of an internal one."""
+    nodes = max(int(row["node"]) for row in lines)
+    return {(int(row["node"]), 1 + "xyz".index(row["direction"])) if row["direction"] != "internal" else (nodes + 1 + k - made, 0): k
+            for k, row in enumerate(lines)}
+
+
+def dmig(path, number):
+    """Matrices, places of GRID points and numbers of SPOINT of bulk data in fields of 16 and 8 columns."""
+    found, places, points, column, grid = {}, {}, [], None, None
+    for line in path.read_text().splitlines():
+        head, wide = line[:8].strip(), [line[8 + 16 * k:24 + 16 * k].strip() for k in range(4)]
+        if head == "GRID*":
+            grid = int(wide[0])
+            places[grid] = [float(wide[2]), float(wide[3])]
+        elif head == "SPOINT":
+            points = list(range(int(line[8:16]), int(line[24:32]) + 1)) if "THRU" in line else [int(line[8:16])]
+        elif head == "DMIG":
+            if [int(line[k:k + 8]) for k in (16, 24, 32, 40)] != [0, 6, 2, 0]:
+                sys.exit(f"error: {line}")
+            found[line[8:16].strip()] = np.zeros((len(number), len(number)))
+        elif head == "DMIG*":
+            grid, column = None, (found[wide[0]], number[int(wide[1]), int(wide[2])])
+        elif head == "*" and grid:
+            places[grid].append(float(wide[0]))
+        elif head == "*":
+            i, (full, j) = number[int(wide[0]), int(wide[1])], column
+            full[i, j] = full[j, i] = float(wide[2].replace("D", "E"))
+    return found, places, points
+
+
+def abaqus(path, number):
+    rows = [line.split(",") for line in path.read_text().splitlines() if not line.startswith("**")]
+    full, last = np.zeros((len(number), len(number))), max(node for node, direction in number if direction)
+    for *where, value in rows:
+        i, j = ((int(node), int(direction) if int(node) <= last else 0) for node, direction in (where[:2], where[2:]))
+        full[number[i], number[j]] = full[number[j], number[i]] = float(value)
+    return full
+
+
+def formats(made):
+    made, lines = Path(made), table(Path(made) / "superelement_table.csv")
+    interface = [row for row in lines if row["direction"] != "internal"]
+    number = numbers(lines, len(interface))
+    nastran, places, points = dmig(made / "superelement.pch", number)
+    deck = (made / "superelement.inp").read_text()
+    for letter, name in zip("kmc", ("KSE", "MSE", "BSE")):
+        A = matrix(made / f"superelement_{letter}.bin")
+        check(f"{letter} as Matrix Market", abs(scipy.io.mmread(made / f"superelement_{letter}.mtx").toarray() - A).max(), 0)
+        check(f"{letter} as Abaqus", abs(abaqus(made / f"superelement_abaqus_{letter}.mtx", number) - A).max(), 0)
+        check(f"{letter} as DMIG, of its largest entry", abs(nastran[name] - A).max() / abs(A).max(), 1e-9)
+        if f"INPUT=superelement_abaqus_{letter}.mtx" not in deck:
+            sys.exit(f"error: superelement.inp does not name superelement_abaqus_{letter}.mtx")
+    check("places of nodes", max(abs(places[int(row["node"])][d] - float(row[x])) for row in interface for d, x in enumerate("xyz")), 1e-9)
+    words = [line.split(",") for line in deck.splitlines() if not line.startswith("*")]
+    check("places in Abaqus", max(abs(float(words[int(row["node"]) - 1][1 + d]) - float(row[x])) for row in interface
+                                  for d, x in enumerate("xyz")), 0)
+    if points != list(range(len(places) + 1, len(places) + 1 + len(lines) - len(interface))):
+        sys.exit("error: SPOINT are not the internal unknowns")
+
+
 def holds(made, whole, used):
     said = max(float(row["relative_error"]) for row in table(Path(made) / "superelement.csv"))
     a, b = (table(Path(folder) / "modes.csv") for folder in (whole, used))
@@ -141,4 +230,4 @@ def holds(made, whole, used):
 
 
 if __name__ == "__main__":
-    {"reference": reference, "same": same, "back": back, "holds": holds}[sys.argv[1]](*sys.argv[2:])
+    {"reference": reference, "joined": joined, "same": same, "back": back, "formats": formats, "holds": holds}[sys.argv[1]](*sys.argv[2:])

@@ -2,7 +2,7 @@
    Fixed interface: static shapes of its displacements, -K_ii^-1 K_ib, and the modes of what lies inside while it is
    held (Craig and Bampton). K_s has no entry between the two, T'M T does.
 */
-#include "substructureimpl.h"
+#include "substructure/substructureimpl.h"
 #include "base/algebra/product.h"
 
 #define FIXED_BLOCK 64 /* right-hand sides at once */
@@ -103,5 +103,6 @@ PetscErrorCode FixedCreateBasis(Substructure s)
   PetscCall(FixedFactor(s));
   PetscCall(FixedCheckHeld(s, s->inside.shift == 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(FixedAddStatic(s));
+  if (s->rtol > 0) PetscCall(InertiaAdd(s));
   PetscFunctionReturn(0);
 }

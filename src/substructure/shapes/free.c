@@ -10,7 +10,7 @@
    s = -(2 pi cut-off / 1e4)^2 makes free parts regular and changes what is above the cut-off by 1e-8, which is of the
    shapes alone: K_s and M_s are those of T.
 */
-#include "substructureimpl.h"
+#include "substructure/substructureimpl.h"
 #include "base/algebra/gram.h"
 #include "base/algebra/product.h"
 #include <petscblaslapack.h>

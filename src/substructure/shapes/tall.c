@@ -1,5 +1,5 @@
 /* T [unknowns of the parts][unknowns of the superelement], dense: those of the interface first, as they are */
-#include "substructureimpl.h"
+#include "substructure/substructureimpl.h"
 #include "base/process/memory.h"
 
 #define TALL_COPIES 4 /* of n x n while a matrix is formed and written, beside those that are kept */

@@ -1,5 +1,5 @@
 /* Modes of two symmetric matrices, K x = kappa M x: all below a frequency, proven complete by modes/ */
-#include "substructureimpl.h"
+#include "substructure/substructureimpl.h"
 
 PetscErrorCode MatrixModesSolve(MPI_Comm comm, Mat K, Mat M, PetscReal cutoff, MatrixModes *m)
 {
