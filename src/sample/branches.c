@@ -6,6 +6,7 @@
    leaves it open count as not growing for the lower end of the interval, and as growing for the upper one.
 */
 #include "sampleimpl.h"
+#include <string.h>
 
 const SampleMode *SampleFind(Sample s, PetscInt i, PetscInt branch)
 {
@@ -67,6 +68,23 @@ static void BranchCount(Sample s, PetscInt b, SampleBranch *branch)
   }
 }
 
+/* Names that several branches have get numbers, in the order of their frequencies: "u2 #1", "u2 #2" */
+static PetscErrorCode LabelsTellApart(PetscInt n, SampleBranch branch[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < n; b++) {
+    char     label[sizeof(branch[b].label)];
+    PetscInt same = 0;
+
+    PetscCall(PetscStrncpy(label, branch[b].label, sizeof(label)));
+    for (PetscInt k = b; k < n; k++) same += strcmp(branch[k].label, label) ? 0 : 1;
+    for (PetscInt k = b, number = 0; k < n && same > 1 && label[0]; k++)
+      if (!strcmp(branch[k].label, label))
+        (void)snprintf(branch[k].label, sizeof(branch[k].label), "%.18s #%d", label, (int)++number);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SampleBranches(Sample s)
 {
   PetscReal *value;
@@ -85,6 +103,7 @@ PetscErrorCode SampleBranches(Sample s)
     ClopperPearson(branch->n_surely, branch->n_possibly, branch->n, branch->interval);
     PetscCall(PetscStrncpy(branch->label, b < s->nominal.n ? label[b] : "any mode", sizeof(branch->label)));
   }
+  PetscCall(LabelsTellApart(s->nominal.n, s->branch));
   PetscCall(PetscFree2(value, label));
   PetscFunctionReturn(0);
 }

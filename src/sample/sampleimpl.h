@@ -124,6 +124,7 @@ PETSC_INTERN PetscErrorCode ConditionsView(Sample sample, PetscViewer viewer);
 /* variable.c - raises errors for what no distribution can be, and finds the parameters; values [n_variables] of
    point i, and all parameters p there */
 PETSC_INTERN PetscErrorCode SampleFindVariables(Sample sample);
+/* check.c - raises the error for a value that a parameter cannot have, warns of a sign that changes */
 PETSC_INTERN PetscErrorCode SamplesCheckValues(Sample sample);
 PETSC_INTERN PetscErrorCode SampleVariableCheck(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal value[]);

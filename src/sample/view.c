@@ -92,7 +92,12 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   lost = ModesLost(s, &n);
-  for (PetscInt i = 0; i < s->n_points; i++) worst = PetscMax(worst, s->point[i].worst);
+  for (PetscInt i = 0; i < s->n_points; i++) /* as it is stated, with rounding */
+    for (PetscInt k = 0; k < s->point[i].n; k++) {
+      const SampleMode *m = &s->point[i].mode[k];
+
+      worst = PetscMax(worst, m->error / PetscMax(hypot(m->sigma, m->omega), PETSC_SMALL));
+    }
   if (s->file[0])
     PetscCall(ConditionsView(s, viewer));
   else

@@ -10,7 +10,8 @@ from ..tables import BadInput
 from .markup import missing
 
 TABLES = {"modes": "modes.csv", "static": "static.csv", "sweep": "sweep.csv", "frf": "frf.csv",
-          "transient": "transient.csv", "map": "map.csv", "cycle": "cycle.csv"}
+          "transient": "transient.csv", "map": "map.csv", "cycle": "cycle.csv", "sample": "samples.csv",
+          "conditions": "conditions.csv"}
 UNFINISHED = ".part"
 SCRIPTS = Path(__file__).resolve().parents[2]
 

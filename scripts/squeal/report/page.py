@@ -10,6 +10,7 @@ from .markup import Markup, Part, count, join, missing, section, tag
 from .modes import modes_part
 from .origin import origin_section, scene_section
 from .responses import response_part
+from .samples import conditions_part, sample_part
 from .statics import static_part
 from .sweeps import sweep_part
 from .transients import transient_part
@@ -19,9 +20,11 @@ HERE = Path(__file__).resolve().parent
 LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
-          "frf": "Frequency response", "map": "Map of vibration", "cycle": "Limit cycles"}
+          "frf": "Frequency response", "map": "Map of vibration", "cycle": "Limit cycles", "sample": "Samples",
+          "conditions": "Conditions"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
-            "frf": response_part, "map": map_part, "cycle": cycle_part}
+            "frf": response_part, "map": map_part, "cycle": cycle_part, "sample": sample_part,
+            "conditions": conditions_part}
 
 
 class Opening(NamedTuple):

@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""The page of scripts/report of samples: its table has the probabilities, and the boxes of its histogram hold each sample once.
+
+    report_samples.py RESULTS"""
+
+import csv
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from forked import run_script
+
+
+def read(path):
+    with path.open(newline="") as table:
+        return list(csv.DictReader(table))
+
+
+def main():
+    folder = Path(sys.argv[1])
+    rows = read(folder / "probability.csv")
+    with tempfile.TemporaryDirectory() as name:
+        page = Path(name) / "page.html"
+        done = run_script(Path(__file__).resolve().parents[2] / "scripts/report", [folder, "-o", page])
+        text = page.read_text() if page.exists() else ""
+    svg = text[text.find('aria-label="histogram of the growth"'):]
+    svg = svg[:svg.find("</svg>")]
+    counted = {}
+    for label, n in re.findall(r"<title>([^<]+): (\d+) samples from ", svg):
+        counted[label] = counted.get(label, 0) + int(n)
+    expected = {row["label"]: int(row["samples"]) for row in rows if row["branch"] != "any" and int(row["unstable"])}
+    shown = all(f"{100 * float(row['probability']):.4g}" in text for row in rows)
+    print(done.stderr, counted, expected, shown)
+    sys.exit(0 if done.returncode == 0 and counted == expected and counted and shown else 1)
+
+
+if __name__ == "__main__":
+    main()
