@@ -56,6 +56,8 @@ static const struct {
   {"superelement_k.bin", NULL},
   {"superelement_m.bin", NULL},
   {"superelement_c.bin", NULL},
+  {"superelement_term_#.bin", NULL},
+  {"superelement_terms.yaml", NULL},
   {"superelement_k.mtx", NULL},
   {"superelement_m.mtx", NULL},
   {"superelement_c.mtx", NULL},

@@ -32,6 +32,12 @@ PETSC_INTERN PetscErrorCode TextParts(const Substructure s, size_t size, char pa
 /* Node, direction 1 to 3 of an unknown; of modal coordinates and what is kept inside a node of its own, 0 */
 PETSC_INTERN void TextPlace(const Substructure s, PetscInt k, PetscInt *node, PetscInt *direction);
 
+/* binary.c - a matrix in PETSc's binary form; nothing for NULL. Collective. */
+PETSC_INTERN PetscErrorCode BinaryWrite(Substructure s, Results results, const char name[], Mat A);
+
+/* terms.c - the matrices that moduli, densities and damping are factors of, and a scene of them. Collective. */
+PETSC_INTERN PetscErrorCode TermsWrite(Substructure s, Results results);
+
 /* market.c, nastran.c, abaqus.c - the files of one format. Collective. */
 PETSC_INTERN PetscErrorCode MarketWrite(Substructure s, Results results);
 PETSC_INTERN PetscErrorCode NastranWrite(Substructure s, Results results);
