@@ -2,7 +2,7 @@
 """Judges superelements that squeal made, without squeal: numpy and scipy on the matrices of the parts.
 
     made_superelement.py reference SAVED TABLE MADE METHOD CUTOFF   K.bin, M.bin of the part and the table of its unknowns; cut-off, Hz
-    made_superelement.py joined SAVED TABLE MADE       what the table says of any structure holds with 200 random ones on the interface
+    made_superelement.py joined SAVED TABLE MADE       what the table says of any structure holds with 60 random ones on the interface
     made_superelement.py same MADE MADE TOLERANCE     matrices and tables of two runs
     made_superelement.py back MADE SAVED              K.bin and M.bin of SAVED are those of MADE, byte for byte
     made_superelement.py formats MADE                 files of all formats, read by scipy and by small readers, are those of squeal
@@ -121,7 +121,7 @@ def joined(saved, lines, made):
     on, _ = order(table(lines), table(Path(made) / "superelement_table.csv"))
     said = [row for row in table(Path(made) / "superelement.csv") if row["interface"] == "any"][0]
     band, relative, worst, random, b = float(said["frequency_hz"]), float(said["relative_error"]), 0, np.random.default_rng(1), len(on)
-    for _ in range(200):
+    for _ in range(60):
         few = random.integers(1, b)  # of low rank or full, soft or stiff, light or heavy
         stiff, heavy = (random.normal(size=(b, few)) * 10 ** random.uniform(-3, 1) for _ in range(2))
         adds = np.mean(np.diag(K)) * stiff @ stiff.T, np.mean(np.diag(M)) * heavy @ heavy.T
