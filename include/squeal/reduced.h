@@ -32,7 +32,8 @@
       normal    0 <= lambda_n,  0 <= gap,  lambda_n gap = 0,   gap = g0 + y_n
       Coulomb   |lambda_T| <= mu lambda_n, slip of the step 0 (stick) or lambda_T = mu lambda_n d on the master, d the
                 direction of the slip of the step (y_T less that at t_n, plus the prescribed sliding)
-   on the dense compliance dy_{n+1} / dlambda_{n+1} (stepper.c). mu is that of the slip speed of the step (contact.h).
+   on the compliance dy_{n+1} / dlambda_{n+1}, a dense matrix (stepper.c) or products (sparse/). mu is that of the slip
+   speed of the step (contact.h).
 
    At the start nodal velocities and shapes v become Phi'M v; the modes must hold 90 % of v'M v. Impulses have no end of
    frequencies: only the modes receive them.
@@ -59,19 +60,21 @@
    cycles of a small brake at 20 kHz, whose pad has its next modes beyond 30 kHz; see cycle.h */
 #define REDUCED_HIGHER 2.25
 
-typedef struct _p_ReducedRun *ReducedRun;
+typedef struct _p_ReducedRun    *ReducedRun;
+typedef struct _p_ReducedSparse *ReducedSparse;
 
-/* The reduced bodies: dense, alike on every rank. Matrices are column-major. Ports: normal, t, b of pair 0, of pair 1
-   and so on, then the loads, then x, y, z of each probe */
+/* The reduced bodies: dense but for `sparse`, alike on every rank. Matrices are column-major. Ports: normal, t, b of
+   pair 0, of pair 1 and so on, then the loads, then x, y, z of each probe */
 typedef struct {
   PetscInt     m, n_pairs, n_loads, n_probes, n_ports;
   PetscReal   *omega2;   /* [m] (rad/s)^2, ascending, 0 for rigid modes */
   PetscReal   *C;        /* [m][m] 1/s, symmetric; NULL without damping */
   PetscReal   *P;        /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
-  PetscReal   *W;        /* [n_ports][n_ports], m/N */
+  PetscReal   *W;        /* [n_ports][n_ports], m/N; where sparse those of loads and probes alone */
   PetscReal   *Cm;       /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
   PetscReal   *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
   PetscReal   *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
+  ReducedSparse sparse;  /* products with W and Cx in place of these; NULL where they are dense */
   PetscReal   *gap;      /* [n_pairs] g0, m, positive open */
   PairSpring  *spring;   /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
   FrictionLaw *friction; /* [n_pairs] with the stated speed of each */

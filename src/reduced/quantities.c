@@ -25,6 +25,11 @@ static const Quantity rows[] = {
    REDUCED_AT(request.asked), .words = models},
   {"-dynamics_cutoff", "of the modes of a reduced model; 0: 4 times the end of -modes_band, or 20 kHz", "Hz",
    QUANTITY_REAL, REDUCED_AT(request.cutoff), QUANTITY_WITHIN(0, 1e30), .why = "0 has it chosen", .idle = ReducedIdle},
+  {"-dynamics_dense",
+   "most pairs of a reduced transient for a dense compliance, beyond: a solution with the sparse factors in each "
+   "product",
+   NULL, QUANTITY_INT, REDUCED_AT(request.dense), .initial = 1500, QUANTITY_WITHIN(0, 1e9), .idle = ReducedIdle,
+   .in = RUN_TRANSIENT},
   {"-dynamics_contact",
    "of a reduced model: rigid surfaces, or surfaces that yield as -..._kn or -..._pressure_law of their contact says",
    NULL, QUANTITY_WORD, REDUCED_AT(request.springs), .words = contacts, .idle = ReducedIdle},

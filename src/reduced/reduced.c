@@ -124,7 +124,7 @@ static PetscErrorCode ReducedSetUp(ReducedRun r, Results results)
     &(HistorySource){r->run.model, NULL, r->run.projector, r->run.n_interfaces, r->run.interfaces, results}, r->run.end,
     r->motion.dt));
   PetscCall(HistoryHasFields(r->run.history, &fields));
-  if (!fields) PetscCall(ShiftInvertDestroy(&r->reduction.inverse));
+  if (!fields && !r->reduction.model.sparse) PetscCall(ShiftInvertDestroy(&r->reduction.inverse));
   if (r->run.restart) PetscCall(ReducedGoOn(r));
   PetscCall(DynamicsCheckTimes(r->dynamics, r->run.end, r->motion.dt));
   if (!r->run.restart) {
@@ -198,6 +198,7 @@ PetscErrorCode ReducedIntegrate(ReducedRun r, Results results)
   PetscBool      stop;
 
   PetscFunctionBeginUser;
+  r->request.steps = PETSC_TRUE;
   PetscCall(PetscTime(&begin));
   PetscCall(ReducedSetUp(r, results));
   PetscCall(PetscTime(&ready));

@@ -27,10 +27,11 @@ struct _p_ReducedStepper {
   PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (step/residual.c); NULL undamped */
   PetscReal *R,
     *G; /* [3 n_pairs]^2, NULL undamped; [3 n_pairs][2 m]: q_{n+1} and z(dt) of unit forces of the pairs at t_{n+1} */
-  ContactCompliance laws;                    /* NULL without pairs */
-  PetscReal        *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
-  PetscReal        *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
-  PetscReal        *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
+  ContactCompliance     laws;                    /* NULL without pairs */
+  struct _p_SparseLaws *sparse;                  /* what laws are solved on where W has no numbers, else NULL */
+  PetscReal            *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
+  PetscReal            *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
+  PetscReal            *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
@@ -69,6 +70,8 @@ typedef struct {
   PetscReal  growth_rtol;
   PetscBool  has_rtol; /* somebody says so */
   PetscBool  weighs;   /* Mx too */
+  PetscInt   dense;    /* most pairs of a transient for dense matrices */
+  PetscBool  steps;    /* nothing but steps is made of the bodies */
   PetscBool  springs;  /* penalty and pressure laws of the contacts are in series with the pairs */
   PetscReal *p;        /* parameters of the operators, NULL: those of the scene */
   ReducedRun like;     /* whose modes those taken resemble, as many; NULL: all below the cut-off are */
@@ -152,17 +155,24 @@ PETSC_INTERN void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *
 /* y += X coefficients. Collective */
 PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y);
 
-/* step.c - displacement at a port, m */
+/* step/energy.c - displacement at a port, m */
 PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[],
                                                PetscInt port);
-/* y += scale op(A) x */
+/* Of all pairs, [3 n_pairs] */
+PETSC_INTERN PetscErrorCode ReducedPairDisplacements(const ReducedModel *model, const PetscReal eta[],
+                                                     const PetscReal p[], PetscReal y[]);
+/* Column of W of a port, not of a pair where the model is sparse */
+PETSC_INTERN const PetscReal *ReducedColumn(const ReducedModel *model, PetscInt port);
+/* x'A x of a symmetric A [n][n], columns stride apart */
+PETSC_INTERN PetscReal ReducedForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[]);
+/* product.c - y += scale op(A) x */
 PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[],
                                     PetscReal y[]);
 
 /* z_{n+1}, q_{n+1} and y_{n+1} of a state without loads, lambda_n in `last` and lambda_{n+1} in p: the linear part of a
    step */
-PETSC_INTERN void ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[], PetscReal q[],
-                                     PetscReal y[]);
+PETSC_INTERN PetscErrorCode ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[],
+                                               PetscReal q[], PetscReal y[]);
 
 /* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many
    numbers; the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
@@ -188,6 +198,12 @@ PETSC_INTERN PetscErrorCode ReducedFastestMode(const ReducedModel *model, const 
 /* memory.c - raises the error for dense matrices of the pairs that a machine does not hold, before anything is
    computed. Collective. */
 PETSC_INTERN PetscErrorCode ReducedCheckMemory(ReducedRun reduced);
+
+/* sparse/sparse.c - products with the compliance in place of its numbers, where r->request says so; shift and damping
+   as bodies/residual.c has them */
+PETSC_INTERN PetscErrorCode ReducedIsSparse(ReducedRun reduced, PetscBool *sparse);
+PETSC_INTERN PetscErrorCode ReducedSparseCreate(ReducedRun reduced, PetscReal shift, Mat D);
+PETSC_INTERN PetscErrorCode ReducedSparseDestroy(ReducedSparse *sparse);
 
 /* residual.c - W; X := R X of a dense block, R = (K - s M)^-1 on the complement of the modes, MX work of the same
    size */

@@ -41,11 +41,13 @@ def main():
     parser.add_argument("launcher")
     parser.add_argument("--ranks", default="1")
     parser.add_argument("--scene", choices=("brake", "tied"), default="brake")
+    parser.add_argument("--dense", default="1500", help="-dynamics_dense")
     arguments = parser.parse_args()
     program = starter(arguments.squeal)
 
     def run(folder, *options):
-        words = [*scene(arguments.scene, folder.parent), *OPTIONS.split(), "-output_dir", folder, *options]
+        words = [*scene(arguments.scene, folder.parent), *OPTIONS.split(), "-dynamics_dense", arguments.dense, "-output_dir", folder,
+                 *options]
         return outcome_of(program, folder.parent, words, int(arguments.ranks))
 
     with tempfile.TemporaryDirectory() as folder:

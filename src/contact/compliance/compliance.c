@@ -34,15 +34,14 @@ static PetscErrorCode MatrixCheck(PetscInt n, const PetscReal W[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance)
+/* What any solver has, for n pairs */
+static PetscErrorCode ComplianceAllocate(PetscInt n, ContactCompliance *compliance)
 {
   ContactCompliance c;
 
   PetscFunctionBeginUser;
-  PetscCall(MatrixCheck(3 * n, W));
   PetscCall(PetscNew(&c));
   c->n    = n;
-  c->W    = W;
   c->rtol = COMPLIANCE_RTOL;
   c->dt   = 1;
   PetscCall(PetscCalloc4(n, &c->kappa, n, &c->friction, n, &c->mu, n, &c->varies));
@@ -56,9 +55,32 @@ PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactC
   PetscCall(PetscCalloc2(3 * n, &c->chord.x, 3 * n, &c->chord.f));
   PetscCall(PetscCalloc1(3 * n, &c->slip));
   PetscCall(PetscMalloc2(3 * n * COMPLIANCE_MIXED, &c->chord.basis, 3 * n * COMPLIANCE_MIXED, &c->chord.step));
-  ComplianceSetScales(c);
   c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
   *compliance = c;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatrixCheck(3 * n, W));
+  PetscCall(ComplianceAllocate(n, compliance));
+  (*compliance)->W = W;
+  PetscCall(ComplianceSetScales(*compliance));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceCreateMap(PetscInt n, const ComplianceMap *map, ContactCompliance *compliance)
+{
+  ComplianceKrylov *k;
+
+  PetscFunctionBeginUser;
+  PetscCall(ComplianceAllocate(n, compliance));
+  k      = &(*compliance)->krylov;
+  k->map = *map;
+  PetscCall(PetscCalloc4(3 * n, &k->held, 3 * n, &k->released, 3 * n, &k->motion, 3 * n, &k->force));
+  PetscCall(PetscArraycpy((*compliance)->kappa, map->kappa, n));
+  PetscCall(ComplianceSetScales(*compliance));
   PetscFunctionReturn(0);
 }
 
@@ -165,6 +187,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(PetscFree6(c->chord.LU, c->chord.V, c->chord.S, c->chord.row, c->chord.at, c->chord.small));
   PetscCall(ComplianceDualDestroy(c));
   PetscCall(ComplianceDestroySprings(c));
+  PetscCall(PetscFree4(c->krylov.held, c->krylov.released, c->krylov.motion, c->krylov.force));
   PetscCall(PetscFree(c->slip));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);

@@ -26,6 +26,9 @@
    forces are free (dual.c); the same with a line search on the natural map;
    the path of solutions from pairs that do not feel each other to W, followed through its folds (path.c). All have
    limits: a step always ends, and tells whether it converged.
+
+   W may also be a map (ComplianceMap) whose numbers nobody has. Then the linear systems of Newton's method are solved
+   by GMRES (krylov.c), with a line search where that does not end; chord.c, dual.c and path.c need the numbers.
 */
 #pragma once
 
@@ -57,6 +60,19 @@ typedef struct {
   PetscInt        routes[COMPLIANCE_N_ROUTES]; /* steps that ended so */
 } ComplianceReport;
 
+/* W as a map of forces [n][3] (N) to motions [n][3] (m) */
+typedef struct {
+  void            *ctx;
+  const PetscReal *kappa; /* [n] about the stiffness of each pair alone, N/m, positive; copied */
+  const PetscReal *tau;   /* [n][3] springs of the directions held, N/m, stiff beside kappa, else 0 */
+  /* W times forces to rounding; and nearly, for the directions of Newton's method alone */
+  PetscErrorCode (*move)(void *ctx, const PetscReal force[], PetscReal motion[]);
+  PetscErrorCode (*nearly)(void *ctx, const PetscReal force[], PetscReal motion[]);
+  /* sets springs in the directions held [n][3]; nearly W of pairs that these springs press back, (1 / W + tau)^-1 */
+  PetscErrorCode (*hold)(void *ctx, const PetscBool held[]);
+  PetscErrorCode (*press)(void *ctx, const PetscReal force[], PetscReal motion[]);
+} ComplianceMap;
+
 /*@
    ContactComplianceCreate - for n pairs. Not collective.
 
@@ -67,6 +83,11 @@ typedef struct {
    Errors: PETSC_ERR_ARG_OUTOFRANGE where W is not finite, not symmetric to 1e-10, or has a negative diagonal.
 @*/
 PETSC_INTERN PetscErrorCode ContactComplianceCreate(PetscInt n, const PetscReal W[], ContactCompliance *compliance);
+
+/*@ ContactComplianceCreateMap - the same with W as a map, copied. All ranks that share the map take the same steps.
+    ContactComplianceTangent(), ContactComplianceSetSprings() and ContactComplianceCheckDefinite() need W itself. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceCreateMap(PetscInt n, const ComplianceMap *map,
+                                                       ContactCompliance *compliance);
 
 /*@ ContactComplianceCheckDefinite - whether W is positive semidefinite to rounding (1e-10 of its largest diagonal), by
     a Cholesky factor. Not collective. @*/

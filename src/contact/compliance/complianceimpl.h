@@ -64,9 +64,20 @@ typedef struct {
   PetscReal   *q;            /* work: [3 n] */
 } ComplianceSprings;
 
+/* GMRES where W is a map (krylov.c) */
+typedef struct {
+  ComplianceMap map;                   /* move NULL where W is a matrix */
+  PetscBool    *held;                  /* [3 n] directions that map.press() was prepared for */
+  PetscBool     stands;                /* it was */
+  PetscBool     stale;                 /* it takes too many iterations */
+  PetscInt      n_released, *released; /* directions held that nobody wants, [3 n] */
+  PetscReal    *motion;                /* work: [3 n] m, */
+  PetscReal    *force;                 /* and N */
+} ComplianceKrylov;
+
 struct _p_ContactCompliance {
   PetscInt          n;
-  const PetscReal  *W;
+  const PetscReal  *W;        /* NULL where it is a map */
   PetscReal        *kappa;    /* N/m, [n] */
   FrictionLaw      *friction; /* [n] */
   PetscReal        *mu;       /* [n] at the stated speed */
@@ -93,8 +104,14 @@ struct _p_ContactCompliance {
   ComplianceSprings springs;
   ComplianceChord   chord;
   ComplianceDual    dual;
+  ComplianceKrylov  krylov;
   ComplianceReport  report, totals;
 };
+
+static inline PetscBool ComplianceIsMap(const ContactCompliance c)
+{
+  return c->krylov.map.move ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v;
    statuses that l, v ask for */
@@ -124,6 +141,11 @@ PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool 
 PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
 PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
+/* krylov.c - a step of Newton's method at the laws of the closed pairs
+   into rhs, by GMRES; what memory.c keeps */
+PETSC_INTERN PetscErrorCode ComplianceKrylovSolve(ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceKrylovHold(ContactCompliance c, const PetscBool held[]);
+
 /* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column
    that an index adds, NULL where the store is full; the border for the present statuses; A dz against what its rows
    miss, dz [4 n] */
@@ -135,7 +157,7 @@ PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal 
 
 /* step.c - stiffness and weight of the pairs by W; one step on W as it is; adds the report of a step to that of all,
    whose route is the last resort that any step took */
-PETSC_INTERN void           ComplianceSetScales(ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceSetScales(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                                  PetscReal lambda[]);
 

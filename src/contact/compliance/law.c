@@ -35,6 +35,12 @@ PetscErrorCode ComplianceMove(ContactCompliance c)
   PetscInt       n = 0;
 
   PetscFunctionBeginUser;
+  if (ComplianceIsMap(c)) {
+    for (PetscInt i = 0; i < N; i++) c->force[i] = c->kappa[i / 3] * c->l[i];
+    PetscCall(c->krylov.map.move(c->krylov.map.ctx, c->force, c->v));
+    for (PetscInt i = 0; i < N; i++) c->v[i] += c->free[i];
+    PetscFunctionReturn(0);
+  }
   for (PetscInt i = 0; i < N; i++) {
     const PetscReal force = (1 - c->blend) * c->kappa[i / 3] * c->l[i];
 

@@ -82,7 +82,8 @@ static void LinearPoint(const ContactCompliance c, PetscInt k, PetscReal z[3])
   const PetscInt    p = c->closed[k];
   const PetscReal  *l = &c->l[3 * p], *v = &c->v[3 * p];
   const CoulombLaw *law    = &c->law[p];
-  const PetscReal   q[2]   = {v[1] - l[1], v[2] - l[2]};
+  const PetscReal   a      = ComplianceIsMap(c) ? c->weight : 1; /* where GMRES has to find dz, it is 0 on the laws */
+  const PetscReal   q[2]   = {a * v[1] - l[1], a * v[2] - l[2]};
   PetscReal         length = hypot(q[0], q[1]), x[3];
 
   for (PetscInt i = 0; i < 3; i++) x[i] = l[i];
@@ -102,7 +103,8 @@ static PetscErrorCode LinearReserve(ContactCompliance c, PetscInt m)
   if (m <= c->n_room) PetscFunctionReturn(0);
   c->n_room = PetscMin(3 * c->n + 1, m + m / 2);
   PetscCall(PetscFree3(c->A, c->rhs, c->pivot));
-  PetscCall(PetscMalloc3(c->n_room * c->n_room, &c->A, c->n_room, &c->rhs, c->n_room, &c->pivot));
+  PetscCall(
+    PetscMalloc3(ComplianceIsMap(c) ? 0 : c->n_room * c->n_room, &c->A, c->n_room, &c->rhs, c->n_room, &c->pivot));
   PetscFunctionReturn(0);
 }
 
@@ -156,7 +158,10 @@ PetscErrorCode ComplianceBegin(ContactCompliance c, PetscInt border)
   }
   for (PetscInt p = 0; p < c->n; p++)
     if (c->status[p] == CONTACT_OPEN) c->l[3 * p] = c->l[3 * p + 1] = c->l[3 * p + 2] = 0;
-  PetscCall(ComplianceMove(c));
+  if (ComplianceIsMap(c))
+    PetscCall(PetscArraycpy(c->v, c->v0, 3 * c->n)); /* krylov.c moves from there */
+  else
+    PetscCall(ComplianceMove(c));
   for (PetscInt k = 0; k < c->n_closed; k++) {
     PetscReal v[3];
 

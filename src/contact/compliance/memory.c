@@ -2,8 +2,44 @@
    What a restart needs so that the next steps are bitwise those of a run that goes on: base, frames, columns kept.
    The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
    (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a
-   law in series is not linear, the closings at which its lines were laid come first [n]. */
+   law in series is not linear, the closings at which its lines were laid come first [n]. Where W is a map, the
+   directions that have springs [3 n], whether these
+   are to be set anew, and the statuses [n]. */
 #include "complianceimpl.h"
+
+static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, PetscReal **values)
+{
+  PetscReal *to;
+
+  PetscFunctionBeginUser;
+  *n = c->krylov.stands ? 4 * c->n + 1 : 0;
+  PetscCall(PetscMalloc1(*n, values));
+  to = *values;
+  if (!*n) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < 3 * c->n; i++) *to++ = (PetscReal)c->krylov.held[i];
+  *to++ = (PetscReal)c->krylov.stale;
+  for (PetscInt p = 0; p < c->n; p++) *to++ = (PetscReal)c->status[p];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MapSetMemory(ContactCompliance c, PetscInt n, const PetscReal values[])
+{
+  PetscBool *held;
+
+  PetscFunctionBeginUser;
+  c->krylov.stands = PETSC_FALSE;
+  if (!n) PetscFunctionReturn(0);
+  PetscCheck(n == 4 * c->n + 1, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
+             c->n);
+  PetscCall(PetscMalloc1(3 * c->n, &held));
+  for (PetscInt i = 0; i < 3 * c->n; i++) held[i] = values[i] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ComplianceKrylovHold(c, held));
+  c->krylov.stale = values[3 * c->n] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt p = 0; p < c->n; p++) c->status[p] = (ContactStatus)values[3 * c->n + 1 + p];
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, PetscReal **values)
 {
@@ -12,6 +48,10 @@ PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, Pets
   PetscReal             *to;
 
   PetscFunctionBeginUser;
+  if (ComplianceIsMap(c)) {
+    PetscCall(MapGetMemory(c, n, values));
+    PetscFunctionReturn(0);
+  }
   *n = n_lines + (h->exists ? 1 + h->m + 4 * c->n + h->n_columns : 0);
   PetscCall(PetscMalloc1(*n, values));
   to = *values;
@@ -34,6 +74,10 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   PetscInt         n_columns;
 
   PetscFunctionBeginUser;
+  if (ComplianceIsMap(c)) {
+    PetscCall(MapSetMemory(c, n, values));
+    PetscFunctionReturn(0);
+  }
   h->exists       = PETSC_FALSE;
   c->springs.laid = PETSC_FALSE;
   if (n && c->springs.curved) {

@@ -46,9 +46,9 @@ static PetscErrorCode NewtonFactor(ContactCompliance c, PetscBool *singular)
   PetscFunctionReturn(0);
 }
 
-/* One step on l, v: statuses of the present l, v, their laws, the linear system, the new l, and v of it anew (not v +
-   dv, whose rounding would stay). l0, v0 keep the point before. */
-static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
+/* One step on l, v: statuses of the present l, v, or as they are where kept, their laws, the linear system, the new l,
+   and v of it anew (not v + dv, whose rounding would stay). l0, v0 keep the point before. */
+static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool keep, PetscBool *singular)
 {
   PetscBool solved;
 
@@ -56,9 +56,13 @@ static PetscErrorCode NewtonStep(ContactCompliance c, PetscBool *singular)
   *singular = PETSC_FALSE;
   PetscCall(PetscArraycpy(c->l0, c->l, 3 * c->n));
   PetscCall(PetscArraycpy(c->v0, c->v, 3 * c->n));
-  ComplianceChoose(c);
+  if (!keep) ComplianceChoose(c);
   ComplianceLinearise(c);
-  PetscCall(ComplianceDualSolve(c, &solved));
+  if (ComplianceIsMap(c)) {
+    PetscCall(ComplianceKrylovSolve(c));
+    solved = PETSC_TRUE;
+  } else
+    PetscCall(ComplianceDualSolve(c, &solved));
   if (!solved) PetscCall(NewtonFactor(c, singular));
   if (!solved) PetscCall(ComplianceBackSolve(c, c->row[c->n_closed], c->rhs));
   ComplianceTake(c);
@@ -140,7 +144,7 @@ PetscErrorCode ComplianceRefine(ContactCompliance c, ComplianceMiss *miss)
 
     if (NewtonDirection(c, miss) <= NEWTON_ALONG * c->rtol) break;
     PetscCall(PetscArraycpy(c->best, c->l, N));
-    PetscCall(NewtonStep(c, &singular));
+    PetscCall(NewtonStep(c, PETSC_FALSE, &singular));
     ComplianceMeasure(c, miss);
     if (miss->largest < last.largest) continue;
     *miss = last;
@@ -165,7 +169,7 @@ PetscErrorCode ComplianceIterate(ContactCompliance c, PetscBool damped, PetscInt
   PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
   for (PetscInt it = 0; it < max_it && hope && !ComplianceIsSolved(c, miss); it++) {
     memory.norm[memory.n++ % NEWTON_MEMORY] = miss->norm;
-    PetscCall(NewtonStep(c, &singular));
+    PetscCall(NewtonStep(c, (PetscBool)(ComplianceIsMap(c) && !damped && it == 0), &singular));
     ComplianceMeasure(c, miss);
     if (damped) hope = NewtonShorten(c, NewtonLargest(&memory), miss);
     if (hope) PetscCall(NewtonKeep(c, miss, &best, &since, &hope));

@@ -26,7 +26,7 @@ static PetscErrorCode SpringsSetDiagonal(ContactCompliance c)
     c->springs.W[i] = c->springs.diagonal[p] + c->springs.line[p].compliance;
   }
   PetscCall(ComplianceDualDestroy(c));
-  ComplianceSetScales(c);
+  PetscCall(ComplianceSetScales(c));
   c->chord.exists = PETSC_FALSE;
   PetscFunctionReturn(0);
 }

@@ -3,8 +3,9 @@
 */
 #include "complianceimpl.h"
 
-#define COMPLIANCE_POWER  30 /* iterations for the largest eigenvalue */
-#define COMPLIANCE_MAX_IT 40 /* of Newton's method */
+#define COMPLIANCE_POWER     30 /* iterations for the largest eigenvalue, */
+#define COMPLIANCE_POWER_MAP 6  /* of a map, whose products cost more */
+#define COMPLIANCE_MAX_IT    40 /* of Newton's method */
 
 /* kappa = 3 / trace W_pp, N/m; that of the mean where a pair is held in all directions, W_pp = 0, whose force is any
    that the laws ask for */
@@ -26,18 +27,23 @@ static void StiffnessSet(ContactCompliance c)
    and what all feel together. With 1, a motion of all pairs that hardly changes their forces would change all their
    statuses. Power iteration in the inner product x' kappa y, in which W kappa is symmetric, from a vector that is no
    mode of a symmetric scene. A rough value is enough: any a > 0 has the same solutions. */
-static void WeightSet(ContactCompliance c)
+static PetscErrorCode WeightSet(ContactCompliance c)
 {
   const PetscReal    zero = 0, one = 1;
   const PetscBLASInt N = (PetscBLASInt)(3 * c->n), inc = 1;
+  const PetscInt     most    = ComplianceIsMap(c) ? COMPLIANCE_POWER_MAP : COMPLIANCE_POWER;
   PetscReal          largest = 1;
 
+  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < N; i++) c->l[i] = 1 + 0.3 * PetscSinReal((PetscReal)i);
-  for (PetscInt k = 0; k < COMPLIANCE_POWER && N; k++) {
+  for (PetscInt k = 0; k < most && N; k++) {
     PetscReal before = 0, after = 0;
 
     for (PetscInt i = 0; i < N; i++) c->force[i] = c->kappa[i / 3] * c->l[i];
-    BLASgemv_("N", &N, &N, &one, c->W, &N, c->force, &inc, &zero, c->v, &inc);
+    if (ComplianceIsMap(c))
+      PetscCall(c->krylov.map.nearly(c->krylov.map.ctx, c->force, c->v));
+    else
+      BLASgemv_("N", &N, &N, &one, c->W, &N, c->force, &inc, &zero, c->v, &inc);
     for (PetscInt i = 0; i < N; i++) {
       before += c->kappa[i / 3] * PetscSqr(c->l[i]);
       after += c->kappa[i / 3] * PetscSqr(c->v[i]);
@@ -47,12 +53,15 @@ static void WeightSet(ContactCompliance c)
     for (PetscInt i = 0; i < N; i++) c->l[i] = c->v[i] / PetscSqrtReal(after);
   }
   c->weight = 1 / PetscSqrtReal(PetscMax(1, largest));
+  PetscFunctionReturn(0);
 }
 
-void ComplianceSetScales(ContactCompliance c)
+PetscErrorCode ComplianceSetScales(ContactCompliance c)
 {
-  StiffnessSet(c);
-  WeightSet(c);
+  PetscFunctionBeginUser;
+  if (!ComplianceIsMap(c)) StiffnessSet(c);
+  PetscCall(WeightSet(c));
+  PetscFunctionReturn(0);
 }
 
 /* Motions without forces, free = q - (0, slip0), m, and the guess; a guess that pulls or drives is none. Not finite
@@ -73,6 +82,7 @@ static PetscErrorCode StepBegin(ContactCompliance c, const PetscReal q[], const 
       c->free[3 * p + i] = at;
       c->l[3 * p + i]    = lambda[3 * p] > 0 ? force : 0;
     }
+    if (ComplianceIsMap(c)) continue; /* begins with the statuses of the step before */
     c->status[p] = lambda[3 * p] > 0 ? CONTACT_SLIP : CONTACT_OPEN;
   }
   PetscFunctionReturn(0);
@@ -116,8 +126,13 @@ PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], co
 
   PetscFunctionBeginUser;
   PetscCall(StepBegin(c, q, slip0, lambda));
-  PetscCall(ComplianceChordIterate(c, &miss));
-  for (c->report.route = COMPLIANCE_CHORD; !ComplianceIsSolved(c, &miss) && c->report.route < COMPLIANCE_PATH;) {
+  if (ComplianceIsMap(c)) {
+    PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
+  } else
+    PetscCall(ComplianceChordIterate(c, &miss));
+  c->report.route = ComplianceIsMap(c) ? COMPLIANCE_NEWTON : COMPLIANCE_CHORD;
+  while (!ComplianceIsSolved(c, &miss) &&
+         c->report.route < (ComplianceIsMap(c) ? COMPLIANCE_DAMPED : COMPLIANCE_PATH)) {
     c->report.route++;
     if (c->report.route == COMPLIANCE_NEWTON) PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
     if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, &miss));

@@ -16,6 +16,14 @@ static double MemoryOfPairs(double n_pairs, int copies)
   return 8e-9 * copies * PetscSqr(3 * n_pairs) * MemoryRanks();
 }
 
+/* What needs no dense matrices */
+static const char *MemoryAdvice(ReducedRun r)
+{
+  if (!r->request.steps) return "take -analysis transient, which needs none beyond -dynamics_dense";
+  return r->request.springs ? "take -dynamics_contact exact, which needs none beyond -dynamics_dense"
+                            : "lower -dynamics_dense";
+}
+
 /* Machines may have other numbers of ranks, and other memory */
 PetscErrorCode ReducedCheckMemory(ReducedRun r)
 {
@@ -27,6 +35,8 @@ PetscErrorCode ReducedCheckMemory(ReducedRun r)
   Mat                C;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedIsSparse(r, &given));
+  if (given) PetscFunctionReturn(0); /* factors have a check of their own */
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n, &pair));
   PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   if (C) copies += MEMORY_DAMPED;
@@ -38,10 +48,9 @@ PetscErrorCode ReducedCheckMemory(ReducedRun r)
   PetscCheck(
     -fits[1] <= fits[0] && 9.1 * n * n < PETSC_MAX_INT, r->comm, PETSC_ERR_USER_INPUT,
     "-dynamics_model reduced: dense matrices of %" PetscInt_FMT
-    " pairs take %.3g GB on a machine, and %s %.3g GB, room for some %d pairs: make the surface of fewer nodes "
-    "the first of -contact_surfaces, mesh it coarser, run fewer ranks on a machine, or take -dynamics_model "
-    "full",
+    " pairs take %.3g GB on a machine, and %s %.3g GB, room for some %d pairs: %s, make the surface of fewer nodes "
+    "the first of -contact_surfaces, mesh it coarser, or run fewer ranks on a machine",
     n, -fits[1], given ? "-squeal_memory allows" : "there are free", fits[0],
-    (int)PetscMin(PetscSqrtReal(PETSC_MAX_INT / 9.1), n * PetscSqrtReal(fits[0] / -fits[1])));
+    (int)PetscMin(PetscSqrtReal(PETSC_MAX_INT / 9.1), n * PetscSqrtReal(fits[0] / -fits[1])), MemoryAdvice(r));
   PetscFunctionReturn(0);
 }

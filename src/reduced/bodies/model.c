@@ -9,7 +9,8 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
   PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx, &to->Mx};
 
   PetscFunctionBeginUser;
-  *to = *from;
+  *to        = *from;
+  to->sparse = NULL; /* maps and cycles have dense models */
   for (int i = 0; i < 7; i++) {
     if (!source[i]) continue;
     PetscCall(PetscMalloc1(size[i], copy[i]));
@@ -27,6 +28,7 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
 PetscErrorCode ReducedModelDestroy(ReducedModel *model)
 {
   PetscFunctionBeginUser;
+  PetscCall(ReducedSparseDestroy(&model->sparse));
   PetscCall(PetscFree(model->omega2));
   PetscCall(PetscFree(model->C));
   PetscCall(PetscFree(model->P));

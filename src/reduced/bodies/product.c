@@ -27,6 +27,16 @@ void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal 
   Multiply(A, PETSC_TRUE, X, Y);
 }
 
+void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[], PetscReal y[])
+{
+  const PetscReal    one  = 1;
+  const PetscBLASInt rows = (PetscBLASInt)A->rows, columns = (PetscBLASInt)A->columns, stride = (PetscBLASInt)A->stride;
+  const PetscBLASInt unit = 1;
+
+  if (rows && columns)
+    BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
+}
+
 PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y)
 {
   PetscInt n;

@@ -91,9 +91,11 @@ static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const P
   (*other)->motion.dt      = r->motion.dt;
   (*other)->request.like   = like;
   (*other)->request.weighs = r->request.weighs;
+  (*other)->request.dense  = r->request.dense;
+  (*other)->request.steps  = r->request.steps;
   if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->request.p));
   PetscCall(ReducedReduce(*other));
-  PetscCall(ShiftInvertDestroy(&(*other)->reduction.inverse));
+  if (!(*other)->reduction.model.sparse) PetscCall(ShiftInvertDestroy(&(*other)->reduction.inverse));
   PetscFunctionReturn(0);
 }
 

@@ -118,7 +118,8 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
   PetscCall(PortsGetColumns(r, Gt, first, c.B));
   PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.X));
   PetscCall(ReducedApplyResidual(r, c.B, c.X));
-  PetscCall(ResidualTake(r, c.X, first, N, r->reduction.model.W));
+  PetscCall(ResidualTake(r, c.X, r->reduction.model.sparse ? first - 3 * r->reduction.model.n_pairs : first, N,
+                         r->reduction.model.W));
   if (first < 3 * r->reduction.model.n_pairs) {
     PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.Y));
     PetscCall(ResidualTakeForm(r, form[0], &c, r->reduction.model.Cx, r->reduction.model.Cm));
@@ -137,7 +138,8 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   const PetscInt  N = r->reduction.model.n_ports, n_pairs = 3 * r->reduction.model.n_pairs;
   const PetscReal shift = -PetscSqr(2 * PETSC_PI * r->request.cutoff / RESIDUAL_SHIFT);
   PencilMatrices  pencil;
-  PetscInt        n;
+  PetscInt        n, begin;
+  PetscBool       sparse;
   Mat             Gt, C, form[2]; /* damping, mass */
 
   PetscFunctionBeginUser;
@@ -146,20 +148,24 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   PetscCall(PencilGetMatrices(r->reduction.bodies, &pencil));
   PetscCall(PencilGetMass(r->reduction.bodies, &form[1]));
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->reduction.progress, &r->reduction.inverse));
+  PetscCall(ReducedIsSparse(r, &sparse));
+  if (sparse) PetscCall(ReducedSparseCreate(r, shift, C));
+  begin = sparse ? n_pairs : 0;
   PetscCall(MatTranspose(r->reduction.G, MAT_INITIAL_MATRIX, &Gt));
-  PetscCall(PetscCalloc1(N * N, &r->reduction.model.W));
-  if (C) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Cx));
-  if (C) PetscCall(PetscCalloc1(n_pairs * r->reduction.model.m, &r->reduction.model.Cm));
-  if (r->request.weighs) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Mx));
+  PetscCall(PetscCalloc1(N * (N - begin), &r->reduction.model.W));
+  if (C && !sparse) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Cx));
+  if (C && !sparse) PetscCall(PetscCalloc1(n_pairs * r->reduction.model.m, &r->reduction.model.Cm));
+  if (r->request.weighs && !sparse) PetscCall(PetscCalloc1(n_pairs * n_pairs, &r->reduction.model.Mx));
   PetscCall(ProgressBegin(&r->reduction.progress, "compliance of the ports, blocks",
-                          (N + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
-  for (PetscInt first = 0; first < N; first += n) {
+                          (N - begin + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
+  for (PetscInt first = begin; first < N; first += n) {
     n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
     PetscCall(ResidualBlock(r, Gt, form, first, n));
     PetscCall(ProgressStep(&r->reduction.progress));
   }
   PetscCall(ProgressEnd(&r->reduction.progress));
   PetscCall(MatDestroy(&Gt));
+  if (sparse) PetscFunctionReturn(0);
   ResidualSymmetrise(N, r->reduction.model.W);
   if (C) ResidualSymmetrise(n_pairs, r->reduction.model.Cx);
   if (r->request.weighs) ResidualSymmetrise(n_pairs, r->reduction.model.Mx);

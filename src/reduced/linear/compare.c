@@ -16,6 +16,7 @@ static PetscErrorCode CompareFindObstacle(ReducedRun r, const char **why)
 
   PetscFunctionBeginUser;
   *why = r->request.compare ? NULL : "-dynamics_compare false";
+  if (r->reduction.model.sparse && !*why) *why = "more pairs than -dynamics_dense";
   PetscCall(ModesHaveBand(r->mesh_modes, &has_band));
   if (!has_band && !*why) *why = "no -modes_band";
   for (PetscInt i = 0; i < r->run.n_interfaces && !*why; i++) {

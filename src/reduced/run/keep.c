@@ -64,7 +64,7 @@ static void ReducedListModel(ReducedRun r, PetscInt n_own, PetscScalar modes[], 
   item[KEPT_OMEGA2]     = (JournalItem){"frequencies", m, model->omega2};
   item[KEPT_DAMPING]    = (JournalItem){"damping", model->C ? m * m : 0, model->C};
   item[KEPT_SHAPES]     = (JournalItem){"shapes", m * N, model->P};
-  item[KEPT_COMPLIANCE] = (JournalItem){"compliance", N * N, model->W};
+  item[KEPT_COMPLIANCE] = (JournalItem){"compliance", N * (model->sparse ? N - n : N), model->W};
   item[KEPT_COUPLING]   = (JournalItem){"coupling", model->Cm ? m * n : 0, model->Cm};
   item[KEPT_VISCOUS]    = (JournalItem){"damping of the residual", model->Cx ? n * n : 0, model->Cx};
   item[KEPT_KICKS]      = (JournalItem){"kicks", r->reduction.n_hits * m, r->reduction.hits};

@@ -5,7 +5,7 @@
    |Phi'M v|^2 of it. Where displacements follow others, u = Z q, v is that motion of theirs which is nearest in M, as
    in transients of the mesh: Z (Z'M Z)^-1 Z'M v, which has the same coordinates.
 */
-#include "reduced/reducedimpl.h"
+#include "reduced/sparse/sparse.h"
 #include "base/gather.h"
 #include "solver/factor/masssolve.h"
 
@@ -174,18 +174,25 @@ static PetscErrorCode StartLaws(ReducedRun r)
 {
   const ReducedModel  *model = &r->reduction.model;
   const PetscInt       n     = 3 * model->n_pairs;
-  PetscReal           *W, *q, *slip0;
+  PetscReal           *W, *Wp, *q, *slip0;
   ComplianceReport     solved;
+  SparseLaws           sparse = NULL;
+  ComplianceMap        map;
   const ContactStatus *status;
   ContactCompliance    laws;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * n, &W, n, &q, 2 * model->n_pairs, &slip0));
-  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&W[n * j], &model->W[model->n_ports * j], n));
+  PetscCall(PetscMalloc4(model->sparse ? 0 : n * n, &W, n, &Wp, n, &q, 2 * model->n_pairs, &slip0));
+  PetscCall(ReducedPairDisplacements(model, r->motion.state.eta, r->motion.state.p, q));
+  if (model->sparse)
+    PetscCall(SparseTimes(model->sparse, r->motion.state.p, Wp, NULL));
+  else
+    for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&W[n * j], &model->W[model->n_ports * j], n));
   for (PetscInt i = 0; i < n; i++) {
-    q[i] = ReducedPortDisplacement(model, r->motion.state.eta, r->motion.state.p, i) + (i % 3 ? 0 : model->gap[i / 3]);
+    q[i] += i % 3 ? 0 : model->gap[i / 3];
     if (i % 3) slip0[2 * (i / 3) + i % 3 - 1] = q[i];
-    for (PetscInt j = 0; j < n; j++) q[i] -= W[i + n * j] * r->motion.state.p[j];
+    if (model->sparse) q[i] -= Wp[i];
+    for (PetscInt j = 0; j < n && !model->sparse; j++) q[i] -= W[i + n * j] * r->motion.state.p[j];
   }
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     PetscReal way;
@@ -193,7 +200,13 @@ static PetscErrorCode StartLaws(ReducedRun r)
     PetscCall(ReducedGetWay(r, i, &way));
     slip0[2 * i] -= way;
   }
-  PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
+  if (model->sparse) {
+    PetscCall(SparseLawsCreate(model->sparse, NULL, &sparse));
+    SparseLawsGetMap(sparse, &map);
+    PetscCall(ContactComplianceCreateMap(model->n_pairs, &map, &laws));
+    PetscCall(ContactComplianceSetTolerance(laws, SPARSE_RTOL));
+  } else
+    PetscCall(ContactComplianceCreate(model->n_pairs, W, &laws));
   PetscCall(ContactComplianceSetFriction(laws, model->friction, r->motion.dt));
   if (model->spring) PetscCall(ContactComplianceSetSprings(laws, model->spring));
   PetscCall(ContactComplianceSolve(laws, q, slip0, r->motion.state.p, NULL, &solved));
@@ -203,7 +216,8 @@ static PetscErrorCode StartLaws(ReducedRun r)
   PetscCall(ContactComplianceGetStatus(laws, &status));
   PetscCall(PetscArraycpy(r->motion.state.status, status, model->n_pairs));
   PetscCall(ContactComplianceDestroy(&laws));
-  PetscCall(PetscFree3(W, q, slip0));
+  PetscCall(SparseLawsDestroy(&sparse));
+  PetscCall(PetscFree4(W, Wp, q, slip0));
   PetscFunctionReturn(0);
 }
 
@@ -221,7 +235,6 @@ PetscErrorCode ReducedStart(ReducedRun r)
   PetscCall(StartLaws(r));
   PetscCall(PetscArraycpy(s->last, s->p, r->reduction.model.n_ports));
   PetscCall(PetscArraycpy(s->q, s->p, 3 * r->reduction.model.n_pairs));
-  for (PetscInt i = 0; i < 3 * r->reduction.model.n_pairs; i++)
-    s->y[i] = ReducedPortDisplacement(&r->reduction.model, s->eta, s->p, i);
+  PetscCall(ReducedPairDisplacements(&r->reduction.model, s->eta, s->p, s->y));
   PetscFunctionReturn(0);
 }

@@ -69,12 +69,12 @@ PetscErrorCode ReducedView(ReducedRun r, PetscViewer viewer)
   const double seconds = (double)r->result.seconds;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "reduced model: %" PetscInt_FMT
-                                   " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
-                                   "compliance of %" PetscInt_FMT " pairs\n",
-                                   r->reduction.model.m, (double)r->request.cutoff, r->reduction.why,
-                                   r->reduction.model.C ? "damped" : "undamped", r->reduction.model.n_pairs));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "reduced model: %" PetscInt_FMT " modes of the unconnected bodies below %.6g Hz (%s), lumped mass, %s; static "
+    "compliance of %" PetscInt_FMT " pairs%s\n",
+    r->reduction.model.m, (double)r->request.cutoff, r->reduction.why, r->reduction.model.C ? "damped" : "undamped",
+    r->reduction.model.n_pairs, r->reduction.model.sparse ? ", by solutions with the sparse factors" : ""));
   PetscCall(ReducedViewSaved(r, viewer));
   PetscCall(ExternalView(r->run.external, viewer));
   PetscCall(ReducedViewShares(r, viewer));

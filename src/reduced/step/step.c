@@ -2,28 +2,8 @@
    One step of the reduced model (reduced.h) and its account of energy: first with lambda_{n+1} = 0, which gives the
    free displacements of the pairs, then lambda_{n+1} from the laws, then with it.
 */
-#include "reduced/reducedimpl.h"
+#include "reduced/sparse/sparse.h"
 #include <petscblaslapack.h>
-
-void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scale, const PetscReal x[], PetscReal y[])
-{
-  const PetscReal    one  = 1;
-  const PetscBLASInt rows = (PetscBLASInt)A->rows, columns = (PetscBLASInt)A->columns, stride = (PetscBLASInt)A->stride;
-  const PetscBLASInt unit = 1;
-
-  if (rows && columns)
-    BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
-}
-
-/* y = P'eta + W p of one port, m */
-PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
-{
-  PetscReal y = 0;
-
-  for (PetscInt k = 0; k < model->m; k++) y += model->P[k + model->m * port] * eta[k];
-  for (PetscInt i = 0; i < model->n_ports; i++) y += model->W[i + model->n_ports * port] * p[i];
-  return y;
-}
 
 /* Impulses act at the beginning: rate += Phi'J; the work that they do, J, is J times the mean of the velocities
    before and after. x = (eta, rate) of the beginning. */
@@ -38,40 +18,6 @@ static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const Red
     if (kick) work += kick[k] * 0.5 * (state->rate[k] + s->x[m + k]);
   }
   return work;
-}
-
-/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read */
-static PetscReal SymmetricForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[])
-{
-  const PetscBLASInt one = 1;
-  PetscReal          sum = 0;
-
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscBLASInt rows = (PetscBLASInt)j;
-    const PetscReal   *a    = &A[stride * j];
-
-    if (x[j] != 0) sum += x[j] * (2 * BLASdot_(&rows, a, &one, x, &one) + a[j] * x[j]);
-  }
-  return sum;
-}
-
-/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, and that of laws in series, J: the blocks
-   of W of pairs, of others, and, once, between both. */
-void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
-{
-  const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;
-
-  *kinetic = *strain = 0;
-  for (PetscInt k = 0; k < model->m; k++) {
-    *kinetic += 0.5 * s->rate[k] * s->rate[k];
-    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
-  }
-  *strain += 0.5 * SymmetricForm(n, model->n_ports, model->W, s->q);
-  for (PetscInt i = 0; i < model->n_pairs && model->spring; i++)
-    *strain += SpringEnergy(&model->spring[i], s->p[3 * i]);
-  *strain += 0.5 * SymmetricForm(n_others, model->n_ports, &model->W[(model->n_ports + 1) * n], &s->p[n]);
-  for (PetscInt j = n; j < model->n_ports; j++)
-    for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * model->W[i + model->n_ports * j] * s->p[j];
 }
 
 /* next = E z + F g with g = P' mean, the forces on the modes (m sqrt(kg)/s^2), constant in the step. */
@@ -100,23 +46,29 @@ static void StepperDrag(ReducedStepper s)
 
 /* q_{n+1} and dq = q_{n+1} - q_n with lambda_{n+1} in the mean forces: W mean(q) + Cx dq / dt + Cm'(eta_{n+1} - eta_n)
    / dt = W mean(lambda). `next` holds the answer without dq, then with it */
-static void StepperSolveResidual(ReducedStepper s, const ReducedState *state)
+static PetscErrorCode StepperSolveResidual(ReducedStepper s, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
 
+  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) s->dq[i] = 0;
   StepperRespond(s);
   for (PetscInt i = 0; i < n; i++) {
-    s->q[i] = s->HW ? state->q[i] : state->p[i];
+    s->q[i] = model->Cm ? state->q[i] : state->p[i];
     s->r[i] = s->mean[i] - state->q[i]; /* work */
   }
-  if (!s->HW) return;
+  if (!model->Cm) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m; k++) s->product[k] = -(s->next[k] - s->x[k]) / s->dt;
-  ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
-  ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
+  if (s->sparse) {
+    PetscCall(SparseLawsFree(s->sparse, s->r, s->product, s->dq));
+  } else {
+    ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
+    ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
+  }
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
   StepperDrag(s);
+  PetscFunctionReturn(0);
 }
 
 /* Mean forces of the step, with lambda_{n+1} or without */
@@ -148,33 +100,38 @@ static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const P
 /* lambda_{n+1} joins what the step has without it, by what the stepper made of it once: z(dt) += G lambda, q_{n+1} +=
    R lambda, and where works are asked for the forces on the modes, g += P'lambda / 2 - Cm R lambda / dt, a half since
    the mean force of the step counts */
-static void StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
+static PetscErrorCode StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
 
+  PetscFunctionBeginUser;
   StepperAddCarrying(model, 2 * m, s->G, state->p, s->next);
   for (PetscInt i = 0; i < n; i++) s->r[i] = s->HW ? 0 : state->p[i];
   if (s->HW) StepperAddCarrying(model, n, s->R, state->p, s->r);
+  if (s->sparse && model->Cm) PetscCall(SparseLawsDrag(s->sparse, state->p, s->r, s->next));
   for (PetscInt i = 0; i < n; i++) {
     s->q[i] += s->r[i];
-    s->dq[i] += s->HW ? s->r[i] : 0;
+    s->dq[i] += model->Cm ? s->r[i] : 0;
   }
-  if (!works) return;
+  if (!works) PetscFunctionReturn(0);
   ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_FALSE, 0.5, state->p, &s->x[2 * m]);
-  if (s->HW) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
+  if (model->Cm) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
+  PetscFunctionReturn(0);
 }
 
 /* The linear part of a step alone, for its derivative: next = z(dt), q_{n+1} and the displacements y of the pairs,
    of a state without loads, sliding or impulses, with state->p as lambda_{n+1}. */
-void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[], PetscReal y[])
+PetscErrorCode ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal next[], PetscReal q[],
+                                  PetscReal y[])
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
 
+  PetscFunctionBeginUser;
   (void)StepperKick(s, NULL, state);
   StepperSetMean(s, state, PETSC_FALSE);
-  StepperSolveResidual(s, state);
+  PetscCall(StepperSolveResidual(s, state));
   if (s->HW) ReducedStepperSettle(s, state->p);
   for (PetscInt i = 0; i < 2 * m; i++) next[i] = s->next[i];
   for (PetscInt i = 0; i < n; i++) {
@@ -183,23 +140,31 @@ void ReducedStepRespond(ReducedStepper s, const ReducedState *state, PetscReal n
   }
   ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, next, y);
   ReducedBlockTimes(&(DenseBlock){model->W, n, n, model->n_ports}, PETSC_FALSE, 1, q, y);
+  PetscFunctionReturn(0);
 }
 
 /* Free displacements P eta + W q + W loads of the pairs at t_{n+1} without lambda_{n+1}, m, gaps g0 included along
    n; and what slip counts from: y_n less the prescribed sliding. */
-static void StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
+static PetscErrorCode StepperSetFree(ReducedStepper s, const ReducedDrive *drive, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
 
+  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) s->free[i] = i % 3 ? 0 : model->gap[i / 3];
   ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->next, s->free);
-  ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
-  ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n], s->free);
+  if (s->sparse && model->Cm) {
+    PetscCall(SparseTimes(model->sparse, s->q, s->r, NULL));
+    for (PetscInt i = 0; i < n; i++) s->free[i] += s->r[i];
+  }
+  if (!s->sparse) ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
+  ReducedBlockTimes(&(DenseBlock){ReducedColumn(model, n), n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n],
+                    s->free);
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
     s->slip0[2 * i + 1] = state->y[3 * i + 2];
   }
+  PetscFunctionReturn(0);
 }
 
 /* Forces and statuses of the pairs at t_{n+1}, with the guess in state->p. Raised on each rank alone: all have the
@@ -280,7 +245,7 @@ static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
 
   for (PetscInt i = 0; i < N; i++) s->port[i] = i < n ? s->q[i] - state->q[i] : state->p[i] - state->last[i];
   for (PetscInt j = n; j < n + model->n_loads; j++) {
-    const PetscReal *w  = &model->W[N * j];
+    const PetscReal *w  = ReducedColumn(model, j);
     PetscReal        dy = 0, lag = 0;
 
     for (PetscInt k = 0; k < m; k++) dy += model->P[k + m * j] * (s->next[k] - s->x[k]);
@@ -293,20 +258,29 @@ static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
 
 /* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual, 2 d eta .
    Cm dq / dt + dq'Cx dq / dt. */
-static PetscReal StepperDamping(ReducedStepper s)
+static PetscErrorCode StepperDamping(ReducedStepper s, PetscReal *taken)
 {
   const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
   PetscReal      work = 0;
 
-  if (!s->Q) return 0;
+  PetscFunctionBeginUser;
+  *taken = 0;
+  if (!s->Q) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < 3 * m; i++) s->product[i] = 0;
   ReducedBlockTimes(&(DenseBlock){s->Q, 3 * m, 3 * m, 3 * m}, PETSC_FALSE, 1, s->x, s->product);
   for (PetscInt i = 0; i < 3 * m; i++) work += s->x[i] * s->product[i];
-  if (!s->HW) return work;
+  *taken = work;
+  if (!s->model->Cm) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
   ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, 2, s->dq, s->product);
   for (PetscInt k = 0; k < m; k++) work += (s->next[k] - s->x[k]) * s->product[k] / s->dt;
-  return work + SymmetricForm(n, n, s->model->Cx, s->dq) / s->dt;
+  if (s->sparse) {
+    PetscCall(SparseTimes(s->model->sparse, s->dq, NULL, s->r));
+    for (PetscInt i = 0; i < n; i++) work += s->dq[i] * s->r[i] / s->dt;
+  } else
+    work += ReducedForm(n, n, s->model->Cx, s->dq) / s->dt;
+  *taken = work;
+  PetscFunctionReturn(0);
 }
 
 /* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
@@ -332,17 +306,20 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   StepperGuess(n, model->n_ports, state);
   for (PetscInt i = 0; i < model->n_loads; i++) state->p[n + i] = drive->loads[i];
   StepperSetMean(s, state, PETSC_TRUE);
-  StepperSolveResidual(s, state);
-  if (!s->HW) PetscCall(PetscArrayzero(s->q, n));
-  StepperSetFree(s, drive, state);
+  PetscCall(StepperSolveResidual(s, state));
+  if (!model->Cm) PetscCall(PetscArrayzero(s->q, n));
+  PetscCall(StepperSetFree(s, drive, state));
   PetscCall(StepperSolveLaws(s, state, report));
   StepperSetMean(s, state, PETSC_FALSE);
-  StepperAddForces(s, state, report->works);
+  PetscCall(StepperAddForces(s, state, report->works));
   if (s->HW) ReducedStepperSettle(s, state->p);
   StepperAccount(s, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);
   if (report->works) PetscCall(ReducedStepperSetDamping(s));
-  if (report->works) report->damping = -StepperDamping(s);
+  if (report->works) {
+    PetscCall(StepperDamping(s, &report->damping));
+    report->damping = -report->damping;
+  }
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));
   PetscCall(PetscArraycpy(state->rate, &s->next[m], m));

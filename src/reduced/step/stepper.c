@@ -12,7 +12,7 @@
       exp(h [-B' S; 0 B]) = [. G; 0 X],   Q = X'G,     B = [A (0 I)'; 0 0],  S = diag(0, C, 0)
       Q(2 h) = Q + X'Q X,   X(2 h) = X X.
 */
-#include "reduced/reducedimpl.h"
+#include "reduced/sparse/sparse.h"
 #include <slepcfn.h>
 #include <petscblaslapack.h>
 
@@ -239,6 +239,21 @@ static PetscErrorCode StepperSetLaws(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* The same where the compliance has no numbers: sums of modes and residual that are positive by themselves */
+static PetscErrorCode StepperSetSparseLaws(ReducedStepper s)
+{
+  const ReducedModel *model = s->model;
+  ComplianceMap       map;
+
+  PetscFunctionBeginUser;
+  PetscCall(SparseLawsCreate(model->sparse, s, &s->sparse));
+  SparseLawsGetMap(s->sparse, &map);
+  PetscCall(ContactComplianceCreateMap(model->n_pairs, &map, &s->laws));
+  PetscCall(ContactComplianceSetFriction(s->laws, model->friction, s->dt));
+  PetscCall(ContactComplianceSetTolerance(s->laws, PetscMax(s->rtol, SPARSE_RTOL)));
+  PetscFunctionReturn(0);
+}
+
 /* w, rad/s: the highest frequency, or 1 / dt where that is more: rates over w are of the size of coordinates. Some
    (3 m)^3 and n^3 operations, once for all steps of one length. */
 PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, PetscReal rtol, ReducedStepper *stepper)
@@ -253,11 +268,17 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   s->dt    = dt;
   s->rtol  = rtol;
   s->w     = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
-  PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, n * n, &s->W));
+  PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, model->sparse ? 0 : n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
   PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
   PetscCall(StepperSetResponse(s));
+  s->rank = n;
+  if (model->sparse) {
+    PetscCall(StepperSetForces(s));
+    PetscCall(StepperSetSparseLaws(s));
+    PetscFunctionReturn(0);
+  }
   PetscCall(ReducedStepperSetResidual(s));
   PetscCall(StepperSetForces(s));
   PetscCall(StepperSetCompliance(s));
@@ -273,6 +294,7 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   PetscCall(ContactComplianceDestroy(&s->laws));
+  PetscCall(SparseLawsDestroy(&s->sparse));
   PetscCall(PetscFree3(s->E, s->F, s->W));
   PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));

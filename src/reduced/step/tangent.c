@@ -28,21 +28,23 @@ PetscInt ReducedTangentSize(const ReducedModel *model)
 }
 
 /* What a step makes of a state without loads: z, lambda and q in `column`; y */
-static void TangentRespond(ReducedTangent t, const ReducedState *state, PetscReal column[], PetscReal y[])
+static PetscErrorCode TangentRespond(ReducedTangent t, const ReducedState *state, PetscReal column[], PetscReal y[])
 {
   const ReducedModel *model = t->stepper->model;
   const PetscInt      m     = model->m;
 
-  ReducedStepRespond(t->stepper, state, column, t->next, y);
+  PetscFunctionBeginUser;
+  PetscCall(ReducedStepRespond(t->stepper, state, column, t->next, y));
   for (PetscInt i = 0; i < t->pairs; i++) {
     column[2 * m + i] = state->p[i];
     if (model->Cx) column[2 * m + t->pairs + i] = t->next[i];
   }
+  PetscFunctionReturn(0);
 }
 
 /* Column j of A and D: the unit vector of x, without forces at t_{n+1}. Undamped lambda_n is q as well. What slip
    counts from, P eta + W q, is taken off D along t and b. */
-static void TangentSetPast(ReducedTangent t, PetscInt j, ReducedState *state)
+static PetscErrorCode TangentSetPast(ReducedTangent t, PetscInt j, ReducedState *state)
 {
   const ReducedModel *model = t->stepper->model;
   const PetscInt      m = model->m, n = t->pairs, N = model->n_ports;
@@ -50,16 +52,18 @@ static void TangentSetPast(ReducedTangent t, PetscInt j, ReducedState *state)
   const PetscInt      begin[] = {0, m, 2 * m, 2 * m + n};
   int                 k       = 3;
 
+  PetscFunctionBeginUser;
   while (j < begin[k]) k--;
   part[k][j - begin[k]] = 1;
   if (!model->Cx && k == 2) state->q[j - begin[k]] = 1;
-  TangentRespond(t, state, &t->A[j * t->n], dv);
+  PetscCall(TangentRespond(t, state, &t->A[j * t->n], dv));
   for (PetscInt i = 0; i < n; i++) {
     if (i % 3 && k == 0) dv[i] -= model->P[j + m * i];
     if (i % 3 && k >= 2 && state->q[j - begin[k]] != 0) dv[i] -= model->W[i + N * (j - begin[k])];
   }
   part[k][j - begin[k]] = 0;
   if (k >= 2) state->q[j - begin[k]] = 0;
+  PetscFunctionReturn(0);
 }
 
 /* n + 3 n_pairs steps' linear parts, each of some (2 m)^2 operations: once for a length of step. */
@@ -71,10 +75,10 @@ static PetscErrorCode TangentFill(ReducedTangent t)
   PetscFunctionBeginUser;
   PetscCall(ReducedStateCreate(t->stepper->model, &state));
   PetscCall(PetscMalloc1(t->pairs, &y));
-  for (PetscInt j = 0; j < t->n; j++) TangentSetPast(t, j, &state);
+  for (PetscInt j = 0; j < t->n; j++) PetscCall(TangentSetPast(t, j, &state));
   for (PetscInt j = 0; j < t->pairs; j++) {
     state.p[j] = 1;
-    TangentRespond(t, &state, &t->B[j * t->n], y);
+    PetscCall(TangentRespond(t, &state, &t->B[j * t->n], y));
     state.p[j] = 0;
   }
   PetscCall(PetscFree(y));

@@ -16,7 +16,7 @@
    Runs that need it: `steep` of tests/cases/transient_reduced.toml (mu 2.2, which ends at 3.2e-5 s without), and scenes
    of tests/unit/test_contact_compliance.c.
 */
-#include "complianceimpl.h"
+#include "contact/compliance/complianceimpl.h"
 
 #define PATH_LARGE    10   /* times the largest row of W kappa: t / (1 - t) at the beginning */
 #define PATH_STEPS    600  /* at most, failed ones too */

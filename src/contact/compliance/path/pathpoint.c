@@ -3,7 +3,7 @@
    in m over `size` = |l| of the accepted point, x = log(t / (1 - t)) without unit, so that both are of order 1; dt/dx
    = t (1 - t).
 */
-#include "complianceimpl.h"
+#include "contact/compliance/complianceimpl.h"
 
 /* t at x */
 PetscReal CompliancePathBlend(PetscReal x)

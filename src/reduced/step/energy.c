@@ -1,0 +1,101 @@
+/* Displacements at the ports, and the energy of a state, of dense models and of those without columns of the pairs */
+#include "reduced/sparse/sparse.h"
+#include <petscblaslapack.h>
+
+/* Column of W of a port, which must be none of a pair where these have no columns */
+const PetscReal *ReducedColumn(const ReducedModel *model, PetscInt port)
+{
+  return &model->W[model->n_ports * (port - (model->sparse ? 3 * model->n_pairs : 0))];
+}
+
+/* y = P'eta + W p of one port, m */
+PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscInt port)
+{
+  const PetscReal *w = ReducedColumn(model, port);
+  PetscReal        y = 0;
+
+  for (PetscInt k = 0; k < model->m; k++) y += model->P[k + model->m * port] * eta[k];
+  for (PetscInt i = 0; i < model->n_ports; i++) y += w[i] * p[i];
+  return y;
+}
+
+/* Displacements of all pairs without what q makes, P'eta + W loads */
+static void PairsWithoutForces(const ReducedModel *model, const PetscReal eta[], const PetscReal p[], PetscReal y[])
+{
+  const PetscInt m = model->m, n = 3 * model->n_pairs, N = model->n_ports;
+
+  for (PetscInt i = 0; i < n; i++) y[i] = 0;
+  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, eta, y);
+  ReducedBlockTimes(&(DenseBlock){ReducedColumn(model, n), n, N - n, N}, PETSC_FALSE, 1, &p[n], y);
+}
+
+PetscErrorCode ReducedPairDisplacements(const ReducedModel *model, const PetscReal eta[], const PetscReal p[],
+                                        PetscReal y[])
+{
+  const PetscInt n = 3 * model->n_pairs;
+  PetscReal     *Wp;
+
+  PetscFunctionBeginUser;
+  if (!model->sparse) {
+    for (PetscInt i = 0; i < n; i++) y[i] = ReducedPortDisplacement(model, eta, p, i);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscMalloc1(n, &Wp));
+  PetscCall(SparseTimes(model->sparse, p, Wp, NULL));
+  PairsWithoutForces(model, eta, p, y);
+  for (PetscInt i = 0; i < n; i++) y[i] += Wp[i];
+  PetscCall(PetscFree(Wp));
+  PetscFunctionReturn(0);
+}
+
+/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read */
+PetscReal ReducedForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[])
+{
+  const PetscBLASInt one = 1;
+  PetscReal          sum = 0;
+
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscBLASInt rows = (PetscBLASInt)j;
+    const PetscReal   *a    = &A[stride * j];
+
+    if (x[j] != 0) sum += x[j] * (2 * BLASdot_(&rows, a, &one, x, &one) + a[j] * x[j]);
+  }
+  return sum;
+}
+
+/* q'W q: with the numbers of W, or from the displacements of the pairs that it makes */
+static PetscReal ResidualForm(const ReducedModel *model, const ReducedState *s)
+{
+  const PetscInt m = model->m, n = 3 * model->n_pairs;
+  PetscReal      sum = 0;
+
+  if (!model->sparse) return ReducedForm(n, model->n_ports, model->W, s->q);
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal y = s->y[i];
+
+    if (s->q[i] == 0) continue;
+    for (PetscInt k = 0; k < m; k++) y -= model->P[k + m * i] * s->eta[k];
+    for (PetscInt j = n; j < model->n_ports; j++) y -= ReducedColumn(model, j)[i] * s->p[j];
+    sum += s->q[i] * y;
+  }
+  return sum;
+}
+
+/* |rate|^2 / 2, eta'Omega^2 eta / 2 + p'W p / 2 with q in place of lambda, and that of laws in series, J: the blocks
+   of W of pairs, of others, and, once, between both. */
+void ReducedEnergy(const ReducedModel *model, const ReducedState *s, PetscReal *kinetic, PetscReal *strain)
+{
+  const PetscInt n = 3 * model->n_pairs, n_others = model->n_ports - n;
+
+  *kinetic = *strain = 0;
+  for (PetscInt k = 0; k < model->m; k++) {
+    *kinetic += 0.5 * s->rate[k] * s->rate[k];
+    *strain += 0.5 * model->omega2[k] * s->eta[k] * s->eta[k];
+  }
+  *strain += 0.5 * ResidualForm(model, s);
+  for (PetscInt i = 0; i < model->n_pairs && model->spring; i++)
+    *strain += SpringEnergy(&model->spring[i], s->p[3 * i]);
+  *strain += 0.5 * ReducedForm(n_others, model->n_ports, ReducedColumn(model, n) + n, &s->p[n]);
+  for (PetscInt j = n; j < model->n_ports; j++)
+    for (PetscInt i = 0; i < n && s->p[j] != 0; i++) *strain += s->q[i] * ReducedColumn(model, j)[i] * s->p[j];
+}
