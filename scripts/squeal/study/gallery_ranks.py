@@ -56,6 +56,7 @@ RUNS = {
     "massi2005_sweep": Run("massi2005 massi2005_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),
     "massi2005_fitted_sweep": Run("massi2005 massi2005_sweep massi2005_fitted_sweep", quick=SMALL + "-sweep_values 6.5e9:80e9:15"),
     "massi2005_wear": Run("massi2005 massi2005_wear", quick=SMALL + "-sweep_values 0:60:4"),
+    "massi2005_superelement": Run("massi2005 massi2005_superelement", quick=SMALL),
     "massi2005_reduced": Run("massi2005_reduced", short="-ts_max_time 5e-3", why="of 50 ms; growth from the blow",
                              quick=SMALL + "-ts_max_time 2e-3"),
     "massi2005_response": Run("massi2005_transient massi2005_response", short="-ts_max_time 1e-3", why="25 ms are half a million steps",
