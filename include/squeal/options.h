@@ -216,6 +216,10 @@ PetscErrorCode OptionsNamesFile(const char name[], PetscBool *file, PetscBool *i
 /*@ OptionsCheckFile - the same for one options file; YAML by its ending, or where is_yaml says so. Not collective. @*/
 PetscErrorCode OptionsCheckFile(const char file[], PetscBool is_yaml);
 
+/*@ OptionsIsOwn - false where an option -a_2_b is not given, for which PETSc takes -a_b; true for any other name. Not
+    collective. @*/
+PetscErrorCode OptionsIsOwn(const char option[], PetscBool *own);
+
 /*@ OptionsCheckNumbers - raises an error for nan, inf and what overflows to it, in the value of any option, whatever
     PETSc makes of it, and for a value of more than one line. Not collective: all ranks have the same options. @*/
 PetscErrorCode OptionsCheckNumbers(void);

@@ -131,39 +131,38 @@ static PetscErrorCode QuantityCheckValue(MPI_Comm comm, const char option[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode QuantityRead(MPI_Comm comm, const char name[], const Quantity *row, void *owner)
+/* The value of an option of this name, unchanged where it is not given */
+static PetscErrorCode QuantityReadValue(MPI_Comm comm, const char option[], const Quantity *row, void *owner,
+                                        PetscBool *given)
 {
   void     *value = QuantityValue(row, owner);
   PetscInt *n     = row->count ? (PetscInt *)((char *)owner + row->count) : NULL;
-  PetscBool given = PETSC_FALSE;
-  char      option[QUANTITY_HELP];
 
   PetscFunctionBeginUser;
-  PetscCall(QuantityGetOption(name, row, sizeof(option), option));
   if (row->kind <= QUANTITY_MANY) PetscCall(QuantityCheckValue(comm, option));
   if (row->kind <= QUANTITY_MANY) PetscCall(OptionsCheckNumber(option));
   switch (row->kind) {
   case QUANTITY_BOOL:
-    PetscCall(OptionsGetBool(option, value, &given));
+    PetscCall(OptionsGetBool(option, value, given));
     break;
   case QUANTITY_WORD:
-    PetscCall(QuantityReadWord(option, row, value, &given));
+    PetscCall(QuantityReadWord(option, row, value, given));
     break;
   case QUANTITY_TEXT:
-    PetscCall(QuantityReadText(comm, option, row->size, value, &given));
+    PetscCall(QuantityReadText(comm, option, row->size, value, given));
     break;
   case QUANTITY_NAMES:
     if (n)
       PetscCall(OptionsGetWords(comm, option, n, value));
     else
-      PetscCall(QuantityReadNames(comm, option, row, value, &given));
-    if (n && *n) given = PETSC_TRUE;
+      PetscCall(QuantityReadNames(comm, option, row, value, given));
+    if (n && *n) *given = PETSC_TRUE;
     break;
   case QUANTITY_MANY:
-    PetscCall(QuantityReadMany(comm, option, row->room, value, n, &given));
+    PetscCall(QuantityReadMany(comm, option, row->room, value, n, given));
     break;
   case QUANTITY_NAME:
-    PetscCall(QuantityReadName(comm, option, value, &given));
+    PetscCall(QuantityReadName(comm, option, value, given));
     break;
   case QUANTITY_VIEWER:
     PetscCall(OptionsGetViewer(comm, option, value));
@@ -171,14 +170,26 @@ PetscErrorCode QuantityRead(MPI_Comm comm, const char name[], const Quantity *ro
   case QUANTITY_PREFIX:
     break;
   case QUANTITY_PATH:
-    PetscCall(OptionsGetPath(comm, option, value, &given));
+    PetscCall(OptionsGetPath(comm, option, value, given));
     break;
   default:
     if (row->count)
-      PetscCall(QuantityReadList(comm, option, row, owner, &given));
+      PetscCall(QuantityReadList(comm, option, row, owner, given));
     else
-      PetscCall(QuantityReadNumber(comm, option, row, value, &given));
+      PetscCall(QuantityReadNumber(comm, option, row, value, given));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode QuantityRead(MPI_Comm comm, const char name[], const Quantity *row, void *owner)
+{
+  PetscBool own, given = PETSC_FALSE;
+  char      option[QUANTITY_HELP];
+
+  PetscFunctionBeginUser;
+  PetscCall(QuantityGetOption(name, row, sizeof(option), option));
+  PetscCall(OptionsIsOwn(option, &own));
+  if (own) PetscCall(QuantityReadValue(comm, option, row, owner, &given));
   if (row->given) *(PetscBool *)((char *)owner + row->given) = given;
   PetscFunctionReturn(0);
 }

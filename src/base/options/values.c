@@ -8,6 +8,38 @@
 #define MAX_REALS 16
 #define MAX_TEXT  512
 
+/* Whether a number stands between two underscores */
+static PetscBool NameHasNumber(const char name[])
+{
+  for (const char *c = strchr(name, '_'); c; c = strchr(c + 1, '_')) {
+    const size_t digits = strspn(c + 1, "0123456789");
+
+    if (digits && c[1 + digits] == '_') return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscErrorCode OptionsIsOwn(const char option[], PetscBool *own)
+{
+  char       *all, *rest, name[MAX_TEXT];
+  const char *value;
+  PetscBool   more;
+
+  PetscFunctionBeginUser;
+  *own = PETSC_TRUE;
+  if (!NameHasNumber(option)) PetscFunctionReturn(0);
+  *own = PETSC_FALSE;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  rest = all;
+  PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
+  while (more && !*own) {
+    *own = strcasecmp(name, option + 1) ? PETSC_FALSE : PETSC_TRUE;
+    PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &value, &more));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
 /* Raises the error for an option of more or fewer than n values, of which PETSc leaves out those beyond n */
 static PetscErrorCode OptionsCheckCount(MPI_Comm comm, const char option[], PetscInt n, PetscBool *set)
 {
