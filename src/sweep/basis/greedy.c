@@ -23,6 +23,7 @@
 /* Vectors shorter than this beside the root of rtol add nothing to the model: the error of an eigenvalue is of
    second order in that of the vectors, |z|^2 <= 1e-6 rtol. */
 #define GREEDY_DROP 1e-3
+#define LAZY_BATCH  4 /* on any number of ranks */
 
 /* Distance of point i from the nearest full solution, in parts of the extent: sqrt(sum_k ((a_k - b_k) /
    scale_k)^2), along a range measured in ratios (scale < 0) with log(a_k / b_k). No unit. */
@@ -62,6 +63,58 @@ static PetscInt PointFarthest(const GreedyWork *run, PetscReal *farthest)
   return best;
 }
 
+/* The point of the largest estimate among those whose own factors were not made twice; -1 for none */
+static PetscInt EstimateWorst(const GreedyWork *run)
+{
+  PetscInt worst = -1;
+
+  for (PetscInt i = 0; i < run->n; i++)
+    if (PointTimes(run, &run->points[i * run->basis->reduced.n_parameters], PETSC_TRUE) < 2 &&
+        (worst < 0 || run->estimate[i] > run->estimate[worst]))
+      worst = i;
+  return worst;
+}
+
+/* Estimates of all points on the present basis */
+static PetscErrorCode EstimatesAll(GreedyWork *run)
+{
+  const Greedy *g = run->greedy;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsEstimate(g->groups, &run->basis->reduced, &g->window, run->n, run->points, run->estimate));
+  for (PetscInt i = 0; i < run->n; i++) run->fresh[i] = run->basis->reduced.n;
+  PetscFunctionReturn(0);
+}
+
+/* Estimates fall as the basis grows, as a rule: those from a smaller basis serve as bounds. LAZY_BATCH of the largest
+   ones are made anew until the largest is from the present basis (M. Minoux, Accelerated greedy algorithms, 1978). At
+   the end all are (PointNext()) */
+static PetscErrorCode EstimatesLazy(GreedyWork *run)
+{
+  const PetscInt n_parameters = run->basis->reduced.n_parameters, now = run->basis->reduced.n;
+  PetscReal     *points, worst[LAZY_BATCH];
+  PetscInt       list[LAZY_BATCH];
+
+  PetscFunctionBeginUser;
+  if (!run->fresh[0]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(LAZY_BATCH * n_parameters, &points));
+  for (PetscInt i = EstimateWorst(run); i >= 0 && run->fresh[i] != now; i = EstimateWorst(run)) {
+    PetscInt n = 0;
+
+    while (n < LAZY_BATCH && i >= 0 && run->fresh[i] != now) {
+      PetscCall(PetscArraycpy(&points[n * n_parameters], &run->points[i * n_parameters], n_parameters));
+      list[n++]        = i;
+      run->fresh[i]    = now;
+      run->estimate[i] = 0; /* so that the next one is found */
+      i                = EstimateWorst(run);
+    }
+    PetscCall(PointsEstimate(run->greedy->groups, &run->basis->reduced, &run->greedy->window, n, points, worst));
+    for (PetscInt k = 0; k < n; k++) run->estimate[list[k]] = worst[k];
+  }
+  PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
 /* The next point to look at, or -1. First by distance, which needs no solution, then by the estimate at all points
    (collective). A point whose own factors were made twice is not chosen again. */
 static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
@@ -75,11 +128,10 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
-  PetscCall(PointsEstimate(g->groups, &run->basis->reduced, &g->window, run->n, run->points, run->estimate));
-  for (PetscInt i = 0; i < run->n; i++)
-    if (PointTimes(run, &run->points[i * run->basis->reduced.n_parameters], PETSC_TRUE) < 2 &&
-        (worst < 0 || run->estimate[i] > run->estimate[worst]))
-      worst = i;
+  if (g->lazy) PetscCall(EstimatesLazy(run));
+  worst = EstimateWorst(run);
+  if (!g->lazy || worst < 0 || run->estimate[worst] <= g->rtol) PetscCall(EstimatesAll(run));
+  worst    = EstimateWorst(run);
   g->worst = worst >= 0 ? run->estimate[worst] : 0;
   *next    = g->worst > g->rtol ? worst : -1;
   PetscFunctionReturn(0);
@@ -149,6 +201,7 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   g->looked  = PETSC_TRUE;
   run->first = n_samples - 1;
   run->drop  = PetscMin(drop, LOOK_DROP);
+  if (g->most_looks) n_statuses = PetscMin(n_statuses, g->most_looks);
   for (int look = 0; look < PetscMax(GREEDY_LOOKS, n_statuses); look++) {
     const PetscReal *p     = LookNext(run, look, middle, &own);
     ReducedModes     modes = {0};
@@ -173,7 +226,7 @@ static PetscErrorCode GreedyWorkDestroy(GreedyWork *run)
 {
   PetscFunctionBeginUser;
   PetscCall(ShiftInvertDestroy(&run->counter));
-  PetscCall(PetscFree2(run->estimate, run->scale));
+  PetscCall(PetscFree3(run->estimate, run->scale, run->fresh));
   PetscFunctionReturn(0);
 }
 
@@ -196,7 +249,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.guarded.low      = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high     = high * (1 + GUARD);
   run.guarded.growth   = PetscMax(greedy->window.growth, greedy->reach);
-  PetscCall(PetscMalloc2(n, &run.estimate, n_parameters, &run.scale));
+  PetscCall(PetscCalloc3(n, &run.estimate, n_parameters, &run.scale, n, &run.fresh));
   PetscCall(PointsScale(basis->pencil, n, points, run.scale));
   if (greedy->n_samples) PetscCall(PointNext(&run, &next));
   for (;;) {

@@ -29,9 +29,13 @@ typedef struct {
   PetscReal          last;   /* estimate at the last point before it was taken in */
   PetscReal          fall;   /* slowest fall of an estimate by a step of corrections so far; 0: none was seen */
   /* largest |sigma| that corrections follow, 1/s, where a full solution has more than asked for; else 0 */
-  PetscReal  reach;
-  PetscInt   n_passed;   /* points in a row that needed nothing */
-  PetscBool  looked;     /* at other points since the last full solution */
+  PetscReal reach;
+  PetscInt  n_passed; /* points in a row that needed nothing */
+  PetscBool looked;   /* at other points since the last full solution */
+  /* of scattered points of a box, each with a status of its own: looks at this many of them at most, and estimates that
+     are not from the present basis serve as bounds; 0 and false for the places of a sweep */
+  PetscInt   most_looks;
+  PetscBool  lazy;
   Correction correction; /* the last factors, kept for what comes after */
   Progress  *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */

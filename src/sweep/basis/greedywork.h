@@ -13,6 +13,7 @@ typedef struct {
   PetscInt         n;
   const PetscReal *points;
   PetscReal       *estimate; /* [n] */
+  PetscInt        *fresh;    /* [n] vectors of the basis that it is from, 0 for none */
   PetscReal       *scale;    /* [n_parameters] */
   PetscReal        drop;
   CorrectionSides  sides;

@@ -6,6 +6,7 @@
 */
 #include "box.h"
 
+#define BOX_LOOKS 6 /* at other points after a full solution, of the statuses that there are */
 #define BOX_GUARD                                                                                                      \
   0.03 /* as basis/greedy.c holds modes beyond the band, so that branches are followed across its ends */
 
@@ -24,7 +25,9 @@ static PetscErrorCode BoxBeginGreedy(Box *box)
   g->max_samples = box->max_solutions;
   g->progress    = &box->progress;
   g->last        = PETSC_MAX_REAL;
-  PetscCall(PetscCalloc1(g->max_samples + 2 + GREEDY_LOOKS, &g->sample));
+  g->most_looks  = BOX_LOOKS;
+  g->lazy        = PETSC_TRUE;
+  PetscCall(PetscCalloc1(g->max_samples + 2 + BOX_LOOKS, &g->sample));
   PetscFunctionReturn(0);
 }
 
