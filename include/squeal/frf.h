@@ -9,11 +9,11 @@
       H_p(s) = sum_k  (l_p^T x_k) (y_k^T f) / ((y_k^T Q'(lambda_k) x_k) (s - lambda_k)) + conjugate  +  R_p(s),
 
    or without damping, in kappa = -s^2, sum_k (l_p^T x_k) (y_k^T f) / ((y_k^T M x_k) (kappa_k - kappa)) + R_p, lacks the
-   residual R of the modes outside of the window. R comes from the factorisation at a real shift that the modes
-   were computed with: Galerkin's method on the span of the right and left vectors of the modes, and of the Krylov
-   vectors of Q at the shift that begin with Q^-1 f and with Q^-T l_p (the moments of H at the shift). Poles and
-   residues of the modes stay as they are, and each step of the Krylov vectors fits two more moments. One step gives
-   the static correction of the textbooks. Rigid modes are modes with lambda = 0.
+   residual R of the modes outside of the window. R comes from the factorisation that the modes were computed with:
+   Galerkin's method on the span of the right and left vectors of the modes and of P^-1 f and P^-T l_p, P = K - s M (or,
+   where a damped solution made it, Q at a real shift), and in further steps of P^-1 times what it leaves of f, and
+   P^-T times what it leaves of l_p (modes/space/answers.c). Poles and residues of the modes stay as they are. One step
+   gives the static correction of the textbooks. Rigid modes are modes with lambda = 0.
 
    In time the modes alone answer, since what lies outside of the window is no residual term there,
 

@@ -111,8 +111,9 @@ PetscErrorCode ModesWant(Modes modes, PetscBool *nearest, PetscBool *left);
 /*@ ModesKeepFactor - whether ModesSolve() keeps its factorisation until the next solution. Not collective. @*/
 PetscErrorCode ModesKeepFactor(Modes modes, PetscBool keep);
 
-/*@ ModesGetFactor - the factorisation that was kept (borrowed): of K - shift M, shift in (rad/s)^2, or with damping of
-    K + shift C + shift^2 M, in rad/s. Not collective. Errors: PETSC_ERR_ARG_WRONGSTATE where none was kept. @*/
+/*@ ModesGetFactor - the factorisation that was kept (borrowed): of K - shift M, shift in (rad/s)^2, also where damped
+    modes came from undamped ones; or of K + shift C + shift^2 M, in rad/s, where a damped solver made it. Not
+    collective. Errors: PETSC_ERR_ARG_WRONGSTATE where none was kept. @*/
 PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/

@@ -1,85 +1,80 @@
 /*
-   Superposition of modes with the residual term: Galerkin's method on V, the span of the modes' vectors and of
-   Krylov vectors at the shift of the modes' own factorisation, which grows until the answer stays what it is,
+   Superposition of modes with the residual term: Galerkin's method on V, the span of the modes' vectors and of what
+   the modes' own factorisation makes of forces, which grows until the answer stays what it is,
 
       H_p(omega) = l_p' V (V' Q(i omega) V)^-1 V' f,   m/N.
 
-   Left and right vectors are in one V, so that the moments of H at the shift that both chains match add up. The
-   error at a frequency is the difference from the answer with one step more.
+   Left and right vectors are in one V, so that the error of H is the product of what both leave of the force and of the
+   outputs. The error at a frequency is the difference from the answer with one step more.
 */
-#include "modes/space/krylov.h"
+#include "modes/space/answers.h"
 #include "schur.h"
 #include "solver/block/orthonormal.h"
 
 /* Frequencies that are looked at while the space grows; all are looked at before it ends. */
 #define N_LOOKS 33
 
+#define RESPONSE_KEEP 0.03 /* of what answers leave: smaller directions are left to the next step */
+
 typedef struct {
-  ModesSpace  space;
-  ModesKrylov right, left; /* left is empty for a symmetric pencil */
-  Vec         b, *l, *all; /* the force, the outputs, and both */
-  PetscReal   shift;
-  FrfSchur    used, larger; /* the small response before the last step, and after it */
+  ModesSpace   space;
+  ModesAnswers answers;
+  Vec          b, *l, *all; /* the force, the outputs, and both */
+  PetscReal    shift;
+  FrfSchur     used, larger; /* the small response before the last step, and after it */
 } Superposition;
 
-/* Space and chains with the modes. With a symmetric pencil left vectors are right ones: one chain begins with the
-   force and the outputs. most = states of the modes, real and imaginary parts, and max_steps + 1 of each chain. The
-   factors are borrowed from the modes. */
+/* Space with the modes. With a symmetric pencil left vectors are right ones: the right side answers to the force and
+   to the outputs. The factors are borrowed from the modes. */
 static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
 {
   PencilMatrices     pencil;
-  ShiftInvert        factor;
   const ShiftInvert *kept;
-  PetscInt           n_modes, most;
 
   PetscFunctionBeginUser;
   PetscCall(ModesGetFactor(frf->modes, &kept));
-  factor          = *kept;
-  factor.progress = &frf->progress;
-  factor.after    = NULL;
   PetscCall(PencilGetMatrices(frf->pencil, &pencil));
-  PetscCall(ModesCountVectors(frf->modes, &n_modes));
   PetscCall(FrfProject(frf, &s->b, &s->l));
-  s->shift = factor.shift;
-  most     = 2 * n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1);
-  PetscCall(ModesSpaceCreate(&pencil, n_modes + (frf->max_steps + 1) * (frf->n_outputs + 1), &s->space));
-  PetscCall(ModesKrylovCreate(&s->space, &factor, PETSC_FALSE, most, &s->right));
-  PetscCall(ModesKrylovCreate(&s->space, &factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
-  s->right.n_solves = s->left.n_solves = &frf->n_solves;
+  s->shift = kept->shift;
+  if (pencil.C && !ShiftInvertIsDamped(kept)) s->shift = PetscSqrtReal(PetscAbsReal(kept->shift));
+  PetscCall(ModesSpaceCreate(&pencil, &s->space));
   PetscCall(PetscMalloc1(frf->n_outputs + 1, &s->all));
   s->all[0] = s->b;
   PetscCall(PetscArraycpy(s->all + 1, s->l, frf->n_outputs));
-  s->right.b   = s->all;
-  s->right.n_b = pencil.symmetric ? frf->n_outputs + 1 : 1;
-  s->left.b    = s->l;
-  s->left.n_b  = pencil.symmetric ? 0 : frf->n_outputs;
-  PetscCall(ModesKrylovAddModes(frf->modes, frf->pencil, &s->right));
-  if (!pencil.symmetric) PetscCall(ModesKrylovAddModes(frf->modes, frf->pencil, &s->left));
+  s->answers                 = (ModesAnswers){.space  = &s->space,
+                                              .factor = *kept,
+                                              .keep   = RESPONSE_KEEP,
+                                              .edge   = {PETSC_MAX_REAL, 0},
+                                              .n = {pencil.symmetric ? frf->n_outputs + 1 : 1, pencil.symmetric ? 0 : frf->n_outputs},
+                                              .b = {s->all, s->l},
+                                              .n_solves = &frf->n_solves};
+  s->answers.factor.progress = &frf->progress;
+  s->answers.factor.after    = NULL;
+  for (PetscInt i = 0; i < frf->n; i++) {
+    s->answers.edge[0] = PetscMin(s->answers.edge[0], 2 * PETSC_PI * frf->freq[i]);
+    s->answers.edge[1] = PetscMax(s->answers.edge[1], 2 * PETSC_PI * frf->freq[i]);
+  }
+  PetscCall(ModesSpaceAddModes(&s->space, frf->modes, frf->pencil, PETSC_FALSE));
+  if (!pencil.symmetric) PetscCall(ModesSpaceAddModes(&s->space, frf->modes, frf->pencil, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
-/* One step of both chains */
+/* One step of both sides */
 static PetscErrorCode SuperpositionStep(Frf frf, Superposition *s)
 {
   PetscFunctionBeginUser;
   frf->n_steps++;
-  PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
+  PetscCall(ModesAnswersStep(&s->answers));
   PetscFunctionReturn(0);
 }
 
 /* The force and the outputs in coordinates */
 static PetscErrorCode EndsCreate(Frf frf, const Superposition *s, FrfEnds *ends)
 {
-  BV block;
-
   PetscFunctionBeginUser;
   ends->n_outputs = frf->n_outputs;
-  PetscCall(BlockCreate(s->space.space.V, frf->n_outputs + 1, &block));
-  PetscCall(BVInsertVec(block, 0, s->b));
-  for (PetscInt p = 0; p < frf->n_outputs; p++) PetscCall(BVInsertVec(block, p + 1, s->l[p]));
-  PetscCall(ModesSpaceCoordinates(&s->space, block, &ends->b));
-  ends->l = ends->b + s->space.size;
-  PetscCall(BVDestroy(&block));
+  PetscCall(ModesSpaceProducts(&s->space, frf->n_outputs + 1, s->all, &ends->b));
+  ends->l = ends->b + s->space.space.n;
   PetscFunctionReturn(0);
 }
 
@@ -210,8 +205,6 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionBeginUser;
   PetscCall(FrfSchurDestroy(&s->used));
   PetscCall(FrfSchurDestroy(&s->larger));
-  PetscCall(ModesKrylovDestroy(&s->right));
-  PetscCall(ModesKrylovDestroy(&s->left));
   PetscCall(ModesSpaceDestroy(&s->space));
   PetscCall(VecDestroy(&s->b));
   PetscCall(PetscFree(s->all));
@@ -219,17 +212,20 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionReturn(0);
 }
 
-/* Collective. The factors of the modes are kept for the Krylov vectors: no further factorisation. Residues name the
+/* Collective. The factors of the modes are kept for the answers: no further factorisation. Residues name the
    modes of peaks; they are not summed. */
 PetscErrorCode FrfSolveModal(Frf frf)
 {
   FrfResidues   residues;
   Superposition s = {.shift = 0};
+  PetscBool     terms;
 
   PetscFunctionBeginUser;
   PetscCall(ModesKeepFactor(frf->modes, PETSC_TRUE));
   PetscCall(ModesSetPencil(frf->modes, frf->pencil));
+  PetscCall(ModesPrepareComponents(frf->modes, &terms));
   PetscCall(ModesSolve(frf->modes));
+  PetscCall(ModesFindComponents(frf->modes));
   PetscCall(FrfCheckPoles(frf));
   PetscCall(SuperpositionCreate(frf, &s));
   PetscCall(SuperpositionGrow(frf, &s));

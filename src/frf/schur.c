@@ -78,7 +78,7 @@ PetscErrorCode FrfSchurCreate(const ModesSpace *space, PetscBool rounded, PetscR
   PetscCall(SchurReduce(s, Z));
   SchurTurn(s->length, Z, s->b, s->x);
   for (PetscInt p = 0; p < ends->n_outputs; p++) {
-    PetscCall(PetscArraycpy(&s->l[p * s->length + s->length - n], &ends->l[p * space->size], n));
+    PetscCall(PetscArraycpy(&s->l[p * s->length + s->length - n], &ends->l[p * n], n));
     SchurTurn(s->length, Z, &s->l[p * s->length], s->x);
   }
   PetscCall(PetscFree(Z));

@@ -6,8 +6,9 @@
 
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
-/* S of krylov.h on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and outputs there. Its
-   states are [q; p] here, as in basis/companion.c. */
+/* S = Q0^-1 M undamped, Q0 = K - shift M, or damped the companion matrix of Q(lambda) about a shift, Q0 = Q(shift)
+   (basis/companion.c, states [q; p]), on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and
+   outputs there. */
 typedef struct {
   PetscInt   n, length, n_outputs;
   PetscBool  damped;
@@ -19,7 +20,7 @@ typedef struct {
   PetscReal *x; /* [2 FRF_BATCH][length] work */
 } FrfSchur;
 
-/* The force and outputs in coordinates of the space: b[size], l[n_outputs][size] */
+/* The force and outputs in coordinates of the space: b[its vectors], l[n_outputs][likewise] */
 typedef struct {
   PetscInt   n_outputs;
   PetscReal *b, *l;

@@ -156,7 +156,7 @@ static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Wind
   PetscFunctionReturn(0);
 }
 
-/* The same of a damped pencil by projection, where that is the route; a factorisation to keep is that of Q(shift) */
+/* The same of a damped pencil by projection, where that is the route, with factors of the undamped problem */
 static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, Window *window)
 {
   PetscFunctionBeginUser;
@@ -167,8 +167,6 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
     PetscCall(ProjectSolve(modes, pencil, window, &window->route.project));
   PetscCheck(window->route.project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "-modes_damping project cannot be done: %s; use auto or pep", window->route.why);
-  if (window->route.project && modes->keep)
-    PetscCall(ShiftInvertCreate(pencil, DampedShift(window), PETSC_FALSE, &modes->progress, &modes->factor));
   PetscFunctionReturn(0);
 }
 

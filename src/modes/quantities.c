@@ -60,7 +60,7 @@ static const Quantity rows[] = {
    NULL, QUANTITY_REAL, MODES_AT(free_to), QUANTITY_WITHIN(0, 100), .in = RUN_MODES},
   {"-modes_components_found",
    "the same of unstable modes, and names by free modes, without a solution: estimates from the modes found", NULL,
-   QUANTITY_BOOL, MODES_AT(free_found), .initial = PETSC_TRUE, .in = RUN_MODES},
+   QUANTITY_BOOL, MODES_AT(free_found), .initial = PETSC_TRUE, .in = RUN_MODES | RUN_FRF},
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE, .idle = ModesIdleDisc},
   {"-modes_contact",

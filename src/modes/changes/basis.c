@@ -5,36 +5,18 @@
       Q(lambda) x = -c(lambda) (a'x) a,
 
    and are answers to forces along a at frequencies of the band: what its modes do not tell of them is spanned by few
-   Krylov vectors at the shift of the modes' own factorisation (modes/space/krylov.c). A damped solution by projection
-   leaves none, and one is made.
+   vectors that the modes' own factorisation finds (modes/space/answers.c).
 */
 #include "changes.h"
-#include "solver/block/orthonormal.h"
 #include <complex.h>
 
-#define SPREAD_FEW     8    /* forces of layers and parameters that are answered in as many steps as those at nodes */
-#define SPREAD_ALIKE   1e-6 /* of an amount: answers to terms whose amounts are in one ratio serve smaller ones too */
-#define SPREAD_ANSWERS 4    /* times as many answers to many forces as there are modes, at most */
-#define CHANGE_STEPS   4    /* of the chains; what the last two change tells the error (dense.c) */
-
-/* Coordinates [n][columns of the space] of vectors */
-static PetscErrorCode SpaceCoordinates(const ChangeSpace *s, PetscInt n, const Vec a[], PetscReal **coordinates)
-{
-  const Subspace *space = &s->space.space;
-  BV              block;
-  Mat             H;
-
-  PetscFunctionBeginUser;
-  PetscCall(BlockCreate(space->V, n, &block));
-  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(block, j, a[j]));
-  PetscCall(PetscMalloc1(n * space->n, coordinates));
-  PetscCall(BVSetActiveColumns(space->V, 0, space->n));
-  PetscCall(BlockProducts(space->V, NULL, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, space->n, *coordinates));
-  PetscCall(MatDestroy(&H));
-  PetscCall(BVDestroy(&block));
-  PetscFunctionReturn(0);
-}
+#define SPREAD_FEW   8    /* forces of layers and parameters that are answered in as many steps as those at nodes */
+#define SPREAD_ALIKE 1e-6 /* of an amount: answers to terms whose amounts are in one ratio serve smaller ones too */
+/* of the answers; what the last two change tells the error (dense.c). Where damping brings directions of its own each
+   has about twice as many. */
+#define CHANGE_STEPS        4
+#define CHANGE_STEPS_DAMPED 3
+#define CHANGE_KEEP         0.3 /* of what an answer leaves: smaller directions are left to the next step */
 
 /* Coordinates of the right or left vectors of all modes, zeros where there are no left ones */
 static PetscErrorCode SpaceKeepVectors(Modes modes, ChangeSpace *s, int left, PetscReal **coordinates)
@@ -49,7 +31,7 @@ static PetscErrorCode SpaceKeepVectors(Modes modes, ChangeSpace *s, int left, Pe
     for (int part = 0; part < 2; part++)
       if (x[2 * left + part]) PetscCall(PencilRestrict(modes->pencil, x[2 * left + part], a[2 * i + part]));
   }
-  PetscCall(SpaceCoordinates(s, 2 * modes->n, a, coordinates));
+  PetscCall(ModesSpaceProducts(&s->space, 2 * modes->n, a, coordinates));
   PetscCall(VecDestroyVecs(2 * modes->n, &a));
   PetscCall(VecDestroy(&like));
   PetscFunctionReturn(0);
@@ -69,29 +51,26 @@ static PetscErrorCode SpaceKeepBefore(Modes modes, ChangeSpace *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_forces, PetscBool spread, ChangeSpace *s)
+PetscErrorCode ChangeSpaceCreate(Modes modes, const ChangeRange *range, ChangeSpace *s)
 {
   const ShiftInvert *factor;
   PencilMatrices     pencil;
-  PetscInt           n, most, answers;
 
   PetscFunctionBeginUser;
   *s = (ChangeSpace){.owner = modes->pencil};
   PetscCall(ModesGetFactor(modes, &factor));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil));
-  PetscCall(ModesCountVectors(modes, &n));
-  answers = CHANGE_STEPS * (most_forces + (spread ? SPREAD_FEW : 0)) + (spread ? SPREAD_ANSWERS * modes->n : 0);
-  most    = 2 * n + answers;
-  PetscCall(ModesSpaceCreate(&pencil, n + 2 * answers, &s->space));
-  PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_FALSE, most, &s->right));
-  PetscCall(ModesKrylovCreate(&s->space, factor, PETSC_TRUE, pencil.symmetric ? 0 : most, &s->left));
-  s->right.n_solves = s->left.n_solves = &s->n_solves;
-  PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->right));
-  if (!pencil.symmetric) PetscCall(ModesKrylovAddModes(modes, modes->pencil, &s->left));
+  PetscCall(ModesSpaceCreate(&pencil, &s->space));
+  s->answers              = (ModesAnswers){.space    = &s->space,
+                                           .factor   = *factor,
+                                           .edge     = {range->edge[0], range->edge[1]},
+                                           .keep     = CHANGE_KEEP,
+                                           .n_solves = &s->n_solves};
+  s->answers.factor.after = NULL;
+  PetscCall(ModesSpaceAddModes(&s->space, modes, modes->pencil, PETSC_FALSE));
+  if (!pencil.symmetric) PetscCall(ModesSpaceAddModes(&s->space, modes, modes->pencil, PETSC_TRUE));
   s->n_modes = s->space.space.n;
   PetscCall(SpaceKeepBefore(modes, s));
-  s->n_states[0] = s->right.n;
-  s->n_states[1] = s->left.n;
   PetscFunctionReturn(0);
 }
 
@@ -158,19 +137,22 @@ static PetscErrorCode SpaceKeepTerms(ChangeSpace *s, PetscInt n, const ChangeTer
   PetscFunctionReturn(0);
 }
 
-/* Chains of so many steps from forces, behind what the space holds; first[] of the last two */
+/* So many steps of answers to forces, behind what the space holds; first[] of the last two */
 static PetscErrorCode SpaceStep(ChangeSpace *s, int steps, const ChangeForces forces[2])
 {
   const PetscInt n[2] = {forces[0].n, s->space.pencil.symmetric ? 0 : forces[1].n};
 
   PetscFunctionBeginUser;
   if (n[0] + n[1] == 0) PetscFunctionReturn(0);
-  PetscCall(ModesKrylovRestart(&s->right, s->right.n, n[0], forces[0].force));
-  PetscCall(ModesKrylovRestart(&s->left, s->left.n, n[1], forces[1].force));
+  s->answers.begun = PETSC_FALSE;
+  for (int i = 0; i < 2; i++) {
+    s->answers.n[i] = n[i];
+    s->answers.b[i] = forces[i].force;
+  }
   for (int step = 0; step < steps; step++) {
     s->first[0] = step ? s->first[1] : s->space.space.n;
     s->first[1] = s->space.space.n;
-    PetscCall(ModesKrylovStep(&s->space, (ModesKrylov *[]){&s->right, &s->left}));
+    PetscCall(ModesAnswersStep(&s->answers));
   }
   PetscFunctionReturn(0);
 }
@@ -214,7 +196,7 @@ static PetscErrorCode SpaceTakeSides(ChangeSpace *s, const ChangeForces forces[2
     if (!s->term[t].force) continue;
     for (int i = 0; i < 2; i++) {
       PetscCall(PetscFree(s->side[i][t]));
-      PetscCall(SpaceCoordinates(s, 1, &forces[i].force[k], &s->side[i][t]));
+      PetscCall(ModesSpaceProducts(&s->space, 1, &forces[i].force[k], &s->side[i][t]));
     }
     k++;
   }
@@ -253,7 +235,7 @@ static PetscErrorCode SpaceRepeat(ChangeSpace *s, const ChangeRange *range, Pets
   PetscFunctionReturn(0);
 }
 
-/* Answers to forces at nodes in CHANGE_STEPS steps, to few others in one less and a repetition; to many in one step of
+/* Answers to forces at nodes in all steps, to few others in one less and a repetition; to many in one step of
    their own, all of which the error counts. Those from `nodes` on are no nodes' */
 static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, PetscInt nodes,
                                   const ChangeForces forces[2])
@@ -261,13 +243,12 @@ static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, Pets
   const ChangeForces own[2]    = {{nodes, forces[0].force}, {nodes, forces[1].force}},
                      spread[2] = {ForcesFrom(&forces[0], nodes), ForcesFrom(&forces[1], nodes)};
   const PetscInt many          = PetscMax(spread[0].n, spread[1].n);
+  const int      steps         = s->space.pencil.C ? CHANGE_STEPS_DAMPED : CHANGE_STEPS;
   PetscInt       first[2];
 
   PetscFunctionBeginUser;
   s->first[0] = s->first[1] = s->space.space.n;
-  s->right.n                = s->n_states[0];
-  s->left.n                 = s->n_states[1];
-  PetscCall(SpaceStep(s, many ? CHANGE_STEPS - 1 : CHANGE_STEPS, many > SPREAD_FEW ? own : forces));
+  PetscCall(SpaceStep(s, many ? steps - 1 : steps, many > SPREAD_FEW ? own : forces));
   if (many && many <= SPREAD_FEW) {
     PetscCall(SpaceRepeat(s, range, nodes, forces));
   } else if (many) {
@@ -310,8 +291,6 @@ PetscErrorCode ChangeSpaceDestroy(ChangeSpace *s)
   PetscCall(PetscFree(s->before));
   PetscCall(PetscFree(s->after));
   PetscCall(PetscFree2(s->length, s->lambda));
-  PetscCall(ModesKrylovDestroy(&s->right));
-  PetscCall(ModesKrylovDestroy(&s->left));
   PetscCall(ModesSpaceDestroy(&s->space));
   PetscFunctionReturn(0);
 }

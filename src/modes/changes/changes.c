@@ -74,13 +74,10 @@ PetscErrorCode ModesFindChanges(Modes modes)
 {
   const ChangeRange range = RangeOf(modes);
   ChangeSpace       space;
-  PetscInt          most   = 0;
-  PetscBool         spread = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < modes->n_changes; i++) most = PetscMax(most, ChangeMostForces(modes, i, &spread));
   PetscCall(PetscCalloc1(modes->n_changes, &modes->changed));
-  PetscCall(ChangeSpaceCreate(modes, most, spread, &space));
+  PetscCall(ChangeSpaceCreate(modes, &range, &space));
   for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeTry(modes, &space, &range, i));
   PetscCall(ChangeSpaceDestroy(&space));
   PetscFunctionReturn(0);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "modes/modesimpl.h"
-#include "modes/space/krylov.h"
+#include "modes/space/answers.h"
 
 /* One change as its options give it */
 struct _p_ModesChange {
@@ -49,13 +49,13 @@ struct _p_ModesChanged {
   ChangedMode *mode;          /* [n] */
 };
 
-/* The modes of the system as it was, and behind them its answers to the terms of a change, in steps of two Krylov
-   chains; those of the last two and of the last step are the columns of the space from first[0] and first[1] */
+/* The modes of the system as it was, and behind them its answers to the terms of a change; those of the last two steps
+   and of the last one are the columns of the space from first[0] and first[1] */
 typedef struct {
   Pencil        owner;
   ModesSpace    space;
-  ModesKrylov   right, left; /* left is empty for a symmetric pencil */
-  PetscInt      n_modes, n_states[2], first[2];
+  ModesAnswers  answers;
+  PetscInt      n_modes, first[2];
   PetscInt      n_solves;
   PetscInt      n_before; /* modes of the system as it was */
   PetscReal    *before;   /* [2 n_before][n_modes] coordinates of their right vectors, real and imaginary parts */
@@ -68,9 +68,7 @@ typedef struct {
                            NULL */
 } ChangeSpace;
 
-/* terms.c - how many forces at nodes a change may have with those made with it, and whether one is spread over many
-   unknowns; its terms; the caller destroys them */
-PETSC_INTERN PetscInt       ChangeMostForces(const Modes modes, PetscInt i, PetscBool *spread);
+/* terms.c - the terms of a change and of those made with it; the caller destroys them */
 PETSC_INTERN PetscErrorCode ChangeCreateTerms(Modes modes, PetscInt i, PetscInt *n, ChangeTerm **terms);
 PETSC_INTERN PetscErrorCode ChangeDestroyTerms(PetscInt n, ChangeTerm **terms);
 /* place.c, layer.c - adds the terms of one change at nodes, of one over many nodes, behind n that there are */
@@ -111,7 +109,7 @@ typedef struct {
 } ChangeRange;
 
 /* basis.c - modes; in place of other answers those to the terms, which may be there already. Collective. */
-PETSC_INTERN PetscErrorCode ChangeSpaceCreate(Modes modes, PetscInt most_forces, PetscBool spread, ChangeSpace *space);
+PETSC_INTERN PetscErrorCode ChangeSpaceCreate(Modes modes, const ChangeRange *range, ChangeSpace *space);
 PETSC_INTERN PetscErrorCode ChangeSpaceRespond(ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
                                                const ChangeRange *range);
 PETSC_INTERN PetscErrorCode ChangeSpaceDestroy(ChangeSpace *space);

@@ -9,7 +9,7 @@
 
       e = y_z' Q_zz(lambda) x_z / (y' Q'(lambda) x).
 
-   Krylov vectors need not converge in every step: of a spring that is stiffer than the place where it acts the third
+   Answers need not converge in every step: of a spring that is stiffer than the place where it acts the third
    step may do next to nothing, and the fourth much. Hence e_2 of the last two steps and e_1 of the last one count, as
    sqrt(e_1 e_2), but no less than 0.3 e_2, or e_2 of changes that are spread over many unknowns (spread.c), to which
    the space answers in few steps: a choice, no bound. Of 220 changes at random (tests/test_changes.py, --count 55,

@@ -4,21 +4,6 @@
 */
 #include "changes.h"
 
-PetscInt ChangeMostForces(const Modes modes, PetscInt i, PetscBool *spread)
-{
-  PetscInt most = 0;
-
-  for (PetscInt k = i; k >= 0; k = modes->change[k].before) {
-    const struct _p_ModesChange *change = &modes->change[k];
-
-    if (change->has_at || change->unknown[0])
-      most += CHANGE_TERMS;
-    else
-      *spread = PETSC_TRUE;
-  }
-  return most;
-}
-
 PetscErrorCode ChangeCreateTerms(Modes modes, PetscInt i, PetscInt *n, ChangeTerm **terms)
 {
   PetscInt  most = 0, n_parameter = 0;

@@ -264,6 +264,7 @@ static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents 
     PetscBool left;
 
     if (c->found && !ComponentsAsks(modes, i)) continue;
+    if (c->found && c->column[i][0] < 0 && c->column[i][1] < 0) continue; /* there was no room for it */
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
     left = yr && (!c->found || modes->mode[i].unstable) ? PETSC_TRUE : PETSC_FALSE; /* names need energies alone */
     PetscCall(PetscArrayzero(sums, n_sums));

@@ -21,7 +21,7 @@
 #define FOUND_MANY  48
 #define FOUND_FAR   1.3
 #define FOUND_SMALL 0.1
-#define FOUND_MOST  600 /* vectors; more are not worth it */
+#define FOUND_MOST  600 /* vectors; where there are more, those of modes that ask come first */
 
 /* The vectors of a mode, and their columns, -1 for none */
 typedef struct {
@@ -49,26 +49,48 @@ static PetscErrorCode VectorsMeasure(const Modes modes, PetscInt i, const FoundV
   PetscFunctionReturn(0);
 }
 
-/* Columns for the vectors of all modes: none for a part that is zero, nor for a left vector that is the right one or
-   next to it, which adds little */
-static PetscErrorCode VectorsCount(Modes modes, FoundVectors v[], PetscInt *n)
+/* Columns for the vectors of a mode: none for a part that is zero, nor for a left vector that is the right one or next
+   to it, which adds little; and none at all where there is no room for them, unless it is unstable */
+static PetscErrorCode ModeCount(Modes modes, PetscInt i, FoundVectors *v, PetscInt *n)
+{
+  const PetscInt before = *n;
+  PetscReal      size[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModesGetVectors(modes, i, &v->x[0], &v->x[1], &v->x[2], &v->x[3]));
+  PetscCall(VectorsMeasure(modes, i, v, size));
+  for (int part = 0; part < 4; part++) {
+    PetscBool same = PETSC_FALSE;
+
+    v->column[part] = -1;
+    if (size[part] == 0) continue;
+    if (part >= 2 && v->x[part - 2]) PetscCall(VecEqual(v->x[part], v->x[part - 2], &same));
+    v->column[part] = same ? v->column[part - 2] : (*n)++;
+  }
+  if (*n <= FOUND_MOST || modes->mode[i].unstable) PetscFunctionReturn(0);
+  for (int part = 0; part < 4; part++) v->column[part] = -1;
+  *n = before;
+  PetscFunctionReturn(0);
+}
+
+/* What a mode asks for: shares, a name, nothing */
+static int ModeRank(const Modes modes, PetscInt i)
+{
+  if (modes->mode[i].unstable) return 0;
+  return ComponentsAsks(modes, i) ? 1 : 2;
+}
+
+/* Columns for the vectors of all modes; n_left_out ask and have none */
+static PetscErrorCode VectorsCount(Modes modes, FoundVectors v[], PetscInt *n, PetscInt *n_left_out)
 {
   PetscFunctionBeginUser;
-  *n = 0;
-  for (PetscInt i = 0; i < modes->n; i++) {
-    PetscReal size[4];
-
-    PetscCall(ModesGetVectors(modes, i, &v[i].x[0], &v[i].x[1], &v[i].x[2], &v[i].x[3]));
-    PetscCall(VectorsMeasure(modes, i, &v[i], size));
-    for (int part = 0; part < 4; part++) {
-      PetscBool same = PETSC_FALSE;
-
-      v[i].column[part] = -1;
-      if (size[part] == 0) continue;
-      if (part >= 2 && v[i].x[part - 2]) PetscCall(VecEqual(v[i].x[part], v[i].x[part - 2], &same));
-      v[i].column[part] = same ? v[i].column[part - 2] : (*n)++;
+  *n = *n_left_out = 0;
+  for (int rank = 0; rank < 3; rank++)
+    for (PetscInt i = 0; i < modes->n; i++) {
+      if (ModeRank(modes, i) != rank) continue;
+      PetscCall(ModeCount(modes, i, &v[i], n));
+      *n_left_out += rank < 2 && v[i].column[0] < 0 && v[i].column[1] < 0;
     }
-  }
   PetscFunctionReturn(0);
 }
 
@@ -327,19 +349,18 @@ static PetscErrorCode FoundSolve(Modes modes, PetscInt n, const FoundVectors v[]
 PetscErrorCode FreeModesTake(Modes modes, ModesComponents c, Modes free)
 {
   FoundVectors *v;
-  PetscInt      n;
+  PetscInt      n, n_left_out;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(modes->n, &v));
-  PetscCall(VectorsCount(modes, v, &n));
+  PetscCall(VectorsCount(modes, v, &n, &n_left_out));
   free->weights = modes->weights; /* which stay those of modes */
-  if (n <= FOUND_MOST)
-    PetscCall(FoundSolve(modes, n, v, c, free));
-  else
+  PetscCall(FoundSolve(modes, n, v, c, free));
+  if (n_left_out)
     PetscCall(PetscPrintf(modes->comm,
-                          "free modes of the bodies are not found from these modes, which have %" PetscInt_FMT
-                          " vectors, more than %d: parts are named alone; take a narrower -modes_band\n",
-                          n, FOUND_MOST));
+                          "free modes of the bodies are sought among %d vectors of the modes: %" PetscInt_FMT
+                          " modes beyond are named after the part alone; take a narrower -modes_band\n",
+                          FOUND_MOST, n_left_out));
   free->weights = NULL;
   PetscCall(PetscFree(v));
   PetscFunctionReturn(0);

@@ -308,6 +308,9 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
   window->guard = PETSC_FALSE;
   if (why) window->extra = 6, window->known.rigid = 0;
   PetscCall(SubspaceDestroy(&p.space));
-  PetscCall(ShiftInvertDestroy(&p.si));
+  if (!why && modes->keep)
+    modes->factor = p.si;
+  else
+    PetscCall(ShiftInvertDestroy(&p.si));
   PetscFunctionReturn(0);
 }

@@ -36,14 +36,11 @@ static PetscErrorCode NoiseCreate(Mat K, Mat *E)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSpaceCreate(const PencilMatrices *pencil, PetscInt size, ModesSpace *space)
+PetscErrorCode ModesSpaceCreate(const PencilMatrices *pencil, ModesSpace *space)
 {
-  PetscInt n;
-  Mat      E;
+  Mat E;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetSize(pencil->K, &n, NULL));
-  space->size   = PetscMin(size, n);
   space->pencil = *pencil;
   PetscCall(SubspaceCreate(pencil->K, NULL, 0, &space->space));
   PetscCall(SubspaceAddPencil(&space->space, pencil));
@@ -85,32 +82,22 @@ PetscErrorCode ModesSpaceAdd(ModesSpace *space, BV block)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModesSpaceCoordinates(const ModesSpace *space, BV block, PetscReal **coordinates)
+PetscErrorCode ModesSpaceProducts(const ModesSpace *space, PetscInt n, const Vec a[], PetscReal **products)
 {
-  PetscInt n;
-  Mat      H;
+  const Subspace *s = &space->space;
+  BV              block;
+  Mat             H;
 
   PetscFunctionBeginUser;
-  PetscCall(BVGetActiveColumns(block, NULL, &n));
-  PetscCall(PetscCalloc1(n * space->size, coordinates));
-  PetscCall(BVSetActiveColumns(space->space.V, 0, space->space.n));
-  PetscCall(BlockProducts(space->space.V, NULL, block, &H));
-  PetscCall(BlockCopy(H, PETSC_FALSE, space->size, *coordinates));
+  PetscCall(PetscMalloc1(n * s->n, products));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(BlockCreate(s->V, n, &block));
+  for (PetscInt j = 0; j < n; j++) PetscCall(BVInsertVec(block, j, a[j]));
+  PetscCall(BVSetActiveColumns(s->V, 0, s->n));
+  PetscCall(BlockProducts(s->V, NULL, block, &H));
+  PetscCall(BlockCopy(H, PETSC_FALSE, s->n, *products));
   PetscCall(MatDestroy(&H));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModesSpaceLift(const ModesSpace *space, PetscInt n, PetscInt stride, const PetscReal coordinates[],
-                              BV block)
-{
-  const PetscInt size = space->space.n;
-  PetscReal     *packed;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * size, &packed));
-  for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&packed[j * size], &coordinates[j * stride], size));
-  PetscCall(BlockLift(space->space.V, size, n, packed, block));
-  PetscCall(PetscFree(packed));
+  PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
 

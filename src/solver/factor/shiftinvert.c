@@ -309,6 +309,11 @@ PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st)
   PetscFunctionReturn(0);
 }
 
+PetscBool ShiftInvertIsDamped(const ShiftInvert *si)
+{
+  return si->term[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ShiftInvertDestroy(ShiftInvert *si)
 {
   PetscFunctionBeginUser;

@@ -69,6 +69,8 @@ PETSC_INTERN PetscErrorCode ShiftInvertCreate(const PencilMatrices *pencil, Pets
 PETSC_INTERN PetscErrorCode ShiftInvertMove(const PencilMatrices *pencil, PetscReal shift, ShiftInvert *si);
 PETSC_INTERN PetscErrorCode ShiftInvertAttach(ShiftInvert *si, PetscBool transposed, ST st);
 PETSC_INTERN PetscErrorCode ShiftInvertDestroy(ShiftInvert *si);
+/* Whether they are factors of a damped pencil, K + shift C + shift^2 M. Not collective. */
+PETSC_INTERN PetscBool      ShiftInvertIsDamped(const ShiftInvert *si);
 /* Counts n steps of the eigensolver, and calls what is to be called after them */
 PETSC_INTERN PetscErrorCode ShiftInvertStepped(const ShiftInvert *si, PetscInt n);
 /* x = A^-1 b, or A^-T b. PETSC_ERR_NOT_CONVERGED where an iterative solver of the user's did not converge */
