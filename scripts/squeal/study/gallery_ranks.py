@@ -43,6 +43,7 @@ RUNS = {
     "affine sweep": Run("affine", words="-analysis sweep -sweep_parameter speed -sweep_values 1:5:41", nudge=()),
     "oscillator": Run("oscillator", nudge=()),
     "cantilever": Run("cantilever", "cantilever", nudge=("beam_young", STEEL)),
+    "plate_absorber": Run("plate plate_absorber", nudge=("disc_young", STEEL), quick="-rig_disc_elements 8,48,1"),
     "plate": Run("plate", nudge=("disc_young", STEEL), quick="-rig_disc_elements 8,48,1"),
     "free_ring": Run("free_ring", nudge=("disc_young", STEEL), quick="-rig_disc_elements 8,48,1"),
     "block": Run("block", "block", nudge=BLOCK),
