@@ -76,26 +76,6 @@ static PetscErrorCode BodyNumber(Substructure s, const Mesh *mesh, IS *unknowns)
   PetscFunctionReturn(0);
 }
 
-/* A number for each unknown that others are not likely to cancel in a sum; 0 for those of the parts */
-static PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe)
-{
-  const PetscInt *unknown;
-  PetscInt        first, last, n;
-  PetscScalar    *value;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(A, probe, NULL));
-  PetscCall(VecGetOwnershipRange(*probe, &first, &last));
-  PetscCall(VecGetArray(*probe, &value));
-  for (PetscInt i = first; i < last; i++) value[i - first] = 1.5 + PetscSinReal(1 + 12.9898 * (PetscReal)(i % 9973));
-  PetscCall(ISGetLocalSize(unknowns, &n));
-  PetscCall(ISGetIndices(unknowns, &unknown));
-  for (PetscInt k = 0; k < n; k++) value[unknown[k] - first] = 0;
-  PetscCall(ISRestoreIndices(unknowns, &unknown));
-  PetscCall(VecRestoreArray(*probe, &value));
-  PetscFunctionReturn(0);
-}
-
 /* Whether a term acts on others beside the parts, where it acts on the parts at all; marks these rows then */
 static PetscErrorCode TermJoins(Substructure s, Mat A, IS unknowns, PetscBool joined[], PetscBool *joins)
 {

@@ -1,7 +1,8 @@
 /*
    Displacements of the parts that follow others, by ties, rigid points and equations: u = Z q. Where all that one
    follows is inside, it is no unknown. One that follows others outside is an unknown of its own, and belongs to the
-   interface: the tie, which is left out, is made again where the superelement is used.
+   interface: the tie, which is left out, is made again where the superelement is used. So does one that others outside
+   follow.
 */
 #include "substructureimpl.h"
 
@@ -91,6 +92,31 @@ static PetscErrorCode FollowCreate(Substructure s, Mat W, const PetscBool keep[]
   PetscFunctionReturn(0);
 }
 
+/* Marks what others outside follow: they are tied to the parts there */
+static PetscErrorCode FollowMark(Mat all, IS unknowns, PetscBool joined[])
+{
+  const PetscInt    *unknown;
+  const PetscScalar *value;
+  PetscInt           first, n;
+  Vec                probe, answer;
+
+  PetscFunctionBeginUser;
+  PetscCall(BodyCreateProbe(all, unknowns, &probe));
+  PetscCall(VecDuplicate(probe, &answer));
+  PetscCall(MatMultTranspose(all, probe, answer));
+  PetscCall(VecGetOwnershipRange(answer, &first, NULL));
+  PetscCall(VecGetArrayRead(answer, &value));
+  PetscCall(ISGetLocalSize(unknowns, &n));
+  PetscCall(ISGetIndices(unknowns, &unknown));
+  for (PetscInt k = 0; k < n; k++)
+    if (value[unknown[k] - first] != 0) joined[k] = PETSC_TRUE;
+  PetscCall(ISRestoreIndices(unknowns, &unknown));
+  PetscCall(VecRestoreArrayRead(answer, &value));
+  PetscCall(VecDestroy(&answer));
+  PetscCall(VecDestroy(&probe));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBool joined[], Mat *Z)
 {
   Mat       all, back, whole, inside;
@@ -108,6 +134,7 @@ PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBo
   PetscCall(MatMatMult(all, back, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &whole));
   PetscCall(MatCreateSubMatrix(whole, unknowns, unknowns, MAT_INITIAL_MATRIX, &inside));
   PetscCall(FollowSort(whole, inside, unknowns, keep, joined, &n_mixed));
+  PetscCall(FollowMark(whole, unknowns, joined));
   for (PetscInt k = 0; k < n; k++)
     if (joined[k]) frees = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_mixed, 1, MPIU_INT, MPI_SUM, s->comm));

@@ -95,6 +95,9 @@ PETSC_INTERN PetscErrorCode BodyCreate(Substructure s);
 PETSC_INTERN PetscErrorCode BodyDestroy(SubstructureBody *body);
 /* The sums K, M, C of the terms of the parts, with these matrices for theirs; C NULL without damping. Collective. */
 PETSC_INTERN PetscErrorCode BodySum(const Substructure s, const Mat A[], Mat *K, Mat *M, Mat *C);
+/* probe.c - a number for each unknown that others are not likely to cancel in a sum; 0 for those of the parts.
+   Collective. */
+PETSC_INTERN PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe);
 /* follow.c - what follows others: Z [all unknowns of the parts][those that follow none inside], NULL without; keep
    [unknowns of this rank] tells these, joined where something outside moves one. Collective. */
 PETSC_INTERN PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBool joined[], Mat *Z);

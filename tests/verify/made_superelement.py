@@ -6,6 +6,7 @@
     made_superelement.py same MADE MADE TOLERANCE     matrices and tables of two runs
     made_superelement.py back MADE SAVED              K.bin and M.bin of SAVED are those of MADE, byte for byte
     made_superelement.py formats MADE                 files of all formats, read by scipy and by small readers, are those of squeal
+    made_superelement.py among MADE MODES             modes of the superelement are among those of a scene of its bodies and others
     made_superelement.py holds MADE MODES MODES       of two runs of one brake, the part as mesh and as superelement, modes differ by no
                                                       more than the superelement says, 1e-4 of the frequency, 1 % of the growth
 
@@ -216,6 +217,13 @@ def formats(made):
         sys.exit("error: SPOINT are not the internal unknowns")
 
 
+def among(made, modes):
+    f = np.array([float(row["freq_hz"]) for row in table(Path(modes) / "modes.csv")])
+    own = [row for row in table(Path(made) / "superelement.csv") if row["interface"] == "free"]
+    off = [(abs(f - float(row["frequency_hz"])).min(), float(row["error_hz"]) + NOISE * float(row["frequency_hz"])) for row in own]
+    check(f"largest error of {len(off)} modes beside what is said", max(is_off / said for is_off, said in off), 1.05)
+
+
 def holds(made, whole, used):
     said = max(float(row["relative_error"]) for row in table(Path(made) / "superelement.csv"))
     a, b = (table(Path(folder) / "modes.csv") for folder in (whole, used))
@@ -230,4 +238,5 @@ def holds(made, whole, used):
 
 
 if __name__ == "__main__":
-    {"reference": reference, "joined": joined, "same": same, "back": back, "formats": formats, "holds": holds}[sys.argv[1]](*sys.argv[2:])
+    commands = {each.__name__: each for each in (reference, joined, same, back, formats, among, holds)}
+    commands[sys.argv[1]](*sys.argv[2:])

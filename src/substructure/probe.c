@@ -1,0 +1,21 @@
+/* What shows whether matrices and ties act beyond the parts: numbers outside of them */
+#include "substructureimpl.h"
+
+PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe)
+{
+  const PetscInt *unknown;
+  PetscInt        first, last, n;
+  PetscScalar    *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(A, probe, NULL));
+  PetscCall(VecGetOwnershipRange(*probe, &first, &last));
+  PetscCall(VecGetArray(*probe, &value));
+  for (PetscInt i = first; i < last; i++) value[i - first] = 1.5 + PetscSinReal(1 + 12.9898 * (PetscReal)(i % 9973));
+  PetscCall(ISGetLocalSize(unknowns, &n));
+  PetscCall(ISGetIndices(unknowns, &unknown));
+  for (PetscInt k = 0; k < n; k++) value[unknown[k] - first] = 0;
+  PetscCall(ISRestoreIndices(unknowns, &unknown));
+  PetscCall(VecRestoreArray(*probe, &value));
+  PetscFunctionReturn(0);
+}
