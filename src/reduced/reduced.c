@@ -161,10 +161,11 @@ static PetscErrorCode ReducedAdvance(ReducedRun r)
 static PetscErrorCode ReducedAfterStep(ReducedRun r, PetscBool *stop)
 {
   const PetscInt interval = r->run.checkpoint_interval;
+  const PetscInt look     = r->reduction.model.sparse ? 1 : STOP_INTERVAL; /* steps of solutions are long */
 
   PetscFunctionBeginUser;
   *stop = PETSC_FALSE;
-  if (r->motion.step % STOP_INTERVAL == 0) {
+  if (r->motion.step % look == 0) {
     *stop = StopRequested();
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, r->comm));
   }

@@ -69,6 +69,7 @@ typedef struct {
   ComplianceMap map;                   /* move NULL where W is a matrix */
   PetscBool    *held;                  /* [3 n] directions that map.press() was prepared for */
   PetscBool     stands;                /* it was */
+  PetscInt      n_first;               /* iterations that were enough then; 0: none yet */
   PetscBool     stale;                 /* it takes too many iterations */
   PetscInt      n_released, *released; /* directions held that nobody wants, [3 n] */
   PetscReal    *motion;                /* work: [3 n] m, */

@@ -22,9 +22,9 @@
 #include "complianceimpl.h"
 #include <petscksp.h>
 
-#define KRYLOV_RTOL   1e-4 /* of the residual: Newton's method takes the rest out in its next step */
+#define KRYLOV_RTOL   1e-6 /* of the residual: Newton's method takes the rest out in its next step */
 #define KRYLOV_MAX_IT 120
-#define KRYLOV_MANY   24 /* iterations: new factors take the time of some 20 */
+#define KRYLOV_MANY   6 /* iterations more than with new springs, which take the time of some 20 and serve for long */
 /* of the directions held: those that changed, from which on new factors are better at once */
 #define KRYLOV_CHANGED 0.1
 
@@ -35,8 +35,9 @@ PetscErrorCode ComplianceKrylovHold(ContactCompliance c, const PetscBool held[])
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(k->held, held, 3 * c->n));
   PetscCall(k->map.hold(k->map.ctx, k->held));
-  k->stands = PETSC_TRUE;
-  k->stale  = PETSC_FALSE;
+  k->stands  = PETSC_TRUE;
+  k->stale   = PETSC_FALSE;
+  k->n_first = 0;
   c->report.factors++;
   PetscFunctionReturn(0);
 }
@@ -261,7 +262,8 @@ PetscErrorCode ComplianceKrylovSolve(ContactCompliance c)
   PetscCall(KSPSolve(ksp, b, x));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   PetscCall(PetscArraycpy(c->rhs, solution, rows));
-  if (its > KRYLOV_MANY) c->krylov.stale = PETSC_TRUE;
+  if (!c->krylov.n_first) c->krylov.n_first = PetscMax(1, its);
+  c->krylov.stale = its > c->krylov.n_first + KRYLOV_MANY ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&b));
   PetscCall(KSPDestroy(&ksp));

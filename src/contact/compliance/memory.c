@@ -12,12 +12,13 @@ static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, Petsc
   PetscReal *to;
 
   PetscFunctionBeginUser;
-  *n = c->krylov.stands ? 4 * c->n + 1 : 0;
+  *n = c->krylov.stands ? 4 * c->n + 2 : 0;
   PetscCall(PetscMalloc1(*n, values));
   to = *values;
   if (!*n) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < 3 * c->n; i++) *to++ = (PetscReal)c->krylov.held[i];
   *to++ = (PetscReal)c->krylov.stale;
+  *to++ = (PetscReal)c->krylov.n_first;
   for (PetscInt p = 0; p < c->n; p++) *to++ = (PetscReal)c->status[p];
   PetscFunctionReturn(0);
 }
@@ -29,14 +30,15 @@ static PetscErrorCode MapSetMemory(ContactCompliance c, PetscInt n, const PetscR
   PetscFunctionBeginUser;
   c->krylov.stands = PETSC_FALSE;
   if (!n) PetscFunctionReturn(0);
-  PetscCheck(n == 4 * c->n + 1, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+  PetscCheck(n == 4 * c->n + 2, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
              "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
              c->n);
   PetscCall(PetscMalloc1(3 * c->n, &held));
   for (PetscInt i = 0; i < 3 * c->n; i++) held[i] = values[i] != 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ComplianceKrylovHold(c, held));
-  c->krylov.stale = values[3 * c->n] != 0 ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscInt p = 0; p < c->n; p++) c->status[p] = (ContactStatus)values[3 * c->n + 1 + p];
+  c->krylov.stale   = values[3 * c->n] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  c->krylov.n_first = (PetscInt)values[3 * c->n + 1];
+  for (PetscInt p = 0; p < c->n; p++) c->status[p] = (ContactStatus)values[3 * c->n + 2 + p];
   PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
 }
