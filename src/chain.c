@@ -43,6 +43,7 @@ static const Quantity views[N_SHOWN] = {
   VIEW(SHOWN_SAMPLE, "-sample_view", "show what samples tell", RUN_SAMPLE),
   VIEW(SHOWN_SUPERELEMENT, "-superelement_view", "show sizes and errors of the superelement that is made",
        RUN_SUPERELEMENT),
+  VIEW(SHOWN_QUIET, "-quiet_view", "show the quiet box and the nearest dangerous point", RUN_QUIET),
   VIEW(SHOWN_CYCLE, "-cycle_view", "show cycles, their stability and errors", RUN_CYCLE),
 };
 const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
@@ -147,6 +148,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(SweepSetFromOptions(chain->sweep));
   PetscCall(SampleCreate(comm, &chain->sample));
   PetscCall(SampleSetFromOptions(chain->sample));
+  PetscCall(QuietCreate(comm, &chain->quiet));
+  PetscCall(QuietSetFromOptions(chain->quiet));
   PetscCall(FrfCreate(comm, &chain->frf));
   PetscCall(FrfSetFromOptions(chain->frf));
   PetscCall(SubstructureCreate(comm, &chain->substructure));
@@ -173,6 +176,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SubstructureDestroy(&chain->substructure));
   PetscCall(FrfDestroy(&chain->frf));
+  PetscCall(QuietDestroy(&chain->quiet));
   PetscCall(SampleDestroy(&chain->sample));
   PetscCall(SweepDestroy(&chain->sweep));
   PetscCall(ModesDestroy(&chain->modes));
@@ -225,6 +229,7 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscCall(ModesVisit(chain->modes, visitor));
   PetscCall(SweepVisit(chain->sweep, visitor));
   PetscCall(SampleVisit(chain->sample, visitor));
+  PetscCall(QuietVisit(chain->quiet, visitor));
   PetscCall(FrfVisit(chain->frf, visitor));
   PetscCall(SubstructureVisit(chain->substructure, visitor));
   PetscCall(SolverVisit(visitor));
@@ -347,6 +352,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ModesGetContact(chain->modes, &sliding));
   if (sliding) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(SampleSetRooms(chain->sample, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
+  PetscCall(QuietSetRooms(chain->quiet, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(MapSetModes(chain->map, chain->modes));
   PetscCall(CycleSetRooms(chain->cycle, chain->reduced, chain->operators, chain->p));

@@ -17,6 +17,7 @@ typedef enum {
   SHOWN_CYCLE,
   SHOWN_SAMPLE,
   SHOWN_SUPERELEMENT,
+  SHOWN_QUIET,
   N_SHOWN
 } Shown;
 
@@ -32,6 +33,7 @@ typedef struct {
   Modes        modes;
   Sweep        sweep;
   Sample       sample;
+  Quiet        quiet;
   Frf          frf;
   Dynamics     dynamics;
   ReducedRun   reduced; /* the same runs on few coordinates, where asked for */

@@ -40,7 +40,7 @@ MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST
 
 CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
-BELOW["sample"] = BELOW["sweep"] | {"sample"}
+BELOW |= {"sample": BELOW["sweep"] | {"sample"}, "quiet": BELOW["sweep"] | {"sample", "quiet"}}
 BELOW["frf"] = BELOW["modes"] | {"frf"}
 BELOW["substructure"] = BELOW["modes"] | {"substructure"}
 BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
@@ -77,7 +77,8 @@ REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
     contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol cycle_rtol
     cycle_range cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c
-    operators_dense_h ts_central_b pressure_m wear_exponent wear_settled sample_rtol mean deviation lower upper peak""".split())
+    operators_dense_h ts_central_b pressure_m wear_exponent wear_settled sample_rtol mean deviation lower upper peak quiet_rtol
+    quiet_tolerance quiet_lower quiet_upper""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 

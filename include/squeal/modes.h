@@ -37,6 +37,10 @@ PetscReal ModesLimitGrowth(const ModesLimit *limit, PetscReal size);
     collective. @*/
 PetscBool ModesLimitIsExceeded(const ModesLimit *limit, PetscReal sigma, PetscReal omega, PetscReal error);
 
+/*@ ModesLimitInForce - the limit, or where none is given that of what is neutral all the same: a damping ratio of 1e-5.
+    Not collective. @*/
+ModesLimit ModesLimitInForce(const ModesLimit *limit);
+
 /*@ ModesLimitJudge - the state of an eigenvalue sigma + i omega, rad/s, with that error; without a limit growth within
     a damping ratio of 1e-5 is neutral. Not collective. @*/
 ModeState ModesLimitJudge(const ModesLimit *limit, PetscReal sigma, PetscReal omega, PetscReal error);

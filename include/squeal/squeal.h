@@ -11,6 +11,7 @@
 #include <squeal/statics.h>
 #include <squeal/modes.h>
 #include <squeal/sweep.h>
+#include <squeal/quiet.h>
 #include <squeal/sample.h>
 #include <squeal/frf.h>
 #include <squeal/substructure.h>

@@ -9,6 +9,7 @@
 #define LAPACKzgetrs_ PETSCBLASCOMPLEX(getrs, GETRS)
 #define LAPACKzggev_  PETSCBLASCOMPLEX(ggev, GGEV)
 #define LAPACKpstrf_  PETSCBLAS(pstrf, PSTRF)
+#define BLASzgemm_    PETSCBLASCOMPLEX(gemm, GEMM)
 
 BLAS_EXTERN void LAPACKzgetrf_(const PetscBLASInt *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
                                PetscBLASInt *, PetscBLASInt *);
@@ -19,6 +20,10 @@ BLAS_EXTERN void LAPACKzggev_(const char *, const char *, const PetscBLASInt *, 
                               PetscComplex *, const PetscBLASInt *, PetscComplex *, PetscComplex *, PetscComplex *,
                               const PetscBLASInt *, PetscComplex *, const PetscBLASInt *, PetscComplex *,
                               const PetscBLASInt *, PetscReal *, PetscBLASInt *);
+BLAS_EXTERN void BLASzgemm_(const char *, const char *, const PetscBLASInt *, const PetscBLASInt *,
+                            const PetscBLASInt *, const PetscComplex *, const PetscComplex *, const PetscBLASInt *,
+                            const PetscComplex *, const PetscBLASInt *, const PetscComplex *, PetscComplex *,
+                            const PetscBLASInt *);
 BLAS_EXTERN void LAPACKpstrf_(const char *, const PetscBLASInt *, PetscReal *, const PetscBLASInt *, PetscBLASInt *,
                               PetscBLASInt *, const PetscReal *, PetscReal *, PetscBLASInt *);
 
@@ -168,6 +173,20 @@ PetscErrorCode DenseSymmetricEigen(PetscInt size, PetscReal A[], PetscReal B[], 
              "LAPACK syev, sygv: info %d", (int)info);
   if (definite) *definite = info ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseComplexProducts(PetscInt n, PetscInt rows, const PetscComplex A[], PetscInt columns,
+                                    const PetscComplex B[], PetscComplex C[])
+{
+  const PetscComplex one = 1, zero = 0;
+  PetscBLASInt       k, m, l;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(n, &k));
+  PetscCall(PetscBLASIntCast(rows, &m));
+  PetscCall(PetscBLASIntCast(columns, &l));
+  PetscCallBLAS("BLASzgemm", BLASzgemm_("T", "N", &m, &l, &k, &one, A, &k, B, &k, &zero, C, &m));
   PetscFunctionReturn(0);
 }
 

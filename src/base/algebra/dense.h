@@ -31,6 +31,9 @@ PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal w
 PetscErrorCode DenseSymmetricEigen(PetscInt n, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite);
 /* Eigenvalues of A x = w B x, both overwritten; infinite ones are returned as infinity */
 PetscErrorCode DenseComplexEigenvalues(PetscInt n, PetscComplex A[], PetscComplex B[], PetscComplex w[]);
+/* C [columns][rows] = a_i^T b_j, without conjugation, of vectors A [rows][n] and B [columns][n] */
+PetscErrorCode DenseComplexProducts(PetscInt n, PetscInt rows, const PetscComplex A[], PetscInt columns,
+                                    const PetscComplex B[], PetscComplex C[]);
 /* A block of a matrix whose columns are stride apart; op(A) has rows x columns entries */
 typedef struct {
   const PetscReal *A;

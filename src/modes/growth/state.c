@@ -37,6 +37,11 @@ static const ModesLimit *LimitOrSlight(const ModesLimit *limit)
   return limit->ratio > 0 || limit->growth > 0 ? limit : &slight;
 }
 
+ModesLimit ModesLimitInForce(const ModesLimit *limit)
+{
+  return *LimitOrSlight(limit);
+}
+
 ModeState ModesLimitJudge(const ModesLimit *limit, PetscReal sigma, PetscReal omega, PetscReal error)
 {
   const PetscReal  size = PetscSqrtReal(sigma * sigma + omega * omega);
