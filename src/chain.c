@@ -44,6 +44,7 @@ static const Quantity views[N_SHOWN] = {
   VIEW(SHOWN_SUPERELEMENT, "-superelement_view", "show sizes and errors of the superelement that is made",
        RUN_SUPERELEMENT),
   VIEW(SHOWN_QUIET, "-quiet_view", "show the quiet box and the nearest dangerous point", RUN_QUIET),
+  VIEW(SHOWN_DESIGN, "-design_view", "show the design that was found", RUN_DESIGN),
   VIEW(SHOWN_CYCLE, "-cycle_view", "show cycles, their stability and errors", RUN_CYCLE),
 };
 const QuantityTable chain_views = {"What is shown, and where: ascii, or ascii:FILE, or ascii:FILE::append", "squeal.h",
@@ -150,6 +151,8 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(SampleSetFromOptions(chain->sample));
   PetscCall(QuietCreate(comm, &chain->quiet));
   PetscCall(QuietSetFromOptions(chain->quiet));
+  PetscCall(DesignCreate(comm, &chain->design));
+  PetscCall(DesignSetFromOptions(chain->design));
   PetscCall(FrfCreate(comm, &chain->frf));
   PetscCall(FrfSetFromOptions(chain->frf));
   PetscCall(SubstructureCreate(comm, &chain->substructure));
@@ -176,6 +179,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(DynamicsDestroy(&chain->dynamics));
   PetscCall(SubstructureDestroy(&chain->substructure));
   PetscCall(FrfDestroy(&chain->frf));
+  PetscCall(DesignDestroy(&chain->design));
   PetscCall(QuietDestroy(&chain->quiet));
   PetscCall(SampleDestroy(&chain->sample));
   PetscCall(SweepDestroy(&chain->sweep));
@@ -230,6 +234,7 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscCall(SweepVisit(chain->sweep, visitor));
   PetscCall(SampleVisit(chain->sample, visitor));
   PetscCall(QuietVisit(chain->quiet, visitor));
+  PetscCall(DesignVisit(chain->design, visitor));
   PetscCall(FrfVisit(chain->frf, visitor));
   PetscCall(SubstructureVisit(chain->substructure, visitor));
   PetscCall(SolverVisit(visitor));
@@ -352,6 +357,7 @@ static PetscErrorCode ChainConnect(Chain *chain, PetscViewer viewer)
   PetscCall(ModesGetContact(chain->modes, &sliding));
   if (sliding) PetscCall(SweepSetStatics(chain->sweep, chain->statics));
   PetscCall(SampleSetRooms(chain->sample, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
+  PetscCall(DesignSetRooms(chain->design, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
   PetscCall(QuietSetRooms(chain->quiet, chain->operators, chain->p, chain->modes, sliding ? chain->statics : NULL));
   PetscCall(MapSetRooms(chain->map, chain->reduced, chain->operators, chain->p));
   PetscCall(MapSetModes(chain->map, chain->modes));

@@ -18,6 +18,7 @@ typedef enum {
   SHOWN_SAMPLE,
   SHOWN_SUPERELEMENT,
   SHOWN_QUIET,
+  SHOWN_DESIGN,
   N_SHOWN
 } Shown;
 
@@ -34,6 +35,7 @@ typedef struct {
   Sweep        sweep;
   Sample       sample;
   Quiet        quiet;
+  Design       design;
   Frf          frf;
   Dynamics     dynamics;
   ReducedRun   reduced; /* the same runs on few coordinates, where asked for */

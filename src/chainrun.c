@@ -152,6 +152,16 @@ static PetscErrorCode ChainAddQuiet(Chain *chain, unsigned *does)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ChainAddDesign(Chain *chain, unsigned *does)
+{
+  const char *varied;
+
+  PetscFunctionBeginUser;
+  PetscCall(DesignGetVaried(chain->design, &varied));
+  PetscCall(ChainAddVaried(chain, varied, does));
+  PetscFunctionReturn(0);
+}
+
 /* A cycle is looked for at the end of a transient, or near the mode that becomes unstable */
 static PetscErrorCode ChainAddCycle(Chain *chain, unsigned *does)
 {
@@ -219,6 +229,8 @@ STEP(ChainSolveSample, SampleSolve(chain->sample, chain->results))
 STEP(ChainWriteSample, SampleWrite(chain->sample, chain->results))
 STEP(ChainSolveQuiet, QuietSolve(chain->quiet, chain->results))
 STEP(ChainWriteQuiet, QuietWrite(chain->quiet, chain->results))
+STEP(ChainSolveDesign, DesignSolve(chain->design, chain->results))
+STEP(ChainWriteDesign, DesignWrite(chain->design, chain->results))
 STEP(ChainSolveStatics, StaticsSolveWorn(chain->statics, chain->p))
 STEP(ChainWriteStatics, StaticsWrite(chain->statics, chain->results))
 STEP(ChainJudgeReduced, ReducedJudgeVerified(chain->reduced))
@@ -232,6 +244,7 @@ SHOW(ChainViewStatics, StaticsView(chain->statics, viewer))
 SHOW(ChainViewSweep, SweepView(chain->sweep, viewer))
 SHOW(ChainViewSample, SampleView(chain->sample, viewer))
 SHOW(ChainViewQuiet, QuietView(chain->quiet, viewer))
+SHOW(ChainViewDesign, DesignView(chain->design, viewer))
 SHOW(ChainViewMap, MapView(chain->map, viewer))
 SHOW(ChainViewSubstructure, SubstructureView(chain->substructure, viewer))
 SHOW(ChainViewCycle, CycleView(chain->cycle, viewer))
@@ -258,9 +271,11 @@ const AnalysisRow chain_analyses[N_ANALYSES] = {
                        ChainViewSample, .add = ChainAddSample, .uses = LINEAR},
   [ANALYSIS_SUPERELEMENT] = {SQUEAL_MODES, SHOWN_SUPERELEMENT, NULL, ChainSolveSubstructure, ChainWriteSubstructure,
                              ChainViewSubstructure, .does = RUN_FACTORS | RUN_EPS, .uses = USES_DAMPING},
-  [ANALYSIS_QUIET] = {SQUEAL_SWEEP, SHOWN_QUIET, ChainForgetPencil, ChainSolveQuiet, ChainWriteQuiet, ChainViewQuiet,
-                      .add = ChainAddQuiet, .uses = LINEAR},
-  [ANALYSIS_CHECK] = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
+  [ANALYSIS_QUIET]  = {SQUEAL_SWEEP, SHOWN_QUIET, ChainForgetPencil, ChainSolveQuiet, ChainWriteQuiet, ChainViewQuiet,
+                       .add = ChainAddQuiet, .uses = LINEAR},
+  [ANALYSIS_DESIGN] = {SQUEAL_SWEEP, SHOWN_DESIGN, ChainForgetPencil, ChainSolveDesign, ChainWriteDesign,
+                       ChainViewDesign, .add = ChainAddDesign, .uses = LINEAR},
+  [ANALYSIS_CHECK]  = {SQUEAL_MODEL, N_SHOWN, NULL, ChainShowScene, ChainWriteScene, .uses = USES_ALL},
 };
 
 PetscErrorCode ChainRun(Chain *chain)

@@ -40,10 +40,8 @@ MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST
 
 CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
-BELOW |= {"sample": BELOW["sweep"] | {"sample"}, "quiet": BELOW["sweep"] | {"sample", "quiet"}}
-BELOW["frf"] = BELOW["modes"] | {"frf"}
-BELOW["substructure"] = BELOW["modes"] | {"substructure"}
-BELOW["reduced"] = BELOW["modes"] | {"dynamics", "reduced"}
+BELOW |= {room: BELOW["sweep"] | set(("sample", "quiet", "design")[:k + 1]) for k, room in enumerate(("sample", "quiet", "design"))}
+BELOW |= {room: BELOW["modes"] | {room} | ({"dynamics"} if room == "reduced" else set()) for room in ("frf", "substructure", "reduced")}
 BELOW["map"] = BELOW["reduced"] | {"map"}
 BELOW |= {"results": {"base", "quantity", "kernels", "results"},
           "dynamics": {"base", "quantity", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
@@ -75,10 +73,11 @@ REFUSED = {"QuantitiesRefuse": "the rows themselves",
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
 UNITLESS = set("""frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
-    contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol cycle_rtol
-    cycle_range cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c
-    operators_dense_h ts_central_b pressure_m wear_exponent wear_settled sample_rtol mean deviation lower upper peak quiet_rtol
-    quiet_tolerance quiet_lower quiet_upper""".split())
+    contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol cycle_rtol cycle_range
+    cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c operators_dense_h
+    ts_central_b pressure_m wear_exponent wear_settled sample_rtol mean deviation lower upper peak quiet_rtol quiet_tolerance
+    quiet_lower quiet_upper design_rtol design_probability design_mass design_margin design_lower design_upper design_uncertain_lower
+    design_uncertain_upper""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 

@@ -22,6 +22,7 @@ typedef enum {
   ANALYSIS_SAMPLE,
   ANALYSIS_SUPERELEMENT,
   ANALYSIS_QUIET,
+  ANALYSIS_DESIGN,
   ANALYSIS_CHECK,
   N_ANALYSES
 } Analysis;
@@ -29,7 +30,7 @@ static const char *const AnalysisNames[N_ANALYSES + 1] = {
   [ANALYSIS_MODES] = "modes",         [ANALYSIS_SWEEP] = "sweep",   [ANALYSIS_STATIC] = "static",
   [ANALYSIS_TRANSIENT] = "transient", [ANALYSIS_FRF] = "frf",       [ANALYSIS_MAP] = "map",
   [ANALYSIS_CYCLE] = "cycle",         [ANALYSIS_SAMPLE] = "sample", [ANALYSIS_SUPERELEMENT] = "superelement",
-  [ANALYSIS_QUIET] = "quiet",         [ANALYSIS_CHECK] = "check",
+  [ANALYSIS_QUIET] = "quiet",         [ANALYSIS_DESIGN] = "design", [ANALYSIS_CHECK] = "check",
 }; /* NULL at the end */
 
 /* What a run does, as bits: who reads a row. The first N_ANALYSES are the analyses */
@@ -44,8 +45,9 @@ typedef enum {
   RUN_SAMPLE       = 1 << ANALYSIS_SAMPLE,
   RUN_SUPERELEMENT = 1 << ANALYSIS_SUPERELEMENT,
   RUN_QUIET        = 1 << ANALYSIS_QUIET,
+  RUN_DESIGN       = 1 << ANALYSIS_DESIGN,
   RUN_CHECK        = 1 << ANALYSIS_CHECK,
-  RUN_LINEAR       = RUN_MODES | RUN_SWEEP | RUN_FRF | RUN_SAMPLE | RUN_QUIET,
+  RUN_LINEAR       = RUN_MODES | RUN_SWEEP | RUN_FRF | RUN_SAMPLE | RUN_QUIET | RUN_DESIGN,
   RUN_IN_TIME      = RUN_TRANSIENT | RUN_MAP | RUN_CYCLE,
   RUN_MOVES        = RUN_LINEAR | RUN_IN_TIME,
   /* and what it does within them */

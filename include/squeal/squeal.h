@@ -12,6 +12,7 @@
 #include <squeal/modes.h>
 #include <squeal/sweep.h>
 #include <squeal/quiet.h>
+#include <squeal/design.h>
 #include <squeal/sample.h>
 #include <squeal/frf.h>
 #include <squeal/substructure.h>

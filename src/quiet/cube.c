@@ -14,8 +14,7 @@ PetscErrorCode CubeVaried(const CubeOptions *options, size_t size, char varied[]
   PetscFunctionReturn(0);
 }
 
-/* Those of the variables alone, the others stay */
-static void CubeMove(const Cube *cube, const PetscReal t[], PetscReal p[])
+void CubeMove(const Cube *cube, const PetscReal t[], PetscReal p[])
 {
   for (PetscInt k = 0; k < cube->n; k++)
     for (PetscInt m = 0; m < cube->n_moved[k]; m++)
@@ -105,21 +104,21 @@ static PetscErrorCode VariableEnds(MPI_Comm comm, Operators operators, const cha
     PetscReal      *lower = &cube->lower[k][m], *upper = &cube->upper[k][m];
 
     PetscCheck(!o->n_percent || own != 0, comm, PETSC_ERR_USER_INPUT,
-               "%s_percent: %s is 0 in this scene, and so is any part of it; give %s_lower and %s_upper", prefix,
+               "-%s_percent: %s is 0 in this scene, and so is any part of it; give -%s_lower and -%s_upper", prefix,
                list[i].name, prefix, prefix);
     *lower = o->n_percent ? own - part * PetscAbsReal(own) : o->lower[k];
     *upper = o->n_percent ? own + part * PetscAbsReal(own) : o->upper[k];
-    PetscCheck(*lower < *upper, comm, PETSC_ERR_USER_INPUT, "%s_lower %.6g of %s must be below %s_upper %.6g", prefix,
+    PetscCheck(*lower < *upper, comm, PETSC_ERR_USER_INPUT, "-%s_lower %.6g of %s must be below -%s_upper %.6g", prefix,
                (double)*lower, list[i].name, prefix, (double)*upper);
     PetscCheck(own >= *lower && own <= *upper, comm, PETSC_ERR_USER_INPUT,
-               "%s_lower %.6g and %s_upper %.6g of %s must hold the value of the scene, %.6g, between them", prefix,
+               "-%s_lower %.6g and -%s_upper %.6g of %s must hold the value of the scene, %.6g, between them", prefix,
                (double)*lower, prefix, (double)*upper, list[i].name, (double)own);
     PetscCall(OperatorsCheckParameter(operators, i, *lower));
     PetscCall(OperatorsCheckParameter(operators, i, *upper));
     cube->own[k] = 2 * (own - *lower) / (*upper - *lower) - 1;
     PetscCheck(o->n_percent || own == cube->nominal[cube->moved[k][0]], comm, PETSC_ERR_USER_INPUT,
-               "%s_lower: %s moves parameters whose values in the scene differ; give %s_percent", prefix, cube->name[k],
-               prefix);
+               "-%s_lower: %s moves parameters whose values in the scene differ; give -%s_percent", prefix,
+               cube->name[k], prefix);
   }
   PetscFunctionReturn(0);
 }
@@ -133,19 +132,19 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
   int                       n;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(option, sizeof(option), "%s_parameters", prefix));
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameters", prefix));
   PetscCheck(o->names[0], comm, PETSC_ERR_USER_INPUT, "%s names nothing: what is to vary, e.g. pad_young,contact_mu",
              option);
   PetscCall(ValuesSplit(comm, option, o->names, ',', &n, &word));
   PetscCheck(n <= CUBE_MAX_VARIABLES, comm, PETSC_ERR_USER_INPUT, "%s names %d; %d at most, '+' joins some to one",
              option, n, CUBE_MAX_VARIABLES);
   PetscCheck((o->n_percent > 0) != (o->n_lower > 0), comm, PETSC_ERR_USER_INPUT,
-             "%s_percent, or else %s_lower and %s_upper, must say how large the box is", prefix, prefix, prefix);
+             "-%s_percent, or else -%s_lower and -%s_upper, must say how large the box is", prefix, prefix, prefix);
   PetscCheck(o->n_percent <= 1 || o->n_percent == n, comm, PETSC_ERR_USER_INPUT,
-             "%s_percent has %" PetscInt_FMT " values for %d variables; give one, or one for each", prefix,
+             "-%s_percent has %" PetscInt_FMT " values for %d variables; give one, or one for each", prefix,
              o->n_percent, n);
   PetscCheck(o->n_percent || (o->n_lower == n && o->n_upper == n), comm, PETSC_ERR_USER_INPUT,
-             "%s_lower and %s_upper have %" PetscInt_FMT " and %" PetscInt_FMT " values for %d variables", prefix,
+             "-%s_lower and -%s_upper have %" PetscInt_FMT " and %" PetscInt_FMT " values for %d variables", prefix,
              prefix, o->n_lower, o->n_upper, n);
   PetscCall(OperatorsGetParameters(operators, &cube->n_parameters, &list));
   for (int k = 0; k < n; k++) {

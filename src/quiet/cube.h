@@ -27,7 +27,7 @@ typedef struct {
   PetscReal  own[CUBE_MAX_VARIABLES];                                 /* t of the scene's own values */
 } Cube;
 
-/* What options with that prefix ("-quiet") say, of parameters that the operators have; `nominal` of the cube is set.
+/* What options with that prefix ("quiet") say, of parameters that the operators have; `nominal` of the cube is set.
    held: the sliding state stays that of the scene. Collective.
    Errors: PETSC_ERR_USER_INPUT for names, values and boxes that cannot be. */
 PETSC_INTERN PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, const char prefix[],
@@ -35,6 +35,8 @@ PETSC_INTERN PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBo
 PETSC_INTERN PetscErrorCode CubeDestroy(Cube *cube);
 /* All parameters p of a point t [n] */
 PETSC_INTERN void CubePoint(const Cube *cube, const PetscReal t[], PetscReal p[]);
+/* Those of the variables alone, the others stay */
+PETSC_INTERN void CubeMove(const Cube *cube, const PetscReal t[], PetscReal p[]);
 /* The first parameter of variable k at t */
 PETSC_INTERN PetscReal CubeValue(const Cube *cube, PetscInt k, PetscReal t);
 /* How far a point is from the scene's own values: 0 there, 1 on the faces of the box. And the nearest point of a cell

@@ -128,8 +128,7 @@ static PetscErrorCode QuietSetUp(Quiet q)
 
   PetscFunctionBeginUser;
   q->cube.nominal = q->box.nominal;
-  PetscCall(
-    CubeRead(q->comm, q->operators, q->box.statics ? PETSC_TRUE : PETSC_FALSE, "-quiet", &q->options, &q->cube));
+  PetscCall(CubeRead(q->comm, q->operators, q->box.statics ? PETSC_TRUE : PETSC_FALSE, "quiet", &q->options, &q->cube));
   PetscCheck(q->n_verify <= q->n_random, q->comm, PETSC_ERR_USER_INPUT,
              "-quiet_verify %" PetscInt_FMT " must be at most -quiet_random %" PetscInt_FMT, q->n_verify, q->n_random);
   PetscCall(BoxSetUp(&q->box, 0, NULL, NULL)); /* the status of the scene's own values holds everywhere */

@@ -69,6 +69,8 @@ static const struct {
   {"quiet.csv", NULL},
   {"quiet_statement.csv", NULL},
   {"quiet_cells.csv", NULL},
+  {"design.csv", NULL},
+  {"design_corners.csv", NULL},
   {"frf.csv", NULL},
   {"peaks.csv", NULL},
   {"cycle.csv", NULL},

@@ -77,9 +77,9 @@ PetscErrorCode OptionsFindList(const char name[], size_t size, char text[])
 /* Raises an error for a name that the program's own options begin with, or that another list of the scene has too */
 static PetscErrorCode NameCheckFree(MPI_Comm comm, const char option[], const char name[])
 {
-  static const char *const own[] = {"dynamics", "frf",       "model",   "modes",        "operators",
-                                    "output",   "projector", "quiet",   "rig",          "sample",
-                                    "squeal",   "static",    "statics", "superelement", "sweep"};
+  static const char *const own[] = {"design", "dynamics",  "frf",          "model", "modes",  "operators",
+                                    "output", "projector", "quiet",        "rig",   "sample", "squeal",
+                                    "static", "statics",   "superelement", "sweep"};
   const char              *names;
   PetscBool                taken = PETSC_FALSE;
 

@@ -1,0 +1,68 @@
+/* Private to design/: its record */
+#pragma once
+
+#include <squeal/design.h>
+#include "quiet/cube.h"
+#include "sweep/box/box.h"
+
+/* A design that was looked at */
+typedef struct {
+  PetscReal z[CUBE_MAX_VARIABLES]; /* in t of the cube */
+  PetscInt  n_unstable;            /* modes of all scenarios */
+  PetscInt  n_scenarios;           /* scenarios with one */
+  PetscReal excess, omega;         /* largest growth beyond the limit, 1/s, and where, rad/s */
+  PetscInt  worst;                 /* its scenario */
+  PetscReal change, mass;          /* |z - own| / sqrt(n); mass beside that of the scene */
+  PetscBool solved;                /* in full, at the worst scenario */
+  PetscReal full_excess;           /* there */
+} DesignPoint;
+
+/* a + g' (z - at) <= 0 */
+typedef struct {
+  PetscReal a, g[CUBE_MAX_VARIABLES], at[CUBE_MAX_VARIABLES];
+} DesignCut;
+
+/* A corner of the uncertain box in full */
+typedef struct {
+  PetscReal t[CUBE_MAX_VARIABLES], excess, sigma, omega, error;
+  PetscInt  n_unstable, n_modes;
+} DesignCorner;
+
+struct _p_Design {
+  MPI_Comm  comm;
+  Operators operators;
+  Box       box;
+  /* set by options */
+  CubeOptions options, uncertain_options;
+  PetscInt    n_inside, n_corners, max_designs;
+  PetscReal   probability, margin, mass_weight;
+  char        varied[2 * CUBE_MAX_TEXT];
+  /* results */
+  Cube           cube, uncertain;
+  PetscInt       n_scenarios;
+  PetscReal     *scenario;                         /* [n_scenarios][uncertain.n] t */
+  PetscReal      mass_slope[CUBE_MAX_VARIABLES];   /* d (m / m(0)) / d z */
+  PetscReal      mass;                             /* kg of the moving unknowns, of the scene */
+  PetscInt       n_cuts, n_room, n_points, n_full; /* full solutions: beside those of the basis */
+  DesignCut     *cut;
+  DesignPoint   *point; /* [max_designs] */
+  DesignCorner  *corner;
+  PetscBool      found;
+  PetscLogDouble seconds[3]; /* basis, designs, corners */
+};
+
+extern const QuantityTable design_quantities;
+
+/* scenario.c - the scenarios; a design at all of them, with new cuts; all parameters p of a design at a scenario t.
+   Collective */
+PETSC_INTERN PetscErrorCode DesignScenarios(Design design);
+PETSC_INTERN PetscErrorCode DesignLook(Design design, DesignPoint *point);
+PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);
+/* full.c - the full solution of a design at a scenario t; at the corners of the uncertain box. Collective */
+PETSC_INTERN PetscErrorCode DesignFull(Design design, const PetscReal z[], const PetscReal t[], DesignCorner *corner);
+PETSC_INTERN PetscErrorCode DesignCorners(Design design);
+/* Mass of the scene, and how it changes. Collective */
+PETSC_INTERN PetscErrorCode DesignMass(Design design);
+/* step.c - the next design from the cuts, within radius of `from`; feasible: whether all cuts could be kept */
+PETSC_INTERN PetscErrorCode DesignStep(Design design, const PetscReal from[], PetscReal radius, PetscReal z[],
+                                       PetscBool *feasible);

@@ -1,0 +1,155 @@
+/* A design at all scenarios of what is uncertain, on the reduced model: which modes are unstable, and their cuts */
+#include "designimpl.h"
+#include "sample/draw/sequence.h"
+
+#define MOST_CORNERS 64
+#define MOST_MODES   4   /* cuts of a scenario */
+#define MOST_CUTS    400 /* beyond them the oldest are dropped */
+
+/* The scene's own values, corners, points of a sequence */
+PetscErrorCode DesignScenarios(Design d)
+{
+  const PetscInt n = d->uncertain.n, n_corners = n ? PetscMin(1 << n, MOST_CORNERS) : 0, n_inside = n ? d->n_inside : 0;
+  Sequence       sequence = {SEQUENCE_SOBOL, 1, PetscMax(1, n_inside), PetscMax(1, n), NULL};
+
+  PetscFunctionBeginUser;
+  d->n_scenarios = 1 + n_corners + n_inside;
+  PetscCall(PetscCalloc1(d->n_scenarios * PetscMax(1, n), &d->scenario));
+  PetscCall(SequenceSetUp(&sequence));
+  for (PetscInt k = 0; k < n; k++) d->scenario[k] = d->uncertain.own[k];
+  for (PetscInt i = 1; i < d->n_scenarios; i++) {
+    PetscReal *t = &d->scenario[i * n];
+
+    if (i > n_corners) SequencePoint(&sequence, i - 1 - n_corners, t);
+    for (PetscInt k = 0; k < n; k++)
+      t[k] = i > n_corners ? 2 * t[k] - 1 : (i - 1) >> (k % 6) & 1 ? 1 : -1; /* beyond six some move alike */
+  }
+  PetscCall(SequenceDestroy(&sequence));
+  PetscFunctionReturn(0);
+}
+
+void DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[])
+{
+  CubePoint(&d->cube, z, p);
+  CubeMove(&d->uncertain, t, p);
+}
+
+/* A scenario of a design */
+typedef struct {
+  PetscReal excess, omega;
+  PetscInt  n_unstable, n_cuts, index;
+  DesignCut cut[MOST_MODES];
+} Scenario;
+
+/* The cut of mode i */
+static PetscErrorCode CutOf(const Design d, const PetscReal p[], const ReducedModes *modes, PetscInt i,
+                            const PetscReal z[], DesignCut *cut)
+{
+  const Reduced   *reduced  = modes->size == d->box.small.n_used ? &d->box.small : &d->box.basis.reduced;
+  const ModesLimit in_force = ModesLimitInForce(&d->box.limit);
+  const PetscReal  sigma = creal(modes->lambda[i]), limit = ModesLimitGrowth(&in_force, cabs(modes->lambda[i]));
+  const PetscBool  damped = ReducedIsDamped(reduced, p);
+  PetscComplex    *derivative;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(reduced->n_parameters, &derivative));
+  PetscCall(ReducedSensitivity(reduced, p, modes, i, derivative));
+  cut->a = damped ? sigma - limit : sigma * sigma - limit * limit;
+  for (PetscInt k = 0; k < d->cube.n; k++) {
+    PetscReal slope = 0;
+
+    for (PetscInt m = 0; m < d->cube.n_moved[k]; m++)
+      slope += creal(derivative[d->cube.moved[k][m]]) * 0.5 * (d->cube.upper[k][m] - d->cube.lower[k][m]);
+    cut->g[k]  = damped ? slope : 2 * sigma * slope;
+    cut->at[k] = z[k];
+  }
+  PetscCall(PetscFree(derivative));
+  PetscFunctionReturn(0);
+}
+
+/* Not collective */
+static PetscErrorCode ScenarioLook(const Design d, const PetscReal z[], Scenario *s)
+{
+  const Box       *box      = &d->box;
+  const ModesLimit in_force = ModesLimitInForce(&box->limit);
+  PetscReal       *p;
+  ReducedModes     modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(d->cube.n_parameters, &p));
+  DesignParameters(d, z, &d->scenario[s->index * d->uncertain.n], p);
+  PetscCall(BoxSolve(box, box->small.n_used ? PETSC_TRUE : PETSC_FALSE, p, &modes));
+  s->excess     = PETSC_NINFINITY;
+  s->n_unstable = s->n_cuts = 0;
+  for (PetscInt i = 0; i < modes.n; i++) {
+    const PetscReal sigma = creal(modes.lambda[i]), omega = cimag(modes.lambda[i]);
+    const PetscReal excess = sigma - ModesLimitGrowth(&in_force, cabs(modes.lambda[i]));
+
+    if (!BoxHolds(box, modes.lambda[i])) continue;
+    if (excess > s->excess) s->excess = excess, s->omega = omega;
+    if (ModesLimitJudge(&box->limit, sigma, omega, modes.error[i]) != MODE_UNSTABLE) continue;
+    s->n_unstable++;
+    if (s->n_cuts < MOST_MODES) PetscCall(CutOf(d, p, &modes, i, z, &s->cut[s->n_cuts++]));
+  }
+  PetscCall(ReducedModesDestroy(&modes));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
+/* Keeps the cuts of a scenario; a mode that nothing changes gives none */
+static PetscErrorCode CutsKeep(Design d, const Scenario *s)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_cuts; i++) {
+    PetscReal size = 0;
+
+    for (PetscInt k = 0; k < d->cube.n; k++) size += PetscSqr(s->cut[i].g[k]);
+    if (!(size > 0) || PetscIsInfOrNanReal(size)) continue;
+    if (d->n_cuts == MOST_CUTS) {
+      PetscCall(PetscArraymove(d->cut, d->cut + 1, MOST_CUTS - 1));
+      d->n_cuts--;
+    }
+    if (!d->cut) PetscCall(PetscMalloc1(MOST_CUTS, &d->cut));
+    d->cut[d->n_cuts++] = s->cut[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Larger excess first */
+static int CompareScenarios(const void *a, const void *b)
+{
+  const Scenario *x = a, *y = b;
+
+  if (x->excess != y->excess) return x->excess < y->excess ? 1 : -1;
+  return x->index < y->index ? -1 : x->index > y->index;
+}
+
+/* With a probability of growth the worst scenarios, that share of them, may stay as they are */
+PetscErrorCode DesignLook(Design d, DesignPoint *point)
+{
+  const PetscInt n       = d->n_scenarios;
+  const PetscInt allowed = (PetscInt)PetscFloorReal(d->probability * (PetscReal)n + 1e-9);
+  Scenario      *s;
+  PetscMPIInt    rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  PetscCall(PetscCalloc1(n, &s));
+  for (PetscInt i = 0; i < n; i++) {
+    s[i].index = i;
+    if (PointGroupsOwner(&d->box.groups, i) == rank) PetscCall(ScenarioLook(d, point->z, &s[i]));
+  }
+  for (PetscInt i = 0; i < n; i++)
+    PetscCallMPI(MPI_Bcast(&s[i], (PetscMPIInt)sizeof(*s), MPI_BYTE, PointGroupsOwner(&d->box.groups, i), d->comm));
+  qsort(s, (size_t)n, sizeof(*s), CompareScenarios);
+  point->excess = s[allowed].excess;
+  point->omega  = s[allowed].omega;
+  point->worst  = s[allowed].index;
+  for (PetscInt i = 0; i < n; i++) {
+    point->n_unstable += s[i].n_unstable;
+    point->n_scenarios += s[i].n_unstable ? 1 : 0;
+    if (i >= allowed) PetscCall(CutsKeep(d, &s[i]));
+  }
+  PetscCall(PetscFree(s));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,133 @@
+/* The tables of designs, and what a person wants to know first */
+#include "designimpl.h"
+
+/* The designs: their parameters, and how many modes of all scenarios are unstable */
+static PetscErrorCode PointsWrite(Design d, Results results)
+{
+  ResultsTable table;
+  char         line[CUBE_MAX_TEXT];
+  PetscReal    row[10 + CUBE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(line,
+                         "design,scenarios,unstable_scenarios,unstable_modes,excess_rad_s,freq_hz,change,mass_ratio,"
+                         "solved,full_excess_rad_s",
+                         sizeof(line)));
+  for (PetscInt k = 0; k < d->cube.n; k++) {
+    PetscCall(PetscStrlcat(line, ",", sizeof(line)));
+    PetscCall(PetscStrlcat(line, d->cube.name[k], sizeof(line)));
+  }
+  PetscCall(ResultsTableOpen(results, "design", line, &table));
+  for (PetscInt i = 0; i < d->n_points; i++) {
+    const DesignPoint *p      = &d->point[i];
+    const PetscReal    head[] = {(PetscReal)(i + 1),
+                                 (PetscReal)d->n_scenarios,
+                                 (PetscReal)p->n_scenarios,
+                                 (PetscReal)p->n_unstable,
+                                 p->excess,
+                                 p->omega / (2 * PETSC_PI),
+                                 p->change,
+                                 p->mass,
+                              p->solved ? 1 : 0,
+                              p->solved ? p->full_excess : NAN};
+
+    PetscCall(PetscArraycpy(row, head, 10));
+    for (PetscInt k = 0; k < d->cube.n; k++) row[10 + k] = CubeValue(&d->cube, k, p->z[k]);
+    PetscCall(ResultsTableNumbers(table, 10 + d->cube.n, row));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* The corners in full */
+static PetscErrorCode CornersWrite(Design d, Results results)
+{
+  ResultsTable table;
+  char         line[CUBE_MAX_TEXT];
+  PetscReal    row[6 + CUBE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  if (!d->corner) PetscFunctionReturn(0);
+  PetscCall(PetscStrncpy(line, "modes,unstable,excess_rad_s,freq_hz,growth_rad_s,error_rad_s", sizeof(line)));
+  for (PetscInt k = 0; k < d->uncertain.n; k++) {
+    PetscCall(PetscStrlcat(line, ",", sizeof(line)));
+    PetscCall(PetscStrlcat(line, d->uncertain.name[k], sizeof(line)));
+  }
+  PetscCall(ResultsTableOpen(results, "design_corners", line, &table));
+  for (PetscInt i = 0; i < d->n_corners; i++) {
+    const DesignCorner *c      = &d->corner[i];
+    const PetscReal     head[] = {
+          (PetscReal)c->n_modes, (PetscReal)c->n_unstable, c->excess, c->omega / (2 * PETSC_PI), c->sigma, c->error};
+
+    PetscCall(PetscArraycpy(row, head, 6));
+    for (PetscInt k = 0; k < d->uncertain.n; k++) row[6 + k] = CubeValue(&d->uncertain, k, c->t[k]);
+    PetscCall(ResultsTableNumbers(table, 6 + d->uncertain.n, row));
+  }
+  PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DesignWrite(Design d, Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsWrite(d, results));
+  PetscCall(CornersWrite(d, results));
+  PetscFunctionReturn(0);
+}
+
+/* The design that was found, beside the scene */
+static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer viewer)
+{
+  PetscInt n_unstable = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < d->cube.n; k++) {
+    const PetscReal own = CubeValue(&d->cube, k, d->cube.own[k]), value = CubeValue(&d->cube, k, last->z[k]);
+
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s: %.6g for %.6g", d->cube.name[k], (double)value, (double)own));
+    if (own != 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", %+.3g %%", (double)(100 * (value / own - 1))));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  }
+  for (PetscInt i = 0; i < d->n_corners; i++) n_unstable += d->corner[i].n_unstable ? 1 : 0;
+  if (d->n_corners)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "in full at %" PetscInt_FMT " corners of the box: %" PetscInt_FMT " unstable\n",
+                                     d->n_corners, n_unstable));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DesignView(Design d, PetscViewer viewer)
+{
+  const DesignPoint *first = &d->point[0], *last = &d->point[d->n_points - 1];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "the scene: %" PetscInt_FMT " of %" PetscInt_FMT
+                                   " scenarios have an unstable mode, largest growth beyond the limit %.4g 1/s\n",
+                                   first->n_scenarios, d->n_scenarios, (double)first->excess));
+  if (d->found)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer,
+                             "a design with %s%.4g %% unstable, by %" PetscInt_FMT
+                             " designs; mass %+.3g %%, changes of %.3g of the half widths (root of the mean square)\n",
+                             d->probability > 0 ? "at most " : "", (double)(100 * d->probability), d->n_points,
+                             (double)(100 * (last->mass - 1)), (double)last->change));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "no design was found in %" PetscInt_FMT " tries: the last one has %" PetscInt_FMT
+                                     " unstable scenarios; widen -design_percent, or raise -design_max\n",
+                                     d->n_points, last->n_scenarios));
+  if (d->found) PetscCall(FoundView(d, last, viewer));
+  if (d->box.whole)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns\n", d->box.basis.reduced.n_used));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "basis of %" PetscInt_FMT " vectors from %" PetscInt_FMT " full solutions\n",
+                                     d->box.basis.reduced.n_used, d->box.greedy.n_samples));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "time: basis %.2f s, designs %.2f s, corners %.2f s; %" PetscInt_FMT
+                                   " full solutions, %" PetscInt_FMT " of them for the basis\n",
+                                   d->seconds[0], d->seconds[1], d->seconds[2], d->n_full + d->box.greedy.n_samples,
+                                   d->box.greedy.n_samples));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Tables of -analysis design beside closed forms and scipy's SLSQP.
+
+    design.py spin RESULTS          growth begins at k = w^2 (n^2 / c^2 - g n / c - e): k and c are changed, w and n uncertain
+    design.py oscillator RESULTS    two modes lock in at ((a - b) / 2)^2 + 1 - 4/3 mu = 0: a and b are changed, mu is uncertain
+    design.py share RESULTS         the same, where a fifth of the scenarios may stay unstable"""
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy
+from scipy.optimize import minimize
+
+N_RANDOM = 20000
+FAULTS = []
+# design and uncertain parameters: own value and half width; what is positive where it is stable; the worst corner
+SCENES = {
+    "spin": ({"k": (1, 0.5), "c": (0.25, 0.125)}, {"speed": (2, 0.6), "n": (0.1, 0.03)},
+             lambda k, c, speed, n: k - speed**2 * (n**2 / c**2 - 0.1 * n / c - 0.01)),
+    "oscillator": ({"a": (2.1, 1.05), "b": (2, 1)}, {"mu": (0.75, 0.15)}, lambda a, b, mu: ((a - b) / 2)**2 + 1 - 4 / 3 * mu)}
+
+
+def check(what, holds, value):
+    print(f"{'ok  ' if holds else 'FAIL'} {what}: {value}")
+    if not holds:
+        FAULTS.append(what)
+
+
+def main(which, folder):
+    design, uncertain, margin = SCENES[which.replace("share", "oscillator")]
+    with Path(folder, "design.csv").open(newline="") as table:
+        rows = list(csv.DictReader(table))
+    own, half = (numpy.array([pair[i] for pair in design.values()]) for i in (0, 1))
+    found = numpy.array([float(rows[-1][name]) for name in design])
+    centre, width = (numpy.array([pair[i] for pair in uncertain.values()]) for i in (0, 1))
+    random = numpy.random.default_rng(1)
+    points = random.uniform(centre - width, centre + width, (N_RANDOM, len(centre))).T
+    check("the scene is unstable somewhere", (margin(*own, *points) < 0).any(), int(rows[0]["unstable_scenarios"]))
+    change = numpy.sqrt((((found - own) / half)**2).mean())
+    check("change as stated", abs(change - float(rows[-1]["change"])) < 1e-9, change)
+    unstable = (margin(*found, *points) < 0).mean()
+    if which == "share":
+        check("a share of what is uncertain stays unstable", 0 < unstable < 0.25, unstable)
+        return 1 if FAULTS else 0
+    check("no random point of the box is unstable", unstable == 0, unstable)
+    worst = centre + width
+    best = min((minimize(lambda z: (z**2).sum(), start, constraints={"type": "ineq", "fun": lambda z: margin(*(own + half * z), *worst)},
+                         bounds=[(-1, 1)] * len(own), method="SLSQP") for start in random.uniform(-1, 1, (20, len(own)))),
+               key=lambda result: result.fun if result.success else numpy.inf)
+    least = numpy.sqrt(best.fun / len(own))
+    check("change beside the least", least * 0.999 <= change <= 1.15 * least, f"{change:.4f} and {least:.4f}")
+    check("the full solution says so",
+          rows[-1]["solved"] == "1" and float(rows[-1]["full_excess_rad_s"]) <= 0, rows[-1]["full_excess_rad_s"])
+    with Path(folder, "design_corners.csv").open(newline="") as table:
+        corners = list(csv.DictReader(table))
+    check("in full at corners and points", len(corners) == 20 and all(row["unstable"] == "0" for row in corners), len(corners))
+    return 1 if FAULTS else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
