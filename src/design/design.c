@@ -1,15 +1,12 @@
 /*
-   Designs: life cycle, options, and the flow: boxes -> a basis over both -> designs one after the other, by cuts -> a
-   full solution of each that is good -> the corners in full.
+   Designs: life cycle, options, and the flow: boxes -> a basis over both -> designs one after the other, by cuts,
+   with a full solution of each that is good -> the corners in full.
 */
 #include "designimpl.h"
-#include "base/process/progress.h"
 #include "sample/draw/sequence.h"
 #include <petsctime.h>
 
-#define DESIGN_TRAIN 60  /* points of both boxes together for the basis */
-#define RADIUS       0.5 /* of trust, of the half widths, to begin with */
-#define LEAST_RADIUS 1e-3
+#define DESIGN_TRAIN 60 /* points of both boxes together for the basis */
 
 PetscErrorCode DesignCreate(MPI_Comm comm, Design *design)
 {
@@ -113,73 +110,6 @@ static PetscErrorCode DesignFit(Design d)
   PetscFunctionReturn(0);
 }
 
-/* Change and mass of a design beside the scene */
-static void PointMeasure(const Design d, DesignPoint *point)
-{
-  PetscReal square = 0;
-
-  point->mass = 1;
-  for (PetscInt k = 0; k < d->cube.n; k++) {
-    square += PetscSqr(point->z[k] - d->cube.own[k]);
-    point->mass += d->mass_slope[k] * (point->z[k] - d->cube.own[k]);
-  }
-  point->change = PetscSqrtReal(square / (PetscReal)d->cube.n);
-}
-
-/* Whether so many scenarios may stay unstable */
-static PetscBool IsAllowed(const Design d, const DesignPoint *point)
-{
-  return (PetscReal)point->n_scenarios <= d->probability * (PetscReal)d->n_scenarios + 1e-9 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* The full solution at the worst scenario that counts; where it is unstable the basis takes the point in */
-static PetscErrorCode PointAccept(Design d, DesignPoint *point, PetscBool *accepted)
-{
-  const PetscReal *t = &d->scenario[point->worst * d->uncertain.n];
-  DesignCorner     corner;
-
-  PetscFunctionBeginUser;
-  PetscCall(DesignFull(d, point->z, t, &corner));
-  point->solved      = PETSC_TRUE;
-  point->full_excess = corner.excess;
-  *accepted          = corner.n_unstable ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* Designs until one is good: each from the cuts about those before it, from the best of them where a step has failed */
-static PetscErrorCode DesignsRun(Design d)
-{
-  PetscReal radius = RADIUS, z[CUBE_MAX_VARIABLES];
-  PetscInt  best   = 0;
-  Progress  progress;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(z, d->cube.own, d->cube.n));
-  PetscCall(PetscCalloc1(d->max_designs, &d->point));
-  PetscCall(ProgressBegin(&progress, "designs", d->max_designs));
-  while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS) {
-    DesignPoint *point = &d->point[d->n_points];
-    PetscBool    feasible;
-
-    PetscCall(PetscArraycpy(point->z, z, d->cube.n));
-    PointMeasure(d, point);
-    PetscCall(DesignLook(d, point));
-    if (IsAllowed(d, point)) PetscCall(PointAccept(d, point, &d->found));
-    if (point->solved && !d->found) d->margin *= 2;
-    if (d->n_points && point->excess >= d->point[best].excess)
-      radius /= 2;
-    else
-      best = d->n_points;
-    d->n_points++;
-    if (d->found) break;
-    PetscCall(DesignStep(d, d->point[best].z, radius, z, &feasible));
-    PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
-    PetscCall(ProgressStep(&progress));
-  }
-  PetscCall(ProgressEnd(&progress));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode DesignSolve(Design d, Results results)
 {
   PetscLogDouble begun, ended;
@@ -196,7 +126,7 @@ PetscErrorCode DesignSolve(Design d, Results results)
   PetscCall(DesignFit(d));
   PetscCall(PetscTime(&ended));
   d->seconds[0] = ended - begun;
-  PetscCall(DesignsRun(d));
+  PetscCall(DesignSearch(d));
   PetscCall(PetscTime(&begun));
   d->seconds[1] = begun - ended;
   if (d->found) PetscCall(DesignCorners(d));

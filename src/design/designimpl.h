@@ -13,7 +13,7 @@ typedef struct {
   PetscReal excess, omega;         /* largest growth beyond the limit, 1/s, and where, rad/s */
   PetscInt  worst;                 /* its scenario */
   PetscReal change, mass;          /* |z - own| / sqrt(n); mass beside that of the scene */
-  PetscBool solved;                /* in full, at the worst scenario */
+  PetscBool solved, good;          /* in full, at the worst scenario; and there, too, nothing is unstable */
   PetscReal full_excess;           /* there */
 } DesignPoint;
 
@@ -40,10 +40,10 @@ struct _p_Design {
   /* results */
   Cube           cube, uncertain;
   PetscInt       n_scenarios;
-  PetscReal     *scenario;                         /* [n_scenarios][uncertain.n] t */
-  PetscReal      mass_slope[CUBE_MAX_VARIABLES];   /* d (m / m(0)) / d z */
-  PetscReal      mass;                             /* kg of the moving unknowns, of the scene */
-  PetscInt       n_cuts, n_room, n_points, n_full; /* full solutions: beside those of the basis */
+  PetscReal     *scenario;                       /* [n_scenarios][uncertain.n] t */
+  PetscReal      mass_slope[CUBE_MAX_VARIABLES]; /* d (m / m(0)) / d z */
+  PetscReal      mass;                           /* kg of the moving unknowns, of the scene */
+  PetscInt       n_cuts, n_points, best, n_full; /* full solutions: beside those of the basis */
   DesignCut     *cut;
   DesignPoint   *point; /* [max_designs] */
   DesignCorner  *corner;
@@ -53,10 +53,14 @@ struct _p_Design {
 
 extern const QuantityTable design_quantities;
 
-/* scenario.c - the scenarios; a design at all of them, with new cuts; all parameters p of a design at a scenario t.
+/* search.c - the designs */
+PETSC_INTERN PetscErrorCode DesignSearch(Design design);
+/* cuts that a good design does not keep are dropped */
+PETSC_INTERN void DesignForget(Design design, const PetscReal good[]);
+/* scenario.c - the scenarios; a design at all of them, its cuts are kept; all parameters p of a design at a scenario t.
    Collective */
 PETSC_INTERN PetscErrorCode DesignScenarios(Design design);
-PETSC_INTERN PetscErrorCode DesignLook(Design design, DesignPoint *point);
+PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);
 /* full.c - the full solution of a design at a scenario t; at the corners of the uncertain box. Collective */
 PETSC_INTERN PetscErrorCode DesignFull(Design design, const PetscReal z[], const PetscReal t[], DesignCorner *corner);

@@ -33,7 +33,7 @@ PetscErrorCode DesignFull(Design d, const PetscReal z[], const PetscReal t[], De
 /* Corners of the uncertain box, spread evenly over all of them; where there are fewer, points inside behind them */
 PetscErrorCode DesignCorners(Design d)
 {
-  const DesignPoint *best = &d->point[d->n_points - 1];
+  const DesignPoint *best = &d->point[d->best];
   const PetscInt     n = d->uncertain.n, n_all = n ? 1 << n : 0;
   Sequence           sequence = {SEQUENCE_RANDOM, 1, PetscMax(1, d->n_corners), PetscMax(1, n), NULL};
   PetscReal          t[CUBE_MAX_VARIABLES];

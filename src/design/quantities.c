@@ -29,7 +29,7 @@ static const Quantity rows[] = {
   {"-design_mass", "weight of the relative change of mass beside half the square of the change", NULL, QUANTITY_REAL,
    DESIGN_AT(mass_weight), QUANTITY_NOT_NEGATIVE},
   {"-design_margin", "how far beyond the limit a design aims, of the half widths", NULL, QUANTITY_REAL,
-   DESIGN_AT(margin), .initial = 0.05, QUANTITY_WITHIN(0, 1)},
+   DESIGN_AT(margin), .initial = 0.02, QUANTITY_WITHIN(0, 1)},
   {"-design_max", "most designs that are looked at", NULL, QUANTITY_INT, DESIGN_AT(max_designs), .initial = 40,
    QUANTITY_POSITIVE},
   {"-design_corners", "full solutions at corners of the box of a design that is found", NULL, QUANTITY_INT,

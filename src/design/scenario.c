@@ -115,6 +115,19 @@ static PetscErrorCode CutsKeep(Design d, const Scenario *s)
   PetscFunctionReturn(0);
 }
 
+void DesignForget(Design d, const PetscReal good[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < d->n_cuts; i++) {
+    PetscReal a = d->cut[i].a;
+
+    for (PetscInt k = 0; k < d->cube.n; k++) a += d->cut[i].g[k] * (good[k] - d->cut[i].at[k]);
+    if (a <= 0) d->cut[n++] = d->cut[i];
+  }
+  d->n_cuts = n;
+}
+
 /* Larger excess first */
 static int CompareScenarios(const void *a, const void *b)
 {
@@ -125,7 +138,7 @@ static int CompareScenarios(const void *a, const void *b)
 }
 
 /* With a probability of growth the worst scenarios, that share of them, may stay as they are */
-PetscErrorCode DesignLook(Design d, DesignPoint *point)
+PetscErrorCode DesignLook(Design d, PetscBool keep, DesignPoint *point)
 {
   const PetscInt n       = d->n_scenarios;
   const PetscInt allowed = (PetscInt)PetscFloorReal(d->probability * (PetscReal)n + 1e-9);
@@ -148,7 +161,7 @@ PetscErrorCode DesignLook(Design d, DesignPoint *point)
   for (PetscInt i = 0; i < n; i++) {
     point->n_unstable += s[i].n_unstable;
     point->n_scenarios += s[i].n_unstable ? 1 : 0;
-    if (i >= allowed) PetscCall(CutsKeep(d, &s[i]));
+    if (i >= allowed && keep) PetscCall(CutsKeep(d, &s[i]));
   }
   PetscCall(PetscFree(s));
   PetscFunctionReturn(0);

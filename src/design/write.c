@@ -6,12 +6,12 @@ static PetscErrorCode PointsWrite(Design d, Results results)
 {
   ResultsTable table;
   char         line[CUBE_MAX_TEXT];
-  PetscReal    row[10 + CUBE_MAX_VARIABLES];
+  PetscReal    row[11 + CUBE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(line,
                          "design,scenarios,unstable_scenarios,unstable_modes,excess_rad_s,freq_hz,change,mass_ratio,"
-                         "solved,full_excess_rad_s",
+                         "solved,full_excess_rad_s,found",
                          sizeof(line)));
   for (PetscInt k = 0; k < d->cube.n; k++) {
     PetscCall(PetscStrlcat(line, ",", sizeof(line)));
@@ -29,11 +29,12 @@ static PetscErrorCode PointsWrite(Design d, Results results)
                                  p->change,
                                  p->mass,
                               p->solved ? 1 : 0,
-                              p->solved ? p->full_excess : NAN};
+                              p->solved ? p->full_excess : NAN,
+                              d->found && i == d->best ? 1 : 0};
 
-    PetscCall(PetscArraycpy(row, head, 10));
-    for (PetscInt k = 0; k < d->cube.n; k++) row[10 + k] = CubeValue(&d->cube, k, p->z[k]);
-    PetscCall(ResultsTableNumbers(table, 10 + d->cube.n, row));
+    PetscCall(PetscArraycpy(row, head, 11));
+    for (PetscInt k = 0; k < d->cube.n; k++) row[11 + k] = CubeValue(&d->cube, k, p->z[k]);
+    PetscCall(ResultsTableNumbers(table, 11 + d->cube.n, row));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -98,7 +99,7 @@ static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer v
 
 PetscErrorCode DesignView(Design d, PetscViewer viewer)
 {
-  const DesignPoint *first = &d->point[0], *last = &d->point[d->n_points - 1];
+  const DesignPoint *first = &d->point[0], *last = &d->point[d->found ? d->best : d->n_points - 1];
 
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer,

@@ -157,6 +157,20 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
   PetscFunctionReturn(0);
 }
 
+PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscReal lower[], PetscReal upper[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt k = 0; k < cube->n; k++)
+    for (PetscInt m = 0; m < cube->n_moved[k] && n < CUBE_MAX_MOVED; m++) {
+      parameter[n] = cube->moved[k][m];
+      lower[n]     = cube->lower[k][m];
+      upper[n]     = cube->upper[k][m];
+      n++;
+    }
+  return n;
+}
+
 PetscErrorCode CubeDestroy(Cube *cube)
 {
   PetscFunctionBeginUser;

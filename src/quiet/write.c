@@ -109,11 +109,25 @@ static PetscErrorCode CellsWrite(Quiet q, Results results)
   PetscFunctionReturn(0);
 }
 
+/* The model, for the page */
+static PetscErrorCode ModelWrite(Quiet q, Results results)
+{
+  PetscInt  parameter[CUBE_MAX_MOVED];
+  PetscReal lower[CUBE_MAX_MOVED], upper[CUBE_MAX_MOVED];
+  BoxVaried varied = {0, parameter, lower, upper};
+
+  PetscFunctionBeginUser;
+  varied.n = CubeMoved(&q->cube, parameter, lower, upper);
+  PetscCall(BoxExport(&q->box, &varied, results));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuietWrite(Quiet q, Results results)
 {
   PetscFunctionBeginUser;
   PetscCall(BoundsWrite(q, results));
   PetscCall(StatementWrite(q, results));
   PetscCall(CellsWrite(q, results));
+  PetscCall(ModelWrite(q, results));
   PetscFunctionReturn(0);
 }

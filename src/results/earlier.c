@@ -69,6 +69,7 @@ static const struct {
   {"quiet.csv", NULL},
   {"quiet_statement.csv", NULL},
   {"quiet_cells.csv", NULL},
+  {"reduced_model.bin", NULL},
   {"design.csv", NULL},
   {"design_corners.csv", NULL},
   {"frf.csv", NULL},

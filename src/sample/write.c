@@ -190,6 +190,30 @@ static PetscErrorCode SamplesVerifyWrite(Sample s, Results results)
   PetscFunctionReturn(0);
 }
 
+/* The model, for the page, over what the samples have */
+static PetscErrorCode SampleModelWrite(Sample s, Results results)
+{
+  PetscInt   n = 0, *parameter;
+  PetscReal *lower, *upper, *p;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->n_variables; k++) n += s->variable[k].n_names;
+  PetscCall(PetscMalloc4(n, &parameter, n, &lower, n, &upper, s->box.n_parameters, &p));
+  n = 0;
+  for (PetscInt k = 0; k < s->n_variables; k++)
+    for (PetscInt m = 0; m < s->variable[k].n_names; m++) parameter[n++] = s->variable[k].moved[m];
+  for (PetscInt i = 0; i < s->n; i++) {
+    PetscCall(SampleParameters(s, i, p));
+    for (PetscInt j = 0; j < n; j++) {
+      lower[j] = i ? PetscMin(lower[j], p[parameter[j]]) : p[parameter[j]];
+      upper[j] = i ? PetscMax(upper[j], p[parameter[j]]) : p[parameter[j]];
+    }
+  }
+  PetscCall(BoxExport(&s->box, &(BoxVaried){n, parameter, lower, upper}, results));
+  PetscCall(PetscFree4(parameter, lower, upper, p));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SampleWrite(Sample s, Results results)
 {
   PetscFunctionBeginUser;
@@ -202,5 +226,6 @@ PetscErrorCode SampleWrite(Sample s, Results results)
   PetscCall(ModesRows(s, results));
   PetscCall(ProbabilityWrite(s, results));
   PetscCall(IndicesWrite(s, results));
+  PetscCall(SampleModelWrite(s, results));
   PetscFunctionReturn(0);
 }

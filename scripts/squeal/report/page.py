@@ -7,6 +7,7 @@ from ..tables import BadInput
 from .compare import compare_section
 from .folders import Folder
 from .markup import Markup, Part, count, join, missing, section, tag
+from .models import model_part
 from .modes import modes_part
 from .origin import origin_section, scene_section
 from .responses import response_part
@@ -21,10 +22,10 @@ LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
           "frf": "Frequency response", "map": "Map of vibration", "cycle": "Limit cycles", "sample": "Samples",
-          "conditions": "Conditions"}
+          "conditions": "Conditions", "model": "The model"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
             "frf": response_part, "map": map_part, "cycle": cycle_part, "sample": sample_part,
-            "conditions": conditions_part}
+            "conditions": conditions_part, "model": model_part}
 
 
 class Opening(NamedTuple):
@@ -102,7 +103,9 @@ def page(folders, title, opening, share):
     body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
                navigation(folders, opening),
                tag("main", first, compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
-               tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js"))))
+               tag("script", resource("reduced.js"), type="text/plain", id="reduced-code")
+               if any("model" in folder.analyses for folder in folders) else None,
+               tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js", "sliders.js"))))
     return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])
 
 

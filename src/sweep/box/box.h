@@ -52,6 +52,15 @@ PETSC_INTERN PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[
 /* compress.c - makes a model of fewer vectors from the modes of some of the points, estimated within rtol at all of
    them; none where that saves nothing. Collective. */
 PETSC_INTERN PetscErrorCode BoxCompress(Box *box, PetscInt n, const PetscReal points[]);
+/* export.c - parameters of the operators that vary, and where between */
+typedef struct {
+  PetscInt         n;
+  const PetscInt  *parameter;
+  const PetscReal *lower, *upper;
+} BoxVaried;
+/* Writes reduced_model.bin, of the model of fewer vectors where there is one; nothing where it is too large for a page,
+   where a coefficient is no monomial, or where the contact status differs between points. Collective. */
+PETSC_INTERN PetscErrorCode BoxExport(const Box *box, const BoxVaried *varied, Results results);
 /* Frees it. Not collective. */
 PETSC_INTERN PetscErrorCode BoxForgetSmall(Reduced *small);
 /* Modes of one point with estimated errors, in the window or a little beyond it (guarded), on the basis or on the model

@@ -1,0 +1,149 @@
+/*
+   The designs one after the other. First the cuts of those before lead to a good one. From the scene to that the limit
+   is crossed somewhere: there, found by halving, the cuts are sharp, and the next design from these is tried.
+   As long as that is good, and nearer to the scene, it goes on.
+*/
+#include "designimpl.h"
+#include "base/process/progress.h"
+
+#define RADIUS       0.5 /* of trust, of the half widths, to begin with */
+#define LEAST_RADIUS 1e-3
+#define GAIN         2e-3 /* of the goal, that another design must promise */
+#define HALF_TURNS   14   /* halvings of the way from a bad design to a good one */
+
+/* Change and mass of a design beside the scene */
+static void PointMeasure(const Design d, DesignPoint *point)
+{
+  PetscReal square = 0;
+
+  point->mass = 1;
+  for (PetscInt k = 0; k < d->cube.n; k++) {
+    square += PetscSqr(point->z[k] - d->cube.own[k]);
+    point->mass += d->mass_slope[k] * (point->z[k] - d->cube.own[k]);
+  }
+  point->change = PetscSqrtReal(square / (PetscReal)d->cube.n);
+}
+
+/* What is minimised */
+static PetscReal PointGoal(const Design d, const DesignPoint *point)
+{
+  return 0.5 * PetscSqr(point->change) * (PetscReal)d->cube.n + d->mass_weight * (point->mass - 1);
+}
+
+/* Whether no more scenarios are unstable than may be */
+static PetscBool IsAllowed(const Design d, const DesignPoint *point)
+{
+  return (PetscReal)point->n_scenarios <= d->probability * (PetscReal)d->n_scenarios + 1e-9 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The full solution at the worst scenario that counts */
+static PetscErrorCode PointAccept(Design d, DesignPoint *point)
+{
+  DesignCorner corner;
+
+  PetscFunctionBeginUser;
+  PetscCall(DesignFull(d, point->z, &d->scenario[point->worst * d->uncertain.n], &corner));
+  point->solved      = PETSC_TRUE;
+  point->full_excess = corner.excess;
+  point->good        = corner.n_unstable ? PETSC_FALSE : PETSC_TRUE;
+  if (!point->good) d->margin *= 2;
+  PetscFunctionReturn(0);
+}
+
+/* The next row of the table */
+static PetscErrorCode DesignTry(Design d, const PetscReal z[], DesignPoint **point)
+{
+  PetscFunctionBeginUser;
+  *point = &d->point[d->n_points++];
+  PetscCall(PetscArraycpy((*point)->z, z, d->cube.n));
+  PointMeasure(d, *point);
+  PetscCall(DesignLook(d, PETSC_TRUE, *point));
+  if (IsAllowed(d, *point)) PetscCall(PointAccept(d, *point));
+  PetscFunctionReturn(0);
+}
+
+/* Until one is good: from the least bad one, and less far where a step has failed */
+static PetscErrorCode SearchGood(Design d)
+{
+  PetscReal radius = RADIUS, z[CUBE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(z, d->cube.own, d->cube.n));
+  while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS) {
+    DesignPoint *point;
+    PetscBool    feasible;
+
+    PetscCall(DesignTry(d, z, &point));
+    d->found = point->good;
+    if (d->n_points > 1 && !d->found && point->excess >= d->point[d->best].excess)
+      radius /= 2;
+    else
+      d->best = d->n_points - 1;
+    if (!d->found) PetscCall(DesignStep(d, d->point[d->best].z, radius, z, &feasible));
+    PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* bad := a bad design next to the limit on the way to the best one, whose cuts are kept; older ones that the best one
+   does not keep are dropped */
+static PetscErrorCode SearchEdge(Design d, PetscReal bad[])
+{
+  const PetscReal *good = d->point[d->best].z;
+  PetscReal        good_end[CUBE_MAX_VARIABLES];
+  DesignPoint      middle;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(good_end, good, d->cube.n));
+  for (int turn = 0; turn < HALF_TURNS; turn++) {
+    middle = (DesignPoint){.n_unstable = 0};
+    for (PetscInt k = 0; k < d->cube.n; k++) middle.z[k] = 0.5 * (bad[k] + good_end[k]);
+    PetscCall(DesignLook(d, PETSC_FALSE, &middle));
+    PetscCall(PetscArraycpy(IsAllowed(d, &middle) ? good_end : bad, middle.z, d->cube.n));
+  }
+  DesignForget(d, good_end);
+  middle = (DesignPoint){.n_unstable = 0};
+  PetscCall(PetscArraycpy(middle.z, bad, d->cube.n));
+  PetscCall(DesignLook(d, PETSC_TRUE, &middle));
+  PetscFunctionReturn(0);
+}
+
+/* Better ones */
+static PetscErrorCode SearchBetter(Design d)
+{
+  PetscReal bad[CUBE_MAX_VARIABLES], z[CUBE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(bad, d->cube.own, d->cube.n));
+  while (d->n_points < d->max_designs && d->best > 0) {
+    DesignPoint *point, next = {.n_unstable = 0};
+    PetscBool    feasible;
+
+    PetscCall(SearchEdge(d, bad));
+    PetscCall(DesignStep(d, d->point[d->best].z, RADIUS, z, &feasible));
+    PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
+    PetscCall(PetscArraycpy(next.z, z, d->cube.n));
+    PointMeasure(d, &next);
+    if (PointGoal(d, &next) >= PointGoal(d, &d->point[d->best]) * (1 - GAIN)) break;
+    PetscCall(DesignTry(d, z, &point));
+    if (point->good)
+      d->best = d->n_points - 1;
+    else
+      PetscCall(PetscArraycpy(bad, z, d->cube.n));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DesignSearch(Design d)
+{
+  Progress progress;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(d->max_designs, &d->point));
+  PetscCall(ProgressBegin(&progress, "designs", 2));
+  PetscCall(SearchGood(d));
+  PetscCall(ProgressStep(&progress));
+  if (d->found) PetscCall(SearchBetter(d));
+  PetscCall(ProgressEnd(&progress));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""What the page computes of reduced_model.bin beside squeal's own numbers: growth in the middle of each cell of quiet_cells.csv, to 1e-9
+of the largest frequency, by node; and that the JavaScript of the page has the same eigenvalues as scipy's QZ at one point. Without node
+it says so.
+
+    reduced_model.py RESULTS"""
+
+import csv
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy
+import scipy.linalg
+
+SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report/reduced.js"
+MOST = 60  # cells
+NODE = """
+const fs = require("fs"), {readModel, modesAt} = require(process.argv[1]), file = fs.readFileSync(process.argv[2]);
+const model = readModel(file.buffer.slice(file.byteOffset, file.byteOffset + file.length));
+const begun = Date.now(), found = JSON.parse(fs.readFileSync(0)).map(p => modesAt(model, p));
+console.log(JSON.stringify({found, seconds: (Date.now() - begun) / 1000}));
+"""
+
+
+def read(path):
+    """Head, matrices."""
+    data = path.read_bytes()
+    end = data.index(b"\n")
+    model = json.loads(data[:end])
+    return model, numpy.frombuffer(data[end + 1:]).reshape(len(model["terms"]), model["n"], model["n"]).transpose(0, 2, 1)
+
+
+def by_scipy(model, matrices, p):
+    """Eigenvalues of the band, by QZ of the companion form."""
+    n, sums = model["n_used"], {"K": 0, "C": 0, "M": 0}
+    for term, matrix in zip(model["terms"], matrices):
+        c = term["scale"] * numpy.prod([(abs(p[i]) if absolute else p[i])**power for i, power, absolute in term["factors"]])
+        sums[term["kind"]] = sums[term["kind"]] + c * matrix[:n, :n]
+    h, one, none = model["high"], numpy.eye(n), numpy.zeros((n, n))
+    A = numpy.block([[none, h * one], [-sums["K"] / h, -sums["C"] * one if numpy.isscalar(sums["C"]) else -sums["C"]]])
+    values = scipy.linalg.eigvals(A, numpy.block([[one, none], [none, sums["M"]]]))
+    return numpy.array(sorted((v for v in values if model["low"] <= v.imag <= model["high"]), key=lambda v: v.imag))
+
+
+def main(folder):
+    node = shutil.which("node")
+    if not node:
+        print("no node: nothing is compared")
+        return 0
+    model, matrices = read(folder / "reduced_model.bin")
+    names = [entry["name"] for entry in model["parameters"]]
+    with (folder / "quiet_cells.csv").open(newline="") as table:
+        cells = [row for row in csv.DictReader(table) if row["growth_rad_s"]][:MOST]
+    points = [[0.5 * (float(cell[f"lower_{name}"]) + float(cell[f"upper_{name}"])) for name in names] for cell in cells]
+    done = subprocess.run([node, "-e", NODE, str(SOURCE), str(folder / "reduced_model.bin")], input=json.dumps(points),
+                          capture_output=True, text=True, check=True)
+    answer = json.loads(done.stdout)
+    worst = 0.0
+    for cell, modes in zip(cells, answer["found"]):
+        excess = [mode["growth"] - max(model["limit_growth"], model["limit_ratio"] * abs(complex(mode["growth"], 6.283185307 * mode["freq"])))
+                  for mode in modes]
+        worst = max(worst, abs(modes[int(numpy.argmax(excess))]["growth"] - float(cell["growth_rad_s"])))
+    values = by_scipy(model, matrices, points[0])
+    own = numpy.array([mode["growth"] + 2j * numpy.pi * mode["freq"] for mode in answer["found"][0]])
+    far = max((min(abs(own - value)) for value in values), default=0)
+    print(f"{len(cells)} points of {model['n_used']} vectors: growth differs by {worst:.1e} rad/s of {model['high']:.4g}, from scipy by "
+          f"{far:.1e}; {len(cells) / answer['seconds']:.1f} a second")
+    return 0 if cells and len(values) == len(own) and \
+        worst <= 1e-9 * model["high"] and far <= 1e-7 * model["high"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))
