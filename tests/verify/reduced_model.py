@@ -60,8 +60,8 @@ def main(folder):
     answer = json.loads(done.stdout)
     worst = 0.0
     for cell, modes in zip(cells, answer["found"]):
-        excess = [mode["growth"] - max(model["limit_growth"], model["limit_ratio"] * abs(complex(mode["growth"], 6.283185307 * mode["freq"])))
-                  for mode in modes]
+        values = [complex(mode["growth"], 2 * numpy.pi * mode["freq"]) for mode in modes]
+        excess = [value.real - max(model["limit_growth"], model["limit_ratio"] * abs(value)) for value in values]
         worst = max(worst, abs(modes[int(numpy.argmax(excess))]["growth"] - float(cell["growth_rad_s"])))
     values = by_scipy(model, matrices, points[0])
     own = numpy.array([mode["growth"] + 2j * numpy.pi * mode["freq"] for mode in answer["found"][0]])
