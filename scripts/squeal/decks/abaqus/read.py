@@ -26,6 +26,9 @@ PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of th
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
 INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this",
            "PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
+           "CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
+                                   "give the contact an `interference`",
+           "CLEARANCE": "give the contact a `gap`, or move its surfaces in the mesh",
            "SHELL GENERAL SECTION": "its shells have no thickness",
            "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
