@@ -165,6 +165,28 @@ def ansys(folder, program, solid):
             solid, [heavy, *pair], real, [*types, f"KEYOP,      14, 4, {kind}"])), other)
 
 
+def connectors(folder, program, solid):
+    """Connectors beside what does the same: a rigid body, springs, equations."""
+    right = decks_joined.REF + decks_joined.COUPLED + "*KINEMATIC\n"
+    pair = "*NODE\n9002, 47., 3., 9.\n*ELEMENT, TYPE=CONN3D2, ELSET=CN\n90020, 9001, 9002\n"
+    far = right + decks_joined.MASS.replace("9001", "9002") + pair
+    rigid = decks_joined.deck(solid, right + decks_joined.MASS)
+    for kind in ("BEAM", "WELD"):
+        text = decks_joined.deck(solid, far + f"*CONNECTOR SECTION, ELSET=CN\n{kind},\n")
+        same(folder, program, f"a connector, {kind}", ("inp", text), rigid)
+    held = decks_joined.HELD_BY
+    node = right + pair
+    bush = "*CONNECTOR SECTION, ELSET=CN, BEHAVIOR=B\nCARTESIAN,\n*CONNECTOR BEHAVIOR, NAME=B\n" + "".join(
+        f"*CONNECTOR ELASTICITY, COMPONENT={d}\n{k}.\n" for d, k in ((1, 3000), (2, 900), (3, 700)))
+    same(folder, program, "a connector, CARTESIAN", ("inp", decks_joined.deck(solid, node + bush, "LEFT, 1, 3\n9002, 1, 6\n")),
+         decks_joined.deck(solid, right + held))
+    pinned = decks_joined.deck(solid, node + "*CONNECTOR SECTION, ELSET=CN\nJOIN,\n", "LEFT, 1, 3\n9002, 1, 6\n")
+    same(folder, program, "a connector, JOIN", ("inp", pinned), decks_joined.deck(solid, right, "LEFT, 1, 3\n9001, 1, 3\n"))
+    hinge = decks_joined.deck(solid, node + "*ORIENTATION, NAME=O\n0., 0., 1., 1., 0., 0.\n*CONNECTOR SECTION, ELSET=CN\nHINGE,\nO,\n",
+                              "LEFT, 1, 3\n9002, 1, 6\n")
+    same(folder, program, "a connector, HINGE", ("inp", hinge), decks_joined.deck(solid, right, "LEFT, 1, 3\n9001, 1, 5\n"))
+
+
 def supports_and_loads(folder, solid):
     """What a reference node carries in the scene: force and moment, in the axes of space and turned ones."""
     step = "*STEP\n*STATIC\n*CLOAD\n9001, 1, 3.\n9001, 5, 20.\n*END STEP"
@@ -186,6 +208,8 @@ def not_taken(folder, solid):
             ("a mass that nothing joins", ref + mass, "*MASS LUMP: at a node that no volume element has, and nothing joins"),
             ("a coupling without its kind", ref + coupled, "*COUPLING without *KINEMATIC or *DISTRIBUTING"),
             ("rotations alone", ref + coupled + "*KINEMATIC\n4, 6\n", "of rotations alone, which solids do not have"),
+            ("a connector of another kind", ref + coupled + "*KINEMATIC\n*NODE\n9002, 47., 3., 9.\n*ELEMENT, TYPE=CONN3D2, ELSET=CN\n"
+             "90020, 9001, 9002\n*CONNECTOR SECTION, ELSET=CN\nSLOT,\n", "*CONNECTOR SECTION CN: SLOT, not read: not in the scene"),
             ("an unknown constraint", "*MPC\nSLIDER, 1, 2, 3\n", "*MPC, SLIDER: not understood"),
             ("a mass without its value", ref + "*ELEMENT, TYPE=MASS, ELSET=L\n90001, 9001\n", "element 90001 has no *MASS"),
             ("inertia of a solid's node", "*ELEMENT, TYPE=ROTARYI, ELSET=L\n90001, 1\n*ROTARY INERTIA, ELSET=L\n1., 1., 1.\n",
@@ -213,6 +237,7 @@ def main():
         beside(folder, program, "tied nodes", decks_joined.between(solid, decks_joined.TIED), decks_joined.deck(solid, equal))
         nastran(folder, program, solid)
         ansys(folder, program, solid)
+        connectors(folder, program, solid)
         supports_and_loads(folder, solid)
         not_taken(folder, solid)
     return 1 if FAILED else 0

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy
 
 from ...tables import BadInput
-from . import beams as abaqus_beams, joined as abaqus_joined, loads as abaqus_loads, material as abaqus_material, mesh as abaqus_mesh
+from . import beams as abaqus_beams, connectors as abaqus_connectors, joined as abaqus_joined, loads as abaqus_loads
+from . import material as abaqus_material, mesh as abaqus_mesh
 from . import model as abaqus_model, sets as abaqus_sets
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from ..deck import NOT_NEEDED, Deck, Index, Place
@@ -24,8 +25,7 @@ ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONT
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
-INSTEAD = {"CONNECTOR SECTION": "`joints` of squeal may do this",
-           "PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
+INSTEAD = {"PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
            "CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
                                    "give the contact an `interference`",
            "CLEARANCE": "give the contact a `gap`, or move its surfaces in the mesh",
@@ -47,6 +47,8 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "DISTRIBUTING": {"WEIGHTING METHOD", "COUPLING"}, "KINEMATIC COUPLING": {"REF NODE", "ORIENTATION"},
          "EQUATION": set(), "MPC": set(), "BEAM SECTION": {"ELSET", "MATERIAL", "SECTION", "TEMPERATURE"},
          "BEAM GENERAL SECTION": {"ELSET", "SECTION", "DENSITY"},
+         "CONNECTOR SECTION": {"ELSET", "BEHAVIOR"}, "CONNECTOR BEHAVIOR": {"NAME"}, "CONNECTOR ELASTICITY": {"COMPONENT"},
+         "CONNECTOR DAMPING": {"COMPONENT"},
          "RIGID BODY": {"REF NODE", "ROT NODE", "NSET", "ELSET", "PIN NSET", "TIE NSET"},
          "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
@@ -71,7 +73,7 @@ def listed(do):
 
 CARDS = {keyword: listed(do) for keyword, do in (
     abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS |
-    abaqus_beams.CARDS).items()}
+    abaqus_beams.CARDS | abaqus_connectors.CARDS).items()}
 
 
 @dataclass
@@ -222,6 +224,7 @@ class Reader:
         self.material = self.interaction = self.changed = None
         self.interactions, self.spring_cards, self.pairs = {}, [], []
         self.turned, self.rotations, self.surface_nodes = {}, {}, {}  # node -> its axes (None: unknown); ROT NODE -> REF NODE
+        self.connector, self.connectors, self.connector_sections = None, {}, []  # of connectors.py
         self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
@@ -329,6 +332,7 @@ class Reader:
     def finish(self):
         """What needs all of the deck."""
         abaqus_loads.finish_loads(self)
+        abaqus_connectors.finish(self)
         abaqus_model.finish(self)
         abaqus_material.finish_sections(self.deck)
         for name, place in self.unplaced.items():
