@@ -96,7 +96,7 @@ class Browser:
                 yield f"console {told['type']} {told['args']}"
             elif method == "Log.entryAdded" and told["entry"]["level"] in ("error", "warning"):
                 yield f"log {told['entry']['text']}"
-            elif method == "Network.requestWillBeSent" and not told["request"]["url"].startswith(("file:", "data:")):
+            elif method == "Network.requestWillBeSent" and not told["request"]["url"].startswith(("file:", "data:", "blob:")):
                 yield f"request {told['request']['url']}"
 
     def picture(self, path, full=True):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What the page computes of reduced_model.bin beside squeal's own numbers: growth in the middle of each cell of quiet_cells.csv, to 1e-9
-of the largest frequency, by node; and that the JavaScript of the page has the same eigenvalues as scipy's QZ at one point. Without node
-it says so.
+of the largest frequency, by node; and that the JavaScript of the page has the same eigenvalues as scipy's QZ at one point. Where there is
+a Chromium the page of the folder is opened: its sliders give the same modes, and it says where it extrapolates. Without node it says
+so.
 
     reduced_model.py RESULTS"""
 
@@ -10,10 +11,15 @@ import json
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 import numpy
 import scipy.linalg
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from browser import Browser, find_browser
 
 SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report/reduced.js"
 MOST = 60  # cells
@@ -45,6 +51,39 @@ def by_scipy(model, matrices, p):
     return numpy.array(sorted((v for v in values if model["low"] <= v.imag <= model["high"]), key=lambda v: v.imag))
 
 
+def until(browser, script):
+    """Its value, when that is something."""
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        value = browser.run(script)
+        if value:
+            return value
+        browser.wait(0.2)
+    return None
+
+
+def page_says(folder, modes):
+    """Whether the page has these modes at the scene's own values, and says what is outside."""
+    if not find_browser():
+        print("no Chromium: no page is opened")
+        return True
+    with tempfile.TemporaryDirectory() as name:
+        page = Path(name, "page.html")
+        subprocess.run([SOURCE.parents[2] / "report", folder, "-o", page], check=True, stdout=subprocess.DEVNULL)
+        browser = Browser(find_browser())
+        try:
+            browser.open(page.as_uri(), 1000)
+            own = until(browser, "[...document.querySelectorAll('.sliders tbody tr')].map(row => Number(row.cells[0].textContent))")
+            browser.run("(s => {s.value = s.max; s.dispatchEvent(new Event('input'))})(document.querySelector('.sliders input'))")
+            outside = until(browser, "document.querySelector('.sliders.outside .said')?.textContent")
+            faults = list(browser.faults())
+        finally:
+            browser.close()
+    print(f"page: {own}; {outside}; {faults}")
+    return bool(own and outside and "extrapolates" in outside and not faults
+                and numpy.allclose(own, [mode["freq"] for mode in modes], atol=6e-4))
+
+
 def main(folder):
     node = shutil.which("node")
     if not node:
@@ -54,12 +93,13 @@ def main(folder):
     names = [entry["name"] for entry in model["parameters"]]
     with (folder / "quiet_cells.csv").open(newline="") as table:
         cells = [row for row in csv.DictReader(table) if row["growth_rad_s"]][:MOST]
-    points = [[0.5 * (float(cell[f"lower_{name}"]) + float(cell[f"upper_{name}"])) for name in names] for cell in cells]
+    points = [[entry["value"] for entry in model["parameters"]]]
+    points += [[0.5 * (float(cell[f"lower_{name}"]) + float(cell[f"upper_{name}"])) for name in names] for cell in cells]
     done = subprocess.run([node, "-e", NODE, str(SOURCE), str(folder / "reduced_model.bin")], input=json.dumps(points),
                           capture_output=True, text=True, check=True)
     answer = json.loads(done.stdout)
     worst = 0.0
-    for cell, modes in zip(cells, answer["found"]):
+    for cell, modes in zip(cells, answer["found"][1:]):
         values = [complex(mode["growth"], 2 * numpy.pi * mode["freq"]) for mode in modes]
         excess = [value.real - max(model["limit_growth"], model["limit_ratio"] * abs(value)) for value in values]
         worst = max(worst, abs(modes[int(numpy.argmax(excess))]["growth"] - float(cell["growth_rad_s"])))
@@ -69,7 +109,7 @@ def main(folder):
     print(f"{len(cells)} points of {model['n_used']} vectors: growth differs by {worst:.1e} rad/s of {model['high']:.4g}, from scipy by "
           f"{far:.1e}; {len(cells) / answer['seconds']:.1f} a second")
     return 0 if cells and len(values) == len(own) and \
-        worst <= 1e-9 * model["high"] and far <= 1e-7 * model["high"] else 1
+        worst <= 1e-9 * model["high"] and far <= 1e-7 * model["high"] and page_says(folder, answer["found"][0]) else 1
 
 
 if __name__ == "__main__":
