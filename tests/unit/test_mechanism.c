@@ -258,6 +258,7 @@ static const Case cases[] = {
 static PetscErrorCode TestNames(int *failed)
 {
   PetscFunctionBeginUser;
+  *failed += CheckTrue("systems, 12 asked", sizeof(cases) / sizeof(*cases) >= 12, sizeof(cases) / sizeof(*cases));
   for (size_t k = 0; k < sizeof(cases) / sizeof(*cases); k++) {
     const Case   *c = &cases[k];
     Solution      s;
