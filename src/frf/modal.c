@@ -41,13 +41,14 @@ static PetscErrorCode SuperpositionCreate(Frf frf, Superposition *s)
   PetscCall(PetscMalloc1(frf->n_outputs + 1, &s->all));
   s->all[0] = s->b;
   PetscCall(PetscArraycpy(s->all + 1, s->l, frf->n_outputs));
-  s->answers                 = (ModesAnswers){.space  = &s->space,
-                                              .factor = *kept,
-                                              .keep   = RESPONSE_KEEP,
-                                              .edge   = {PETSC_MAX_REAL, 0},
-                                              .n = {pencil.symmetric ? frf->n_outputs + 1 : 1, pencil.symmetric ? 0 : frf->n_outputs},
-                                              .b = {s->all, s->l},
-                                              .n_solves = &frf->n_solves};
+  s->answers = (ModesAnswers){.space    = &s->space,
+                              .factor   = *kept,
+                              .keep     = RESPONSE_KEEP,
+                              .edge     = {PETSC_MAX_REAL, 0},
+                              .n        = {1, frf->n_outputs},
+                              .b        = {s->all, s->l},
+                              .n_solves = &frf->n_solves};
+  if (pencil.symmetric) s->answers.n[0] = frf->n_outputs + 1, s->answers.n[1] = 0;
   s->answers.factor.progress = &frf->progress;
   s->answers.factor.after    = NULL;
   for (PetscInt i = 0; i < frf->n; i++) {

@@ -7,8 +7,8 @@
 #define FRF_BATCH 16 /* frequencies that are solved together: trsyl takes the norm of T anew in each call */
 
 /* S = Q0^-1 M undamped, Q0 = K - shift M, or damped the companion matrix of Q(lambda) about a shift, Q0 = Q(shift)
-   (basis/companion.c, states [q; p]), on the n vectors of the space as Z T Z' with T quasi-triangular, and the force and
-   outputs there. */
+   (basis/companion.c, states [q; p]), on the n vectors of the space as Z T Z' with T quasi-triangular, and the force
+   and outputs there. */
 typedef struct {
   PetscInt   n, length, n_outputs;
   PetscBool  damped;

@@ -4,12 +4,12 @@
 
       r(lambda) = b - Q(lambda) V c,   V' Q(lambda) V c = V' b,
 
-   of the transposed pencil for the left side, and V takes in P^-1 r of all lambda of interest, P = K - s M. It is that
-   of few directions: where V holds the right vectors of an undamped pencil alone, Q(lambda) differs from P by a multiple
-   of M, all r are multiples of one vector for each b, and the steps are those of Krylov's method with P^-1 M that leaves
-   out the modes (A. Ruhe, Linear Algebra Appl. 58, 1984). Left vectors in V bring others, and so does what of C is no
-   combination of M and K, as P^-1 C is a second generator then; singular values tell which matter. So the factors that
-   found the modes will do with damping, too, which needs none of Q at a complex shift.
+   of the transposed pencil for the left side, and V takes in P^-1 r of all lambda of interest, P = K - s M. It is
+   that of few directions: where V holds the right vectors of an undamped pencil alone, Q(lambda) differs from P by a
+   multiple of M, all r are multiples of one vector for each b, and the steps are those of Krylov's method with P^-1 M
+   that leaves out the modes (A. Ruhe, Linear Algebra Appl. 58, 1984). Left vectors in V bring others, and so does what
+   of C is no combination of M and K, as P^-1 C is a second generator then; singular values tell which matter. So the
+   factors that found the modes will do with damping, too, which needs none of Q at a complex shift.
 
    The frequencies at which residuals are looked at lie off the axis, where no mode outweighs all others.
 */
@@ -17,8 +17,8 @@
 #include "basis/residual.h"
 #include "solver/block/orthonormal.h"
 
-#define N_LOOKS  3
-#define OFF_AXIS 0.2 /* of the frequency: growth of a look */
+#define ANSWER_LOOKS 3
+#define OFF_AXIS     0.2 /* of the frequency: growth of a look */
 
 PetscErrorCode ModesSpaceAddModes(ModesSpace *space, Modes modes, Pencil pencil, PetscBool left)
 {
@@ -83,7 +83,7 @@ static PencilMatrices SideOf(const ModesSpace *space, PetscBool left)
 
 /* The directions of what the answers of a side leave of its forces; real and imaginary part count by the length of
    both */
-static PetscErrorCode SideRemain(const ModesAnswers *a, int side, const ComplexColumns *columns, BV R)
+static PetscErrorCode AnswersLeave(const ModesAnswers *a, int side, const ComplexColumns *columns, BV R)
 {
   const PencilMatrices pencil = SideOf(a->space, side ? PETSC_TRUE : PETSC_FALSE);
   PetscReal           *length, *sigma;
@@ -118,14 +118,14 @@ static PetscErrorCode AnswersRemain(const ModesAnswers *a, BV R[2])
   PetscFunctionBeginUser;
   for (int side = 0; side < 2; side++) {
     PetscCall(ModesSpaceProducts(a->space, a->n[side], a->b[side], &forces[side]));
-    PetscCall(ComplexColumnsCreate(N_LOOKS * a->n[side], a->space->space.n, &columns[side]));
+    PetscCall(ComplexColumnsCreate(ANSWER_LOOKS * a->n[side], a->space->space.n, &columns[side]));
   }
-  for (int k = 0; k < N_LOOKS; k++)
-    PetscCall(LookAdd(a, (OFF_AXIS + PETSC_i) * (a->edge[0] + (k + 0.5) / N_LOOKS * (a->edge[1] - a->edge[0])), forces,
-                      columns));
+  for (int k = 0; k < ANSWER_LOOKS; k++)
+    PetscCall(LookAdd(a, (OFF_AXIS + PETSC_i) * (a->edge[0] + (k + 0.5) / ANSWER_LOOKS * (a->edge[1] - a->edge[0])),
+                      forces, columns));
   for (int side = 0; side < 2; side++) {
     if (columns[side].m) PetscCall(BlockCreate(a->space->space.V, columns[side].n_columns, &R[side]));
-    if (columns[side].m) PetscCall(SideRemain(a, side, &columns[side], R[side]));
+    if (columns[side].m) PetscCall(AnswersLeave(a, side, &columns[side], R[side]));
     PetscCall(ComplexColumnsDestroy(&columns[side]));
     PetscCall(PetscFree(forces[side]));
   }

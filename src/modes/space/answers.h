@@ -1,4 +1,5 @@
-/* Private to modes/, frf/: vectors by which the space of Galerkin's method answers to forces, beyond those of the modes */
+/* Private to modes/, frf/: vectors by which the space of Galerkin's method answers to forces, beyond those of the
+   modes */
 #pragma once
 
 #include "space.h"
