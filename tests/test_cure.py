@@ -14,7 +14,8 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "tests/verify"))
-from changes import Brake  # noqa: E402
+from changes import Brake, surfaces  # noqa: E402
+from squeal.provenance import Provenance  # noqa: E402
 from test_report import Page  # noqa: E402
 
 SCENE = """
@@ -28,7 +29,8 @@ hang: {set: pad, viscosity_total: "0,3,0"}
 """
 MU = 0.5
 LIMIT = 1e-5  # of the eigenvalue: growth that is no instability
-OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity", "relative_spring": "stiffness", "relative_dashpot": "viscosity"}
+OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity", "relative_spring": "stiffness", "relative_dashpot": "viscosity",
+          "layer_mass": "mass", "layer_spring": "stiffness", "layer_dashpot": "viscosity", "parameter": "percent"}
 
 
 def call(folder, *words):
@@ -36,22 +38,44 @@ def call(folder, *words):
                           check=False)
 
 
-def exact(folder, rows):
+def moved(squeal, folder, rows, scene):
+    """The matrices of a run with the parameters that a set changes, saved anew, and the friction coefficient."""
+    options = {}
+    for row in rows:
+        if row["change"] == "parameter":
+            words = scene.value(row["name"]).split(",")
+            options[row["name"]] = ",".join(f"{float(word) * (1 + float(row['amount']) / 100):.15g}" for word in words)
+    if not options:
+        return folder / "matrices", MU
+    subprocess.run([squeal, "-options_file", "out/scene.yaml", "-output_dir", "moved", "-operators_save", "moved_matrices",
+                    "-output_fields", "0", *(word for name, value in options.items() for word in (f"-{name}", value))],
+                   cwd=folder, check=True, capture_output=True)
+    return folder / "moved_matrices", float(options.get("contact_mu", MU))
+
+
+def exact(squeal, folder, rows):
     """Largest growth of the matrices with a set of changes, and its eigenvalue."""
-    brake = Brake(folder / "out", folder / "matrices", MU)
+    brake = Brake(folder / "out", *moved(squeal, folder, rows, Provenance(folder / "out/scene.yaml")))
+    brake.sets = surfaces(brake)
+    rows = [row for row in rows if row["change"] != "parameter"]
     for i, row in enumerate(rows):
-        brake.scene.given.update({f"c{i}_at": ",".join(row[f"{axis}_m"] for axis in "xyz"), f"c{i}_part": row["part"],
-                                  f"c{i}_direction": ",".join(row[f"direction_{axis}"] for axis in "xyz"),
-                                  f"c{i}_{OPTION[row['change']]}": row["amount"],
-                                  **({f"c{i}_to": ",".join(row[f"to_{axis}_m"] for axis in "xyz"), f"c{i}_to_part": row["to_part"]}
-                                     if row["to_part"] else {}), **({f"c{i}_with": f"c{i - 1}"} if i else {})})
+        given = {OPTION[row["change"]]: row["amount"], "direction": ",".join(row[f"direction_{axis}"] for axis in "xyz")}
+        if row["name"]:
+            given["ring" if "," in row["name"] else "set"] = row["name"]
+        else:
+            given |= {"at": ",".join(row[f"{axis}_m"] for axis in "xyz"), "part": row["part"]}
+        if row["to_part"]:
+            given |= {"to": ",".join(row[f"to_{axis}_m"] for axis in "xyz"), "to_part": row["to_part"]}
+        if i:
+            given["with"] = f"c{i - 1}"
+        brake.scene.given.update({f"c{i}_{key}": text for key, text in given.items()})
     band = [2 * math.pi * edge for edge in (1.5, 7992)]
-    return max(brake.modes(f"c{len(rows) - 1}", band, 60), key=lambda value: value.real)
+    return max(brake.modes(f"c{len(rows) - 1}" if rows else "", band, 60), key=lambda value: value.real)
 
 
-def check_set(folder, rows, what):
+def check_set(squeal, folder, rows, what):
     """A set of cure.csv beside its matrices; what is wrong."""
-    value = exact(folder, rows)
+    value = exact(squeal, folder, rows)
     stated, error, count = (float(rows[0][name]) for name in ("growth_rad_s", "growth_error_rad_s", "n_unstable"))
     print(f"{what}: {len(rows)} changes, growth {value.real:.6g} of the matrices, {stated:.6g} +- {error:.1g} stated")
     off = abs(value.real - stated) > error + 1e-9 * abs(value)
@@ -84,10 +108,10 @@ def check_page(folder, sets):
         return page.table(found[0]) if found else []
 
     calm = [row for own in list(sets.values())[:10] for row in own if own[0]["n_unstable"] == "0"]
-    factor = {"mass": 1e3, "spring": 1e-3, "dashpot": 1}
+    factor = {"mass": 1e3, "spring": 1e-3, "dashpot": 1, "parameter": 1}
     shown = table()
     right = len(shown) == len(calm) > 0 and all(
-        math.isclose(float(cell["amount"]), factor[row["change"].removeprefix("relative_")] * float(row["amount"]), rel_tol=1e-9)
+        math.isclose(float(cell["amount"]), factor[row["change"].split("_")[-1]] * float(row["amount"]), rel_tol=1e-9)
         and (cell["set"], cell["part"]) == (row["set"], row["part"]) for cell, row in zip(shown, calm))
     now = (folder / "out/cure/cure.csv").stat().st_mtime
     os.utime(folder / "out/modes.csv", (now + 10, now + 10))
@@ -111,14 +135,22 @@ def main(squeal):
             sets.setdefault(int(row["set"]), []).append(row)
         costs = [float(own[0]["cost"]) for own in sets.values() if own[0]["n_unstable"] == "0"]
         faults += ["cheapest first"] * (not costs or costs != sorted(costs))
-        pair = next(own for own in sets.values() if len(own) == 2)
-        for own, what in ((sets[1], "the cheapest"), (pair, "a pair"), (sets[max(sets)], "the worst")):
-            faults += check_set(folder, own, what)
+        chosen = {"the cheapest": sets[1], "the worst": sets[max(sets)]}
+        chosen |= {"a layer": own for own in sets.values() if any(row["change"].startswith("layer") for row in own)
+                   and all(row["name"] != "beam_rows" for row in own)}
+        chosen |= {"a pair": own for own in sets.values() if len(own) == 2}
+        faults += [f"no set with a {kind}" for kind in ("a layer", "a pair") if kind not in chosen]
+        for what, own in chosen.items():
+            faults += check_set(squeal, folder, own, what)
+        call(folder, "out", "--program", squeal, "--changes", "parameter", "--most", "parameter=80", "--count", "3", "--output", "percents")
+        with (folder / "percents/cure.csv").open(newline="") as table:
+            percents = [row for row in csv.DictReader(table) if row["set"] == "1"]
+        faults += check_set(squeal, folder, percents, "percents") + ["percents"] * (percents[0]["n_unstable"] != "0")
         faults += check_page(folder, sets)
         for words, said in ((["none"], "none/scene.yaml: no such file"),
                             (["out", "--changes", "glue"], f"must be of {', '.join(OPTION)}"),
                             (["out", "--price", "mass=-1"], "a positive number"), (["out", "--parts", "wheel"], "has no mass"),
-                            (["out", "--most", ",".join(f"{kind}=1e-9" for kind in OPTION)], "raise --most")):
+                            (["out", "--changes", "mass,spring", "--most", "mass=1e-9,spring=1e-9"], "raise --most")):
             done = call(folder, *words, "--program", squeal)
             faults += [] if done.returncode and said in done.stderr.splitlines()[-1] else [f"{words}: {done.stderr}"]
     print("\n".join(faults))

@@ -94,7 +94,7 @@ struct _p_Modes {
   PetscBool may_be_none;     /* a band without modes is no error */
   PetscReal max_time;        /* s, of one solution; 0: any */
   PetscBool has_band, has_target, has_count, has_both, has_nearest, has_route, has_disc, left, keep, filters,
-    sensitivities;
+    sensitivities, couplings;
   PetscInt     count;
   ModesAbout   about;    /* which pairs are closed */
   PetscBool    loaded;   /* the scene has loads and contacts */

@@ -54,6 +54,8 @@ static const Quantity rows[] = {
    MODES_AT(filters), .in = RUN_MODES | RUN_FRF},
   {"-modes_sensitivities", "derivatives of each eigenvalue by each parameter of the scene", NULL, QUANTITY_BOOL,
    MODES_AT(sensitivities), .in = RUN_MODES},
+  {"-modes_couplings", "write how each of -modes_changes couples the modes, and solve none of them", NULL,
+   QUANTITY_BOOL, MODES_AT(couplings), .in = RUN_MODES},
   {"-modes_components",
    "write which free modes of the bodies make up each mode, of those up to this multiple of the band's highest "
    "frequency (0: none; 1.5 is enough for most)",

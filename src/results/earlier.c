@@ -41,6 +41,7 @@ static const struct {
   {"modes_components.csv", NULL},
   {"modes_sensitivities.csv", NULL},
   {"modes_changed.csv", NULL},
+  {"modes_couplings.csv", NULL},
   {"robustness.csv", NULL},
   {"parameters.csv", NULL},
   {"samples.csv", NULL},

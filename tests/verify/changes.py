@@ -58,12 +58,14 @@ def tributary(values):
 
 
 def surfaces(brake):
-    """Nodes of the flat sets, which are grids, and their shares in the area."""
+    """Nodes of the flat sets, which are grids, and their shares in the area; of the pad, whose nodes are alike."""
     found = {}
     for name, (part, height) in SURFACES.items():
         nodes = numpy.flatnonzero(brake.of[brake.scene.names("parts").index(part)] & (abs(brake.places[:, 2] - height) < 1e-9))
         share = tributary(brake.places[nodes, 0]) * tributary(brake.places[nodes, 1])
         found[name] = nodes, share / share.sum()
+    nodes = numpy.flatnonzero(brake.of[brake.scene.names("parts").index("pad")])
+    found["pad"] = nodes, numpy.full(len(nodes), 1 / len(nodes))
     return found
 
 
@@ -108,7 +110,7 @@ class Brake:
                                  for i in range(3)])
             size = size + numpy.linalg.det(slope @ x)
         numpy.add.at(volume, self.cells[self.part_of_cell == part], size[:, None] / 8)
-        radius = numpy.hypot(*self.places[:, :2].T)
+        radius = numpy.hypot(*(self.places - volume @ self.places / volume.sum())[:, :2].T)  # about the centre of mass
         nodes = numpy.flatnonzero((radius > inner - 1e-7) & (radius < outer + 1e-7) & (volume > 0))
         return nodes, volume[nodes] / volume[nodes].sum()
 

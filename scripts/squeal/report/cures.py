@@ -5,9 +5,10 @@ from .effects import direction, other_end, place
 from .markup import Column, figures, signed, table, tag
 
 KINDS = {"set": int, "cost": float, "n_unstable": int, "growth_rad_s": float, "growth_error_rad_s": float, "freq_hz": float,
-         "change": str, "part": str, **{f"{axis}_m": float for axis in "xyz"}, **{f"direction_{axis}": float for axis in "xyz"},
+         "change": str, "name": str, "part": str,
+         **{f"{axis}_m": optional for axis in "xyz"}, **{f"direction_{axis}": float for axis in "xyz"},
          "amount": float, "to_part": str, **{f"to_{axis}_m": optional for axis in "xyz"}}
-EASY = {"mass": (1e3, "g"), "spring": (1e-3, "N/mm"), "dashpot": (1.0, "N s/m")}  # of kg, N/m and N s/m
+EASY = {"mass": (1e3, "g"), "spring": (1e-3, "N/mm"), "dashpot": (1.0, "N s/m"), "parameter": (1.0, "%")}  # of kg, N/m and N s/m
 SHOWN = 10  # sets
 
 
@@ -24,7 +25,7 @@ def cures(folder):
         return None
 
     def easy(row):
-        return EASY[row["change"].removeprefix("relative_")]
+        return EASY[row["change"].removeprefix("relative_").removeprefix("layer_")]
 
     columns = [Column("set", lambda row: row["set"]),
                Column("cost", lambda row: row["cost"], lambda value: figures(value, 4)),
@@ -35,7 +36,8 @@ def cures(folder):
                Column("amount", lambda row: easy(row)[0] * row["amount"], lambda value: figures(value, 4)),
                Column("unit", lambda row: easy(row)[1], left=True),
                Column("part", lambda row: row["part"], left=True),
-               Column("place, mm", place, left=True),
+               Column("over", lambda row: row["name"], left=True),
+               Column("place, mm", lambda row: "" if row["name"] else place(row), left=True),
                Column("other end", other_end, left=True),
                Column("direction", direction, left=True)]
     count = len({row["set"] for row in rows})

@@ -17,6 +17,9 @@
 #define CHANGE_STEPS        4
 #define CHANGE_STEPS_DAMPED 3
 #define CHANGE_KEEP         0.3 /* of what an answer leaves: smaller directions are left to the next step */
+#define SPREAD_REPEATS      3
+#define SPREAD_DROP         1e-3 /* of the longest force: how far each may be from what has been answered */
+#define SPREAD_LOOSE        0.1  /* the same in repetitions where forces are many */
 
 /* Coordinates of the right or left vectors of all modes, zeros where there are no left ones */
 static PetscErrorCode SpaceKeepVectors(Modes modes, ChangeSpace *s, int left, PetscReal **coordinates)
@@ -210,14 +213,24 @@ static ChangeForces ForcesFrom(const ChangeForces *all, PetscInt from)
   return (ChangeForces){PetscMax(0, all->n - from), all->force + PetscMin(from, all->n)};
 }
 
-/* A step with what the modes of the changed system exert beyond the forces that have been answered, of which those from
-   `nodes` on are orthonormal; the error counts it as the last step */
-static PetscErrorCode SpaceRepeat(ChangeSpace *s, const ChangeRange *range, PetscInt nodes,
-                                  const ChangeForces forces[2])
+/* Moves forces to the end of a list */
+static PetscErrorCode ForcesAppend(ChangeForces *more, ChangeForces *list)
 {
-  const PetscInt first[2] = {s->first[0], s->first[1]};
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(list->n + more->n + 1) * sizeof(Vec), &list->force));
+  for (PetscInt j = 0; j < more->n; j++) list->force[list->n++] = more->force[j];
+  PetscCall(PetscFree(more->force));
+  PetscFunctionReturn(0);
+}
+
+/* A step with what the modes of the changed system exert beyond the forces that have been answered, to which they are
+   added; those from `nodes` on are orthonormal. The error counts it as the last step; *more = there were any */
+static PetscErrorCode SpaceRepeat(ChangeSpace *s, const ChangeRange *range, PetscInt nodes, PetscReal drop,
+                                  ChangeForces forces[2], PetscBool *more)
+{
+  const PetscInt first = s->first[1];
   ChangeVectors  v[2];
-  ChangeForces   more[2];
+  ChangeForces   fresh[2];
 
   PetscFunctionBeginUser;
   PetscCall(SpaceTakeSides(s, forces));
@@ -225,37 +238,53 @@ static PetscErrorCode SpaceRepeat(ChangeSpace *s, const ChangeRange *range, Pets
   for (int i = 0; i < 2; i++) {
     const ChangeForces known = ForcesFrom(&forces[i], nodes);
 
-    PetscCall(ChangeSpaceForces(s, &v[i], &known, &more[i]));
+    PetscCall(ChangeSpaceForces(s, &v[i], &known, drop, &fresh[i]));
   }
-  PetscCall(SpaceStep(s, 1, more));
-  s->first[0] = more[0].n + more[1].n ? first[1] : first[0];
-  PetscCall(ForcesDestroy(more));
-  for (int i = 0; i < 2; i++) PetscCall(PetscFree(v[i].x));
+  *more = fresh[0].n + fresh[1].n ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(SpaceStep(s, 1, fresh));
+  if (*more) s->first[0] = first;
+  for (int i = 0; i < 2; i++) {
+    PetscCall(ForcesAppend(&fresh[i], &forces[i]));
+    PetscCall(PetscFree(v[i].x));
+  }
   PetscCall(PetscFree(v[0].lambda));
   PetscFunctionReturn(0);
 }
 
-/* Answers to forces at nodes in all steps, to few others in one less and a repetition; to many in one step of
-   their own, all of which the error counts. Those from `nodes` on are no nodes' */
-static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, PetscInt nodes,
-                                  const ChangeForces forces[2])
+/* Answers to forces at nodes in all steps, to few others in one less; to many in one step of their own, all of
+   which the error counts. Then repetitions, while those from `nodes` on, which are no nodes', lack some */
+static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, PetscInt nodes, ChangeForces forces[2])
 {
   const ChangeForces own[2]    = {{nodes, forces[0].force}, {nodes, forces[1].force}},
                      spread[2] = {ForcesFrom(&forces[0], nodes), ForcesFrom(&forces[1], nodes)};
-  const PetscInt many          = PetscMax(spread[0].n, spread[1].n);
-  const int      steps         = s->space.pencil.C ? CHANGE_STEPS_DAMPED : CHANGE_STEPS;
-  PetscInt       first[2];
+  const PetscInt  n            = PetscMax(spread[0].n, spread[1].n);
+  PetscBool       more         = n ? PETSC_TRUE : PETSC_FALSE;
+  const int       steps        = s->space.pencil.C ? CHANGE_STEPS_DAMPED : CHANGE_STEPS;
+  PetscInt        first[2];
+  const PetscReal drop = n > SPREAD_FEW ? SPREAD_LOOSE : SPREAD_DROP;
 
   PetscFunctionBeginUser;
   s->first[0] = s->first[1] = s->space.space.n;
-  PetscCall(SpaceStep(s, many ? steps - 1 : steps, many > SPREAD_FEW ? own : forces));
-  if (many && many <= SPREAD_FEW) {
-    PetscCall(SpaceRepeat(s, range, nodes, forces));
-  } else if (many) {
+  PetscCall(SpaceStep(s, n ? steps - 1 : steps, n > SPREAD_FEW ? own : forces));
+  if (n > SPREAD_FEW) {
     PetscCall(PetscArraycpy(first, s->first, 2));
     PetscCall(SpaceStep(s, 1, spread));
     PetscCall(PetscArraycpy(s->first, first, 2));
   }
+  for (int i = 0; i < SPREAD_REPEATS && more; i++) PetscCall(SpaceRepeat(s, range, nodes, drop, forces, &more));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChangeSpaceTake(ChangeSpace *s, PetscInt n_terms, const ChangeTerm terms[])
+{
+  ChangeForces forces[2] = {{0, NULL}, {0, NULL}};
+
+  PetscFunctionBeginUser;
+  PetscCall(SpaceForget(s));
+  PetscCall(SpaceKeepTerms(s, n_terms, terms));
+  for (int i = 0; i < 2; i++) PetscCall(SpaceTakeForces(s, i ? PETSC_TRUE : PETSC_FALSE, &forces[i]));
+  PetscCall(SpaceTakeSides(s, forces));
+  PetscCall(ForcesDestroy(forces));
   PetscFunctionReturn(0);
 }
 
@@ -274,8 +303,9 @@ PetscErrorCode ChangeSpaceRespond(ChangeSpace *s, PetscInt n_terms, const Change
   for (int i = 0; i < 2; i++) {
     const PetscBool left = i ? PETSC_TRUE : PETSC_FALSE;
 
-    PetscCall(ChangeSpaceForces(
-      s, &(ChangeVectors){s->n_before, s->n_modes, s->lambda, left ? s->after : s->before, left}, NULL, &forces[i]));
+    PetscCall(ChangeSpaceForces(s,
+                                &(ChangeVectors){s->n_before, s->n_modes, s->lambda, left ? s->after : s->before, left},
+                                NULL, SPREAD_DROP, &forces[i]));
     PetscCall(SpaceTakeForces(s, left, &forces[i]));
   }
   PetscCall(SpaceAnswer(s, range, nodes, forces));

@@ -76,6 +76,7 @@ PetscErrorCode ModesFindChanges(Modes modes)
   ChangeSpace       space;
 
   PetscFunctionBeginUser;
+  if (modes->couplings) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(modes->n_changes, &modes->changed));
   PetscCall(ChangeSpaceCreate(modes, &range, &space));
   for (PetscInt i = 0; i < modes->n_changes; i++) PetscCall(ChangeTry(modes, &space, &range, i));
@@ -144,8 +145,13 @@ PetscErrorCode ChangesView(Modes modes, PetscViewer viewer)
 PetscErrorCode ChangesWrite(Modes modes, Results results)
 {
   ResultsTable table;
+  ChangeRange  range;
 
   PetscFunctionBeginUser;
+  if (modes->couplings && modes->n_changes) {
+    range = RangeOf(modes);
+    PetscCall(ChangesWriteCouplings(modes, &range, results));
+  }
   if (!modes->changed) PetscFunctionReturn(0);
   PetscCall(ResultsTableOpen(results, "modes_changed",
                              "change,mode,freq_hz,growth_rad_s,damping_ratio,error_hz,state,before,overlap", &table));

@@ -97,10 +97,10 @@ typedef struct {
 
 /* spread.c - of the terms that the space has answers to: V' A V of all that have matrices; orthonormal forces that span
    Delta(lambda_j) x_j of such terms, or their transposed ones of left vectors, beyond known orthonormal ones (NULL for
-   none); the caller destroys them. Collective. */
+   none) but for what is `drop` of the longest; the caller destroys them. Collective. */
 PETSC_INTERN PetscErrorCode ChangeSpaceProject(ChangeSpace *space);
 PETSC_INTERN PetscErrorCode ChangeSpaceForces(const ChangeSpace *space, const ChangeVectors *vectors,
-                                              const ChangeForces *known, ChangeForces *forces);
+                                              const ChangeForces *known, PetscReal drop, ChangeForces *forces);
 
 /* Which eigenvalues are listed, omega in edge[0] to edge[1] and |sigma| <= growth, and what errors of the modes come to
    over their conditions, rad/s */
@@ -110,6 +110,8 @@ typedef struct {
 
 /* basis.c - modes; in place of other answers those to the terms, which may be there already. Collective. */
 PETSC_INTERN PetscErrorCode ChangeSpaceCreate(Modes modes, const ChangeRange *range, ChangeSpace *space);
+/* the terms on the modes alone, without answers */
+PETSC_INTERN PetscErrorCode ChangeSpaceTake(ChangeSpace *space, PetscInt n, const ChangeTerm terms[]);
 PETSC_INTERN PetscErrorCode ChangeSpaceRespond(ChangeSpace *space, PetscInt n, const ChangeTerm terms[],
                                                const ChangeRange *range);
 PETSC_INTERN PetscErrorCode ChangeSpaceDestroy(ChangeSpace *space);
@@ -130,3 +132,6 @@ PETSC_INTERN PetscErrorCode ChangeFindBefore(const ChangeSpace *space, const Pet
 /* quantities.c - the list of the changes; check.c - what no row says of one */
 extern const QuantityList   changes_list;
 PETSC_INTERN PetscErrorCode ChangeCheck(MPI_Comm comm, void *modes, void *change);
+
+/* coupling.c - modes_couplings.csv, where it is asked for. Collective. */
+PETSC_INTERN PetscErrorCode ChangesWriteCouplings(Modes modes, const ChangeRange *range, Results results);

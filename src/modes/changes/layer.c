@@ -116,7 +116,8 @@ PetscErrorCode ChangeAddLayer(Modes modes, ModesChange change, PetscInt *n, Chan
   ++*n;
   PetscCall(VecDestroy(&shares));
   PetscCall(MatNorm(term->A, NORM_FROBENIUS, &norm));
-  PetscCheck(norm > 0, modes->comm, PETSC_ERR_USER_INPUT, "change %s does nothing: the nodes of -%s_%s are held%s",
-             change->name, change->name, where, spring ? " along its direction" : "");
+  PetscCheck(norm > 0 || modes->couplings, modes->comm, PETSC_ERR_USER_INPUT,
+             "change %s does nothing: the nodes of -%s_%s are held%s", change->name, change->name, where,
+             spring ? " along its direction" : "");
   PetscFunctionReturn(0);
 }

@@ -4,15 +4,12 @@
 
    Projected they are exact, V' A V. The changed system answers to the forces Delta(lambda) x of its modes, and its
    transposed one to Delta(lambda)' y. To first order these are the modes as they were: as many forces as there are
-   modes, or few where they move the nodes that change in few ways, and principal components span them. Few are
-   answered as those at nodes are, and then what the modes of the changed system, found with these answers, exert beyond
-   them.
+   modes, or few where they move the nodes that change in few ways, and principal components span them. Then what the
+   modes of the changed system, found with the answers to these, exert beyond them, and so on.
 */
 #include "changes.h"
 #include "solver/block/orthonormal.h"
 #include <complex.h>
-
-#define SPREAD_DROP 1e-3 /* of the longest force: how far each may be from what they span */
 
 /* Y = Zl' A Zr X of a layer, or Zr' A Zl X */
 static PetscErrorCode LayerApply(const ChangeSpace *s, const ChangeTerm *term, PetscBool transposed, BV X, BV Y)
@@ -139,8 +136,8 @@ static PetscErrorCode ForcesLess(const ChangeForces *known, BV F)
   PetscFunctionReturn(0);
 }
 
-/* Principal components of the forces, beyond known ones, by the length of the longest of all */
-static PetscErrorCode ForcesCompress(const ChangeForces *known, BV F)
+/* Principal components of the forces, beyond known ones, but for what is `drop` of the longest */
+static PetscErrorCode ForcesCompress(const ChangeForces *known, PetscReal drop, BV F)
 {
   PetscReal *tolerance, *sigma, longest = 0, length;
   PetscInt   m;
@@ -155,14 +152,14 @@ static PetscErrorCode ForcesCompress(const ChangeForces *known, BV F)
   if (longest == 0) PetscFunctionReturn(0);
   PetscCall(ForcesLess(known, F));
   PetscCall(PetscMalloc2(m, &tolerance, m, &sigma));
-  for (PetscInt j = 0; j < m; j++) tolerance[j] = SPREAD_DROP * longest;
+  for (PetscInt j = 0; j < m; j++) tolerance[j] = drop * longest;
   PetscCall(BlockCompress(tolerance, F, sigma));
   PetscCall(PetscFree2(tolerance, sigma));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ChangeSpaceForces(const ChangeSpace *s, const ChangeVectors *v, const ChangeForces *known,
-                                 ChangeForces *forces)
+                                 PetscReal drop, ChangeForces *forces)
 {
   PetscBool spread = PETSC_FALSE;
   BV        F;
@@ -177,7 +174,7 @@ PetscErrorCode ChangeSpaceForces(const ChangeSpace *s, const ChangeVectors *v, c
   PetscCall(BVScale(F, 0));
   for (PetscInt t = 0; t < s->n_terms; t++)
     if (s->term[t].A) PetscCall(ForcesAdd(s, &s->term[t], v, F));
-  PetscCall(ForcesCompress(known, F));
+  PetscCall(ForcesCompress(known, drop, F));
   PetscCall(BVGetActiveColumns(F, NULL, &forces->n));
   PetscCall(PetscMalloc1(forces->n, &forces->force));
   PetscCall(MatCreateVecs(s->space.pencil.K, &like, NULL));
