@@ -70,7 +70,7 @@ typedef struct {
   PetscBool    *held;                  /* [3 n] directions that map.press() was prepared for */
   PetscBool     stands;                /* it was */
   PetscInt      n_first;               /* iterations that were enough then; 0: none yet */
-  PetscBool     stale;                 /* it takes too many iterations */
+  PetscInt      n_more;                /* that were needed beyond these since then */
   PetscInt      n_released, *released; /* directions held that nobody wants, [3 n] */
   PetscReal    *motion;                /* work: [3 n] m, */
   PetscReal    *force;                 /* and N */

@@ -24,7 +24,9 @@
 
 #define KRYLOV_RTOL   1e-6 /* of the residual: Newton's method takes the rest out in its next step */
 #define KRYLOV_MAX_IT 120
-#define KRYLOV_MANY   6 /* iterations more than with new springs, which take the time of some 20 and serve for long */
+/* iterations more than with new springs, in all since these were set: as many as new ones cost, a factorisation and a
+   solution for each mode */
+#define KRYLOV_PAYS 100
 /* of the directions held: those that changed, from which on new factors are better at once */
 #define KRYLOV_CHANGED 0.1
 
@@ -36,8 +38,7 @@ PetscErrorCode ComplianceKrylovHold(ContactCompliance c, const PetscBool held[])
   PetscCall(PetscArraycpy(k->held, held, 3 * c->n));
   PetscCall(k->map.hold(k->map.ctx, k->held));
   k->stands  = PETSC_TRUE;
-  k->stale   = PETSC_FALSE;
-  k->n_first = 0;
+  k->n_first = k->n_more = 0;
   c->report.factors++;
   PetscFunctionReturn(0);
 }
@@ -58,7 +59,7 @@ static PetscErrorCode KrylovPrepare(ContactCompliance c)
     n_held += held[i];
     n_changed += held[i] != k->held[i];
   }
-  if (!k->stands || (PetscReal)n_changed > KRYLOV_CHANGED * (PetscReal)n_held || (k->stale && n_changed))
+  if (!k->stands || (PetscReal)n_changed > KRYLOV_CHANGED * (PetscReal)n_held || (k->n_more > KRYLOV_PAYS && n_changed))
     PetscCall(ComplianceKrylovHold(c, held));
   PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
@@ -263,7 +264,7 @@ PetscErrorCode ComplianceKrylovSolve(ContactCompliance c)
   PetscCall(KSPGetIterationNumber(ksp, &its));
   PetscCall(PetscArraycpy(c->rhs, solution, rows));
   if (!c->krylov.n_first) c->krylov.n_first = PetscMax(1, its);
-  c->krylov.stale = its > c->krylov.n_first + KRYLOV_MANY ? PETSC_TRUE : PETSC_FALSE;
+  c->krylov.n_more += PetscMax(0, its - c->krylov.n_first);
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&b));
   PetscCall(KSPDestroy(&ksp));

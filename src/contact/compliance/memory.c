@@ -3,8 +3,8 @@
    The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
    (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a
    law in series is not linear, the closings at which its lines were laid come first [n]. Where W is a map, the
-   directions that have springs [3 n], whether these
-   are to be set anew, and the statuses [n]. */
+   directions that have springs [3 n], the iterations
+   that tell when these are set anew, and the statuses [n]. */
 #include "complianceimpl.h"
 
 static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, PetscReal **values)
@@ -17,7 +17,7 @@ static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, Petsc
   to = *values;
   if (!*n) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < 3 * c->n; i++) *to++ = (PetscReal)c->krylov.held[i];
-  *to++ = (PetscReal)c->krylov.stale;
+  *to++ = (PetscReal)c->krylov.n_more;
   *to++ = (PetscReal)c->krylov.n_first;
   for (PetscInt p = 0; p < c->n; p++) *to++ = (PetscReal)c->status[p];
   PetscFunctionReturn(0);
@@ -36,7 +36,7 @@ static PetscErrorCode MapSetMemory(ContactCompliance c, PetscInt n, const PetscR
   PetscCall(PetscMalloc1(3 * c->n, &held));
   for (PetscInt i = 0; i < 3 * c->n; i++) held[i] = values[i] != 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ComplianceKrylovHold(c, held));
-  c->krylov.stale   = values[3 * c->n] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  c->krylov.n_more  = (PetscInt)values[3 * c->n];
   c->krylov.n_first = (PetscInt)values[3 * c->n + 1];
   for (PetscInt p = 0; p < c->n; p++) c->status[p] = (ContactStatus)values[3 * c->n + 2 + p];
   PetscCall(PetscFree(held));
