@@ -111,8 +111,8 @@ static const Quantity part[] = {
    QUANTITY_NOT_NEGATIVE, MOVING},
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
    PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,
-   .unread =
-     "; it belongs to modes, sweep, frf and sample; in time a contact's -..._kinematics turning turns its master",
+   .unread = "; it belongs to modes, sweep, frf, sample, quiet and design; in time a contact's -..._kinematics turning "
+             "turns its master",
    .varies = VARIES_LINEAR | VARIES_DAMPING},
   {"-spin_axis", "x,y,z, about which a positive spin is right-handed", NULL, QUANTITY_REALS, PART(spin.axis),
    .given = offsetof(Part, spin.has_axis)},

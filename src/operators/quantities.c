@@ -33,7 +33,8 @@ static const Quantity rows[] = {
    "with friction LU, or LDL' of the symmetric part and an update for the closed pairs, or what memory and flops speak "
    "for",
    NULL, QUANTITY_WORD, OPERATORS_OPTION(factors), .words = factors, .in = RUN_LINEAR, .idle = OperatorsIdleFactors,
-   .unread = "; it belongs to -analysis modes, sweep, frf and sample: modes beside reduced models have exact contact, "
+   .unread = "; it belongs to -analysis modes, sweep, frf, sample, quiet and design: modes beside reduced models have "
+             "exact contact, "
              "which needs "
              "LU"},
   {"-operators_save", "folder for K.bin, M.bin, C.bin, H.bin and the loads F.bin (PETSc binary)", NULL, QUANTITY_TEXT,
