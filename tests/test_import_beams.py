@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks.abaqus.beams import circle, pipe, rectangle
+from squeal.decks.abaqus.beams import circle, pipe, profile_of, rectangle
 from squeal.decks.convert import convert
 from squeal.decks.joined.frames import axes_of, matrices
 
@@ -176,6 +176,10 @@ def nastran(folder, program, half, loaded):
     cards += [f"PBAR,7,1,{profile.area:.6f},{profile.bend_1:.6f},{profile.bend_2:.6f},{profile.torsion:.6f},", ",,,,,,,,", ",.85,.85"]
     found, lines = frequencies(folder, program, "\n".join([*cards, "ENDDATA"]) + "\n", "bdf")
     check("CBAR beside *BEAM SECTION", max(abs(found / half - 1)) < 1e-6, (found, half, lines))
+    beams = [card.replace("CBAR", "CBEAM") for card in cards if not card.startswith(("PBAR", ",,,,,,,,", ",.85"))]
+    beams += [f"PBEAM,7,1,{profile.area:.6f},{profile.bend_1:.6f},{profile.bend_2:.6f},,{profile.torsion:.6f},", ",,,,,,,,", ",.85,.85"]
+    found, lines = frequencies(folder, program, "\n".join([*beams, "ENDDATA"]) + "\n", "bdf")
+    check("CBEAM with K1, K2 beside *BEAM SECTION", max(abs(found / half - 1)) < 1e-6, (found, half, lines))
     masses = [f"CMASS2,{8300 + d},2.e-5,{9000 + PIECES},{d}" for d in (1, 2, 3)]
     found, _ = frequencies(folder, program, "\n".join([*cards, *masses, "ENDDATA"]) + "\n", "bdf")
     check("CMASS2 in three directions beside *MASS", max(abs(found / loaded - 1)) < 1e-6, (found, loaded))
@@ -195,6 +199,7 @@ def not_read(folder):
         (folder / "deck.inp").write_text(bar(PIECES, rods(section))[0])
         lines = convert(folder / "deck.inp", "mm-t-s", folder / "deck")
         check(f"{about}: has a line", any(said in line for line in lines), lines)
+    check("walls thicker than the section", profile_of("PIPE", [5.0, 6.0]) is None and profile_of("BOX", [10.0, 10.0, 6.0]) is None)
 
 
 def main():

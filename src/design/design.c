@@ -62,9 +62,13 @@ PetscErrorCode DesignGetVaried(Design d, const char **names)
 /* Both boxes; what may be changed is not uncertain, too */
 static PetscErrorCode DesignRead(Design d)
 {
-  const PetscBool held = d->box.statics ? PETSC_TRUE : PETSC_FALSE;
+  const CubeOptions *u    = &d->uncertain_options;
+  const PetscBool    held = d->box.statics ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCheck(u->names[0] || !(u->n_percent + u->n_lower + u->n_upper), d->comm, PETSC_ERR_USER_INPUT,
+             "-design_uncertain_percent, -design_uncertain_lower and -design_uncertain_upper do nothing without "
+             "-design_uncertain_parameters");
   d->cube.nominal = d->uncertain.nominal = d->box.nominal;
   PetscCall(CubeRead(d->comm, d->operators, held, "design", &d->options, &d->cube));
   if (d->uncertain_options.names[0])

@@ -67,6 +67,5 @@ PETSC_INTERN PetscErrorCode DesignFull(Design design, const PetscReal z[], const
 PETSC_INTERN PetscErrorCode DesignCorners(Design design);
 /* Mass of the scene, and how it changes. Collective */
 PETSC_INTERN PetscErrorCode DesignMass(Design design);
-/* step.c - the next design from the cuts, within radius of `from`; feasible: whether all cuts could be kept */
-PETSC_INTERN PetscErrorCode DesignStep(Design design, const PetscReal from[], PetscReal radius, PetscReal z[],
-                                       PetscBool *feasible);
+/* step.c - the next design from the cuts, within radius of `from` */
+PETSC_INTERN PetscErrorCode DesignStep(Design design, const PetscReal from[], PetscReal radius, PetscReal z[]);

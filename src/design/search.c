@@ -71,7 +71,6 @@ static PetscErrorCode SearchGood(Design d)
   PetscCall(PetscArraycpy(z, d->cube.own, d->cube.n));
   while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS) {
     DesignPoint *point;
-    PetscBool    feasible;
 
     PetscCall(DesignTry(d, z, &point));
     d->found = point->good;
@@ -79,7 +78,7 @@ static PetscErrorCode SearchGood(Design d)
       radius /= 2;
     else
       d->best = d->n_points - 1;
-    if (!d->found) PetscCall(DesignStep(d, d->point[d->best].z, radius, z, &feasible));
+    if (!d->found) PetscCall(DesignStep(d, d->point[d->best].z, radius, z));
     PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
   }
   PetscFunctionReturn(0);
@@ -117,10 +116,9 @@ static PetscErrorCode SearchBetter(Design d)
   PetscCall(PetscArraycpy(bad, d->cube.own, d->cube.n));
   while (d->n_points < d->max_designs && d->best > 0) {
     DesignPoint *point, next = {.n_unstable = 0};
-    PetscBool    feasible;
 
     PetscCall(SearchEdge(d, bad));
-    PetscCall(DesignStep(d, d->point[d->best].z, RADIUS, z, &feasible));
+    PetscCall(DesignStep(d, d->point[d->best].z, RADIUS, z));
     PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
     PetscCall(PetscArraycpy(next.z, z, d->cube.n));
     PointMeasure(d, &next);

@@ -130,6 +130,7 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
   char                      option[64];
   char                    **word;
   int                       n;
+  PetscInt                  n_moved = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameters", prefix));
@@ -138,7 +139,7 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
   PetscCall(ValuesSplit(comm, option, o->names, ',', &n, &word));
   PetscCheck(n <= CUBE_MAX_VARIABLES, comm, PETSC_ERR_USER_INPUT, "%s names %d; %d at most, '+' joins some to one",
              option, n, CUBE_MAX_VARIABLES);
-  PetscCheck((o->n_percent > 0) != (o->n_lower > 0), comm, PETSC_ERR_USER_INPUT,
+  PetscCheck((o->n_percent > 0) != (o->n_lower + o->n_upper > 0), comm, PETSC_ERR_USER_INPUT,
              "-%s_percent, or else -%s_lower and -%s_upper, must say how large the box is", prefix, prefix, prefix);
   PetscCheck(o->n_percent <= 1 || o->n_percent == n, comm, PETSC_ERR_USER_INPUT,
              "-%s_percent has %" PetscInt_FMT " values for %d variables; give one, or one for each", prefix,
@@ -152,7 +153,10 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
     cube->n = k + 1;
     PetscCall(VariableNames(comm, operators, held, option, cube, k));
     PetscCall(VariableEnds(comm, operators, prefix, o, cube, k));
+    n_moved += cube->n_moved[k];
   }
+  PetscCheck(n_moved <= CUBE_MAX_MOVED, comm, PETSC_ERR_USER_INPUT, "%s names %" PetscInt_FMT " options; %d at most",
+             option, n_moved, CUBE_MAX_MOVED);
   PetscCall(PetscStrToArrayDestroy(n, word));
   PetscFunctionReturn(0);
 }
@@ -162,7 +166,7 @@ PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscReal lower[], Pe
   PetscInt n = 0;
 
   for (PetscInt k = 0; k < cube->n; k++)
-    for (PetscInt m = 0; m < cube->n_moved[k] && n < CUBE_MAX_MOVED; m++) {
+    for (PetscInt m = 0; m < cube->n_moved[k]; m++) {
       parameter[n] = cube->moved[k][m];
       lower[n]     = cube->lower[k][m];
       upper[n]     = cube->upper[k][m];

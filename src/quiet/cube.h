@@ -43,7 +43,7 @@ PETSC_INTERN PetscReal CubeValue(const Cube *cube, PetscInt k, PetscReal t);
    [n] to it */
 PETSC_INTERN PetscReal CubeDistance(const Cube *cube, const PetscReal t[]);
 PETSC_INTERN PetscReal CubeNear(const Cube *cube, const PetscReal low[], const PetscReal high[]);
-/* Indices and ends of all parameters that move: [CUBE_MAX_MOVED] each; how many there are, at most that */
+/* Indices and ends of all parameters that move: [CUBE_MAX_MOVED] each; how many there are */
 #define CUBE_MAX_MOVED 64
 PETSC_INTERN PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscReal lower[], PetscReal upper[]);
 /* The names of all options that vary, with commas: for what a run reads */

@@ -98,8 +98,9 @@ PetscErrorCode SampleSetFromOptions(Sample s)
   PetscCall(QuantitiesReadList(s->comm, &sample_list, s, &s->n_variables, &s->variable));
   PetscCall(QuantitiesReadList(s->comm, &sample_columns, s, &s->n_columns, &s->column));
   if (s->file[0]) PetscCall(ConditionsRead(s));
-  PetscCheck(s->n_variables <= SAMPLE_MAX_VARIABLES, s->comm, PETSC_ERR_USER_INPUT,
-             "-sample_variables names %" PetscInt_FMT "; %d at most", s->n_variables, SAMPLE_MAX_VARIABLES);
+  PetscCheck(s->n_variables <= SAMPLE_MAX_VARIABLES, s->comm, PETSC_ERR_USER_INPUT, "%s %" PetscInt_FMT "; %d at most",
+             s->file[0] ? "-sample_conditions has columns to take:" : "-sample_variables names", s->n_variables,
+             SAMPLE_MAX_VARIABLES);
   PetscCallMPI(MPI_Comm_size(s->comm, &size));
   PetscCheck(s->box.n_groups <= size, s->comm, PETSC_ERR_USER_INPUT,
              "-sample_groups %" PetscInt_FMT " must lie between 0 and the number of ranks, %d", s->box.n_groups,

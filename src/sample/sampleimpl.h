@@ -114,6 +114,8 @@ static inline ShortText SampleNumber(PetscReal value)
 PETSC_INTERN PetscErrorCode SampleColumnCheck(MPI_Comm comm, void *owner, void *record);
 PETSC_INTERN PetscErrorCode ConditionsSetColumns(Sample sample);
 PETSC_INTERN PetscErrorCode ConditionsFindReversed(Sample sample);
+PETSC_INTERN PetscErrorCode ConditionsCheckUnit(Sample sample, const SampleVariable *v,
+                                                const OperatorsParameter *parameter);
 PETSC_INTERN PetscErrorCode ConditionsGet(Sample sample, PetscInt i, PetscReal p[]);
 /* conditions/bands.c - what all conditions do in each frequency band */
 PETSC_INTERN PetscErrorCode SampleBands(Sample sample);
@@ -121,6 +123,8 @@ PETSC_INTERN PetscErrorCode SampleBands(Sample sample);
 PETSC_INTERN PetscErrorCode ConditionsWrite(Sample sample, Results results);
 PETSC_INTERN PetscErrorCode ConditionsView(Sample sample, PetscViewer viewer);
 
+/* table.c - the file of -NAME_table with columns value and `what`, which are value and probability of d */
+PETSC_INTERN PetscErrorCode SampleTableRead(MPI_Comm comm, const SampleVariable *v, const char what[], Distribution *d);
 /* variable.c - raises errors for what no distribution can be, and finds the parameters; values [n_variables] of
    point i, and all parameters p there */
 PETSC_INTERN PetscErrorCode SampleFindVariables(Sample sample);

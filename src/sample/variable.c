@@ -10,39 +10,14 @@
 */
 #include "sampleimpl.h"
 #include "sweep/grid/grid.h"
-#include "base/csv.h"
 #include <squeal/options.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TABLE_MOST 10000 /* lines */
-
-/* Reads the points of a table on one rank; the fault is in csv */
-static PetscErrorCode TableReadFile(const char file[], Distribution *d, Csv *csv)
-{
-  static const char *const columns[] = {"value", "probability"};
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(TABLE_MOST, &d->value, TABLE_MOST, &d->probability));
-  CsvOpen(csv, file, 2, columns, 2);
-  while (CsvNext(csv)) {
-    if (d->n == TABLE_MOST) {
-      (void)snprintf(csv->fault, sizeof(csv->fault), "more than %d rows", TABLE_MOST);
-      break;
-    }
-    d->value[d->n]       = CsvReal(csv, 0, PETSC_FALSE);
-    d->probability[d->n] = CsvReal(csv, 1, PETSC_FALSE);
-    d->n++;
-  }
-  CsvClose(csv);
-  PetscFunctionReturn(0);
-}
 
 /* Raises an error for points that are no distribution */
 static PetscErrorCode TableCheck(MPI_Comm comm, const SampleVariable *v, const Distribution *d)
 {
   PetscFunctionBeginUser;
-  PetscCheck(d->n >= 2, comm, PETSC_ERR_USER_INPUT, "-%s_table %s: two rows are needed at least", v->name, v->table);
   for (PetscInt k = 1; k < d->n; k++)
     PetscCheck(d->value[k] > d->value[k - 1] && d->probability[k] > d->probability[k - 1], comm, PETSC_ERR_USER_INPUT,
                "-%s_table %s: value and probability must ascend, which %.6g, %.6g behind %.6g, %.6g do not", v->name,
@@ -51,25 +26,6 @@ static PetscErrorCode TableCheck(MPI_Comm comm, const SampleVariable *v, const D
   PetscCheck(d->probability[0] == 0 && d->probability[d->n - 1] == 1, comm, PETSC_ERR_USER_INPUT,
              "-%s_table %s: probability must go from 0 to 1, not from %.6g to %.6g", v->name, v->table,
              (double)d->probability[0], (double)d->probability[d->n - 1]);
-  PetscFunctionReturn(0);
-}
-
-/* Reads a table, alike on all ranks */
-static PetscErrorCode TableRead(MPI_Comm comm, const SampleVariable *v, Distribution *d)
-{
-  PetscMPIInt rank;
-  Csv         csv = {0};
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(TableReadFile(v->table, d, &csv));
-  if (rank) PetscCall(PetscMalloc2(TABLE_MOST, &d->value, TABLE_MOST, &d->probability));
-  PetscCallMPI(MPI_Bcast(csv.fault, sizeof(csv.fault), MPI_CHAR, 0, comm));
-  PetscCheck(!csv.fault[0], comm, PETSC_ERR_USER_INPUT, "-%s_table %s: %s", v->name, v->table, csv.fault);
-  PetscCallMPI(MPI_Bcast(&d->n, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(d->value, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
-  PetscCallMPI(MPI_Bcast(d->probability, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
-  PetscCall(TableCheck(comm, v, d));
   PetscFunctionReturn(0);
 }
 
@@ -107,7 +63,9 @@ PetscErrorCode SampleVariableCheck(MPI_Comm comm, void *owner, void *record)
   PetscCall(VariableCheckGiven(comm, v));
   if (!v->lower_given) v->distribution.lower = PETSC_NINFINITY;
   if (!v->upper_given) v->distribution.upper = PETSC_INFINITY;
-  if (v->table[0]) PetscCall(TableRead(comm, v, &v->distribution));
+  if (!v->table[0]) PetscFunctionReturn(0);
+  PetscCall(SampleTableRead(comm, v, "probability", &v->distribution));
+  PetscCall(TableCheck(comm, v, &v->distribution));
   PetscFunctionReturn(0);
 }
 
@@ -165,6 +123,7 @@ static PetscErrorCode VariableFind(Sample s, SampleVariable *v)
     PetscCall(GridParameterFind(s->comm, s->operators, option, v->names[i], &v->moved[i]));
     PetscCall(
       GridParameterCheck(s->comm, s->operators, s->box.statics ? PETSC_TRUE : PETSC_FALSE, option, v->names[i]));
+    if (s->file[0]) PetscCall(ConditionsCheckUnit(s, v, &list[v->moved[i]]));
     PetscCheck(s->box.statics || !list[v->moved[i]].state, s->comm, PETSC_ERR_USER_INPUT,
                "%s %s changes modes through the sliding state alone: give -modes_contact static", option, v->names[i]);
     PetscCheck(!v->relative || s->box.nominal[v->moved[i]] != 0, s->comm, PETSC_ERR_USER_INPUT,

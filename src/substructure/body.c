@@ -79,24 +79,15 @@ static PetscErrorCode BodyNumber(Substructure s, const Mesh *mesh, IS *unknowns)
 /* Whether a term acts on others beside the parts, where it acts on the parts at all; marks these rows then */
 static PetscErrorCode TermJoins(Substructure s, Mat A, IS unknowns, PetscBool joined[], PetscBool *joins)
 {
-  const PetscInt    *unknown;
-  const PetscScalar *value;
-  PetscInt           first, n;
-  Vec                probe, answer;
+  PetscInt n_marked;
+  Vec      probe, answer;
 
   PetscFunctionBeginUser;
-  *joins = PETSC_FALSE;
   PetscCall(BodyCreateProbe(A, unknowns, &probe));
   PetscCall(VecDuplicate(probe, &answer));
   PetscCall(MatMult(A, probe, answer));
-  PetscCall(VecGetOwnershipRange(answer, &first, NULL));
-  PetscCall(VecGetArrayRead(answer, &value));
-  PetscCall(ISGetLocalSize(unknowns, &n));
-  PetscCall(ISGetIndices(unknowns, &unknown));
-  for (PetscInt k = 0; k < n; k++)
-    if (value[unknown[k] - first] != 0) joined[k] = *joins = PETSC_TRUE;
-  PetscCall(ISRestoreIndices(unknowns, &unknown));
-  PetscCall(VecRestoreArrayRead(answer, &value));
+  PetscCall(BodyMarkRows(answer, unknowns, joined, &n_marked));
+  *joins = n_marked ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(VecDestroy(&answer));
   PetscCall(VecDestroy(&probe));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, joins, 1, MPIU_BOOL, MPI_LOR, s->comm));
@@ -164,6 +155,34 @@ static PetscErrorCode BodyTakeTerms(Substructure s, IS unknowns, PetscBool joine
   PetscFunctionReturn(0);
 }
 
+/* Marks what contacts press: they are no terms, and can be made again at the interface alone */
+static PetscErrorCode BodyMarkContacts(Substructure s, IS unknowns)
+{
+  const OperatorsTerm *term;
+  const ContactPair   *pair;
+  Contact              contact;
+  PetscInt             n_terms, n_pairs, n_all, n_marked;
+  Vec                  marks;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetModel(s->operators, NULL, &contact));
+  if (!contact) PetscFunctionReturn(0);
+  PetscCall(ContactGetPairs(contact, &n_pairs, &n_all, &pair));
+  PetscCall(OperatorsGetTerms(s->operators, &n_terms, &term));
+  PetscCall(MatCreateVecs(term[0].A, &marks, NULL));
+  for (PetscInt p = 0; p < n_pairs; p++)
+    for (PetscInt k = 0; k < pair[p].n_slave + pair[p].n_master; k++) {
+      const ContactPairNode *node = k < pair[p].n_slave ? &pair[p].slave[k] : &pair[p].master[k - pair[p].n_slave];
+
+      PetscCall(VecSetValues(marks, 3, node->unknown, (PetscScalar[]){1, 1, 1}, ADD_VALUES));
+    }
+  PetscCall(VecAssemblyBegin(marks));
+  PetscCall(VecAssemblyEnd(marks));
+  PetscCall(BodyMarkRows(marks, unknowns, s->body.pressed, &n_marked));
+  PetscCall(VecDestroy(&marks));
+  PetscFunctionReturn(0);
+}
+
 /* Leaves of the unknowns those that follow none inside: Z'A Z for all matrices */
 static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], PetscBool joined[], Mat Z)
 {
@@ -182,8 +201,9 @@ static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], Pe
   }
   for (PetscInt k = 0; k < body->n_own; k++) {
     if (!keep[k]) continue;
-    body->node[n] = body->node[k];
-    joined[n++]   = joined[k];
+    body->node[n]    = body->node[k];
+    body->pressed[n] = body->pressed[k];
+    joined[n++]      = joined[k];
   }
   body->n_own = n;
   PetscFunctionReturn(0);
@@ -223,9 +243,10 @@ PetscErrorCode BodyCreate(Substructure s)
   PetscCall(ModelGetMesh(s->model, &mesh));
   PetscCall(BodyMark(s, mesh));
   PetscCall(BodyNumber(s, mesh, &unknowns));
-  PetscCall(PetscCalloc1(body->n_own, &body->joined));
+  PetscCall(PetscCalloc2(body->n_own, &body->joined, body->n_own, &body->pressed));
   PetscCall(PetscMalloc1(body->n_own, &keep));
   PetscCall(BodyTakeTerms(s, unknowns, body->joined));
+  PetscCall(BodyMarkContacts(s, unknowns));
   PetscCall(BodyFollow(s, unknowns, keep, body->joined, &Z));
   PetscCall(BodyTakeLeaders(s, keep, body->joined, Z));
   PetscCall(PetscFree(keep));
@@ -249,7 +270,7 @@ PetscErrorCode BodyDestroy(SubstructureBody *body)
   PetscCall(PetscFree(body->A));
   PetscCall(PetscFree2(body->term, body->of_term));
   PetscCall(PetscFree(body->node));
-  PetscCall(PetscFree(body->joined));
+  PetscCall(PetscFree2(body->joined, body->pressed));
   PetscCall(PetscFree(body->has_part));
   PetscFunctionReturn(0);
 }

@@ -95,23 +95,14 @@ static PetscErrorCode FollowCreate(Substructure s, Mat W, const PetscBool keep[]
 /* Marks what others outside follow: they are tied to the parts there */
 static PetscErrorCode FollowMark(Mat all, IS unknowns, PetscBool joined[])
 {
-  const PetscInt    *unknown;
-  const PetscScalar *value;
-  PetscInt           first, n;
-  Vec                probe, answer;
+  PetscInt n_marked;
+  Vec      probe, answer;
 
   PetscFunctionBeginUser;
   PetscCall(BodyCreateProbe(all, unknowns, &probe));
   PetscCall(VecDuplicate(probe, &answer));
   PetscCall(MatMultTranspose(all, probe, answer));
-  PetscCall(VecGetOwnershipRange(answer, &first, NULL));
-  PetscCall(VecGetArrayRead(answer, &value));
-  PetscCall(ISGetLocalSize(unknowns, &n));
-  PetscCall(ISGetIndices(unknowns, &unknown));
-  for (PetscInt k = 0; k < n; k++)
-    if (value[unknown[k] - first] != 0) joined[k] = PETSC_TRUE;
-  PetscCall(ISRestoreIndices(unknowns, &unknown));
-  PetscCall(VecRestoreArrayRead(answer, &value));
+  PetscCall(BodyMarkRows(answer, unknowns, joined, &n_marked));
   PetscCall(VecDestroy(&answer));
   PetscCall(VecDestroy(&probe));
   PetscFunctionReturn(0);

@@ -180,16 +180,24 @@ static PetscErrorCode InterfaceCreateE(Substructure s)
 /* Raises the error for what is left out and acts on rows that are not of the interface */
 static PetscErrorCode InterfaceCheckJoined(Substructure s, const PetscBool is_on[])
 {
-  PetscInt n = 0;
+  PetscInt n[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->body.n_own; k++) n += s->body.joined[k] && !is_on[k];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, s->comm));
-  PetscCheck(!n, s->comm, PETSC_ERR_USER_INPUT,
+  for (PetscInt k = 0; k < s->body.n_own; k++) {
+    n[0] += s->body.joined[k] && !is_on[k];
+    n[1] += s->body.pressed[k] && !is_on[k];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_INT, MPI_SUM, s->comm));
+  PetscCheck(!n[0], s->comm, PETSC_ERR_USER_INPUT,
              "-superelement_parts: %s joins them to others at %" PetscInt_FMT
              " displacements that are in none of -superelement_sets: name the set of these nodes, or the others as "
              "parts too",
-             s->body.joint, n);
+             s->body.joint, n[0]);
+  PetscCheck(!n[1], s->comm, PETSC_ERR_USER_INPUT,
+             "-superelement_parts: contacts, which no superelement has, act on them at %" PetscInt_FMT
+             " displacements that are in none of -superelement_sets: name their surfaces as sets, or leave out "
+             "-contacts",
+             n[1]);
   PetscFunctionReturn(0);
 }
 

@@ -19,3 +19,25 @@ PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe)
   PetscCall(VecRestoreArray(*probe, &value));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode BodyMarkRows(Vec answer, IS unknowns, PetscBool joined[], PetscInt *n_marked)
+{
+  const PetscInt    *unknown;
+  const PetscScalar *value;
+  PetscInt           first, n;
+
+  PetscFunctionBeginUser;
+  *n_marked = 0;
+  PetscCall(VecGetOwnershipRange(answer, &first, NULL));
+  PetscCall(VecGetArrayRead(answer, &value));
+  PetscCall(ISGetLocalSize(unknowns, &n));
+  PetscCall(ISGetIndices(unknowns, &unknown));
+  for (PetscInt k = 0; k < n; k++) {
+    if (value[unknown[k] - first] == 0) continue;
+    joined[k] = PETSC_TRUE;
+    ++*n_marked;
+  }
+  PetscCall(ISRestoreIndices(unknowns, &unknown));
+  PetscCall(VecRestoreArrayRead(answer, &value));
+  PetscFunctionReturn(0);
+}

@@ -14,6 +14,7 @@ typedef struct {
   PetscInt              n_own, first, n; /* rows of this rank, the first of them, those of all ranks */
   PetscInt             *node;            /* [n_own] 3 local node + direction */
   PetscBool            *joined;          /* [n_own] what is left out acts there */
+  PetscBool            *pressed;         /* [n_own] contacts act there, which are left out */
   char                  joint[160];      /* the first thing left out, such as pad_young; empty for none */
   PetscInt              n_matrices;
   Mat                  *A;        /* [n_matrices] */
@@ -98,6 +99,8 @@ PETSC_INTERN PetscErrorCode BodySum(const Substructure s, const Mat A[], Mat *K,
 /* probe.c - a number for each unknown that others are not likely to cancel in a sum; 0 for those of the parts.
    Collective. */
 PETSC_INTERN PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe);
+/* Marks the unknowns [of this rank] at which the answer to it is not zero, and counts them. Not collective. */
+PETSC_INTERN PetscErrorCode BodyMarkRows(Vec answer, IS unknowns, PetscBool joined[], PetscInt *n_marked);
 /* follow.c - what follows others: Z [all unknowns of the parts][those that follow none inside], NULL without; keep
    [unknowns of this rank] tells these, joined where something outside moves one. Collective. */
 PETSC_INTERN PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBool joined[], Mat *Z);

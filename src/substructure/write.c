@@ -27,7 +27,7 @@ static PetscErrorCode SubstructureWriteModes(Substructure s, Results results)
   PetscInt     number = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(results, "superelement", "interface,mode,frequency_hz,error_hz,relative_error", &table));
+  PetscCall(ResultsTableOpen(results, "superelement", "interface,mode,freq_hz,error_hz,relative_error", &table));
   for (PetscInt k = 0; k < s->n_modes; k++) {
     const SubstructureMode *mode = &s->mode[k];
 

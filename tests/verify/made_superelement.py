@@ -90,7 +90,7 @@ def errors_hold(rows, exact):
     for kind, values in exact.items():
         stated = [row for row in rows if row["interface"] == kind]
         for row, f in zip(stated, values[values > 1e-3][-len(values):]):
-            is_off, said = abs(float(row["frequency_hz"]) - f), float(row["error_hz"])
+            is_off, said = abs(float(row["freq_hz"]) - f), float(row["error_hz"])
             worst = max(worst, is_off / (said + NOISE * f))
             if is_off > NOISE * f and said > TOO_LARGE * is_off:
                 sys.exit(f"error: {kind} mode {row['mode']} is off by {is_off:.3g} Hz, said to be {said:.3g} Hz")
@@ -121,7 +121,7 @@ def joined(saved, lines, made):
     k, m = (matrix(Path(made) / f"superelement_{name}.bin") for name in "km")
     on, _ = order(table(lines), table(Path(made) / "superelement_table.csv"))
     said = [row for row in table(Path(made) / "superelement.csv") if row["interface"] == "any"][0]
-    band, relative, worst, random, b = float(said["frequency_hz"]), float(said["relative_error"]), 0, np.random.default_rng(1), len(on)
+    band, relative, worst, random, b = float(said["freq_hz"]), float(said["relative_error"]), 0, np.random.default_rng(1), len(on)
     for _ in range(60):
         few = random.integers(1, b)  # of low rank or full, soft or stiff, light or heavy
         stiff, heavy = (random.normal(size=(b, few)) * 10 ** random.uniform(-3, 1) for _ in range(2))
@@ -220,7 +220,7 @@ def formats(made):
 def among(made, modes):
     f = np.array([float(row["freq_hz"]) for row in table(Path(modes) / "modes.csv")])
     own = [row for row in table(Path(made) / "superelement.csv") if row["interface"] == "free"]
-    off = [(abs(f - float(row["frequency_hz"])).min(), float(row["error_hz"]) + NOISE * float(row["frequency_hz"])) for row in own]
+    off = [(abs(f - float(row["freq_hz"])).min(), float(row["error_hz"]) + NOISE * float(row["freq_hz"])) for row in own]
     check(f"largest error of {len(off)} modes beside what is said", max(is_off / said for is_off, said in off), 1.05)
 
 

@@ -8,10 +8,7 @@
    that slide, and the spins of parts, have the other sign.
 */
 #include "sample/sampleimpl.h"
-#include "base/csv.h"
 #include <string.h>
-
-#define FACTORS_MOST 10000 /* lines */
 
 /* The place of a column, -1 for none */
 static PetscInt ColumnFind(const ConditionTable *t, const char name[])
@@ -87,42 +84,15 @@ PetscErrorCode ConditionsSetColumns(Sample s)
   PetscFunctionReturn(0);
 }
 
-/* Reads a table of factors on one rank */
-static PetscErrorCode FactorsReadFile(const char file[], Distribution *d, Csv *csv)
-{
-  static const char *const columns[] = {"value", "factor"};
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(FACTORS_MOST, &d->value, FACTORS_MOST, &d->probability));
-  CsvOpen(csv, file, 2, columns, 2);
-  while (CsvNext(csv) && d->n < FACTORS_MOST) {
-    d->value[d->n]       = CsvReal(csv, 0, PETSC_FALSE);
-    d->probability[d->n] = CsvReal(csv, 1, PETSC_FALSE);
-    d->n++;
-  }
-  CsvClose(csv);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode SampleColumnCheck(MPI_Comm comm, void *owner, void *record)
 {
   SampleVariable *v = record;
   Distribution   *d = &v->distribution;
-  PetscMPIInt     rank;
-  Csv             csv = {0};
 
   PetscFunctionBeginUser;
   (void)owner;
   if (!v->table[0]) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(FactorsReadFile(v->table, d, &csv));
-  if (rank) PetscCall(PetscMalloc2(FACTORS_MOST, &d->value, FACTORS_MOST, &d->probability));
-  PetscCallMPI(MPI_Bcast(csv.fault, sizeof(csv.fault), MPI_CHAR, 0, comm));
-  PetscCheck(!csv.fault[0], comm, PETSC_ERR_USER_INPUT, "-%s_table %s: %s", v->name, v->table, csv.fault);
-  PetscCallMPI(MPI_Bcast(&d->n, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(d->value, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
-  PetscCallMPI(MPI_Bcast(d->probability, (PetscMPIInt)d->n, MPIU_REAL, 0, comm));
-  PetscCheck(d->n >= 2, comm, PETSC_ERR_USER_INPUT, "-%s_table %s: two rows are needed at least", v->name, v->table);
+  PetscCall(SampleTableRead(comm, v, "factor", d));
   for (PetscInt k = 1; k < d->n; k++)
     PetscCheck(d->value[k] > d->value[k - 1], comm, PETSC_ERR_USER_INPUT,
                "-%s_table %s: value must ascend, which %.6g behind %.6g does not", v->name, v->table,
@@ -144,6 +114,19 @@ static PetscErrorCode TableFactorAt(Sample s, const SampleVariable *v, PetscInt 
   while (k < d->n - 1 && x > d->value[k]) k++;
   *factor = d->probability[k - 1] +
             (d->probability[k] - d->probability[k - 1]) * (x - d->value[k - 1]) / (d->value[k] - d->value[k - 1]);
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where a column is the parameter itself, and its unit is none of it, as bar of a force */
+PetscErrorCode ConditionsCheckUnit(Sample s, const SampleVariable *v, const OperatorsParameter *parameter)
+{
+  const char *si = s->conditions.si[v->column], *unit = parameter->unit ? parameter->unit : "";
+
+  PetscFunctionBeginUser;
+  if (!si || v->table[0] || v->relative || v->scale != 1) PetscFunctionReturn(0);
+  PetscCheck(!strcmp(si, unit[0] ? unit : "1"), s->comm, PETSC_ERR_USER_INPUT,
+             "-sample_conditions %s, column %s: %s is in %s, not in %s; -sample_columns %s with -%s_scale converts",
+             s->file, s->conditions.head[v->column], parameter->name, unit[0] ? unit : "no unit", si, v->name, v->name);
   PetscFunctionReturn(0);
 }
 

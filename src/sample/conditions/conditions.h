@@ -8,14 +8,15 @@
 /* The file. Columns are numbers in units that their heads name ("pressure [bar]"), but for the name of the condition
    and the direction of the disc */
 typedef struct {
-  PetscInt   n, n_columns;
-  char     **column;    /* [n_columns] names without their units */
-  char     **head;      /* [n_columns] as they stand in the file */
-  PetscReal *unit;      /* [n_columns] of one unit in those of SI */
-  PetscReal *value;     /* [n][n_columns] as they stand in the file */
-  PetscReal *direction; /* [n] 1 forward, -1 reverse */
-  PetscBool  reverses;  /* there is a column direction */
-  char     **name;      /* [n] of the condition */
+  PetscInt     n, n_columns;
+  char       **column;    /* [n_columns] names without their units */
+  char       **head;      /* [n_columns] as they stand in the file */
+  PetscReal   *unit;      /* [n_columns] of one unit in those of SI */
+  const char **si;        /* [n_columns] that unit of SI, NULL without */
+  PetscReal   *value;     /* [n][n_columns] as they stand in the file */
+  PetscReal   *direction; /* [n] 1 forward, -1 reverse */
+  PetscBool    reverses;  /* there is a column direction */
+  char       **name;      /* [n] of the condition */
 } ConditionTable;
 
 /* A frequency band and what the conditions do in it */

@@ -16,61 +16,59 @@
 
 /* Units of columns, in those of the options */
 typedef struct {
-  const char *name;
+  const char *name, *si;
   PetscReal   factor;
 } ColumnUnit;
 
-static const ColumnUnit units[] = {{"Pa", 1},
-                                   {"kPa", 1e3},
-                                   {"MPa", 1e6},
-                                   {"GPa", 1e9},
-                                   {"bar", 1e5},
-                                   {"psi", 6894.757293168361},
-                                   {"N/m^3", 1},
-                                   {"N/m", 1},
-                                   {"N", 1},
-                                   {"kN", 1e3},
-                                   {"m", 1},
-                                   {"mm", 1e-3},
-                                   {"um", 1e-6},
-                                   {"s", 1},
-                                   {"min", 60},
-                                   {"h", 3600},
-                                   {"Hz", 1},
-                                   {"rad/s", 1},
-                                   {"m/s", 1},
-                                   {"km/h", 1 / 3.6},
-                                   {"rpm", PETSC_PI / 30},
-                                   {"1/min", PETSC_PI / 30},
-                                   {"%", 0.01},
-                                   {"-", 1},
-                                   {"degC", 1},
-                                   {"K", 1},
-                                   {"kg/m^3", 1}};
+static const ColumnUnit units[] = {{"Pa", "Pa", 1},
+                                   {"kPa", "Pa", 1e3},
+                                   {"MPa", "Pa", 1e6},
+                                   {"GPa", "Pa", 1e9},
+                                   {"bar", "Pa", 1e5},
+                                   {"psi", "Pa", 6894.757293168361},
+                                   {"N/m^3", "N/m^3", 1},
+                                   {"N/m", "N/m", 1},
+                                   {"N", "N", 1},
+                                   {"kN", "N", 1e3},
+                                   {"m", "m", 1},
+                                   {"mm", "m", 1e-3},
+                                   {"um", "m", 1e-6},
+                                   {"s", "s", 1},
+                                   {"min", "s", 60},
+                                   {"h", "s", 3600},
+                                   {"Hz", "Hz", 1},
+                                   {"rad/s", "rad/s", 1},
+                                   {"m/s", "m/s", 1},
+                                   {"km/h", "m/s", 1 / 3.6},
+                                   {"rpm", "rad/s", PETSC_PI / 30},
+                                   {"1/min", "rad/s", PETSC_PI / 30},
+                                   {"%", "1", 0.01},
+                                   {"-", "1", 1},
+                                   {"degC", "K", 1},
+                                   {"K", "K", 1},
+                                   {"kg/m^3", "kg/m^3", 1}};
 
 /* What one rank reads: lengths are fixed, so that it can be sent as it is */
 typedef struct {
-  PetscInt  n, n_columns, name_at, direction_at; /* columns of the file */
-  char      head[CSV_MAX_COLUMNS][NAME_LENGTH];
-  PetscReal unit[CSV_MAX_COLUMNS];
-  char      fault[256];
+  PetscInt n, n_columns, name_at, direction_at; /* columns of the file */
+  char     head[CSV_MAX_COLUMNS][NAME_LENGTH];
+  PetscInt unit[CSV_MAX_COLUMNS]; /* its place in the list, -1 for none */
+  char     fault[256];
 } ConditionHead;
 
 /* Cuts "pressure [bar]" into its name, and finds its unit */
 static void HeadCut(ConditionHead *h, PetscInt c, char name[])
 {
   char *unit = strchr(name, '['), *end = unit ? strchr(unit, ']') : NULL;
-  int   found = -1;
 
-  h->unit[c] = 1;
+  h->unit[c] = -1;
   if (!unit) return;
   if (end) *end = '\0';
   for (int k = 0; k < (int)PETSC_STATIC_ARRAY_LENGTH(units); k++)
-    if (end && !strcmp(unit + 1, units[k].name)) found = k;
-  if (found >= 0) h->unit[c] = units[found].factor;
+    if (end && !strcmp(unit + 1, units[k].name)) h->unit[c] = k;
   *unit = '\0';
   for (size_t k = strlen(name); k && name[k - 1] == ' '; k--) name[k - 1] = '\0';
-  if (found >= 0 || h->fault[0]) return;
+  if (h->unit[c] >= 0 || h->fault[0]) return;
   (void)snprintf(h->fault, sizeof(h->fault),
                  "column '%.40s' has no unit of these in its brackets: Pa, kPa, MPa, GPa, "
                  "bar, psi, N, kN, N/m, N/m^3, m, mm, um, s, min, h, Hz, rad/s, rpm, 1/min, "
@@ -152,12 +150,14 @@ static PetscErrorCode RowsRead(Csv *csv, const ConditionHead *h, ConditionTable 
 static PetscErrorCode ColumnsTake(const ConditionHead *h, ConditionTable *t)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(h->n_columns, &t->column, h->n_columns, &t->head, h->n_columns, &t->unit));
+  PetscCall(
+    PetscMalloc4(h->n_columns, &t->column, h->n_columns, &t->head, h->n_columns, &t->unit, h->n_columns, &t->si));
   for (PetscInt c = 0, k = 0; c < h->n_columns; c++) {
     char *end;
 
     if (c == h->name_at || c == h->direction_at) continue;
-    t->unit[k] = h->unit[c];
+    t->unit[k] = h->unit[c] < 0 ? 1 : units[h->unit[c]].factor;
+    t->si[k]   = h->unit[c] < 0 ? NULL : units[h->unit[c]].si;
     PetscCall(PetscStrallocpy(h->head[c], &t->head[k]));
     PetscCall(PetscStrallocpy(h->head[c], &t->column[k]));
     end = strchr(t->column[k], '[');
@@ -226,7 +226,7 @@ PetscErrorCode ConditionTableDestroy(ConditionTable *t)
     PetscCall(PetscFree(t->column[c]));
     PetscCall(PetscFree(t->head[c]));
   }
-  if (t->column) PetscCall(PetscFree3(t->column, t->head, t->unit));
+  if (t->column) PetscCall(PetscFree4(t->column, t->head, t->unit, t->si));
   PetscCall(PetscFree(t->name));
   PetscCall(PetscFree(t->value));
   PetscCall(PetscFree(t->direction));

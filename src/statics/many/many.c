@@ -40,7 +40,7 @@ static PetscErrorCode MeshSolve(Many *m, PetscInt i)
   PetscCall(PetscMalloc1(m->s->n_parameters, &p));
   PetscCall(m->get(m->ctx, i, p));
   PetscCall(StaticsSolveSliding(m->s, p, &state));
-  for (PetscInt k = 0; k < state.n_pairs; k++) m->closed[i * state.n_pairs + k] = state.group[k] >= 0;
+  for (PetscInt k = 0; k < state.n_pairs; k++) m->closed[(size_t)i * state.n_pairs + k] = state.group[k] >= 0;
   PetscCall(SlidingStateDestroy(&state));
   PetscCall(PetscFree(p));
   m->error[i] = -1;
@@ -115,7 +115,7 @@ static void ManyTake(Many *m, PetscInt i, PetscInt begin, const char closed[], c
 {
   const PetscInt n_pairs = m->s->rows.n_pairs;
 
-  for (PetscInt k = 0; k < n_pairs; k++) m->closed[i * n_pairs + k] = closed[begin + k];
+  for (PetscInt k = 0; k < n_pairs; k++) m->closed[(size_t)i * n_pairs + k] = closed[begin + k];
   m->error[i] = answer[1] > MANY_SURE * PetscMax(1, m->ratio) * answer[0] ? -1 : answer[0];
 }
 
@@ -232,7 +232,7 @@ static PetscErrorCode BeginTake(Many *m, PetscInt i)
   char          *all;
 
   PetscFunctionBeginUser;
-  PetscCall(GatherRecords(m->s->comm, n_pairs, 1, &m->closed[i * n_pairs], NULL, &all));
+  PetscCall(GatherRecords(m->s->comm, n_pairs, 1, &m->closed[(size_t)i * n_pairs], NULL, &all));
   m->begin = all;
   PetscFunctionReturn(0);
 }

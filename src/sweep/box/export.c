@@ -161,7 +161,7 @@ PetscErrorCode BoxExport(const Box *box, const BoxVaried *varied, Results result
     if (!TermIsMonomial(&reduced->term[i], varied)) PetscFunctionReturn(0);
     n_terms++;
   }
-  if (n_terms * reduced->n * reduced->n * (PetscInt)sizeof(PetscReal) > EXPORT_MOST) PetscFunctionReturn(0);
+  if (sizeof(PetscReal) * (size_t)n_terms * (size_t)(reduced->n * reduced->n) > EXPORT_MOST) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_rank(box->comm, &rank));
   PetscCall(PetscCalloc1(3 * reduced->n * reduced->n, &sum));
   PetscCall(PetscMalloc1(n_terms + 1, &pieces));

@@ -35,7 +35,7 @@ static PetscErrorCode StatusesNumber(Box *box, PetscInt n, const char closed[])
   PetscCall(PetscMalloc1(n, &box->status));
   PetscCall(PetscMalloc1(n_local, &row));
   for (PetscInt i = 0; i < n; i++) {
-    for (PetscInt k = 0; k < n_local; k++) row[k] = closed[i * n_local + k] ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt k = 0; k < n_local; k++) row[k] = closed[(size_t)i * n_local + k] ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(StatusListAdd(&box->statuses, row, &box->status[i]));
   }
   PetscCall(PetscFree(row));
@@ -60,7 +60,7 @@ static PetscErrorCode StatusesFind(Box *box, PetscInt n, PointsAndNominal *point
   PetscCall(OperatorsGetModel(box->operators, NULL, &contact));
   PetscCall(ContactGetPairs(contact, &n_local, &n_all, &pair));
   PetscCall(StatusListCreate(box->comm, n_local, &box->statuses));
-  PetscCall(PetscMalloc1(n * n_local, &closed));
+  PetscCall(PetscMalloc1((size_t)n * n_local, &closed));
   PetscCall(StaticsSolveMany(box->statics, n, PointGet, points, closed, &box->equilibria));
   PetscCall(StaticsRelease(box->statics));
   PetscCall(StatusesNumber(box, n, closed));

@@ -25,6 +25,8 @@ def circle(r, other=None):
 
 
 def pipe(r, t):
+    if t > r:
+        return None
     outer, inner = circle(r), circle(r - t)
     values = [one - two for one, two in zip((outer.area, outer.bend_1, outer.bend_2, outer.torsion),
                                             (inner.area, inner.bend_1, inner.bend_2, inner.torsion))]
@@ -36,6 +38,8 @@ def box(a, b, *walls):
     if len(set(walls)) != 1 or len(walls) not in (1, 4):
         return None
     t = walls[0]
+    if 2 * t >= min(a, b):
+        return None
     outer, inner = rectangle(a, b), rectangle(a - 2 * t, b - 2 * t)
     torsion = 2 * t * ((a - t) * (b - t))**2 / (a + b - 2 * t)
     return Profile(outer.area - inner.area, outer.bend_1 - inner.bend_1, outer.bend_2 - inner.bend_2, torsion, 0.44, 0.44)
@@ -60,6 +64,11 @@ def general(row):
     return Profile(row[0], row[3], row[1], row[4], 1.0, 1.0)
 
 
+def axis_1(rows):
+    """The direction of axis 1 on the second line; what is left out of it is 0."""
+    return (rows[1] + 2 * [0.0])[:3] if len(rows) > 1 and rows[1] else [0.0, 0.0, -1.0]
+
+
 def do_beam_section(reader, scope, card):
     """Lengths of the section, then the direction of axis 1."""
     name, material = card.need("ELSET"), card.need("MATERIAL")
@@ -67,7 +76,7 @@ def do_beam_section(reader, scope, card):
     rows = [row for _, row in numbers(card)]
     if not rows:
         raise card.place.wrong(f"*{card.keyword} needs the lengths of its section")
-    add_section(reader, scope, card, (name, material, profile_of(kind, rows[0]), rows[1][:3] if len(rows) > 1 else [0.0, 0.0, -1.0]))
+    add_section(reader, scope, card, (name, material, profile_of(kind, rows[0]), axis_1(rows)))
 
 
 def do_general_section(reader, scope, card):
@@ -77,7 +86,6 @@ def do_general_section(reader, scope, card):
     if not rows or len(rows) < 3 or len(rows[2]) < 2 or not card.options.get("DENSITY"):
         reader.deck.note(card.place, "*BEAM GENERAL SECTION: needs DENSITY, and a line with E and G: not in the scene")
         return
-    along = rows[1][:3] if len(rows[1]) >= 3 else [0.0, 0.0, -1.0]
     try:
         density = float(card.options["DENSITY"])
     except ValueError:
@@ -87,7 +95,8 @@ def do_general_section(reader, scope, card):
         raise card.place.wrong("*BEAM GENERAL SECTION: E, G and DENSITY must be positive")
     material = f"section of {scope.full(name)}"
     reader.deck.materials[material] = Material(material, card.place, (young,), (young / (2 * shear) - 1,), density=density)
-    add_section(reader, scope, card, (name, material, general(rows[0]) if kind == "GENERAL" else profile_of(kind, rows[0]), along))
+    add_section(reader, scope, card, (name, material, general(rows[0]) if kind == "GENERAL" else profile_of(kind, rows[0]),
+                                       axis_1(rows)))
 
 
 def add_section(reader, scope, card, section):

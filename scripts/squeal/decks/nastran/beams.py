@@ -19,13 +19,13 @@ def bar_property(table, row):
 
 
 def beam_property(table, row):
-    """PBEAM of one section: number, material, A, I1, I2, I12, J, mass per length; K1, K2 are 1."""
-    words = table.words(row, 8)
+    """PBEAM of one section: number, material, A, I1, I2, I12, J, mass per length, -, stress points, K1, K2, which are 1 where blank."""
+    words = table.words(row, 18)
     values = [table.one_real(row, k, words[k]) if words[k] else 0.0 for k in range(2, 8)]
-    ends = [word for word in table.words(row, 18)[16:] if word in ("YES", "YESA", "NO")]
-    if values[3] or ends:
+    if values[3] or any(word in ("YES", "YESA", "NO") for word in words[16:]):
         return None
-    return words[1], Profile(values[0], values[1], values[2], values[4], 1.0, 1.0), values[5]
+    shear = [(table.one_real(row, k, words[k]) if words[k] else 1.0) or numpy.inf for k in (16, 17)]
+    return words[1], Profile(values[0], values[1], values[2], values[4], *shear), values[5]
 
 
 def properties(deck, tables):
