@@ -6,7 +6,7 @@ import re
 RESERVED = set("""model modes operators static sweep frf dynamics squeal output eps st pep ts log rig projector parts supports
 springs dashpots joints points loads contacts ties motions probes circles impulses options loss mat vec ksp pc dm is help version info
 malloc error sub on off yes no true false null analysis statics objects citations checkpoint history viewer fp memory show start
-sample superelement superelements petsc slepc bv ds rg svd nep snes tao sf blas mpi hdf5 mumps""".split())
+sample superelement superelements quiet design petsc slepc bv ds rg svd nep snes tao sf blas mpi hdf5 mumps""".split())
 
 
 class Names:
