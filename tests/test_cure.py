@@ -135,11 +135,11 @@ def main(squeal):
             sets.setdefault(int(row["set"]), []).append(row)
         costs = [float(own[0]["cost"]) for own in sets.values() if own[0]["n_unstable"] == "0"]
         faults += ["cheapest first"] * (not costs or costs != sorted(costs))
-        chosen = {"the cheapest": sets[1], "the worst": sets[max(sets)]}
-        chosen |= {"a layer": own for own in sets.values() if any(row["change"].startswith("layer") for row in own)
-                   and all(row["name"] != "beam_rows" for row in own)}
-        chosen |= {"a pair": own for own in sets.values() if len(own) == 2}
-        faults += [f"no set with a {kind}" for kind in ("a layer", "a pair") if kind not in chosen]
+        known = [own for own in sets.values() if all(row["name"] != "beam_rows" for row in own)]
+        chosen = {"the cheapest": known[0], "the worst": known[-1]}
+        chosen |= {"a layer": own for own in known if any(row["change"].startswith("layer") for row in own)}
+        chosen |= {"a pair": own for own in known if len(own) == 2}
+        faults += [f"no set is {kind}" for kind in ("a layer", "a pair") if kind not in chosen]
         for what, own in chosen.items():
             faults += check_set(squeal, folder, own, what)
         call(folder, "out", "--program", squeal, "--changes", "parameter", "--most", "parameter=80", "--count", "3", "--output", "percents")

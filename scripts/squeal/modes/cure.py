@@ -23,11 +23,13 @@ KINDS = {"mass": HEAVY, "spring": STIFF, "dashpot": VISCOUS, "relative_spring": 
          "layer_mass": HEAVY, "layer_spring": STIFF, "layer_dashpot": VISCOUS, "parameter": ("percent", "", 1.0, "%")}
 FACTORS = 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0  # of the amount that would stop a mode if the first order held
 PERCENTS = 0.2, 0.5, 1.0  # of the largest change of a parameter
-MOST_CHANGES = 42  # of a run: each has up to eight options, of which PETSc 3.18 takes 512
-SINGLES = 40  # changes, of which sets are made
+MOST_LOOKED_AT = 70  # changes of a run: each has up to six options, of which PETSc 3.18 takes 512
+SINGLES = 40, 16  # changes of which sets are made, two amounts of each place at most; the same where ENOUGH places do it alone
+ENOUGH = 3
 BLOCK = 256  # sets whose eigenvalues are found at once
 ALIKE = 2  # sets of the same places that are tried
 QUIET = 1e-4  # of an eigenvalue: growth that couplings, which are of second order, do not tell from none
+ROUNDING = 1e-6  # of an angular frequency: growth that is none
 TWO_PI = 6.283185307179586
 
 
@@ -130,12 +132,15 @@ class Cure:
         return self.change(like, row["first_order_units_to_zero"])
 
     def others(self):
-        """Layers over sets of the scene and rings of its disc, and percents of parameters; none where parts are chosen."""
+        """Layers over sets of the scene, of mass alone over rings of its disc, for a disc that turns has no springs to the ground, and
+        percents of parameters; none where parts are chosen."""
         if self.args.parts:
             return []
         found = []
         for name in [*sets(self.scene), *rings(self.args.results, self.scene)]:
             for kind, directions in (("layer_mass", [[0, 0, 0]]), ("layer_spring", numpy.eye(3).tolist())):
+                if "," in name and kind != "layer_mass":
+                    continue
                 if kind in self.args.changes or (kind == "layer_spring" and "layer_dashpot" in self.args.changes):
                     found += [self.change(Change(kind, "", [], "", [], direction, 0, 0, 0, name), 1.0) for direction in directions]
         if "parameter" in self.args.changes:
@@ -154,7 +159,7 @@ class Cure:
             if change:
                 found.setdefault(change.where, change)
         room = max(1, self.args.tries - len(others))
-        return (list(found.values())[:room] + others)[:MOST_CHANGES]
+        return (list(found.values())[:room] + others)[:MOST_LOOKED_AT]
 
     def slopes(self):
         """Parameter -> unstable mode -> 1/s per percent; none without modes_sensitivities.csv."""
@@ -235,22 +240,28 @@ class Cure:
     def chosen(self, count):
         """The likeliest sets, those first that leave nothing and cost least."""
         singles, values = self.singles()
-        found = [([change], rest) for change, _, rest in singles]
+        found, places, few = [([change], rest) for change, _, rest in singles], {}, []
+        for entry in singles:
+            if places.setdefault(entry[0].where, 0) < ALIKE:
+                few.append(entry)
+            places[entry[0].where] += 1
+        few = few[:SINGLES[len({change.where for change, _, rest in singles if not rest}) >= ENOUGH]]
         for size in (2, 3):
             if len({changes[0].where for changes, rest in found if not rest}) >= count:
                 break
-            few = SINGLES if size == 2 else SINGLES // 3
-            own = [entries for entries in itertools.combinations(singles[:few], size)
+            own = [entries for entries in itertools.combinations(few if size == 2 else few[:len(few) // 3], size)
                    if len({change.where for change, _, _ in entries}) == size]
             left = self.left([sum(matrix for _, matrix, _ in entries) for entries in own], values)
             found += [([change for change, _, _ in entries], rest) for entries, rest in zip(own, left)]
         found.sort(key=lambda entry: (entry[1] > 0, entry[1] if entry[1] > 0 else 0, sum(change.cost for change in entry[0])))
-        sets_of, kept = {}, []
-        for changes, _ in found:
+        sets_of, kept, enough = {}, [], []
+        for changes, rest in found:
             where = frozenset(change.where for change in changes)
-            if sets_of.setdefault(where, 0) < ALIKE:
+            if sets_of.setdefault(where, 0) < ALIKE and not any(less < where for less in enough):
                 kept.append(changes)
             sets_of[where] += 1
+            if not rest:  # what is added to it only costs
+                enough.append(where)
         return kept
 
     def run_squeal(self, trials, name, *more):
@@ -279,11 +290,17 @@ class Cure:
         rows = read_table(self.args.output / name / "modes_changed.csv", CHANGED)
         return [self.judge(changes, [row for row in rows if row["change"] == label]) for label, changes in made.items()]
 
-    @staticmethod
-    def judge(changes, rows):
+    def grows(self, row):
+        """Whether a mode grows, or may: growth that its error hides is no calm."""
+        omega = TWO_PI * row["freq_hz"]
+        allowed = max(self.scene.number("modes_unstable_damping") / 100 * omega, self.scene.number("modes_unstable_growth"),
+                      ROUNDING * omega)
+        return row["state"] in ("unstable", "uncertain") or row["growth_rad_s"] > allowed
+
+    def judge(self, changes, rows):
         """A set is a cure where no mode of the band is unstable."""
         worst = max(rows, key=lambda row: row["growth_rad_s"])
-        count = sum(row["state"] in ("unstable", "uncertain") for row in rows)
+        count = sum(self.grows(row) for row in rows)
         return Trial(changes, count, worst["growth_rad_s"], TWO_PI * worst["error_hz"], worst["freq_hz"])
 
     def trials(self):
