@@ -111,7 +111,8 @@ class Brake:
             size = size + numpy.linalg.det(slope @ x)
         numpy.add.at(volume, self.cells[self.part_of_cell == part], size[:, None] / 8)
         radius = numpy.hypot(*(self.places - volume @ self.places / volume.sum())[:, :2].T)  # about the centre of mass
-        nodes = numpy.flatnonzero((radius > inner - 1e-7) & (radius < outer + 1e-7) & (volume > 0))
+        near = 2e-3 * radius[volume > 0].max()
+        nodes = numpy.flatnonzero((radius > inner - near) & (radius < outer + near) & (volume > 0))
         return nodes, volume[nodes] / volume[nodes].sum()
 
     def layer(self, name):

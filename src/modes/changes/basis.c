@@ -260,7 +260,7 @@ static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, Pets
   const PetscInt  n            = PetscMax(spread[0].n, spread[1].n);
   PetscBool       more         = n ? PETSC_TRUE : PETSC_FALSE;
   const int       steps        = s->space.pencil.C ? CHANGE_STEPS_DAMPED : CHANGE_STEPS;
-  PetscInt        first[2];
+  PetscInt        first[2], last;
   const PetscReal drop = n > SPREAD_FEW ? SPREAD_LOOSE : SPREAD_DROP;
 
   PetscFunctionBeginUser;
@@ -271,7 +271,11 @@ static PetscErrorCode SpaceAnswer(ChangeSpace *s, const ChangeRange *range, Pets
     PetscCall(SpaceStep(s, 1, spread));
     PetscCall(PetscArraycpy(s->first, first, 2));
   }
-  for (int i = 0; i < SPREAD_REPEATS && more; i++) PetscCall(SpaceRepeat(s, range, nodes, drop, forces, &more));
+  last = s->first[1];
+  for (int i = 0; i < SPREAD_REPEATS && more; i++) {
+    PetscCall(SpaceRepeat(s, range, nodes, drop, forces, &more));
+    s->first[0] = PetscMin(s->first[0], last); /* repetitions answer no force at a node: their last step still counts */
+  }
   PetscFunctionReturn(0);
 }
 
