@@ -32,7 +32,7 @@ static const Quantity rows[] = {
    DESIGN_AT(margin), .initial = 0.02, QUANTITY_WITHIN(0, 1)},
   {"-design_max", "most designs that are looked at", NULL, QUANTITY_INT, DESIGN_AT(max_designs), .initial = 40,
    QUANTITY_POSITIVE},
-  {"-design_corners", "full solutions at corners of the box of a design that is found", NULL, QUANTITY_INT,
+  {"-design_corners", "full solutions at corners of the uncertain box of a design that is found, then inside it", NULL, QUANTITY_INT,
    DESIGN_AT(n_corners), .initial = 20, QUANTITY_NOT_NEGATIVE},
   {"-design_rtol", "largest estimated relative error of an eigenvalue (an estimate, no bound)", NULL, QUANTITY_REAL,
    DESIGN_AT(box.rtol), .initial = 1e-5, QUANTITY_WITHIN(0, 1), .open = PETSC_TRUE},

@@ -91,9 +91,10 @@ static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer v
   }
   for (PetscInt i = 0; i < d->n_corners; i++) n_unstable += d->corner[i].n_unstable ? 1 : 0;
   if (d->n_corners)
-    PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "in full at %" PetscInt_FMT " corners of the box: %" PetscInt_FMT " unstable\n",
-                                     d->n_corners, n_unstable));
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "in full at %" PetscInt_FMT " corners of the box%s: %" PetscInt_FMT " unstable%s\n", d->n_corners,
+      d->n_corners > 1 << d->uncertain.n ? " and points inside" : "", n_unstable,
+      n_unstable ? ": the design is not confirmed; raise -design_margin" : ""));
   PetscFunctionReturn(0);
 }
 

@@ -20,6 +20,7 @@ function pencilAt(model, p) {
   const n = model.n, pencil = {K: new Float64Array(n * n), C: new Float64Array(n * n), M: new Float64Array(n * n), damped: false};
   model.terms.forEach((term, t) => {
     const c = coefficient(term, p), sum = pencil[term.kind], A = model.matrices[t];
+    if (!Number.isFinite(c)) throw new Error("a matrix is not finite at these values");
     if (c === 0) return;
     if (term.kind === "C") pencil.damped = true;
     for (let i = 0; i < n * n; i++) sum[i] += c * A[i];
