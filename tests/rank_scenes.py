@@ -55,8 +55,6 @@ def sweep(scene):
     more += draw.choice(([], [], ["-sweep_method", "full"], ["-sweep_verify", "2"], ["-sweep_sensitivities"], ["-sweep_onsets", "0"]))
     if any(name in scene.options for name in ("contact_kt", "contact_law")) and "full" not in more and scene.happens(0.3):
         more += ["-sweep_method", "full"]
-    if scene.happens(0.15):
-        more += ["-sweep_uncertain", "pad_young,disc_density", "-sweep_percent", "10,5"]
     return scene.words() + more
 
 

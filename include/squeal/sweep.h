@@ -67,7 +67,7 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results);
 /*@ SweepView - what a person wants to know first. Collective. @*/
 PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer);
 
-/*@ SweepWrite - sweep.csv, onsets.csv, sensitivities.csv, robustness.csv. Collective. @*/
+/*@ SweepWrite - sweep.csv, onsets.csv, sensitivities.csv. Collective. @*/
 PetscErrorCode SweepWrite(Sweep sweep, Results results);
 
 /*@ SweepDestroy - frees the sweep. Collective. @*/

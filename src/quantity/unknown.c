@@ -11,6 +11,11 @@
 #include <string.h>
 #include <strings.h>
 
+/* What to do without a box of some percent about the scene's own values */
+#define SAMPLE_INSTEAD                                                                                                 \
+  "give -analysis sample -sample_variables x -x_parameters NAME -x_distribution uniform -x_lower 0.9 -x_upper 1.1 "    \
+  "-x_relative, for 10 % about the value of NAME"
+
 /* Options that were, and what to do without them */
 static const struct {
   const char *name, *instead;
@@ -20,6 +25,8 @@ static const struct {
   {"statics_view", "give -static_view"},
   {"projector_rtol", "leave it out: the laws of contact in time hold to 1e-10"},
   {"dynamics_check_interval", "leave it out: tests check the laws from contact_pairs.csv and snapshots of every step"},
+  {"sweep_uncertain", SAMPLE_INSTEAD},
+  {"sweep_percent", SAMPLE_INSTEAD},
   {"modes_groups", "leave it out: all ranks share each shift of -modes_shifts"},
 };
 

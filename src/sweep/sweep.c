@@ -1,6 +1,6 @@
 /*
    Sweep: life cycle, options, and the flow: contact statuses -> basis -> points and branches -> checks -> onsets ->
-   classes -> robustness.
+   classes.
 */
 #include "sweepimpl.h"
 #include <petsctime.h>
@@ -52,15 +52,10 @@ PetscErrorCode SweepSetStatics(Sweep sweep, Statics statics)
 static PetscErrorCode SweepCheckMethod(Sweep sweep)
 {
   PetscFunctionBeginUser;
-  PetscCheck(!sweep->n_percent || sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_percent does nothing without -sweep_uncertain");
-  PetscCheck(sweep->n_percent || !sweep->uncertain[0], sweep->comm, PETSC_ERR_USER_INPUT,
-             "-sweep_uncertain %s without -sweep_percent: give one percentage for all names, or one for each",
-             sweep->uncertain);
   PetscCheck(sweep->method != SWEEP_REAL || !sweep->onsets, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_onsets true: -sweep_method real follows no branches, and finds no onsets");
-  PetscCheck(sweep->method == SWEEP_REDUCED || (!sweep->uncertain[0] && !sweep->sensitivities), sweep->comm,
-             PETSC_ERR_USER_INPUT, "-sweep_uncertain and -sweep_sensitivities need -sweep_method reduced");
+  PetscCheck(sweep->method == SWEEP_REDUCED || !sweep->sensitivities, sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_sensitivities needs -sweep_method reduced");
   PetscCheck(sweep->method != SWEEP_FULL || !sweep->n_verify, sweep->comm, PETSC_ERR_USER_INPUT,
              "-sweep_verify compares with full solutions; -sweep_method full has nothing else");
   PetscFunctionReturn(0);
@@ -214,7 +209,6 @@ static PetscErrorCode ReducedSweep(Sweep sweep, PetscLogDouble *since)
   if (sweep->onsets) PetscCall(SweepOnsets(sweep));
   PetscCall(Clock(sweep, 2, since));
   PetscCall(SweepClassify(sweep));
-  if (sweep->uncertain[0]) PetscCall(SweepRobustness(sweep));
   PetscFunctionReturn(0);
 }
 
@@ -234,7 +228,6 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   sweep->window.low  = 2 * PETSC_PI * band[0];
   sweep->window.high = 2 * PETSC_PI * band[1];
   PetscCall(SweepAxes(sweep));
-  if (sweep->uncertain[0]) PetscCall(SweepUncertainCheck(sweep));
   PetscCall(SweepCheckPlaces(sweep));
   PetscCall(PetscCalloc1(GridSize(&sweep->grid), &sweep->point));
   PetscCall(PetscTime(&since));
@@ -259,7 +252,6 @@ PetscErrorCode SweepDestroy(Sweep *sweep)
   for (PetscInt i = 0; s->point && i < GridSize(&s->grid); i++) PetscCall(PetscFree(s->point[i].mode));
   PetscCall(PetscFree(s->point));
   PetscCall(PetscFree(s->check));
-  PetscCall(PetscFree(s->risk));
   PetscCall(PetscFree(s->label));
   PetscCall(PetscFree(s->worst));
   PetscCall(PetscFree(s->is_confirmed));

@@ -10,8 +10,7 @@
 #include "sweep/grid/grid.h"
 #include "sweep/full/compare.h"
 
-#define SWEEP_MAX_TEXT      65536 /* length of a list of values */
-#define SWEEP_MAX_UNCERTAIN 16
+#define SWEEP_MAX_TEXT 65536 /* length of a list of values */
 
 typedef enum { SWEEP_REDUCED, SWEEP_FULL, SWEEP_REAL } SweepMethod;
 typedef enum { SWEEP_SYMMETRISED, SWEEP_FRICTIONLESS } SweepStiffness; /* of which real modes are taken */
@@ -46,15 +45,6 @@ typedef struct {
   FullCheck  found;
 } SweepCheck;
 
-/* Which modes can become unstable when parameters are uncertain */
-typedef struct {
-  PetscInt  branch;
-  PetscReal nominal, largest; /* growth at the scene's own values, and the largest found, 1/s */
-  PetscReal omega, error;     /* rad/s, where growth is largest */
-  PetscInt  n_unstable;       /* of the combinations looked at */
-  char      label[32];
-} SweepRisk;
-
 struct _p_Sweep {
   MPI_Comm  comm;
   Operators operators;
@@ -63,10 +53,10 @@ struct _p_Sweep {
   Pencil    pencil;  /* of all points; NULL where each has its own sliding state */
   Progress  progress;
   /* set by options */
-  char           parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT], uncertain[1024];
+  char           parameter[256], link[1024], values[GRID_MAX_AXES][SWEEP_MAX_TEXT];
   SweepMethod    method;
-  PetscReal      rtol, percent[SWEEP_MAX_UNCERTAIN];
-  PetscInt       max_samples, n_real, n_verify, n_groups, n_percent;
+  PetscReal      rtol;
+  PetscInt       max_samples, n_real, n_verify, n_groups;
   SweepStiffness real_stiffness;
   PetscBool      linked, onsets, sensitivities, restart;            /* linked: -sweep_link is given */
   PetscBool      method_given, rtol_given, max_given, onsets_given; /* the option is */
@@ -78,10 +68,10 @@ struct _p_Sweep {
   ModesLimit    limit; /* what counts as unstable */
   Basis         basis;
   Greedy        greedy;
-  StatusList    statuses;              /* empty without statics; n_pairs -1 without contact */
-  PetscInt      base_status, n_static; /* status of the scene's own values; static solutions */
-  SweepPoint   *point;                 /* [places] */
-  PetscReal    *worst;                 /* [places] largest estimated relative error, but for rounding */
+  StatusList    statuses; /* empty without statics; n_pairs -1 without contact */
+  PetscInt      n_static; /* static solutions */
+  SweepPoint   *point;    /* [places] */
+  PetscReal    *worst;    /* [places] largest estimated relative error, but for rounding */
   PetscInt      n_branches;
   PetscInt      n_broken; /* in full: branches of which it is not known where they go on */
   PetscBool     whole;    /* the basis is the whole space */
@@ -89,9 +79,7 @@ struct _p_Sweep {
   BranchEvents  events;
   PetscBool    *is_confirmed; /* [onsets] on the full problem */
   SweepCheck   *check;        /* [n_checks] */
-  SweepRisk    *risk;         /* [n_risks] */
-  PetscInt      n_checks, n_risks, n_combinations;
-  PetscReal     worst_risk; /* largest estimated relative error of all combinations */
+  PetscInt      n_checks;
   const char   *folder;
   Results       results;
   Journal       journal; /* what a killed sweep goes on from */
@@ -120,9 +108,9 @@ PETSC_INTERN PetscErrorCode SweepClassify(Sweep sweep);
 /* axes.c - parameters, links and values of the axes, and the places of the grid */
 PETSC_INTERN PetscErrorCode SweepAxes(Sweep sweep);
 /* sliding.c - statuses of all places and checks from the sliding state, changes of status bracketed, groups of pairs as
-   further parameters of the pencil; the status at a place, NULL for the scene's own values, and that of a sliding
-   state; pairs closed at a point (-1 without contact), and whether the point before it has another status; fewest and
-   most pairs closed at all places, and whether their statuses differ */
+   further parameters of the pencil; the status at a place, and that of a sliding state; pairs closed at a point (-1
+   without contact), and whether the point before it has another status; fewest and most pairs closed at all places, and
+   whether their statuses differ */
 PETSC_INTERN PetscErrorCode SweepStatuses(Sweep sweep);
 /* grid/sliding.c - full solutions where no basis can follow the sliding state and nobody asks for one */
 PETSC_INTERN PetscErrorCode SweepChooseMethod(Sweep sweep);
@@ -146,9 +134,6 @@ PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepReal(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], const ReducedWindow *window,
                                            ReducedModes *modes);
-/* robust.c - raises the error for names or percentages that cannot be; combinations of uncertain parameters */
-PETSC_INTERN PetscErrorCode SweepUncertainCheck(Sweep sweep);
-PETSC_INTERN PetscErrorCode SweepRobustness(Sweep sweep);
 /* restart.c - the journal; name of file k; columns first .. n - 1 of vectors to or from values; keeps the full
    solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that is kept in the folder,
    also by longer sweeps */

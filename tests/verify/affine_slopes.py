@@ -3,7 +3,7 @@
 
     P(l, w) = l^2 + (c / w - i g w) l + k - i n + w^2 e = 0,   dl/dw = -(dP/dw) / (dP/dl)
 
-whose roots with a negative imaginary part stand for their conjugates. Also the combinations of robustness.csv.
+whose roots with a negative imaginary part stand for their conjugates.
 
     affine_slopes.py RESULTS"""
 
@@ -33,11 +33,7 @@ def main():
             at = abs(values.imag - 2 * numpy.pi * float(row["freq_hz"])).argmin()
             worst, n_rows = max(worst, abs(mine - slopes[at])), n_rows + 1
     print(f"{n_rows} derivatives within {worst:.1e}")
-    with (folder / "robustness.csv").open(newline="") as table:
-        grown = max(float(row["growth_largest_rad_s"]) for row in csv.DictReader(table))
-    most = exact(2 * 1.6)[0].real.max()  # the speed of the scene and 60 % more
-    print(f"largest growth {grown:.6g}, in closed form {most:.6g} 1/s")
-    if n_rows != 82 or not worst < 1e-10 or not abs(grown / most - 1) < 1e-6:
+    if n_rows != 82 or not worst < 1e-10:
         sys.exit("FAILED")
 
 

@@ -1,5 +1,5 @@
 """Section of a sweep: frequency and growth over one parameter, or the stability map over two; onsets, errors, what was
-verified, sensitivities and robustness."""
+verified, and sensitivities."""
 
 import numpy
 
@@ -17,7 +17,7 @@ SIGNS = {"lock_in": ("up", "ink"), "lock_out": ("down", "ink"), "divergence": ("
 FIRST = {"lock_in": "lock-in", "negative_damping": "negative damping"}
 VERIFY = {"value": float, "true_error": optional, "error_estimate": optional, "modes_full": int, "modes_reduced": int,
           "unstable_full": int, "unstable_reduced": int}
-EXTRA = {"sensitivities.csv": "Sensitivities", "robustness.csv": "What can become unstable", "verify.csv":
+EXTRA = {"sensitivities.csv": "Sensitivities", "verify.csv":
          "Compared with full solutions", "parameters.csv": "Parameters of the scene"}
 
 

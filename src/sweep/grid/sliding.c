@@ -28,7 +28,6 @@ PetscErrorCode SweepStatusTake(Sweep sweep, const SlidingState *state, PetscInt 
   PetscFunctionReturn(0);
 }
 
-/* place = NULL: the scene's own values. */
 PetscErrorCode SweepStatusSolve(Sweep sweep, const SweepPlace *place, PetscInt *status)
 {
   SlidingState state;
@@ -136,8 +135,8 @@ static PetscErrorCode StatusGroupsSet(Sweep sweep)
   grid->closed       = made.closed;
   grid->n_parameters = made.n_parameters;
   PetscCall(PetscRealloc((size_t)grid->n_parameters * sizeof(*grid->base), &grid->base));
-  for (PetscInt g = 0; g < grid->n_groups; g++)
-    grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[sweep->base_status * grid->n_groups + g];
+  for (PetscInt g = 0; g < grid->n_groups; g++) /* of the first status; each place has its own */
+    grid->base[grid->n_parameters - grid->n_groups + g] = grid->closed[g];
   PetscCall(PetscMalloc1(grid->n_parameters, &p));
   GridFill(grid, &grid->place[grid->n_places - 1], p);
   PetscCall(StatusPencilFormPattern(&made, p));
@@ -155,7 +154,7 @@ PetscErrorCode SweepChooseMethod(Sweep sweep)
   if (!sweep->statics || sweep->method == SWEEP_FULL) PetscFunctionReturn(0);
   PetscCall(StaticsIsAffine(sweep->statics, &affine));
   if (affine) PetscFunctionReturn(0);
-  if (sweep->n_verify || sweep->uncertain[0] || sweep->sensitivities) asked = PETSC_TRUE; /* not of full solutions */
+  if (sweep->n_verify || sweep->sensitivities) asked = PETSC_TRUE; /* not of full solutions */
   PetscCheck(!asked, sweep->comm, PETSC_ERR_SUP,
              "a sweep about the sliding state: pairs that hold by friction, friction damping, the stiffness of a "
              "-contact_pressure_law, -static_geometric and -static_follower change with it from point to point; give "
@@ -190,7 +189,6 @@ PetscErrorCode SweepStatuses(Sweep sweep)
   PetscCall(ChangesBracket(sweep));
   for (PetscInt i = 0; i < sweep->n_checks; i++)
     PetscCall(SweepStatusSolve(sweep, &sweep->check[i].at, &sweep->check[i].at.status));
-  if (sweep->uncertain[0]) PetscCall(SweepStatusSolve(sweep, NULL, &sweep->base_status));
   PetscCall(StaticsRelease(sweep->statics));
   PetscCall(StatusGroupsSet(sweep));
   PetscFunctionReturn(0);

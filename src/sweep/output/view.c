@@ -151,28 +151,6 @@ static PetscErrorCode ChecksView(Sweep sweep, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
-/* What becomes unstable within the uncertainty */
-static PetscErrorCode RisksView(Sweep sweep, PetscViewer viewer)
-{
-  PetscFunctionBeginUser;
-  if (!sweep->uncertain[0]) PetscFunctionReturn(0);
-  PetscCall(
-    PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " combinations of %s: ", sweep->n_combinations, sweep->uncertain));
-  PetscCall(PetscViewerASCIIPrintf(viewer, sweep->n_risks ? "these can become unstable" : "all stable"));
-  if (sweep->statics)
-    PetscCall(PetscViewerASCIIPrintf(viewer, " with the %" PetscInt_FMT " pairs closed at the scene's own values",
-                                     sweep->statuses.n_closed[sweep->base_status]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, " (largest estimated error %.1e)\n", (double)sweep->worst_risk));
-  for (PetscInt i = 0; i < sweep->n_risks; i++) {
-    const SweepRisk *r = &sweep->risk[i];
-
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  %s near %.2f Hz: in %" PetscInt_FMT " of them, up to %.5g 1/s (%.5g at the scene's values)\n",
-      r->label, (double)(r->omega / (2 * PETSC_PI)), r->n_unstable, (double)r->largest, (double)r->nominal));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* What the reduced model is made of, and what it saves */
 static PetscErrorCode BasisView(Sweep sweep, PetscViewer viewer)
 {
@@ -228,7 +206,6 @@ PetscErrorCode SweepView(Sweep sweep, PetscViewer viewer)
   PetscCall(BranchesView(sweep, viewer));
   if (sweep->is_confirmed) PetscCall(SweepViewOnsets(sweep, &parameters[sweep->grid.parameter[0][0]], viewer));
   PetscCall(ChecksView(sweep, viewer));
-  PetscCall(RisksView(sweep, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer,
                                    "%" PetscInt_FMT " points, %" PetscInt_FMT " branches, %" PetscInt_FMT
                                    " unstable eigenvalues, %" PetscInt_FMT " more numerical only",

@@ -1,6 +1,5 @@
 /*
-   The tables of a sweep: sweep.csv, onsets.csv, parameters.csv, and where asked for verify.csv, robustness.csv and
-   sensitivities.csv.
+   The tables of a sweep: sweep.csv, onsets.csv, parameters.csv, and where asked for verify.csv and sensitivities.csv.
 */
 #include "sweep/sweepimpl.h"
 
@@ -130,19 +129,6 @@ static PetscErrorCode CheckRows(Sweep sweep, ResultsTable table)
                       (int)c->n_reduced, (int)c->n_unstable_full, (int)c->n_unstable_reduced, (double)c->error,
                       NumberOrEmpty(c->estimate).text, (double)(c->omega / (2 * PETSC_PI)), (double)c->full,
                       (int)c->n_beyond, NumberOrEmpty(sweep->method == SWEEP_REAL ? NAN : c->ratio).text));
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode RiskRows(Sweep sweep, ResultsTable table)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < sweep->n_risks; i++) {
-    const SweepRisk *r = &sweep->risk[i];
-
-    PetscCall(ResultsTableRow(table, "\"%s\",%.15g,%s,%.15g,%.15g,%d,%d", r->label, (double)(r->omega / (2 * PETSC_PI)),
-                              NumberOrEmpty(r->nominal).text, (double)r->largest, (double)r->error, (int)r->n_unstable,
-                              (int)sweep->n_combinations));
   }
   PetscFunctionReturn(0);
 }
@@ -278,13 +264,6 @@ static const SweepTable check_table = {
   CheckRows,
 };
 
-static const SweepTable risk_table = {
-  "robustness",
-  "label,freq_hz,growth_nominal_rad_s,growth_largest_rad_s,error_rad_s,"
-  "unstable_combinations,combinations",
-  RiskRows,
-};
-
 static const SweepTable sensitivity_table = {
   "sensitivities",
   "point,value,branch,freq_hz,parameter,freq_hz_per_unit,"
@@ -299,7 +278,6 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
   PetscCall(TableWrite(sweep, results, &parameter_table));
   if (sweep->is_confirmed) PetscCall(TableWrite(sweep, results, &onset_table));
   if (sweep->n_checks) PetscCall(TableWrite(sweep, results, &check_table));
-  if (sweep->n_risks) PetscCall(TableWrite(sweep, results, &risk_table));
   if (sweep->sensitivities && sweep->basis.reduced.n) PetscCall(TableWrite(sweep, results, &sensitivity_table));
   PetscCall(SweepForget(sweep));
   PetscFunctionReturn(0);
