@@ -25,12 +25,17 @@ class Scene:
         disc_name = disc_among(names, disc_name)
         part = group["CellData/part"][:]
         on_disc = part == names.index(disc_name) if disc_name in names else numpy.full(len(part), True)
-        self.surfaces = {name: boundary_faces(those(cells, part == i)) for i, name in enumerate(names)
-                         if (part == i).any()}
+        self.cells = {name: those(cells, part == i) for i, name in enumerate(names) if (part == i).any()}
+        self.surfaces = {name: boundary_faces(of_part) for name, of_part in self.cells.items()}
         self.disc = boundary_faces(those(cells, on_disc))
         self.rest = boundary_faces(those(cells, ~on_disc))
         self.others = {name: faces for name, faces in self.surfaces.items() if name != disc_name and len(self.rest)}
         self.set_frame()
+
+    def nodes_of(self, parts=()):
+        """Nodes of some parts, of all where none is named."""
+        kinds = [nodes.ravel() for name, cells in self.cells.items() if not parts or name in parts for nodes in cells.values()]
+        return numpy.unique(numpy.concatenate(kinds))
 
     def set_frame(self):
         """Axis = shortest extent of the disc, towards the other parts; radial = towards them in the disc's plane;

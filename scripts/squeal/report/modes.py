@@ -5,6 +5,7 @@ import math
 from ..mesh.bodies import Scene, opened
 from ..tables import BadInput, flag, header, optional, read_table
 from .causes import causes, components
+from .correlations import measured_modes
 from .cures import cures
 from .effects import effects, sensitivities
 from .charts import Axis, Chart, Panel
@@ -235,7 +236,8 @@ def modes_part(folder, room):
     except BadInput as error:
         shapes, bodies = folder.lacks(error), None
     content = section(key, "Modes", eigenvalues(modes, folder), causes(modes, folder), effects(modes, folder), cures(folder),
-                      sensitivities(modes, folder), components(modes, folder), shapes, tag("h4", "Table of modes"),
+                      sensitivities(modes, folder), components(modes, folder), shapes, folder.tried(measured_modes, folder, room / 2),
+                      tag("h4", "Table of modes"),
                       mode_table(modes, folder),
                       tag("div", contributions(modes, folder), errors(modes, folder), class_="pair"))
     return Part(content, bodies and (folder.key, bodies), error_facts(modes), verdict(modes))

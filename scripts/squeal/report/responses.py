@@ -6,6 +6,7 @@ import numpy
 from ..response.frf_tables import Responses
 from ..tables import BadInput, regular
 from .charts import Axis, Chart, Panel
+from .correlations import measured_responses
 from .markup import Column, Part, count, figure, figures, fixed, legend, missing, section, table, tag
 
 COLOURS = ("blue", "orange", "green", "purple", "sky", "vermilion", "grey")
@@ -97,7 +98,7 @@ def response_part(folder, _):
     """All of it."""
     responses = Responses(folder.path)
     content = section(f"{folder.key}-frf", "Frequency response", how_it_was_done(folder),
-                      magnitude_figure(folder, responses),
+                      magnitude_figure(folder, responses), folder.tried(measured_responses, folder),
                       tag("div", tag("div", tag("h4", "Peaks"), peak_table(folder, responses)),
                           error_figure(folder, responses), class_="pair"))
     errors = [("estimated error of the response, at most", figures(responses.relative.max(), 2))
