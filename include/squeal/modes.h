@@ -162,6 +162,11 @@ typedef struct {
   Vec             *xr, *xi, *yr, *yi; /* [n] vectors, length: unknowns of the pencil */
 } ModesShapes;
 
+/*@ ModesKeepFree - finds free modes of the bodies among n vectors in all unknowns, at the present point of the pencil,
+    whose terms are there: ModesLabelShapes() names by them from now on. Nothing for matrices without a mesh, and with
+    -modes_components_found false. Collective. @*/
+PetscErrorCode ModesKeepFree(Modes modes, PetscInt n, const Vec vectors[]);
+
 /*@ ModesLabelShapes - names for shapes from elsewhere, as in modes.csv, label[n]. Collective. @*/
 PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *shapes, char label[][32]);
 

@@ -247,6 +247,7 @@ PetscErrorCode ModesDestroy(Modes *modes)
   PetscCall(ModesReset(*modes));
   PetscCall(ChangesDestroy(*modes));
   PetscCall(FreeBodiesDestroy(&(*modes)->bodies));
+  PetscCall(KeptDestroy(&(*modes)->kept));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(0);
 }

@@ -93,6 +93,7 @@ static PetscErrorCode DangerLabel(Quiet q)
   PetscCall(BoxSolve(&q->box, PETSC_FALSE, p, &modes));
   PetscCall(ReducedModesBroadcast(q->comm, 0, &modes));
   PetscCall(PetscMalloc1(modes.n, &label));
+  PetscCall(BasisKeepFree(&q->box.basis, q->box.modes, p));
   PetscCall(BasisLabelModes(&q->box.basis, q->box.modes, p, &modes, label));
   for (PetscInt i = 0; i < modes.n; i++) {
     const PetscReal distance = cabs(modes.lambda[i] - CMPLX(at->sigma, at->omega));

@@ -93,6 +93,7 @@ PetscErrorCode SampleBranches(Sample s)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->nominal.n + 1, &s->branch));
   PetscCall(PetscMalloc2(s->n_points, &value, s->nominal.n + 1, &label));
+  PetscCall(BasisKeepFree(&s->box.basis, s->box.modes, s->box.nominal));
   PetscCall(BasisLabelModes(&s->box.basis, s->box.modes, s->box.nominal, &s->nominal, label));
   for (PetscInt b = 0; b <= s->nominal.n; b++) {
     SampleBranch *branch = &s->branch[b];

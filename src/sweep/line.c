@@ -275,6 +275,19 @@ PetscErrorCode LineFinish(Sweep sweep, PetscInt first_new, PetscInt first_event,
   PetscFunctionReturn(0);
 }
 
+/* The free modes that give names, of the first point */
+static PetscErrorCode FreeKeep(Sweep sweep)
+{
+  PetscReal *p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(sweep->grid.n_parameters, &p));
+  GridPoint(&sweep->grid, 0, p);
+  PetscCall(BasisKeepFree(&sweep->basis, sweep->modes, p));
+  PetscCall(PetscFree(p));
+  PetscFunctionReturn(0);
+}
+
 /* Lines one after the other, as the first point of each is matched with that of the line before. Branch numbers
    begin at n_before and events at first_event on each line; both are alike on all ranks after TrackBroadcast(). */
 PetscErrorCode SweepLines(Sweep sweep)
@@ -283,6 +296,7 @@ PetscErrorCode SweepLines(Sweep sweep)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(sweep->grid.n_places, &sweep->worst));
+  PetscCall(FreeKeep(sweep));
   for (PetscInt line = 0; line < GridLines(&sweep->grid); line++) {
     const PetscInt n_before = sweep->n_branches, first_event = sweep->events.n;
 

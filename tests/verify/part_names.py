@@ -5,6 +5,7 @@
     verify/part_names.py plate RESULTS    0.15 x 0.1 x 0.001 m, against Kirchhoff's plate by Ritz with Legendre polynomials, itself
                                           held against the table of A. W. Leissa (J. Sound Vib. 31, 1973) for a/b = 1.5
     verify/part_names.py both RESULTS     both, side by side
+    verify/part_names.py young RESULTS    both, in a sweep over the plate's modulus, at each point; density: over its density
 
 Closed forms of a beam of length l, w = 2 pi f: bending (b_n / l)^2 sqrt(E I / rho A), cos b cosh b = 1, each way, r^2 = I / A, without
 shear and rotation, which lower it by about 2 (b_n r / l)^2 (S. Timoshenko); torsion n pi / l sqrt(G J / rho I_p), J by B. de
@@ -25,6 +26,7 @@ YOUNG, POISSON, DENSITY = 210e9, 0.3, 7800
 BEAM, PLATE = (0.3, 0.012, 0.006), (0.15, 0.1, 0.001)
 TOLERANCE = {"bending": 0.03, "in-plane bending": 0.08, "torsion": 0.04, "longitudinal": 0.01, "plate": 0.04}  # shear; the mesh
 EXPLAINED = 99.9
+SWEPT = {"young": lambda value: value / YOUNG, "density": lambda value: DENSITY / value}  # of the plate's frequencies, squared
 LEISSA = [20.128, 21.603, 46.654, 50.293, 58.201, 67.494]  # w a^2 sqrt(rho h / D) of a free plate, a/b = 1.5, nu = 0.3
 
 
@@ -89,26 +91,41 @@ def plate(highest):
     return {name: f for name, f in found.items() if f < highest}
 
 
-def main():
-    with (Path(sys.argv[2]) / "modes.csv").open(newline="") as file:
-        rows = [row for row in csv.DictReader(file) if float(row["freq_hz"]) > 0]
+def judge(rows, bodies, lowest, scale):
+    """How many names are as expected, None where one is not: of the bodies, the plate's frequencies times scale."""
     top, expected = max(float(row["freq_hz"]) for row in rows), {}
-    if sys.argv[1] != "plate":
+    if bodies != "plate":
         expected |= {f"bar {name}": (f, TOLERANCE[name.rpartition(" ")[0]]) for name, f in beam(1.2 * top).items()}
-    if sys.argv[1] != "beam":
-        expected |= {f"plate {name}": (f, TOLERANCE["plate"]) for name, f in plate(1.02 * top).items()}
+    if bodies != "beam":
+        expected |= {f"plate {name}": (f * scale, TOLERANCE["plate"]) for name, f in plate(1.02 * top / scale).items()}
     failed, seen = [], set()
     for row in rows:
-        name, frequency = row["label"], float(row["freq_hz"])
+        name, frequency, explained = row["label"], float(row["freq_hz"]), float(row.get("label_percent", 100))
         wanted, tolerance = expected.get(name, (math.nan, 0))
         off = abs(frequency / wanted - 1)
-        bad = not off < tolerance or not EXPLAINED < float(row["label_percent"]) < 100 + 1e-9 or name in seen
-        print(f"{name}: {frequency:.2f} Hz, off by {off:.1e}, {float(row['label_percent']):.4f} % explained{'  FAILED' * bad}")
+        bad = not off < tolerance or not EXPLAINED < explained < 100 + 1e-9 or name in seen
+        print(f"{name}: {frequency:.2f} Hz, off by {off:.1e}, {explained:.4f} % explained{'  FAILED' * bad}")
         failed += [name] * bad
         seen.add(name)
-    missing = [name for name, (f, tolerance) in expected.items() if f * (1 + tolerance) < top and name not in seen]
+    missing = [name for name, (f, tolerance) in expected.items()
+               if f * (1 - tolerance) > lowest and f * (1 + tolerance) < top and name not in seen]
     print("; ".join(failed + missing) or f"{len(seen)} names as expected")
     return 1 if failed or missing or len(seen) < 8 else 0
+
+
+def main():
+    what, folder = sys.argv[1], Path(sys.argv[2])
+    table = folder / ("sweep.csv" if what in SWEPT else "modes.csv")
+    with table.open(newline="") as file:
+        rows = [row for row in csv.DictReader(file) if float(row["freq_hz"]) > 0]
+    if what not in SWEPT:
+        return judge(rows, what, 0, 1)
+    points = {}
+    for row in rows:
+        points.setdefault(float(row["value"]), []).append(row)
+    lowest = min(float(row["freq_hz"]) for row in rows)
+    wrong = sum(judge(own, "both", lowest, math.sqrt(SWEPT[what](value))) for value, own in points.items())
+    return 1 if wrong or len(points) < 3 else 0
 
 
 if __name__ == "__main__":

@@ -44,6 +44,18 @@ static PetscErrorCode FreeModesSolve(Modes modes, Modes free)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FreeModesBegin(Modes modes, Modes *free)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModesCreate(modes->comm, free));
+  PetscCall(ModesSetPencil(*free, modes->pencil));
+  (*free)->has_disc = modes->has_disc;
+  (*free)->most     = modes->most;
+  (*free)->max_time = modes->max_time;
+  PetscCall(PetscStrncpy((*free)->disc, modes->disc, sizeof((*free)->disc)));
+  PetscFunctionReturn(0);
+}
+
 /* Free modes below the multiple of the highest frequency by a solution, or from the modes found */
 static PetscErrorCode FreeModesFind(Modes modes, ModesComponents c, Modes *free)
 {
@@ -51,13 +63,8 @@ static PetscErrorCode FreeModesFind(Modes modes, ModesComponents c, Modes *free)
   const PetscReal band[2] = {0, modes->free_to * (modes->has_band ? modes->band[1] : highest)};
 
   PetscFunctionBeginUser;
-  PetscCall(ModesCreate(modes->comm, free));
-  PetscCall(ModesSetPencil(*free, modes->pencil));
+  PetscCall(FreeModesBegin(modes, free));
   PetscCall(ModesSetBand(*free, band));
-  (*free)->has_disc = modes->has_disc;
-  (*free)->most     = modes->most;
-  (*free)->max_time = modes->max_time;
-  PetscCall(PetscStrncpy((*free)->disc, modes->disc, sizeof((*free)->disc)));
   c->found = modes->free_to > 0 ? PETSC_FALSE : PETSC_TRUE;
   if (c->found)
     PetscCall(FreeModesTake(modes, c, *free));
@@ -79,8 +86,7 @@ static PetscReal LevelGap(const ModesComponents c, PetscInt l)
   return PetscSqr(c->level[l].omega) - PetscSqr(c->level[l - 1].omega);
 }
 
-/* Sorts the free modes into levels: those whose errors overlap are one */
-static PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
+PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(free->n, &c->level));
@@ -249,33 +255,42 @@ static PetscReal ShapeMixed(const Modes modes, PetscInt i)
   return ShapeOff(modes->residual[i], gap);
 }
 
-/* Shares of all modes */
-static PetscErrorCode SharesFind(Modes modes, const Modes free, ModesComponents c)
+/* Whether shares of mode i are wanted */
+static PetscBool SharesWanted(const Modes modes, const ModesComponents c, PetscInt i)
 {
-  const PetscInt n = (c->n_levels + 1) * c->bodies.n, n_sums = (free->n * N_SUMS + N_WHOLE) * c->bodies.n;
-  PetscReal     *sums;
-  Vec            product[N_SUMS + 1], yr;
+  if (c->names) return modes->label_part[i] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (!c->found) return PETSC_TRUE;
+  if (c->column[i][0] < 0 && c->column[i][1] < 0) return PETSC_FALSE; /* there was no room for it */
+  return ComponentsAsks(modes, i);
+}
+
+PetscErrorCode FreeSharesFind(Modes modes, const Modes free, ModesComponents c)
+{
+  const PetscInt  n = (c->n_levels + 1) * c->bodies.n, n_sums = (free->n * N_SUMS + N_WHOLE) * c->bodies.n;
+  const PetscBool taken = c->found && !c->names ? PETSC_TRUE : PETSC_FALSE; /* from the basis of the free modes */
+  PetscReal      *sums;
+  Vec             product[N_SUMS + 1], yr;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(modes->n * n, &c->share, modes->n * n, &c->energy, modes->n, &c->mixed));
   PetscCall(PetscMalloc1(n_sums, &sums));
-  for (int k = 0; k <= N_SUMS && !c->found; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
+  for (int k = 0; k <= N_SUMS && !taken; k++) PetscCall(VecDuplicate(modes->right.xr[0], &product[k]));
   for (PetscInt i = 0; i < modes->n; i++) {
     PetscBool left;
 
-    if (c->found && !ComponentsAsks(modes, i)) continue;
-    if (c->found && c->column[i][0] < 0 && c->column[i][1] < 0) continue; /* there was no room for it */
+    if (!SharesWanted(modes, c, i)) continue;
     PetscCall(ModesGetVectors(modes, i, NULL, NULL, &yr, NULL));
-    left = yr && (!c->found || modes->mode[i].unstable) ? PETSC_TRUE : PETSC_FALSE; /* names need energies alone */
+    /* names need energies alone */
+    left = yr && !c->names && (!c->found || modes->mode[i].unstable) ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(PetscArrayzero(sums, n_sums));
-    if (c->found)
+    if (taken)
       SharesTake(c, free->n, i, left, sums);
     else
       PetscCall(SharesSum(modes, free, i, left, product, sums));
     SharesForm(c, left, free->n, i, sums);
-    c->mixed[i] = ShapeMixed(modes, i);
+    c->mixed[i] = c->names ? 0 : ShapeMixed(modes, i);
   }
-  for (int k = 0; k <= N_SUMS && !c->found; k++) PetscCall(VecDestroy(&product[k]));
+  for (int k = 0; k <= N_SUMS && !taken; k++) PetscCall(VecDestroy(&product[k]));
   PetscCall(PetscFree(sums));
   PetscFunctionReturn(0);
 }
@@ -294,7 +309,7 @@ static PetscErrorCode ComponentsMake(Modes modes, const Modes free)
   PetscCall(FreeLevelsFind(free, c));
   PetscCall(PencilGetMass(modes->pencil, &M));
   PetscCall(FreeLevelsName(modes, free, M, c));
-  PetscCall(SharesFind(modes, free, c));
+  PetscCall(FreeSharesFind(modes, free, c));
   PetscCall(ComponentsLabel(modes));
   PetscFunctionReturn(0);
 }

@@ -127,6 +127,13 @@ static PetscErrorCode MotionSet(Operators operators, int k, Vec u)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FreeBasisSetMotions(Operators operators, FreeBasis *basis)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < FREE_MOTIONS; k++) PetscCall(MotionSet(operators, k, basis->v[basis->n - FREE_MOTIONS + k]));
+  PetscFunctionReturn(0);
+}
+
 /* Sets the vectors of the basis */
 static PetscErrorCode BasisFill(Operators operators, PetscInt n, const FoundVectors v[], FreeBasis *basis)
 {
@@ -134,7 +141,7 @@ static PetscErrorCode BasisFill(Operators operators, PetscInt n, const FoundVect
   for (PetscInt i = 0; i < n; i++)
     for (int part = 0; part < 4; part++)
       if (v[i].column[part] >= 0) basis->v[v[i].column[part]] = v[i].x[part];
-  for (int k = 0; k < FREE_MOTIONS; k++) PetscCall(MotionSet(operators, k, basis->v[basis->n - FREE_MOTIONS + k]));
+  PetscCall(FreeBasisSetMotions(operators, basis));
   PetscFunctionReturn(0);
 }
 
@@ -289,9 +296,8 @@ static PetscErrorCode FoundLift(const FreeMatrices *bodies, const FreeBasis *bas
   PetscFunctionReturn(0);
 }
 
-/* Lifts, judges and collects */
-static PetscErrorCode BasisCollect(Operators operators, const FreeMatrices *bodies, const FreeBasis *basis,
-                                   const PetscInt n_modes[], ModesComponents c, Modes free)
+PetscErrorCode FreeBasisCollect(Operators operators, const FreeMatrices *bodies, const FreeBasis *basis,
+                                const PetscInt n_modes[], ModesComponents c, Modes free)
 {
   PetscInt   n = 0;
   FoundModes found;
@@ -339,7 +345,7 @@ static PetscErrorCode FoundSolve(Modes modes, PetscInt n, const FoundVectors v[]
   PetscCall(FreeBasisSolve(&bodies, &basis));
   PetscCall(PetscMalloc1(of->n, &n_modes));
   ModesChoose(modes, of, &basis, v, n_modes);
-  PetscCall(BasisCollect(operators, &bodies, &basis, n_modes, c, free));
+  PetscCall(FreeBasisCollect(operators, &bodies, &basis, n_modes, c, free));
   PetscCall(PetscFree(n_modes));
   PetscCall(ProductsKeep(modes->n, v, &basis, c));
   PetscCall(FreeBasisDestroy(&basis));

@@ -376,6 +376,7 @@ PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char labe
     shapes.mode[i].rigid = given->rigid[i];
   }
   PetscCall(ModesLabel(&shapes));
+  PetscCall(KeptLabel(&shapes));
   for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(label[i], shapes.mode[i].label, 32));
   PetscCall(VecDestroy(&work[0]));
   PetscCall(VecDestroy(&work[1]));

@@ -70,11 +70,14 @@ static PetscErrorCode CompareSolveMesh(ReducedRun r, const SlidingState *state)
 {
   const Mode *mode;
   Pencil      pencil;
+  PetscBool   terms;
 
   PetscFunctionBeginUser;
   PetscCall(OperatorsLinearise(r->run.operators, state, &pencil));
   PetscCall(ModesSetPencil(r->mesh_modes, pencil));
+  PetscCall(ModesPrepareComponents(r->mesh_modes, &terms));
   PetscCall(ModesSolve(r->mesh_modes));
+  PetscCall(ModesFindComponents(r->mesh_modes));
   PetscCall(ModesGet(r->mesh_modes, &r->result.n_compared, &mode));
   PetscCall(PetscCalloc1(r->result.n_compared, &r->result.compared));
   for (PetscInt i = 0; i < r->result.n_compared; i++) {

@@ -25,6 +25,8 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block);
 /* fill.c - block of the vectors of the first n modes of the eigensolver: n_parts = 1 the real parts of right ones, 4
    real and imaginary parts of right and left ones, as far as there are any */
 PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block);
+/* fill.c - finds free modes of the bodies, at a point, among the first vectors, for names of modes */
+PetscErrorCode BasisKeepFree(const Basis *basis, Modes solver, const PetscReal p[]);
 /* fill.c - names of all modes of a point from their shapes on the mesh, as the eigensolver has them */
 PetscErrorCode BasisLabelModes(const Basis *basis, Modes solver, const PetscReal p[], const ReducedModes *modes,
                                char label[][32]);

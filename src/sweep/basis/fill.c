@@ -17,7 +17,8 @@
 
 /* Unknowns up to which the basis is the whole space: so small a dense problem costs no more than one on a basis of
    a large mesh. */
-#define WHOLE 200
+#define WHOLE       200
+#define BASIS_NAMES 600 /* vectors among which free modes are sought */
 /* Relative residual of the real modes; far below the errors of the projection, which are to be compared. */
 #define REAL_RTOL     1e-11
 #define REAL_RESTARTS 200
@@ -39,6 +40,28 @@ PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, Pet
     }
   }
   PetscCall(BVSetActiveColumns(*block, 0, m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BasisKeepFree(const Basis *basis, Modes solver, const PetscReal p[])
+{
+  const PetscInt n = PetscMin(basis->reduced.n_used, BASIS_NAMES);
+  Operators      operators;
+  Vec           *v, q;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilSetParameters(basis->pencil, p));
+  PetscCall(PencilGetOperators(basis->pencil, &operators));
+  PetscCall(PetscMalloc1(n, &v));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(OperatorsCreateVec(operators, &v[i]));
+    PetscCall(BVGetColumn(basis->space.V, i, &q));
+    PetscCall(PencilExpand(basis->pencil, PETSC_FALSE, q, v[i]));
+    PetscCall(BVRestoreColumn(basis->space.V, i, &q));
+  }
+  PetscCall(ModesKeepFree(solver, n, v));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecDestroy(&v[i]));
+  PetscCall(PetscFree(v));
   PetscFunctionReturn(0);
 }
 

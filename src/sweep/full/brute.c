@@ -31,11 +31,13 @@ static PetscErrorCode PointTake(Sweep sweep, PetscInt i, LinePoints *points)
 /* Branches need left vectors: without them the modes of each point stand alone, with branch -1. */
 static PetscErrorCode PencilSolve(Sweep sweep, Pencil pencil, PetscInt i, LinePoints *points, Follow *follow)
 {
-  PetscBool nearest, left;
+  PetscBool nearest, left, terms;
 
   PetscFunctionBeginUser;
   PetscCall(ModesSetPencil(sweep->modes, pencil));
+  PetscCall(ModesPrepareComponents(sweep->modes, &terms));
   PetscCall(ModesSolve(sweep->modes));
+  PetscCall(ModesFindComponents(sweep->modes));
   PetscCall(PointTake(sweep, i, points));
   PetscCall(ModesWant(sweep->modes, &nearest, &left));
   if (left) PetscCall(FollowTake(sweep, pencil, i, points, follow));

@@ -50,6 +50,7 @@ static PetscErrorCode PlaceSolve(Sweep sweep, PetscInt i, LinePoints *points)
   PetscCall(PetscMalloc1(modes->n, &points->branch[i]));
   PetscCall(PetscCalloc1(modes->n, &points->name[i]));
   PetscCall(PetscCalloc1(modes->n, &label));
+  PetscCall(BasisKeepFree(&sweep->basis, sweep->modes, p));
   PetscCall(BasisLabelModes(&sweep->basis, sweep->modes, p, modes, label));
   for (PetscInt k = 0; k < modes->n; k++) {
     points->branch[i][k] = -1;
