@@ -247,7 +247,8 @@ PetscErrorCode ModesDestroy(Modes *modes)
   PetscCall(ModesReset(*modes));
   PetscCall(ChangesDestroy(*modes));
   PetscCall(FreeBodiesDestroy(&(*modes)->bodies));
-  PetscCall(KeptDestroy(&(*modes)->kept));
+  PetscCall(ComponentsDestroy(&(*modes)->kept));
+  PetscCall(ModesDestroy(&(*modes)->kept_free));
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(0);
 }

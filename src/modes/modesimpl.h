@@ -66,7 +66,6 @@ enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 /* components/ - which free modes of the bodies make up each mode */
 typedef struct _p_ModesComponents *ModesComponents;
 typedef struct _p_FreeBodies       FreeBodies;
-typedef struct _p_ModesKept       *ModesKept; /* free modes that give names to shapes from elsewhere */
 
 /* Masses of nodes by which shapes are weighed, of what the cells of each part give (label/weigh.c), and the disc */
 typedef struct {
@@ -116,7 +115,8 @@ struct _p_Modes {
   ModesWeights   *weights;       /* NULL: not weighed yet */
   FreeBodies     *bodies;        /* of the pencil; NULL: not asked for, or none */
   ModesComponents components;    /* NULL: not asked for */
-  ModesKept       kept;          /* NULL likewise */
+  ModesComponents kept;          /* free modes that give names to shapes from elsewhere; NULL likewise */
+  Modes           kept_free;     /* their vectors */
   ModesChanged    changed;       /* [n_changes], NULL likewise */
   PetscBool       dense;         /* LAPACK found all eigenvalues */
   PetscInt        shifts;        /* in use */
@@ -211,9 +211,6 @@ PETSC_INTERN PetscErrorCode ModesCreateFeedIn(Modes modes, PetscInt i, const Mes
    found. Collective */
 PETSC_INTERN PetscErrorCode ComponentsWrite(Modes modes, Results results);
 PETSC_INTERN PetscErrorCode ComponentsView(Modes modes, PetscViewer viewer);
-/* components/kept.c - names of shapes by the free modes that are kept, where there are any; frees these */
-PETSC_INTERN PetscErrorCode KeptLabel(Modes shapes);
-PETSC_INTERN PetscErrorCode KeptDestroy(ModesKept *kept);
 /* components/bodies.c */
 PETSC_INTERN PetscErrorCode ComponentsDestroy(ModesComponents *components);
 PETSC_INTERN PetscErrorCode FreeBodiesDestroy(FreeBodies **bodies);

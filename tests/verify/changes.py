@@ -3,10 +3,12 @@
 
     changes.py full RESULTS MATRICES MU    all modes of changed matrices by scipy's Arnoldi method on the linearised problem
     changes.py anew RESULTS CHANGE OTHER    all modes of a change beside modes.csv of another run
+    changes.py couplings RESULTS MATRICES MU    modes_couplings.csv beside vectors by inverse iteration on the saved matrices
     changes.py absorber RESULTS CHANGE RATIO    the response of a mass with Den Hartog's absorber, made of the eigenvalues
 
 full: the changes of scene.yaml are added to the matrices of -operators_save; each mode of the band stands in the table once, no farther
 off than its stated error, with the mode before the change that its shape resembles most.
+couplings: S_ij = -y_i' D(lambda_j) x_j / (y_i' Q'(lambda_i) x_i), D what a change adds to Q. Any vectors leave S_ii and S_ij S_ji alone.
 absorber: a mass of 1 kg on 1 N/m with an absorber of RATIO kg, k = RATIO / (1 + RATIO)^2 N/m, is excited by 1 N: at both fixed
 points the amplitude is sqrt(1 + 2 / RATIO) m, whatever the dashpot (J. P. Den Hartog, Mechanical Vibrations)."""
 
@@ -27,6 +29,7 @@ from squeal.provenance import Provenance # noqa: E402
 LOOSE = 1e-9  # of an eigenvalue: what scipy leaves
 EDGE = 1e-3  # of the band, left out at its ends
 LARGEST = 2e-3  # of a frequency, that an error may state
+COUPLED = 1e-6  # of the largest coupling: vectors of both
 OVERLAP = 2e-4  # of the table: it has four digits
 
 
@@ -183,7 +186,7 @@ class Brake:
         return [(value, vector) for value, vector in zip(values, vectors[:n].T) if band[0] < value.imag < band[1]]
 
     def refined(self, name, value):
-        """An eigenvalue by inverse iteration with factors next to it, for Arnoldi's leave 1e-9 of it."""
+        """An eigenvalue by inverse iteration with factors next to it, for Arnoldi's leave 1e-9 of it; its right and left vectors."""
         K, C, M = self.changed(name)
         for _ in range(2):
             s = value * (1 + 1e-9)
@@ -195,7 +198,16 @@ class Brake:
                 x, y = factors.solve(slope @ x), factors.solve(slope.T @ y, "T")
                 x, y = x / numpy.linalg.norm(x), y / numpy.linalg.norm(y)
             value = s - (y @ (K @ x + s * (C @ x) + s**2 * (M @ x))) / (y @ (slope @ x))
-        return value
+        return value, x, y
+
+    def added(self, name, value):
+        """What a change adds to Q(value): unknowns that hang at it are eliminated."""
+        n = self.K.shape[0]
+        Q = sum(A * value**i for i, A in enumerate(self.changed(name))).tocsc()
+        found = Q[:n, :n] - (self.K + value * self.C + value**2 * self.M)
+        for k in range(n, Q.shape[0]):
+            found = found - Q[:n, k] @ Q[k, :n] / Q[k, k]
+        return found
 
     def overlap(self, x, u):
         """|u^H M x|^2 / (u^H M u x^H M x)."""
@@ -239,6 +251,28 @@ def anew(results, name, other):
     return len(rows) == len(exact) and max(off) <= 1
 
 
+def couplings(results, folder, mu):
+    """All entries between two modes of modes.csv."""
+    brake, found = Brake(results, folder, mu), {}
+    brake.sets = surfaces(brake)
+    with (results / "modes.csv").open(newline="") as file:
+        modes = [brake.refined("", complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])))
+                 for row in csv.DictReader(file)]
+    with (results / "modes_couplings.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            S = found.setdefault(row["change"], numpy.zeros((len(modes), len(modes)), complex))
+            S[int(row["mode"]) - 1, int(row["of"]) - 1] = complex(float(row["real_rad_s"]), float(row["imaginary_rad_s"]))
+    slopes, worst = [y @ (2 * value * (brake.M @ x) + brake.C @ x) for value, x, y in modes], 0
+    left = numpy.array([y for _, _, y in modes])
+    for name, S in found.items():
+        exact = -numpy.array([left @ (brake.added(name, value) @ x) for value, x, _ in modes]).T / numpy.array(slopes)[:, None]
+        off = [abs(numpy.diag(S) - numpy.diag(exact)).max() / abs(numpy.diag(exact)).max(),
+               abs(S * S.T - exact * exact.T).max() / abs(exact * exact.T).max()]
+        print(f"{name}: {len(modes)} modes, {numpy.count_nonzero(S)} couplings, diagonal off by {off[0]:.1e}, products by {off[1]:.1e}")
+        worst = max(worst, *off)
+    return set(found) == set(brake.scene.names("modes_changes")) and 0 < worst <= COUPLED
+
+
 def absorber(results, name, ratio):
     """|k - m w^2 + i w c| / |ratio prod(i w - lambda)| at the fixed points, with the damping that the sum of eigenvalues tells."""
     values = numpy.array([value for value, _, _ in table(results)[name]])
@@ -258,5 +292,6 @@ def absorber(results, name, ratio):
 if __name__ == "__main__":
     word, folder, *rest = sys.argv[1:]
     passed = (full(Path(folder), Path(rest[0]), float(rest[1])) if word == "full" else
+              couplings(Path(folder), Path(rest[0]), float(rest[1])) if word == "couplings" else
               anew(Path(folder), rest[0], Path(rest[1])) if word == "anew" else absorber(Path(folder), rest[0], float(rest[1])))
     sys.exit(0 if passed else 1)

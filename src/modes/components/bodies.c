@@ -308,6 +308,7 @@ PetscErrorCode ComponentsDestroy(ModesComponents *c)
   PetscCall(PetscFree((*c)->mass));
   PetscCall(PetscFree((*c)->free));
   PetscCall(PetscFree((*c)->own));
+  PetscCall(VecDestroy(&(*c)->probe));
   PetscCall(PetscFree3((*c)->share, (*c)->energy, (*c)->mixed));
   PetscCall(PetscFree(*c));
   PetscFunctionReturn(0);

@@ -39,6 +39,7 @@ struct _p_ModesComponents {
   PetscReal *mixed;      /* [modes] what the shape is off by, as in FreeLevel */
   PetscBool  found;      /* free modes from the modes found: unstable modes alone have rows */
   PetscBool  names;      /* kept for names alone: modes named after a part have energies, none has shares (kept.c) */
+  Vec        probe;      /* of these the sum of the first free modes of the bodies, one of each; else NULL */
   PetscInt  *found_of;   /* [free modes] their bodies; NULL of a solution */
   PetscInt   n_vectors;  /* of the basis in which they were found; 0 of a solution */
   PetscInt (*column)[4]; /* [modes] right and left vector, real and imaginary part, in the basis; -1 for 0 */
@@ -95,8 +96,8 @@ typedef struct {
 /* judge.c - kappa by Rayleigh's quotient and errors of those of n free modes that are not rigid, the columns phi of F
    with phi'M phi = 1, from what is known of kappa; Z as of OperatorsGetDependents(). Collective */
 PETSC_INTERN PetscErrorCode FoundJudge(const FreeMatrices *bodies, Mat Z, Mat F, PetscInt n, FoundMode found[]);
-/* found.c - sets the last vectors of a basis, rigid motions; of solved bodies the first n_modes[b] of each that are good,
-   named after the disc where they are of it, which follow body by body, c->found_of. Collective */
+/* found.c - sets the last vectors of a basis, rigid motions; the first n_modes[b] modes of each body that are
+   good, named after the disc where they are of it, body by body, c->found_of. Collective */
 PETSC_INTERN PetscErrorCode FreeBasisSetMotions(Operators operators, FreeBasis *basis);
 PETSC_INTERN PetscErrorCode FreeBasisCollect(Operators operators, const FreeMatrices *bodies, const FreeBasis *basis,
                                              const PetscInt n_modes[], ModesComponents c, Modes free);
@@ -105,8 +106,8 @@ PETSC_INTERN PetscErrorCode FreeBasisCollect(Operators operators, const FreeMatr
    follow body by body, c->found_of. Collective */
 PETSC_INTERN PetscErrorCode FreeModesTake(Modes modes, ModesComponents c, Modes free);
 
-/* components.c - a solver of free modes, empty; sorts free modes into levels: those whose errors overlap are one; shares
-   and energies of modes in them. Collective */
+/* components.c - a solver of free modes, empty; sorts free modes into levels: those whose errors overlap are one;
+   shares and energies of modes in them. Collective */
 PETSC_INTERN PetscErrorCode FreeModesBegin(Modes modes, Modes *free);
 PETSC_INTERN PetscErrorCode FreeLevelsFind(const Modes free, ModesComponents c);
 PETSC_INTERN PetscErrorCode FreeSharesFind(Modes modes, const Modes free, ModesComponents c);

@@ -12,15 +12,8 @@
 
 #define KEPT_REACH 3 /* of the band: parameters may bring free modes from there into it */
 
-struct _p_ModesKept {
-  FreeBodies     *bodies;
-  ModesComponents c;
-  Modes           free;
-  Vec             probe; /* the sum of the first free modes of the bodies, one of each */
-};
-
 /* Free modes among the vectors, of all bodies up to the limit, (rad/s)^2 */
-static PetscErrorCode KeptSolve(Modes modes, PetscInt n, const Vec v[], PetscReal limit, ModesKept kept)
+static PetscErrorCode KeptSolve(Modes modes, PetscInt n, const Vec v[], PetscReal limit)
 {
   FreeMatrices bodies;
   FreeBasis    basis;
@@ -31,57 +24,58 @@ static PetscErrorCode KeptSolve(Modes modes, PetscInt n, const Vec v[], PetscRea
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(PencilGetMass(modes->pencil, &bodies.M));
   PetscCall(PencilGetStiffnessApart(modes->pencil, &bodies.K, &bodies.less));
-  PetscCall(FreeBasisCreate(kept->bodies, bodies.M, n + FREE_MOTIONS, &basis));
+  PetscCall(FreeBasisCreate(modes->bodies, bodies.M, n + FREE_MOTIONS, &basis));
   PetscCall(PetscArraycpy(basis.v, v, n));
   PetscCall(FreeBasisSetMotions(operators, &basis));
   PetscCall(FreeBasisSolve(&bodies, &basis));
-  PetscCall(PetscCalloc1(kept->bodies->n, &n_modes));
-  for (PetscInt b = 0; b < kept->bodies->n; b++)
+  PetscCall(PetscCalloc1(modes->bodies->n, &n_modes));
+  for (PetscInt b = 0; b < modes->bodies->n; b++)
     while (n_modes[b] < basis.n_modes[b] && basis.kappa[b * basis.n + n_modes[b]] <= limit) n_modes[b]++;
-  PetscCall(FreeBasisCollect(operators, &bodies, &basis, n_modes, kept->c, kept->free));
+  PetscCall(FreeBasisCollect(operators, &bodies, &basis, n_modes, modes->kept, modes->kept_free));
   PetscCall(PetscFree(n_modes));
   PetscCall(FreeBasisDestroy(&basis));
   PetscFunctionReturn(0);
 }
 
 /* Levels and names; what shares are made of is not kept */
-static PetscErrorCode KeptName(Modes modes, ModesKept kept)
+static PetscErrorCode KeptName(Modes modes)
 {
-  const ModesComponents c = kept->c;
+  const ModesComponents c    = modes->kept;
+  const Modes           free = modes->kept_free;
   Vec                   x;
   Mat                   M;
 
   PetscFunctionBeginUser;
-  PetscCall(FreeLevelsFind(kept->free, c));
+  PetscCall(FreeLevelsFind(free, c));
   PetscCall(PencilGetMass(modes->pencil, &M));
-  PetscCall(FreeLevelsName(modes, kept->free, M, c));
-  PetscCall(MatCreateVecs(M, NULL, &kept->probe));
-  PetscCall(VecSet(kept->probe, 0));
-  for (PetscInt k = 0; k < kept->free->n; k++) {
+  PetscCall(FreeLevelsName(modes, free, M, c));
+  PetscCall(MatCreateVecs(M, NULL, &c->probe));
+  PetscCall(VecSet(c->probe, 0));
+  for (PetscInt k = 0; k < free->n; k++) {
     if (k && c->found_of[k] == c->found_of[k - 1]) continue;
-    PetscCall(ModesGetVectors(kept->free, k, &x, NULL, NULL, NULL));
-    PetscCall(VecAXPY(kept->probe, 1, x));
+    PetscCall(ModesGetVectors(free, k, &x, NULL, NULL, NULL));
+    PetscCall(VecAXPY(c->probe, 1, x));
   }
   c->names = PETSC_TRUE;
   PetscCall(PetscFree(c->dot));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeptMake(Modes modes, PetscInt n, const Vec v[], ModesKept kept)
+static PetscErrorCode KeptMake(Modes modes, PetscInt n, const Vec v[])
 {
   const PetscReal top = 2 * PETSC_PI * modes->band[1];
 
   PetscFunctionBeginUser;
   PetscCall(PencilKeepApart(modes->pencil));
-  PetscCall(FreeBodiesFind(modes->pencil, &kept->bodies));
-  PetscCall(PetscCalloc1(1, &kept->c));
-  kept->c->bodies = *kept->bodies;
-  kept->c->found  = PETSC_TRUE;
-  PetscCall(FreeModesBegin(modes, &kept->free));
-  PetscCall(KeptSolve(modes, n, v, PetscSqr(KEPT_REACH * top), kept));
-  if (kept->free->n) PetscCall(KeptName(modes, kept));
+  PetscCall(FreeBodiesFind(modes->pencil, &modes->bodies));
+  PetscCall(PetscCalloc1(1, &modes->kept));
+  modes->kept->bodies = *modes->bodies;
+  modes->kept->found  = PETSC_TRUE;
+  PetscCall(FreeModesBegin(modes, &modes->kept_free));
+  PetscCall(KeptSolve(modes, n, v, PetscSqr(KEPT_REACH * top)));
+  if (modes->kept_free->n) PetscCall(KeptName(modes));
   PetscCall(LabelsForgetWeights(modes));
-  PetscCall(LabelsForgetWeights(kept->free));
+  PetscCall(LabelsForgetWeights(modes->kept_free));
   PetscFunctionReturn(0);
 }
 
@@ -91,20 +85,21 @@ PetscErrorCode ModesKeepFree(Modes modes, PetscInt n, const Vec vectors[])
   Model     model;
 
   PetscFunctionBeginUser;
-  PetscCall(KeptDestroy(&modes->kept));
+  PetscCall(FreeBodiesDestroy(&modes->bodies));
+  PetscCall(ComponentsDestroy(&modes->kept));
+  PetscCall(ModesDestroy(&modes->kept_free));
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   if (!model || !modes->free_found) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_COMPONENTS));
-  PetscCall(PetscCalloc1(1, &modes->kept));
-  PetscCall(KeptMake(modes, n, vectors, modes->kept));
-  if (!modes->kept->free->n) PetscCall(KeptDestroy(&modes->kept));
+  PetscCall(KeptMake(modes, n, vectors));
+  if (!modes->kept_free->n) PetscCall(ComponentsDestroy(&modes->kept));
   PetscCall(EventEnd(EVENT_COMPONENTS));
   PetscFunctionReturn(0);
 }
 
 /* r[bodies] */
-static PetscErrorCode KeptRatios(const Modes modes, const ModesKept kept, PetscReal r[])
+static PetscErrorCode KeptRatios(const Modes modes, const ModesComponents kept, PetscReal r[])
 {
   Mat M;
   Vec product;
@@ -113,9 +108,9 @@ static PetscErrorCode KeptRatios(const Modes modes, const ModesKept kept, PetscR
   PetscCall(PencilGetMass(modes->pencil, &M));
   PetscCall(VecDuplicate(kept->probe, &product));
   PetscCall(MatMult(M, kept->probe, product));
-  PetscCall(FreeBodiesAddDot(kept->bodies, kept->probe, product, r));
+  PetscCall(FreeBodiesAddDot(&kept->bodies, kept->probe, product, r));
   PetscCall(VecDestroy(&product));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r, (PetscMPIInt)kept->bodies->n, MPIU_REAL, MPI_SUM, modes->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r, (PetscMPIInt)kept->bodies.n, MPIU_REAL, MPI_SUM, modes->comm));
   PetscFunctionReturn(0);
 }
 
@@ -128,35 +123,72 @@ static void EnergiesDivide(PetscInt n_modes, const PetscReal r[], ModesComponent
     if (i / n % (c->n_levels + 1) < c->n_levels && r[i % n] > 0) c->energy[i] /= r[i % n];
 }
 
-PetscErrorCode KeptLabel(Modes shapes)
+/* Names of shapes by the free modes that are kept, where there are any */
+static PetscErrorCode KeptLabel(Modes shapes)
 {
-  const ModesKept kept = shapes->kept;
-  PetscReal      *r;
+  const ModesComponents kept = shapes->kept;
+  PetscReal            *r;
 
   PetscFunctionBeginUser;
   if (!kept) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_COMPONENTS));
-  PetscCall(PetscCalloc1(kept->bodies->n, &r));
+  PetscCall(PetscCalloc1(kept->bodies.n, &r));
   PetscCall(KeptRatios(shapes, kept, r));
-  shapes->components = kept->c;
-  PetscCall(FreeSharesFind(shapes, kept->free, kept->c));
-  EnergiesDivide(shapes->n, r, kept->c);
+  shapes->components = kept;
+  PetscCall(FreeSharesFind(shapes, shapes->kept_free, kept));
+  EnergiesDivide(shapes->n, r, kept);
   PetscCall(ComponentsLabel(shapes));
   shapes->components = NULL;
-  PetscCall(PetscFree3(kept->c->share, kept->c->energy, kept->c->mixed));
+  PetscCall(PetscFree3(kept->share, kept->energy, kept->mixed));
   PetscCall(PetscFree(r));
   PetscCall(EventEnd(EVENT_COMPONENTS));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode KeptDestroy(ModesKept *kept)
+/* Adds one complex vector of the pencil, expanded to all unknowns */
+static PetscErrorCode SpectrumAddExpanded(Pencil pencil, PetscBool left, Vec r, Vec i, Vec work[2], Spectrum *s)
 {
   PetscFunctionBeginUser;
-  if (!*kept) PetscFunctionReturn(0);
-  PetscCall(ComponentsDestroy(&(*kept)->c));
-  PetscCall(FreeBodiesDestroy(&(*kept)->bodies));
-  PetscCall(ModesDestroy(&(*kept)->free));
-  PetscCall(VecDestroy(&(*kept)->probe));
-  PetscCall(PetscFree(*kept));
+  PetscCall(PencilExpand(pencil, left, r, work[0]));
+  PetscCall(PencilExpand(pencil, left, i, work[1]));
+  PetscCall(SpectrumAdd(s, 0, 0, work[0], work[1]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModesLabelShapes(Modes modes, const ModesShapes *given, char label[][32])
+{
+  const PetscInt  n      = given->n;
+  struct _p_Modes shapes = *modes;
+  Operators       operators;
+  Vec             work[2];
+
+  PetscFunctionBeginUser;
+  shapes.n            = n;
+  shapes.part_percent = shapes.label_percent = NULL;
+  shapes.label_part                          = NULL;
+  shapes.weights                             = NULL; /* densities may have changed */
+  PetscCall(SpectrumCreate(n, &shapes.right));
+  PetscCall(SpectrumCreate(n, &shapes.left_spectrum));
+  PetscCall(PetscCalloc1(n, &shapes.mode));
+  PetscCall(PencilGetOperators(modes->pencil, &operators));
+  PetscCall(OperatorsCreateVec(operators, &work[0]));
+  PetscCall(VecDuplicate(work[0], &work[1]));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_FALSE, given->xr[i], given->xi[i], work, &shapes.right));
+    PetscCall(SpectrumAddExpanded(modes->pencil, PETSC_TRUE, given->yr[i], given->yi[i], work, &shapes.left_spectrum));
+    shapes.mode[i].rigid = given->rigid[i];
+  }
+  PetscCall(ModesLabel(&shapes));
+  PetscCall(KeptLabel(&shapes));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrncpy(label[i], shapes.mode[i].label, 32));
+  PetscCall(VecDestroy(&work[0]));
+  PetscCall(VecDestroy(&work[1]));
+  PetscCall(SpectrumDestroy(&shapes.right));
+  PetscCall(SpectrumDestroy(&shapes.left_spectrum));
+  PetscCall(LabelsForgetWeights(&shapes));
+  PetscCall(PetscFree(shapes.mode));
+  PetscCall(PetscFree(shapes.part_percent));
+  PetscCall(PetscFree(shapes.label_percent));
+  PetscCall(PetscFree(shapes.label_part));
   PetscFunctionReturn(0);
 }
