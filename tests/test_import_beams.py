@@ -18,7 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 from squeal.decks.abaqus.beams import circle, pipe, profile_of, rectangle
 from squeal.decks.convert import convert
-from squeal.decks.joined.frames import axes_of, matrices
+from squeal.decks.joined.frames import axes_of, carried, matrices, released
 
 import numpy as np
 from scipy.linalg import eigh
@@ -67,9 +67,31 @@ def by_hand():
         tip = np.linalg.inv(K[6:, 6:])[d, d]
         exact = length**3 / (3 * YOUNG * moment) + length / (0.85 * shear * A * B)
         check(f"a tip's deflection along {'xyz'[d]}", abs(tip / exact - 1) < 1e-12, (tip, exact))
+    ends(length, shear)
     check("torsion of a square, a pipe", abs(rectangle(2, 2).torsion / 2.2492 - 1) < 5e-3 and
           abs(pipe(5, 5 - 1e-9).torsion / circle(5).torsion - 1) < 1e-6)
     supported()
+
+
+def ends(length, shear):
+    """A beam with a hinge at its end and rigid arms: K of the tip 1 / (l^3 / 3 E I + l / k G A); an arm h turns a force into h times it."""
+    K, M, profile = one_beam(length)
+    axes = axes_of(np.array([length, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+    hinged = released(K, M, axes, [11])
+    exact = 1 / (length**3 / (3 * YOUNG * profile.bend_1) + length / (0.85 * shear * A * B))
+    check("a hinge: stiffness of the tip, no moment, the mass", abs(hinged[0][7, 7] / exact - 1) < 1e-12 and
+          abs(hinged[0][11]).max() < 1e-9 * exact * length and
+          abs(hinged[1][[0, 6, 0, 6], [0, 0, 6, 6]].sum() / (DENSITY * A * B * length) - 1) < 1e-12, (hinged[0][7, 7], exact))
+    arms = np.array([[0.0, 2.0, -1.0], [0.5, 3.0, 4.0]])
+    moved, mass = carried(K, M, arms)
+    rigid = np.zeros((12, 6))
+    for end, x in enumerate((-arms[0], np.array([length, 0, 0]) - arms[1])):
+        rigid[6 * end:6 * end + 3, :3] = rigid[6 * end + 3:6 * end + 6, 3:] = np.eye(3)
+        rigid[6 * end:6 * end + 3, 3:] = -np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
+    inertia = rigid.T @ mass @ rigid
+    check("rigid arms: no force of rigid motions, the centre of mass on the beam", abs(moved @ rigid).max() < 1e-11 * length *
+          abs(moved).max() and abs(inertia[4, 2] / (-DENSITY * A * B * length * length / 2) - 1) < 1e-12 and
+          abs(inertia[5, 0]) < 1e-12 * inertia[0, 0], inertia)
 
 
 def supported():
@@ -180,6 +202,17 @@ def nastran(folder, program, half, loaded):
     beams += [f"PBEAM,7,1,{profile.area:.6f},{profile.bend_1:.6f},{profile.bend_2:.6f},,{profile.torsion:.6f},", ",,,,,,,,", ",.85,.85"]
     found, lines = frequencies(folder, program, "\n".join([*beams, "ENDDATA"]) + "\n", "bdf")
     check("CBEAM with K1, K2 beside *BEAM SECTION", max(abs(found / half - 1)) < 1e-6, (found, half, lines))
+    shifted = [card.replace(",0.,0.", ",1.5,-2.") if card.startswith("GRID,9") else card for card in cards]
+    shifted = [card + "\n,,,0.,-1.5,2.,0.,-1.5,2." if card.startswith("CBAR") else card for card in shifted]
+    found, lines = frequencies(folder, program, "\n".join([*shifted, "ENDDATA"]) + "\n", "bdf")
+    check("CBAR with offsets from points beside it", max(abs(found / half - 1)) < 1e-6, (found, half, lines))
+    shape = [card for card in cards if not card.startswith(("PBAR", ",,,,,,,,", ",.85"))] + [f"PBARL,7,1,,BAR\n,{B},{A}"]
+    found, lines = frequencies(folder, program, "\n".join([*shape, "ENDDATA"]) + "\n", "bdf")
+    check("PBARL of a BAR", max(abs(found / half - 1)) < 1e-6, (found, half, lines))
+    hinge = [card + "\n,,456" if card.startswith(f"CBAR,{8100 + PIECES // 2},") else card for card in cards]
+    found, lines = frequencies(folder, program, "\n".join([*hinge, "ENDDATA"]) + "\n", "bdf")
+    check("CBAR with pins is a hinge: a lower first mode", found[0] < 0.5 * half[0] and
+          not any("not in the scene" in line for line in lines), (found, half))
     masses = [f"CMASS2,{8300 + d},2.e-5,{9000 + PIECES},{d}" for d in (1, 2, 3)]
     found, _ = frequencies(folder, program, "\n".join([*cards, *masses, "ENDDATA"]) + "\n", "bdf")
     check("CMASS2 in three directions beside *MASS", max(abs(found / loaded - 1)) < 1e-6, (found, loaded))

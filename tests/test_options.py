@@ -20,7 +20,7 @@ PAGE = SOURCE / "options/reference.md"
 VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
           "-rig_beam_elements", "3", "-contact_force", "10", "-contact_friction_damping"]
 # What could vary in that scene, were it given
-ABSENT = re.compile(r"(^|_)(spin|\w+_(total|per_area)|moment|pressure|pressure_(c0|p0|k|m)|kn|kt|"
+ABSENT = re.compile(r"(^|_)(spin|\w+_(total|per_area)|moment|tension|shortening|pressure|pressure_(c0|p0|k|m)|kn|kt|"
                     r"rotation|wear_(rate|rate_master|time)|mu_(static|kinetic|decay_speed|viscous|stribeck_speed))$")
 
 

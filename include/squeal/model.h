@@ -33,14 +33,18 @@ typedef struct {
 } Grounded;
 
 /* Total force on a set, N, spread over a surface by its area, over other sets equally by node; or a pressure on a
-   surface, Pa, into the body; or a force and a moment on a point */
+   surface, Pa, into the body; or a force and a moment on a point; or a bolt that is tightened (scene/loads/bolt.c) */
 typedef struct {
   char     *name, *set, *on; /* set is empty for a point, `on` names it */
+  char     *part;            /* of a bolt: the one on one side of its cut; axis points out of it through the cut */
   PetscBool is_pressure, on_point, has_force, has_moment;
   PetscInt  point;              /* index of the point */
   PetscReal moment[3];          /* on it, N m */
   PetscReal pressure, force[3]; /* Pa; N, of a pressure its resultant after ModelSetUp() */
   PetscReal size;               /* sum of |force|, or |pressure| times area, N; after ModelSetUp() */
+  PetscBool is_bolt, has_tension, has_shortening, has_axis;
+  PetscInt  of_part;
+  PetscReal axis[3], tension, shortening; /* of unit length; N, m */
 } Load;
 
 /* A place of a body that histories record: the nearest node of the part */

@@ -215,9 +215,20 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);
 
 /*@ OperatorsAddLoads - adds all loads, of the sizes that p gives them, to such a vector, N, of load i a share[i] (NULL:
-   all of each); size is a bound of the sum of |force| over the unknowns. Collective. @*/
+   all of each; of a bolt under tension its shortening, m); size is a bound of the sum of |force| over the unknowns.
+   Collective. @*/
 PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], const PetscReal share[], Vec local,
                                  PetscReal *size);
+
+/* Of a bolt: by how much it is shortened (m), the tension that passes through its cut (N), and the stiffness that its
+   cells at the cut alone have along it (N/m) */
+typedef struct {
+  PetscReal shortening, tension, stiffness;
+} OperatorsBolt;
+
+/*@ OperatorsGetBolt - load i, a bolt, with its share, at displacements [local nodes][3] (m). Collective. @*/
+PetscErrorCode OperatorsGetBolt(Operators operators, const PetscReal p[], PetscInt i, PetscReal share,
+                                const PetscReal displacement[], OperatorsBolt *bolt);
 
 /*@ OperatorsTakeNodal - moves such a vector, complete at every node, to the unknowns. Collective. @*/
 PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);

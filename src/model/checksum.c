@@ -171,6 +171,12 @@ PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum c)
     } else {
       PetscCall(ModelAddSetChecksum(model, load->set, PETSC_FALSE, c));
     }
+    if (load->is_bolt) {
+      const PetscReal bolt[] = {load->axis[0], load->axis[1], load->axis[2], load->tension, load->shortening};
+
+      PetscCall(ChecksumAddInts(c, 1, &load->of_part));
+      PetscCall(ChecksumAddReals(c, 5, bolt));
+    }
     /* the resultant of a pressure is a sum over ranks, whose rounding is no difference */
     if (load->is_pressure)
       PetscCall(ChecksumAddReals(c, 1, &load->pressure));

@@ -241,7 +241,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(RecordsDestroy(s->n_joints, sizeof(*s->joints), 3, s->joints));
   PetscCall(JointsDestroy(s->n_points, s->points));
   PetscCall(RecordsDestroy(s->n_points, sizeof(*s->points), 3, s->points));
-  PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 3, s->loads));
+  PetscCall(RecordsDestroy(s->n_loads, sizeof(*s->loads), 4, s->loads));
   PetscCall(RecordsDestroy(s->n_motions, sizeof(*s->motions), 2, s->motions));
   PetscCall(RecordsDestroy(s->n_probes, sizeof(*s->probes), 2, s->probes));
   PetscCall(CirclesDestroy(m));

@@ -198,6 +198,14 @@ static const Quantity load[] = {
    .varies = VARIES_ALL},
   {"-pressure", "instead of a force: pressure on a surface, into the body", "Pa", QUANTITY_REAL, LOAD(pressure),
    .given = offsetof(Load, is_pressure), .varies = VARIES_ALL},
+  {"-tension", "instead of a force: of a bolt that is cut at the nodes of the set and tightened", "N", QUANTITY_REAL,
+   LOAD(tension), QUANTITY_POSITIVE, .given = offsetof(Load, has_tension), .varies = VARIES_LINEAR},
+  {"-shortening", "instead of a tension: by how much the bolt is shortened", "m", QUANTITY_REAL, LOAD(shortening),
+   QUANTITY_POSITIVE, .given = offsetof(Load, has_shortening), .varies = VARIES_LINEAR},
+  {"-part", "of a bolt: part on one side of the cut; that on the other shares the nodes", NULL, QUANTITY_NAME,
+   LOAD(part)},
+  {"-axis", "of a bolt: direction x,y,z out of this part through the cut", NULL, QUANTITY_REALS, LOAD(axis),
+   .given = offsetof(Load, has_axis)},
 };
 static const Quantity motion[] = {
   {"-set", SET, NULL, QUANTITY_NAME, MOTION(set), .required = PETSC_TRUE, .why = SET_WANTED},
@@ -245,7 +253,7 @@ const QuantityList points_list = {"-points",     "points joined to sets, each th
                                   sizeof(Joint), &points,
                                   PointCheck,    .in = 0};
 const QuantityList loads_list  = {
-   "-loads", "forces, each the prefix of its -set and -force or -pressure", sizeof(Load), &loads, LoadCheck, .in = 0};
+   "-loads", "forces, each the prefix of its -set and -force, -pressure, or -tension of a bolt", sizeof(Load), &loads, LoadCheck, .in = 0};
 const QuantityList motions_list = {
   "-motions", "prescribed displacements, each the prefix of its -set", sizeof(PrescribedMotion), &motions, MotionCheck,
   .in = 0};

@@ -119,6 +119,14 @@ typedef struct {
 PETSC_INTERN PetscErrorCode OperatorsAddComponents(Operators operators, const Components *components,
                                                    PetscInt index[3]);
 
+/* force.c - adds the forces of the local cells of a part, -1 for all, at u [nodes][3] */
+PETSC_INTERN PetscErrorCode OperatorsAddCellForces(Operators operators, const PetscReal p[], PetscInt part,
+                                                   const PetscScalar u[], PetscScalar f[]);
+
+/* bolt.c - adds the load of a bolt of a shortening (m), and its share of the size of the loads */
+PETSC_INTERN PetscErrorCode OperatorsAddBolt(Operators operators, const PetscReal p[], PetscInt load,
+                                             PetscReal shortening, Vec local, PetscReal *size);
+
 /* joint.c - parameters and terms of bushings and points; their forces at displacements [nodes][3] and p, and the
    weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);

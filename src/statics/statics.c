@@ -1,8 +1,8 @@
 /*
    Statics: life cycle, options, and one point of the parameters after the other: the statuses of the last solution
    begin the next, and the factorisation of K_a is kept as long as no parameter of the bodies changes (friction,
-   contact stiffness and loads are not in it). The flow is in stages/solve.c. With -stages each point begins with all
-   pairs closed: what they did at another point is no part of its history.
+   contact stiffness and loads are not in it). The flow is in stages/run.c and stages/solve.c. With -stages each point
+   begins with all pairs closed: what they did at another point is no part of its history.
 */
 #include "staticsimpl.h"
 #include <squeal/options.h>

@@ -15,6 +15,7 @@ typedef struct {
   PetscInt   n_loads, n_motions, n_sliding, n_interferences, n_ends;
   char     **loads, **motions, **sliding, **interferences, **ends;
   PetscReal *load, *motion; /* [scene] 0 or 1 */
+  PetscReal *share;         /* [loads] as OperatorsAddLoads() takes it: of a bolt under tension its shortening, m */
   PetscReal *interference;  /* [interfaces] m */
   PetscBool *slides;        /* [interfaces] */
 } Stage;
@@ -207,6 +208,7 @@ struct _p_Statics {
   Vec               u;                              /* displacements, m; length: all unknowns */
   ContactKKT        kkt;
   PetscInt          stage;    /* of the state */
+  PetscInt          n_tightened; /* solutions until bolts had their tension */
   Reaction         *reaction; /* [n_reactions] of all stages; without -stages when they are written */
   PetscInt          n_reactions;
   PetscReal         peak;        /* 2-norm of the largest forces up to it, N */
@@ -235,7 +237,15 @@ PETSC_INTERN PetscInt       StagesCount(Statics statics);
 PETSC_INTERN const Stage   *StagesGet(Statics statics, PetscInt k);
 PETSC_INTERN PetscErrorCode StageGetMotions(Model model, const Stage *stage, PetscReal **nodal);
 PETSC_INTERN PetscErrorCode StagesDestroy(Statics statics);
-/* solve.c - all stages at the point that is set, with the gaps as they are worn */
+/* solve.c - stage k from the loads f0 of the one before it (NULL at first) to its own, f; size is that of the largest
+   loads until now, N */
+PETSC_INTERN PetscErrorCode StageSolve(Statics statics, PetscInt k, Vec f0, PetscReal *size, Vec *f);
+/* bolt.c - the same, with shortenings of the bolts that the stage tightens so that they have their tension; lines;
+   what a bolt has in the state (reaction.c) */
+PETSC_INTERN PetscErrorCode BoltsSolve(Statics statics, PetscInt k, Vec f0, PetscReal *size, Vec *f);
+PETSC_INTERN PetscErrorCode BoltGet(Statics statics, PetscInt load, OperatorsBolt *bolt);
+PETSC_INTERN PetscErrorCode BoltsView(Statics statics, PetscViewer viewer);
+/* run.c - all stages at the point that is set, with the gaps as they are worn */
 PETSC_INTERN PetscErrorCode StagesSolve(Statics statics);
 /* solve.c - all pairs closed, those of Coulomb's law without slip */
 PETSC_INTERN void StaticsCloseAll(Statics statics);

@@ -7,6 +7,7 @@ import numpy
 
 from .deck import Material, Section, firsts_of
 from .mesh.faces import surface_nodes
+from .bolts import add_bolts, add_stages, split_sections
 from .holders import add_contacts, add_loads, add_springs, add_supports, add_ties
 from .joined.entries import add_joined
 from .joined.groups import Groups
@@ -140,7 +141,8 @@ class Assembly:
         self.of_nodes, self.of_faces = {}, {}  # name in the deck -> name of the set
 
     def parts(self, used):
-        """Parts by sections; a cell has the last of its sections, none is in no part."""
+        """Parts by sections; a cell has the last of its sections, none is in no part. Returns their names by number."""
+        names = {}
         part_of = numpy.full(self.deck.n_cells, -1)
         for number, section in enumerate(self.deck.sections):
             before = part_of[section.cells]
@@ -155,7 +157,7 @@ class Assembly:
                     " but those of later sections" if len(section.cells) else ""))
                 continue
             name = self.things.new(self.sets.new(section.name))
-            self.result.volumes[name] = cells
+            self.result.volumes[name], names[number] = cells, name
             if section.material and not used[section.material].young:
                 self.deck.note(section.place, f"part {name}: material {section.material} has no stiffness that squeal takes: give it")
             self.result.entries.append(part_entry(name, section, used[section.material]))
@@ -165,6 +167,7 @@ class Assembly:
             block = self.deck.blocks[number]
             raise block.place.wrong(f"element {block.ids[cell - self.deck.firsts()[number]]} ({(part_of < 0).sum()} in all) has no "
                                     "section, hence no material")
+        return names
 
     def node_set(self, nodes, name, fallback):
         """The name of a set of points; "" where no element has any of its nodes."""
@@ -273,13 +276,16 @@ def assemble(deck, size):
     result.into = merged
     assembly = result.assembly = Assembly(deck, result, number[merged])
     materials = dict(deck.materials) | {"": Material("", None)}
-    assembly.parts(materials)
+    split_sections(deck)
+    parts = assembly.parts(materials)
     result.joined = Holds(deck, Groups(deck, used[merged], merged)).run()
     add_supports(assembly, result.joined.supports)
     add_springs(assembly)
     result.beams = add_joined(assembly, result.joined)
     add_loads(assembly, result.joined.loads)
+    add_bolts(assembly, parts)
     add_contacts(assembly)
+    add_stages(assembly)
     add_ties(assembly)
     assembly.all_sets()
     for block in deck.blocks:

@@ -144,13 +144,16 @@ class Profile:
 
 @dataclass
 class Beam:
-    """A straight beam between two nodes; axis 1 is the part of `along` across it."""
+    """A straight beam between two nodes, or ends that rigid arms `offsets` [2][3] hold; axis 1 is the part of `along` across it. `pins`:
+    of each end the motions 0 to 5 along and about its own axes that pass no force."""
     nodes: tuple
     place: Place
     words: str
     material: str
     profile: Profile
     along: tuple
+    offsets: tuple = None
+    pins: tuple = ((), ())
     written: bool = False  # whether it is in the scene
 
 
@@ -285,6 +288,7 @@ class Deck:
         self.materials, self.sections = {}, []
         self.supports, self.springs, self.loads, self.contacts, self.ties, self.turnings = [], [], [], [], [], []
         self.joins, self.lumps, self.links, self.equations, self.beams, self.one_way = [], [], [], [], [], []
+        self.bolts = []  # of bolts.py
         self.shells, self.dummies = [], None  # of mesh/shells.py
         self.gravity = None  # (vector, Place)
         self.modes = None  # (count, lowest, highest, Place)

@@ -7,7 +7,7 @@ import numpy
 from ..tables import quoted, whole
 
 MOST_ALIKE = 3
-LISTS = ("parts", "supports", "springs", "motions", "joints", "points", "superelements", "loads", "contacts", "ties")
+LISTS = ("parts", "supports", "springs", "motions", "joints", "points", "superelements", "loads", "contacts", "ties", "stages")
 FACTORS = {"": lambda u: 1, "length": lambda u: u.length, "stress": lambda u: u.stress, "density": lambda u: u.density,
            "force": lambda u: u.force, "stiffness": lambda u: u.stiffness, "time": lambda u: u.time,
            "mass": lambda u: u.mass, "inertia": lambda u: u.mass * u.length**2, "moment": lambda u: u.force * u.length,

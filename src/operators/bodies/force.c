@@ -26,8 +26,8 @@ static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elast
   PetscFunctionReturn(0);
 }
 
-/* Adds the forces of all local cells */
-static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], const PetscScalar u[], PetscScalar f[])
+PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], PetscInt part, const PetscScalar u[],
+                                      PetscScalar f[])
 {
   const Mesh *mesh;
 
@@ -36,6 +36,7 @@ static PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], c
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     Elasticity material;
 
+    if (part >= 0 && mesh->cell_part[c] != part) continue;
     PetscCall(ModelGetElasticity(o->model, c, p[N_PART_PARAMETERS * mesh->cell_part[c] + PART_YOUNG], 1, &material));
     PetscCall(OperatorsAddCellForce(o, c, &material, u, f));
   }
@@ -50,7 +51,7 @@ static PetscErrorCode OperatorsForcesOf(Operators o, const PetscReal p[], const 
   PetscFunctionBeginUser;
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &force));
-  PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), displacement, force));
+  PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), -1, displacement, force));
   PetscCall(OperatorsAddJointForces(o, OperatorsPoint(o, p), displacement, force));
   PetscCall(VecRestoreArray(local, &force));
   PetscCall(ModelSumShared(o->model, local));

@@ -4,8 +4,8 @@
 
       f = (p_F / |F|) f_F + (p_M / |M|) f_M    (N),
 
-   with f_F, f_M, F, M of the scene. No matrix of the bodies depends on them: pencils do through the sliding state
-   alone.
+   with f_F, f_M, F, M of the scene; <name>_tension (N) or <name>_shortening (m) of a bolt (bodies/bolt.c). No matrix of
+   the bodies depends on them: pencils do through the sliding state alone.
 */
 #include "operators/operatorsimpl.h"
 #include "base/algebra/vec3.h"
@@ -33,9 +33,12 @@ PetscErrorCode OperatorsAddLoadParameters(Operators o)
     const Load              *load  = &scene->loads[i];
     const OperatorsParameter force = {.value = Vec3Length(load->force), .length = PETSC_TRUE};
     const OperatorsParameter press = {.value = load->pressure};
+    const OperatorsParameter bolt  = {.value = load->has_tension ? load->tension : load->shortening};
     const OperatorsParameter turn  = {.value = Vec3Length(load->moment), .length = PETSC_TRUE};
 
-    if (load->is_pressure)
+    if (load->is_bolt)
+      PetscCall(SizeAdd(o, load, load->has_tension ? "tension" : "shortening", bolt, &o->load_size[i].force));
+    else if (load->is_pressure)
       PetscCall(SizeAdd(o, load, "pressure", press, &o->load_size[i].force));
     else
       PetscCall(SizeAdd(o, load, "force", force, &o->load_size[i].force));
@@ -63,6 +66,12 @@ PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], const PetscRe
     const PetscReal       factor[2] = {part * SizeFactor(o, p, q->force), part * SizeFactor(o, p, q->moment)};
     const PetscReal       force = q->force < 0 ? 0 : PetscAbsReal(factor[0]), moment = q->moment < 0 ? 0 : factor[1];
 
+    if (scene->loads[i].is_bolt) {
+      const PetscReal length = scene->loads[i].has_tension ? 1 : OperatorsPoint(o, p)[q->force];
+
+      PetscCall(OperatorsAddBolt(o, p, i, part * length, local, size));
+      continue;
+    }
     PetscCall(ModelAddLoad(o->model, i, factor, local));
     *size += PetscMax(force, moment) * scene->loads[i].size;
   }

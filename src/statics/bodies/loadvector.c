@@ -38,7 +38,7 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], const
   PetscCall(OperatorsGetModel(operators, &model, NULL));
   PetscCall(StageGetMotions(model, stage, &prescribed));
   PetscCall(ModelCreateNodal(model, &local));
-  PetscCall(OperatorsAddLoads(operators, p, stage->load, local, size));
+  PetscCall(OperatorsAddLoads(operators, p, stage->share, local, size));
   PetscCall(OperatorsAddWeight(operators, p, local, weight));
   for (int d = 0; d < 3; d++) *size += PetscAbsReal(weight[d]);
   PetscCall(OperatorsCreateVec(operators, f));

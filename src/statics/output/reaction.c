@@ -7,7 +7,7 @@
    u = d where a motion prescribes it, and a spring pulls with -k u; forces of bushings, points and superelements are
    among K_e u_e. What is left at nodes that ties make follow others acts on these.
    Loads include the weight. In equilibrium reactions, springs, bushings to the ground, points, superelements and loads
-   sum to zero; reactions.csv lists them all.
+   sum to zero; reactions.csv lists them all, and what passes through the cuts of bolts.
 */
 #include "statics/staticsimpl.h"
 
@@ -31,7 +31,7 @@ static PetscErrorCode ReactionUnbalance(Statics s, Vec *local)
   PetscCall(ContactNodalForces(s->contact, s->state, part));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecSet(part, 0));
-  PetscCall(OperatorsAddLoads(s->operators, s->p, stage->load, part, &size));
+  PetscCall(OperatorsAddLoads(s->operators, s->p, stage->share, part, &size));
   PetscCall(OperatorsAddWeight(s->operators, s->p, part, weight));
   PetscCall(VecAXPY(*local, -1, part));
   PetscCall(VecDestroy(&part));
@@ -95,6 +95,20 @@ PetscErrorCode StaticsCreateDisplacements(Statics s, Vec *local)
   for (PetscInt i = 0; i < n && prescribed; i++) nodal[i] += prescribed[i];
   PetscCall(VecRestoreArray(*local, &nodal));
   PetscCall(PetscFree(prescribed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoltGet(Statics s, PetscInt i, OperatorsBolt *bolt)
+{
+  const PetscScalar *u;
+  Vec                displacement;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsCreateDisplacements(s, &displacement));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  PetscCall(OperatorsGetBolt(s->operators, s->p, i, StagesGet(s, s->stage)->share[i], u, bolt));
+  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscCall(VecDestroy(&displacement));
   PetscFunctionReturn(0);
 }
 
@@ -240,6 +254,21 @@ static PetscErrorCode ReactionFindWeight(Statics s)
   PetscFunctionReturn(0);
 }
 
+/* What the other side of the cut exerts on the part of a bolt */
+static PetscErrorCode ReactionFindBolt(Statics s, PetscInt i)
+{
+  const ModelScene *scene;
+  OperatorsBolt     bolt;
+  PetscReal         force[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(BoltGet(s, i, &bolt));
+  for (int d = 0; d < 3; d++) force[d] = bolt.tension * scene->loads[i].axis[d];
+  PetscCall(ReactionAdd(s, scene->loads[i].name, "bolt on its part", force, NULL));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StaticsFindReactions(Statics s)
 {
   const Stage      *stage   = StagesGet(s, s->stage);
@@ -250,9 +279,12 @@ PetscErrorCode StaticsFindReactions(Statics s)
   PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(ReactionsFindHolders(s));
   for (PetscInt i = 0; i < scene->n_loads; i++) {
-    const PetscReal *force = stage->load[i] > 0 ? scene->loads[i].force : none;
+    const Load *load = &scene->loads[i];
 
-    PetscCall(ReactionAdd(s, scene->loads[i].name, "load", force, NULL));
+    if (load->is_bolt)
+      PetscCall(ReactionFindBolt(s, i));
+    else
+      PetscCall(ReactionAdd(s, load->name, "load", stage->load[i] > 0 ? load->force : none, NULL));
   }
   if (ModelHasGravity(s->model)) PetscCall(ReactionFindWeight(s));
   for (PetscInt i = 0; i < s->rows.n_interfaces; i++)

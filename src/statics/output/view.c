@@ -66,6 +66,7 @@ PetscErrorCode StaticsView(Statics s, PetscViewer viewer)
     PetscCall(InterfaceView(s->model, &s->rows.interface[i], &s->resultant[i], viewer));
     PetscCall(PressureRangeView(s, i, viewer));
   }
+  PetscCall(BoltsView(s, viewer));
   PetscCall(StaticsViewWear(s, viewer));
   if (s->n_free)
     PetscCall(PetscViewerASCIIPrintf(viewer,

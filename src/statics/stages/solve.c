@@ -3,7 +3,6 @@
    of contacts that slide has rows and a factorisation of its own; all are kept for the next point.
 */
 #include "statics/staticsimpl.h"
-#include "base/events.h"
 
 void StaticsCloseAll(Statics s)
 {
@@ -115,13 +114,10 @@ static PetscErrorCode StageTakeUp(Statics s, PetscReal l[], PetscReal **w)
   PetscFunctionReturn(0);
 }
 
-/* Stage k from the loads f0 of the one before it (NULL at first), which become its own; size is that of the largest
-   loads until now, N */
-static PetscErrorCode StageSolve(Statics s, PetscInt k, Vec *f0, PetscReal *size)
+PetscErrorCode StageSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f)
 {
   const Stage *stage = StagesGet(s, k);
   PetscReal   *l, *w0 = NULL, end;
-  Vec          f;
   PetscBool    pressed;
   char         loads[160] = "the loads";
 
@@ -132,19 +128,19 @@ static PetscErrorCode StageSolve(Statics s, PetscInt k, Vec *f0, PetscReal *size
   if ((!k || s->rested) && s->n_stages) StaticsCloseAll(s);
   s->rested = PETSC_FALSE;
   PetscCall(PairRowsSetMoved(s->model, StagesGet(s, k - 1), stage, &s->rows));
-  PetscCall(StaticsCreateLoad(s->operators, s->p, stage, &f, &end));
+  PetscCall(StaticsCreateLoad(s->operators, s->p, stage, f, &end));
   *size = PetscMax(*size, end);
-  PetscCall(StageIsPressed(s, stage, f, &pressed));
+  PetscCall(StageIsPressed(s, stage, *f, &pressed));
   PetscCall(PetscCalloc1(s->rows.n, &l));
   PetscCall(StaticsFactor(s));
   if (k) PetscCall(StageTakeUp(s, l, &w0));
-  PetscCall(HoldCheck(s->operators, &s->compliance.hold, loads, f, *size));
+  PetscCall(HoldCheck(s->operators, &s->compliance.hold, loads, *f, *size));
   if (!pressed) PetscCall(StageRest(s, l));
   if (pressed)
     PetscCall(EquilibriumSolve(s, &(Active){.rows       = &s->rows,
                                             .compliance = &s->compliance,
-                                            .f          = f,
-                                            .f0         = *f0,
+                                            .f          = *f,
+                                            .f0         = f0,
                                             .w0         = w0,
                                             .size       = *size,
                                             .load_steps = s->load_steps,
@@ -152,27 +148,8 @@ static PetscErrorCode StageSolve(Statics s, PetscInt k, Vec *f0, PetscReal *size
                                             .l          = l,
                                             .u          = s->u}));
   s->n_free = s->compliance.hold.n;
-  PetscCall(StaticsSetState(s, f, l));
-  if (s->n_stages) PetscCall(StaticsFindReactions(s));
+  PetscCall(StaticsSetState(s, *f, l));
   PetscCall(PetscFree(l));
   PetscCall(PetscFree(w0));
-  PetscCall(VecDestroy(f0));
-  *f0 = f;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode StagesSolve(Statics s)
-{
-  PetscReal size = 0;
-  Vec       f    = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCall(EventBegin(EVENT_STATICS));
-  s->n_it = s->n_factored = s->n_reactions = 0;
-  s->peak                                  = 0;
-  for (PetscInt k = 0; k < StagesCount(s); k++) PetscCall(StageSolve(s, k, &f, &size));
-  s->solved = PETSC_TRUE;
-  PetscCall(VecDestroy(&f));
-  PetscCall(EventEnd(EVENT_STATICS));
   PetscFunctionReturn(0);
 }

@@ -101,6 +101,7 @@ static PetscErrorCode StageCreate(const ModelScene *scene, PetscInt n_interfaces
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(scene->n_loads, &stage->load));
+  PetscCall(PetscCalloc1(scene->n_loads, &stage->share));
   PetscCall(PetscCalloc1(scene->n_motions, &stage->motion));
   PetscCall(PetscCalloc1(n_interfaces, &stage->slides));
   PetscCall(PetscCalloc1(n_interfaces, &stage->interference));
@@ -192,6 +193,20 @@ static PetscErrorCode StagesCheckContacts(Statics s, PetscInt n, const ContactIn
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for bolts where their state is not told whole */
+static PetscErrorCode BoltsCheck(Statics s)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCheck(!scene->loads[i].is_bolt || !s->geometric, s->comm, PETSC_ERR_SUP,
+               "-static_geometric does not know of bolts, and there is -loads %s: leave one of them out",
+               scene->loads[i].name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StagesSetUp(Statics s)
 {
   const ModelScene       *scene;
@@ -203,6 +218,7 @@ PetscErrorCode StagesSetUp(Statics s)
   PetscCall(ModelGetScene(s->model, &scene));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &c));
   PetscCall(StageSetWhole(s, scene, n, c));
+  PetscCall(BoltsCheck(s));
   if (!s->n_stages) PetscFunctionReturn(0);
   {
     StageTarget target[STAGE_LISTS] = {
@@ -293,6 +309,7 @@ static PetscErrorCode StageFree(Stage *stage)
   PetscCall(NamesFree(stage->n_interferences, &stage->interferences));
   PetscCall(NamesFree(stage->n_ends, &stage->ends));
   PetscCall(PetscFree(stage->load));
+  PetscCall(PetscFree(stage->share));
   PetscCall(PetscFree(stage->motion));
   PetscCall(PetscFree(stage->slides));
   PetscCall(PetscFree(stage->interference));

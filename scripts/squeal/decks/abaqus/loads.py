@@ -65,6 +65,7 @@ def do_cload(reader, scope, card):
         rest = numpy.setdiff1d(nodes, turned) if turned else nodes
         if len(rest):
             reader.forces.append(Said(reader.steps, card.keyword, rest, value, place, "" if turned else name, d))
+            reader.of_bolts.append(reader.forces[-1])
 
 
 def do_dload(reader, scope, card):

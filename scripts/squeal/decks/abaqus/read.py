@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from ...tables import BadInput
-from . import beams as abaqus_beams, connectors as abaqus_connectors, joined as abaqus_joined, loads as abaqus_loads
+from . import beams as abaqus_beams, bolts as abaqus_bolts, connectors as abaqus_connectors, joined as abaqus_joined, loads as abaqus_loads
 from . import material as abaqus_material, mesh as abaqus_mesh
 from . import model as abaqus_model, sets as abaqus_sets
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
@@ -25,8 +25,7 @@ ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONT
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
-INSTEAD = {"PRE-TENSION SECTION": "the bolt is whole, as behind its lock; cut it in the mesh and give the contact an `interference`",
-           "CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
+INSTEAD = {"CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
                                    "give the contact an `interference`",
            "CLEARANCE": "give the contact a `gap`, or move its surfaces in the mesh",
            "SHELL GENERAL SECTION": "its shells have no thickness",
@@ -45,7 +44,8 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "BOUNDARY": {"OP", "FIXED"}, "SPRING": {"ELSET"}, "DASHPOT": {"ELSET"}, "MASS": {"ELSET"}, "ROTARY INERTIA": {"ELSET"},
          "COUPLING": {"REF NODE", "SURFACE", "CONSTRAINT NAME", "ORIENTATION", "INFLUENCE RADIUS"}, "KINEMATIC": set(),
          "DISTRIBUTING": {"WEIGHTING METHOD", "COUPLING"}, "KINEMATIC COUPLING": {"REF NODE", "ORIENTATION"},
-         "EQUATION": set(), "MPC": set(), "BEAM SECTION": {"ELSET", "MATERIAL", "SECTION", "TEMPERATURE"},
+         "EQUATION": set(), "MPC": set(), "PRE-TENSION SECTION": {"SURFACE", "NODE"},
+         "BEAM SECTION": {"ELSET", "MATERIAL", "SECTION", "TEMPERATURE"},
          "BEAM GENERAL SECTION": {"ELSET", "SECTION", "DENSITY"},
          "CONNECTOR SECTION": {"ELSET", "BEHAVIOR"}, "CONNECTOR BEHAVIOR": {"NAME"}, "CONNECTOR ELASTICITY": {"COMPONENT"},
          "CONNECTOR DAMPING": {"COMPONENT"},
@@ -73,7 +73,7 @@ def listed(do):
 
 CARDS = {keyword: listed(do) for keyword, do in (
     abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS |
-    abaqus_beams.CARDS | abaqus_connectors.CARDS).items()}
+    abaqus_beams.CARDS | abaqus_connectors.CARDS | abaqus_bolts.CARDS).items()}
 
 
 @dataclass
@@ -222,12 +222,13 @@ class Reader:
         self.deck = Deck(path, "Abaqus or CalculiX")
         self.main, self.instances, self.parts = Scope(self.deck), {}, {}
         self.material = self.interaction = self.changed = None
-        self.interactions, self.spring_cards, self.pairs = {}, [], []
+        self.interactions, self.spring_cards, self.pairs, self.bolts = {}, [], [], []
         self.turned, self.rotations, self.surface_nodes = {}, {}, {}  # node -> its axes (None: unknown); ROT NODE -> REF NODE
         self.connector, self.connectors, self.connector_sections = None, {}, []  # of connectors.py
         self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
+        self.of_bolts = []  # forces of all steps, those that ended too
         self.supports = []  # (step, Support) as they come
         self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
@@ -331,6 +332,7 @@ class Reader:
 
     def finish(self):
         """What needs all of the deck."""
+        abaqus_bolts.finish(self)
         abaqus_loads.finish_loads(self)
         abaqus_connectors.finish(self)
         abaqus_model.finish(self)

@@ -14,6 +14,8 @@ MPC, SPREAD, RIGID = 2, 1, 2  # KEYOPT(2) of contact by constraints; KEYOPT(4): 
 def read_joined(deck, commands, mesh):
     constants = real_constants(commands)
     for kind, head, nodes, place in mesh.joints:
+        if kind not in TYPES:
+            continue
         at = mesh.nodes.need(nodes[:TYPES[kind]], "node", place)
         reals, options = constants.get(int(head[2]), []), mesh.options.get(int(head[1]), {})
         {21: mass, 14: spring, 184: beam}[kind](deck, (at, place, f"{NAMES[kind]} element {head[10]}"), reals, options)

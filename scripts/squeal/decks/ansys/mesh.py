@@ -11,7 +11,7 @@ KNOWN = {"ET", "LOCAL"}
 MOST = 10**9
 # Number of a type -> nodes
 SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}
-JOINTS = {21, 14, 184}  # ansys/joined.py
+JOINTS = {21, 14, 184, 179}  # ansys/joined.py, bolts.py
 FACETS = {173: "contact", 174: "contact", 175: "contact", 170: "target"}  # elements on surfaces
 DIFFERS = {("hex8", 185): "SOLID185 becomes hex8 of squeal, QM6, which is that of its enhanced strains, KEYOPT(2) = 3 (or 2)",
            ("hex8", 45): "SOLID45 becomes hex8 of squeal, QM6, which is that with its extra shapes",

@@ -5,7 +5,7 @@ import re
 import numpy
 
 from ...tables import BadInput
-from . import joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
+from . import bolts as ansys_bolts, joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
 from .blocks import BLOCK, DATABASE, Command, read_block
 from ..deck import Deck, Place
 from ..text import line_starts, read_bytes
@@ -83,6 +83,8 @@ def read_ansys(path):
     mesh = ansys_mesh.read_mesh(deck, blocks, commands)
     if not deck.n_cells:
         return deck
+    taken = ansys_bolts.read_bolts(deck, commands, mesh)
+    commands = [command for command in commands if not any(command is other for other in taken)]
     ansys_joined.read_joined(deck, commands, mesh)
     ansys_model.read_model(deck, commands, mesh)
     if not any(command.words[0] in ("FINISH", "FINI", "SOLVE") for command in commands):

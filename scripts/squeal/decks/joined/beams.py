@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy
 from scipy.sparse import coo_matrix
 
-from .frames import axes_of, matrices
+from .frames import axes_of, carried, matrices, released
 
 WORDS = "x", "y", "z", "rx", "ry", "rz"
 
@@ -91,7 +91,8 @@ def constants(deck, beam):
 def add_beam(places, body, taken, beam):
     """Adds one beam, or a line."""
     deck = places.deck
-    line = deck.x[beam.nodes[1]] - deck.x[beam.nodes[0]]
+    arms = numpy.zeros((2, 3)) if beam.offsets is None else numpy.array(beam.offsets)
+    line = deck.x[beam.nodes[1]] + arms[1] - deck.x[beam.nodes[0]] - arms[0]
     material = constants(deck, beam)
     if material is None:
         return
@@ -103,7 +104,13 @@ def add_beam(places, body, taken, beam):
         deck.note(beam.place, f"{beam.words}: an end that is moved, or that equations tell: not in the scene")
         return
     keys = [(node, d) for node in beam.nodes for d in range(6)]
-    for which, block in enumerate(matrices(line, axes, material, beam.profile)):
+    blocks, pins = matrices(line, axes, material, beam.profile), [6 * end + d for end in (0, 1) for d in beam.pins[end]]
+    try:
+        blocks = carried(*(released(*blocks, axes, pins) if pins else blocks), arms)
+    except numpy.linalg.LinAlgError:
+        deck.note(beam.place, f"{beam.words}: its pins leave it a motion without stiffness: not in the scene")
+        return
+    for which, block in enumerate(blocks):
         body.add(which, keys, block)
     body.mass += material[2] * beam.profile.area * float(numpy.linalg.norm(line))
     beam.written = True

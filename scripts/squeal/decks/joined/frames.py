@@ -64,3 +64,22 @@ def matrices(line, axes, material, profile):
         add(rows, [1, 1, 1, 1] if d == 0 else [1, -1, 1, -1], own)  # w along 2 turns by -dw/dx about 1
     T = numpy.kron(numpy.eye(4), axes)
     return T.T @ K @ T, T.T @ M @ T
+
+
+def released(K, M, axes, pins):
+    """K and M without force at ends' motions `pins`, numbers 0 to 11 along and about `axes`: they move as nothing holds them there."""
+    T = numpy.kron(numpy.eye(4), axes)
+    K, M = T @ K @ T.T, T @ M @ T.T
+    kept = [d for d in range(12) if d not in pins]
+    shape = numpy.zeros((12, 12))
+    shape[kept, kept] = 1
+    shape[numpy.ix_(pins, kept)] = -numpy.linalg.solve(K[numpy.ix_(pins, pins)], K[numpy.ix_(pins, kept)])
+    return [T.T @ shape.T @ A @ shape @ T for A in (K, M)]
+
+
+def carried(K, M, arms):
+    """K and M of the nodes that rigid arms [2][3] join to the ends."""
+    T = numpy.eye(12)
+    for end, r in enumerate(arms):
+        T[6 * end:6 * end + 3, 6 * end + 3:6 * end + 6] = -numpy.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+    return T.T @ K @ T, T.T @ M @ T

@@ -5,7 +5,7 @@
       f_v = -p int N_v n dA,   n the normal out of the body,
 
    N_v being the shape functions of the faces; or a force and a moment on a point, f = B'(F, M) (mean.c). All keep
-   their directions while the body moves.
+   their directions while the body moves. Bolts are in bolt.c.
 */
 #include "model/modelimpl.h"
 #include "base/algebra/vec3.h"
@@ -34,6 +34,8 @@ PetscErrorCode LoadCheck(MPI_Comm comm, void *owner, void *record)
   PetscReal sum  = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(BoltCheck(comm, owner, load));
+  if (load->is_bolt) PetscFunctionReturn(0);
   PetscCall(LoadCheckPlace(comm, owner, load));
   PetscCheck(!load->has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
              "-%s_force and -%s_pressure are given; give one of them", load->name, load->name);
@@ -169,6 +171,8 @@ PetscErrorCode LoadsSetUp(Model model)
     PetscReal area;
     Vec       forces;
 
+    if (load->is_bolt) PetscCall(BoltSetUp(model, load));
+    if (load->is_bolt) continue;
     if (load->is_pressure) PetscCall(PressureCheckFaces(model, load));
     PetscCall(LoadCreateForces(model, load, &forces, &area));
     if (load->is_pressure) PetscCall(PressureSum(model, load, forces));
@@ -186,6 +190,10 @@ PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer)
   const char *pascal, *unit;
 
   PetscFunctionBeginUser;
+  if (load->is_bolt) {
+    PetscCall(BoltView(load, viewer));
+    PetscFunctionReturn(0);
+  }
   PetscCall(ModelGetUnit(model, "Pa", &pascal));
   PetscCall(ModelGetUnit(model, "N m", &unit));
   if (load->on_point)
@@ -208,6 +216,8 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
   PetscCheck(i >= 0 && i < model->scene.n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->scene.n_loads);
   load = model->scene.loads[i];
+  PetscCheck(!load.is_bolt, model->comm, PETSC_ERR_SUP,
+             "bolt %s is tightened in the sliding state alone, not in time: leave it out of -loads there", load.name);
   if (factor) load.pressure *= factor[0];
   for (int d = 0; d < 3 && factor; d++) load.force[d] *= factor[0], load.moment[d] *= factor[1];
   PetscCall(LoadCreateForces(model, &load, &forces, &area));

@@ -1,0 +1,227 @@
+/*
+   Bolts that a stage tightens to a tension (model/scene/loads/bolt.c): their shortenings d solve T(d) = F, where T(d)
+   is the tension at the end of the stage, found as without them, from where the stage before left the pairs. Status and
+   friction make T piecewise smooth: Broyden's method (C. G. Broyden, Math. Comp. 19, 1965) from the slopes T_i / d_i of
+   a first solution; on linear pieces it ends after 2 n steps. All solutions share one factorisation.
+*/
+#include "statics/staticsimpl.h"
+#include <petscblaslapack.h>
+
+#define BOLT_RTOL  1e-10 /* of the largest tension */
+#define BOLT_STEPS 60
+
+/* The n bolts that stage k tightens, with d (m), T - F (N), dT/dd (N/m, by columns); the pairs before the stage; its
+   loads: those before (borrowed), its own, their size */
+typedef struct {
+  PetscInt       k;
+  Vec            f0, *f;
+  PetscReal     *size;
+  PetscInt       n, *load;
+  PetscReal     *d, *off, *J, *step;
+  PetscBool      rested;
+  ContactStatus *status;
+  ContactState  *state;
+  Vec            u;
+} Bolts;
+
+/* A load under tension that acts in a stage and did not in the one before */
+static PetscBool BoltBegins(Statics s, PetscInt k, const ModelScene *scene, PetscInt i)
+{
+  const Stage *stage = StagesGet(s, k), *before = StagesGet(s, k - 1);
+
+  return scene->loads[i].has_tension && stage->load[i] > 0 && !(before && before->load[i] > 0) ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
+}
+
+/* Shares of the loads of a stage but for the bolts that it tightens, which are counted */
+static PetscErrorCode BoltsBegin(Statics s, Bolts *b)
+{
+  const PetscInt    k      = b->k;
+  Stage            *stage  = (Stage *)StagesGet(s, k);
+  const Stage      *before = StagesGet(s, k - 1);
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++) {
+    stage->share[i] = stage->load[i];
+    if (scene->loads[i].has_tension) stage->share[i] = stage->load[i] > 0 && before ? before->share[i] : 0;
+    if (BoltBegins(s, k, scene, i)) b->n++;
+  }
+  if (!b->n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc5(b->n, &b->load, b->n, &b->d, b->n, &b->off, b->n * b->n, &b->J, b->n, &b->step));
+  PetscCall(PetscMalloc2(s->rows.n_pairs, &b->status, s->rows.n_pairs, &b->state));
+  PetscCall(PetscArraycpy(b->status, s->status, s->rows.n_pairs));
+  PetscCall(PetscArraycpy(b->state, s->state, s->rows.n_pairs));
+  PetscCall(VecDuplicate(s->u, &b->u));
+  PetscCall(VecCopy(s->u, b->u));
+  b->rested = s->rested;
+  b->n      = 0;
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    if (BoltBegins(s, k, scene, i)) b->load[b->n++] = i;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BoltsEnd(Bolts *b)
+{
+  PetscFunctionBeginUser;
+  if (!b->n) PetscFunctionReturn(0);
+  PetscCall(PetscFree5(b->load, b->d, b->off, b->J, b->step));
+  PetscCall(PetscFree2(b->status, b->state));
+  PetscCall(VecDestroy(&b->u));
+  PetscFunctionReturn(0);
+}
+
+/* The tension that is asked for at the point */
+static PetscErrorCode BoltAsked(Statics s, PetscInt i, PetscReal *tension)
+{
+  const OperatorsParameter *parameters;
+  const ModelScene         *scene;
+  PetscInt                  n;
+  char                      name[192];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_tension", scene->loads[i].name));
+  *tension = scene->loads[i].tension;
+  for (PetscInt j = 0; j < n; j++)
+    if (!strcmp(parameters[j].name, name)) *tension = s->p[j];
+  PetscFunctionReturn(0);
+}
+
+/* The stage with the present shortenings: what is off, and whether that is little */
+static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
+{
+  Stage    *stage = (Stage *)StagesGet(s, b->k);
+  PetscReal most = 0, largest = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDestroy(b->f));
+  PetscCall(PetscArraycpy(s->status, b->status, s->rows.n_pairs));
+  PetscCall(PetscArraycpy(s->state, b->state, s->rows.n_pairs));
+  PetscCall(VecCopy(b->u, s->u));
+  s->rested = b->rested;
+  for (PetscInt j = 0; j < b->n; j++) stage->share[b->load[j]] = b->d[j];
+  PetscCall(StageSolve(s, b->k, b->f0, b->size, b->f));
+  s->n_tightened++;
+  for (PetscInt j = 0; j < b->n; j++) {
+    OperatorsBolt bolt;
+    PetscReal     asked;
+
+    PetscCall(BoltGet(s, b->load[j], &bolt));
+    PetscCall(BoltAsked(s, b->load[j], &asked));
+    b->off[j] = bolt.tension - asked;
+    largest = PetscMax(largest, PetscAbsReal(b->off[j]));
+    most    = PetscMax(most, asked);
+  }
+  *good = largest <= BOLT_RTOL * most ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Shortenings of the cells at the cuts alone, and slopes from the solution with these */
+static PetscErrorCode BoltsGuess(Statics s, Bolts *b, PetscBool *good)
+{
+  PetscReal *stiffness, asked;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->n, &stiffness));
+  for (PetscInt j = 0; j < b->n; j++) {
+    OperatorsBolt bolt;
+
+    PetscCall(OperatorsGetBolt(s->operators, s->p, b->load[j], 0, NULL, &bolt));
+    PetscCall(BoltAsked(s, b->load[j], &asked));
+    stiffness[j] = bolt.stiffness;
+    b->d[j]      = asked / stiffness[j];
+  }
+  PetscCall(BoltsTry(s, b, good));
+  PetscCall(PetscArrayzero(b->J, b->n * b->n));
+  for (PetscInt j = 0; j < b->n; j++) {
+    PetscReal slope;
+
+    PetscCall(BoltAsked(s, b->load[j], &asked));
+    slope              = (b->off[j] + asked) / b->d[j];
+    b->J[j + b->n * j] = slope > 0 && slope <= stiffness[j] ? slope : stiffness[j];
+  }
+  PetscCall(PetscFree(stiffness));
+  PetscFunctionReturn(0);
+}
+
+/* d -= J^-1 (T - F) */
+static PetscErrorCode BoltsStep(Statics s, Bolts *b)
+{
+  PetscBLASInt n, one = 1, info, *pivot;
+  PetscScalar *J;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(b->n, &n));
+  PetscCall(PetscMalloc2(b->n * b->n, &J, b->n, &pivot));
+  PetscCall(PetscArraycpy(J, b->J, b->n * b->n));
+  for (PetscInt j = 0; j < b->n; j++) b->step[j] = -b->off[j];
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, J, &n, pivot, b->step, &n, &info));
+  PetscCheck(!info, s->comm, PETSC_ERR_NOT_CONVERGED,
+             "bolts of stage %s: their tensions do not depend on their shortenings one by one",
+             StagesGet(s, s->stage)->name ? StagesGet(s, s->stage)->name : "1");
+  for (PetscInt j = 0; j < b->n; j++) b->d[j] += b->step[j];
+  PetscCall(PetscFree2(J, pivot));
+  PetscFunctionReturn(0);
+}
+
+/* J += (T - F) step' / step'step, T - F after the step, in shortenings over those of now */
+static void BoltsUpdate(Bolts *b)
+{
+  PetscReal length = 0;
+
+  for (PetscInt j = 0; j < b->n; j++) length += PetscSqr(b->step[j]);
+  for (PetscInt j = 0; j < b->n && length > 0; j++)
+    for (PetscInt i = 0; i < b->n; i++) b->J[i + b->n * j] += b->off[i] * b->step[j] / length;
+}
+
+PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f)
+{
+  const ModelScene *scene;
+  PetscBool         good;
+  Bolts             b = {.k = k, .f0 = f0, .f = f, .size = size};
+
+  PetscFunctionBeginUser;
+  *f = NULL;
+  PetscCall(BoltsBegin(s, &b));
+  if (!b.n) {
+    PetscCall(StageSolve(s, k, f0, size, f));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(BoltsGuess(s, &b, &good));
+  for (PetscInt it = 0; !good; it++) {
+    PetscCheck(it < BOLT_STEPS, s->comm, PETSC_ERR_NOT_CONVERGED,
+               "-%s_tension: after %d solutions %.6g N are missing of it: does something hold the bolt, or does it "
+               "hold nothing?",
+               scene->loads[b.load[0]].name, BOLT_STEPS, (double)-b.off[0]);
+    PetscCall(BoltsStep(s, &b));
+    PetscCall(BoltsTry(s, &b, &good));
+    BoltsUpdate(&b);
+  }
+  PetscCall(BoltsEnd(&b));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoltsView(Statics s, PetscViewer viewer)
+{
+  const ModelScene *scene;
+  const char       *metre;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCall(ModelGetUnit(s->model, "m", &metre));
+  for (PetscInt i = 0; i < scene->n_loads; i++) {
+    OperatorsBolt bolt;
+
+    if (!scene->loads[i].is_bolt) continue;
+    PetscCall(BoltGet(s, i, &bolt));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "bolt %s: tension %.9g N, shortened by %.9g %s\n", scene->loads[i].name,
+                                     (double)bolt.tension, (double)bolt.shortening, metre));
+  }
+  if (s->n_tightened)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "bolts tightened in %" PetscInt_FMT " solutions\n", s->n_tightened));
+  PetscFunctionReturn(0);
+}
