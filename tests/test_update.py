@@ -8,9 +8,10 @@
   held      modulus and density of a free body: only their ratio is told, a prior fixes it
   prior     an earlier update is the prior of the next
   damping   factors of Rayleigh damping from damping ratios
+  onset     friction at lock-in, and how sure it is, beside a sweep of the brake that was measured
   bad       a line each
 
---coverage N makes N synthetic trials: of the 95 % intervals 95 of 100 must hold the truth (binomial, 99 %).
+--coverage N makes N synthetic trials: of the 95 % intervals of moduli and of onsets 95 of 100 must hold the truth (binomial, 99 %).
 
     test_update.py SQUEAL MPIRUN [--coverage N]"""
 
@@ -25,6 +26,7 @@ import numpy as np
 import scipy.optimize
 import scipy.stats
 from forked import run_command, run_script
+from small_brake import SCENE
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
@@ -34,6 +36,7 @@ FAULTS = []
 N = 8
 NOISE = 1e-3
 YOUNG = 2e11
+SWEEP = "-analysis sweep -sweep_parameter contact_mu -sweep_values 0:1:11".split()
 NAMES = [f"b{k}_young" for k in range(1, N + 1)]
 
 
@@ -134,6 +137,25 @@ class Bar:
             return done.stderr
         with (self.folder / "update/update.csv").open(newline="") as lines:
             return {row["parameter"]: row for row in csv.DictReader(lines)}, done.stdout
+
+
+class Brake(Bar):
+    """A small brake whose moduli are measured at low friction, for its onsets over friction."""
+
+    def __init__(self, folder):  # pylint: disable=super-init-not-called
+        self.folder = folder
+        folder.mkdir()
+        (folder / "brake.yaml").write_text(SCENE + "modes: {band: \"500,9000\"}\n")
+        self.run("brake.yaml", "first", {"contact_mu": 0.2})
+        _, first, count = np.unique(self.places.round(9), axis=0, return_index=True, return_counts=True)
+        self.sensors = self.places[np.random.default_rng(1).choice(first[count == 1], 20, replace=False)]
+
+    def onsets(self, values):
+        """Friction, frequency of each lock-in."""
+        words = [word for name, value in values.items() for word in (f"-{name}", f"{value:.17g}")]
+        run_command([sys.argv[2], "-n", 1, sys.argv[1], "-options_file", "brake.yaml", "-output_dir", "sweep", *SWEEP, *words], self.folder)
+        with (self.folder / "sweep/onsets.csv").open(newline="") as lines:
+            return [(float(row["critical_value"]), float(row["freq_hz"])) for row in csv.DictReader(lines) if row["kind"] == "lock_in"]
 
 
 def check_solve():
@@ -253,6 +275,28 @@ def check_coverage(bar, count):
           f"moduli {100 * np.sqrt(np.mean(np.square(worst))):.3f} % rms off")
 
 
+def check_onset(folder, count):
+    """Lock-ins over friction: how far the truth is, in stated standard deviations."""
+    brake, apart = Brake(folder), []
+    for trial in range(count):
+        rng = np.random.default_rng(300 + trial)
+        values = {"pad_young": 8e9 * math.exp(rng.uniform(-0.05, 0.05)), "disc_young": 2.1e11 * math.exp(rng.uniform(-0.01, 0.01)),
+                  "beam_young": 2.1e11 * math.exp(rng.uniform(-0.01, 0.01))}
+        brake.measure(brake.run("brake.yaml", "truth", {**values, "contact_mu": 0.2}), rng)
+        brake.update("--parameters", ",".join(values), "--onset", "contact_mu=0:1:11", "-contact_mu", "0.2", scene="brake.yaml")
+        truths = brake.onsets(values)
+        with (brake.folder / "update/update_onsets.csv").open(newline="") as lines:
+            for row in csv.DictReader(lines):
+                near = [value for value, freq in truths if abs(freq / float(row["freq_hz"]) - 1) < 0.01]
+                if row["kind"] == "lock_in" and row["deviation"] and len(near) == 1:
+                    apart.append((float(row["critical_value"]) - near[0]) / float(row["deviation"]))
+    inside = sum(abs(x) <= 1.96 for x in apart)
+    low, _ = scipy.stats.binom.interval(0.99, len(apart), 0.95)
+    said = f"{inside} within their 95 % intervals, {max(map(abs, apart), default=99):.1f} deviations off at most"
+    check(len(apart) >= count and (inside >= low if count > 1 else max(map(abs, apart)) < 4),
+          f"onset: {len(apart)} lock-ins of {count} brakes, {said}")
+
+
 def main():
     coverage = int(sys.argv[4]) if len(sys.argv) > 4 else 0
     check_solve()
@@ -260,11 +304,13 @@ def main():
         bar = Bar(Path(folder) / "row", row, 19)
         if coverage:
             check_coverage(bar, coverage)
+            check_onset(Path(folder) / "brake", max(coverage // 4, 1))
         else:
             check_eight(Bar(Path(folder) / "comb", comb, 23), "comb", 0.3)
             check_eight(bar, "row", 2)
             for part in (check_held, check_prior, check_damping):
                 part(bar)
+            check_onset(Path(folder) / "brake", 1)
     return 1 if FAULTS else 0
 
 

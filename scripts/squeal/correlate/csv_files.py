@@ -107,6 +107,8 @@ def read_responses(path, there):
 
 def read_csv(path):
     """The Table of a file; its columns say what it is."""
+    if not path.exists():
+        raise BadInput(f"{path}: no such file")
     there = [name.strip() for name in header(path)]
     table = Table(path)
     if "sensor" in there:

@@ -34,6 +34,8 @@ class Cursor:
     """Lines of a file, with the number of each, and the byte that is next."""
 
     def __init__(self, path):
+        if not path.exists():
+            raise BadInput(f"{path}: no such file")
         self.path, self.data, self.at, self.line = path, regular(path).read_bytes(), 0, 0
 
     def wrong(self, what, line=None):

@@ -40,13 +40,13 @@ class Model:
         return {name: ",".join(f"{float(word) * (values[name] / own):.15g}" for word in words)
                 for name, (own, words) in self.own.items() if name in values}
 
-    def run(self, values):
-        """A run of the modes with these parameters; the folder."""
-        folder = self.args.output / "run"
+    def run(self, values, also=("-modes_sensitivities", "true"), name="run"):
+        """A run with these parameters; the folder."""
+        folder = self.args.output / name
         words = [word for file in self.args.scenes for word in ("-options_file", file)] + list(self.args.options)
         words += [word for name, text in self.texts(values).items() for word in (f"-{name}", text)]
-        _, seconds, _ = measured_run(self.args.program, self.args.ranks, [*words, "-modes_sensitivities", "true", "-output_dir", folder],
-                                     "update: " + ", ".join(f"{name} {value:.6g}" for name, value in values.items()))
+        _, seconds, _ = measured_run(self.args.program, self.args.ranks, [*words, *also, "-output_dir", folder],
+                                     ", ".join(f"{name} {value:.6g}" for name, value in values.items()) or "the scene as it is")
         self.runs, self.seconds = self.runs + 1, self.seconds + seconds
         return folder
 
@@ -68,7 +68,13 @@ class Model:
 
     def predict(self, t):
         """Predicted of the parameters start * exp(t)."""
-        folder = self.run(self.values(t))
+        try:
+            folder = self.run(self.values(t))
+        except BadInput as error:
+            if self.chosen is None:
+                raise
+            print(f"note: a step is halved, since squeal refuses its end: {error}")
+            return None
         self.args.folder, self.args.matrices = folder, None
         to = correlate_modes(self.measured, self.args)
         self.measured_again()

@@ -10,6 +10,8 @@ from ..tables import BadInput, print_table, read_table, whole
 PARAMETERS = ("parameter", "unit", "start", "value", "low_95", "high_95", "deviation_percent", "prior_deviation_percent", "held_percent")
 READ = {"parameter": str, "value": float, "deviation_percent": float, "held_percent": float}
 INTERVAL = 1.959963984540054  # standard deviations to each side of a 95 % interval
+BENT = 0.3  # of the standard deviation of an onset, that the curve moves it by
+ONSETS = ("parameter", "critical_value", "low_95", "high_95", "deviation", "second_order", "freq_hz", "kind", "label")
 FEW = 0.1  # of the largest part of a direction: what is not named
 
 
@@ -100,6 +102,25 @@ def print_all(model, fit, prior):
         print(f"what is left is {ratio:.2f} of the stated noise, with {free} degrees of freedom" + (
             ": TOO MUCH: the model cannot be so, the noise is larger, or a pair is wrong; intervals are too narrow" if ratio > 2 else ""))
     print(f"{fit.models} models, {model.runs} runs, {model.seconds:.1f} s of a processor" + ("" if fit.converged else "; NOT CONVERGED"))
+
+
+def tell_onsets(name, onsets, output):
+    """Writes and prints the onsets with their intervals, of which that of the sweep itself is part."""
+    rows = []
+    for one in onsets:
+        deviation = math.hypot(one.deviation(), one.row["error_estimate"]) if one.first else math.nan
+        value = one.row["critical_value"]
+        rows.append((name, value, *((value - INTERVAL * deviation, value + INTERVAL * deviation, deviation, one.bend())
+                                    if math.isfinite(deviation) else 4 * [""]), one.row["freq_hz"], one.row["kind"], one.row["label"]))
+        if math.isfinite(deviation):
+            said = f"+- {INTERVAL * deviation:.2g} (95 %)" + (
+                ", whose dependence is bent: -analysis sample tells more" if abs(one.bend()) > BENT * deviation else "")
+        else:
+            said = "but not for all parameters within their intervals"
+        print(f"{one.row['kind'].replace('_', ' ')} at {name} = {value:.5g} {said}, {one.row['freq_hz']:.1f} Hz {one.row['label']}")
+    if not rows:
+        print(f"no onset over {name}")
+    write_rows(output / "update_onsets.csv", ONSETS, rows)
 
 
 def read_prior(path, names):
