@@ -161,7 +161,8 @@ PetscErrorCode ModesViewMechanism(Modes modes, PetscInt i, const ModeMechanism *
   if (m->partner >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, " with mode %" PetscInt_FMT, m->partner + 1));
   if (m->partner >= 0 && PetscAbsReal(m->real[0] - mode->omega) < PAIR_NEAR * mode->omega &&
       PetscAbsReal(m->real[1] - mode->omega) < PAIR_NEAR * mode->omega)
-    PetscCall(PetscViewerASCIIPrintf(viewer, " (without friction and damping at about %.4g and %.4g Hz)",
-                                     (double)(m->real[0] / (2 * PETSC_PI)), (double)(m->real[1] / (2 * PETSC_PI))));
+    PetscCall(PetscViewerASCIIPrintf(viewer, " (without friction and damping about %.4g and %.4g Hz, %.3g apart)",
+                                     (double)(m->real[0] / (2 * PETSC_PI)), (double)(m->real[1] / (2 * PETSC_PI)),
+                                     (double)(PetscAbsReal(m->real[1] - m->real[0]) / (2 * PETSC_PI))));
   PetscFunctionReturn(0);
 }
