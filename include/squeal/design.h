@@ -14,6 +14,11 @@
    next design solves the quadratic problem with them (PETSc's TAO, on its dual), and steps no further than the radius
    of trust. A design without unstable mode at any scenario of the reduced model is accepted when the full solution at
    the scenario that comes nearest to the limit says the same.
+
+   About a sliding state each scenario of each design has its own contact status, out of the classes of the points that
+   the basis is made for (sample.h). Those of a design are found once it is good with those of the design before; then
+   it must be good with its own. Where a status is none of the classes, the one that differs in the fewest pairs is
+   taken and the scenario counted; full solutions have their own state always.
 */
 #pragma once
 

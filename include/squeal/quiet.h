@@ -11,7 +11,9 @@
    The statement holds for the reduced model at every point of the cell, but for rounding in the sums that show it; the
    estimated error of the model is taken off all distances, and is an estimate.
 
-   The contact status is that of the scene's own values.
+   The contact status is that of the scene's own values: where a point of the box has another sliding state the
+   statement is none about the brake. How many of the points that the basis was made for have one is said, and full
+   solutions have their own state. -analysis sample takes each point's own.
 */
 #pragma once
 

@@ -170,4 +170,7 @@ class Results:
         path = self.folder / f"{name}.h5"
         if not path.is_file():
             raise Failed(f"{path}: no such file; -output_fields 0 leaves fields out")
-        return h5py.File(path)
+        try:
+            return h5py.File(path)
+        except OSError as error:
+            raise Failed(f"{path}: cannot be read: {error}") from None

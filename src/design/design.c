@@ -62,17 +62,20 @@ PetscErrorCode DesignGetVaried(Design d, const char **names)
 /* Both boxes; what may be changed is not uncertain, too */
 static PetscErrorCode DesignRead(Design d)
 {
-  const CubeOptions *u    = &d->uncertain_options;
-  const PetscBool    held = d->box.statics ? PETSC_TRUE : PETSC_FALSE;
+  const CubeOptions *u     = &d->uncertain_options;
+  const CubeState    state = d->box.statics ? CUBE_OWN_STATE : CUBE_NO_STATE;
 
   PetscFunctionBeginUser;
   PetscCheck(u->names[0] || !(u->n_percent + u->n_lower + u->n_upper), d->comm, PETSC_ERR_USER_INPUT,
              "-design_uncertain_percent, -design_uncertain_lower and -design_uncertain_upper do nothing without "
              "-design_uncertain_parameters");
+  PetscCheck(u->names[0] || !d->corners_given, d->comm, PETSC_ERR_USER_INPUT,
+             "-design_corners %" PetscInt_FMT " are those of -design_uncertain_parameters, which names nothing",
+             d->n_corners);
   d->cube.nominal = d->uncertain.nominal = d->box.nominal;
-  PetscCall(CubeRead(d->comm, d->operators, held, "design", &d->options, &d->cube));
+  PetscCall(CubeRead(d->comm, d->operators, state, "design", &d->options, &d->cube));
   if (d->uncertain_options.names[0])
-    PetscCall(CubeRead(d->comm, d->operators, held, "design_uncertain", &d->uncertain_options, &d->uncertain));
+    PetscCall(CubeRead(d->comm, d->operators, state, "design_uncertain", &d->uncertain_options, &d->uncertain));
   for (PetscInt k = 0; k < d->cube.n; k++)
     for (PetscInt l = 0; l < d->uncertain.n; l++)
       for (PetscInt m = 0; m < d->cube.n_moved[k]; m++)
@@ -86,31 +89,61 @@ static PetscErrorCode DesignRead(Design d)
 }
 
 /* Points for the basis: all scenarios of the scene's own design, then both boxes together */
-static PetscErrorCode DesignFit(Design d)
+static PetscErrorCode DesignTrain(Design d)
 {
-  const PetscInt n = d->cube.n + d->uncertain.n, m = d->box.n_parameters, n_points = d->n_scenarios + DESIGN_TRAIN;
+  const PetscInt n = d->cube.n + d->uncertain.n;
   Sequence       sequence = {SEQUENCE_SOBOL, 2, DESIGN_TRAIN, n, NULL};
-  PetscReal     *points, t[2 * CUBE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
+  d->n_train = d->n_scenarios + DESIGN_TRAIN;
   PetscCall(SequenceSetUp(&sequence));
-  PetscCall(PetscMalloc1(n_points * m, &points));
-  for (PetscInt i = 0; i < n_points; i++) {
-    PetscReal *p = &points[i * m];
+  PetscCall(PetscMalloc1(d->n_train * n, &d->train));
+  for (PetscInt i = 0; i < d->n_train; i++) {
+    PetscReal *t = &d->train[i * n];
 
-    PetscCall(PetscArraycpy(p, d->box.nominal, m));
     if (i < d->n_scenarios) {
-      DesignParameters(d, d->cube.own, &d->scenario[i * d->uncertain.n], p);
+      PetscCall(PetscArraycpy(t, d->cube.own, d->cube.n));
+      PetscCall(PetscArraycpy(&t[d->cube.n], &d->scenario[i * d->uncertain.n], d->uncertain.n));
       continue;
     }
     SequencePoint(&sequence, i - d->n_scenarios, t);
     for (PetscInt k = 0; k < n; k++) t[k] = 2 * t[k] - 1;
-    DesignParameters(d, t, &t[d->cube.n], p);
   }
-  PetscCall(BoxFit(&d->box, n_points, points));
-  PetscCall(BoxCompress(&d->box, n_points, points));
-  PetscCall(PetscFree(points));
   PetscCall(SequenceDestroy(&sequence));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TrainGet(void *ctx, PetscInt i, PetscReal p[])
+{
+  const Design     d = ctx;
+  const PetscReal *t = &d->train[i * (d->cube.n + d->uncertain.n)];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(p, d->box.nominal, d->box.n_base));
+  CubeMove(&d->cube, t, p);
+  CubeMove(&d->uncertain, &t[d->cube.n], p);
+  PetscFunctionReturn(0);
+}
+
+/* The statuses of these points are the classes that the pencil knows; each point is at its own */
+static PetscErrorCode DesignFit(Design d)
+{
+  PetscReal *points;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxSetUp(&d->box, d->n_train, TrainGet, d));
+  d->cube.nominal = d->uncertain.nominal = d->box.nominal;
+  d->cube.n_parameters = d->uncertain.n_parameters = d->box.n_parameters;
+  PetscCall(PetscMalloc1(d->n_train * d->box.n_parameters, &points));
+  for (PetscInt i = 0; i < d->n_train; i++) {
+    PetscCall(TrainGet(d, i, &points[i * d->box.n_parameters]));
+    BoxPutStatus(&d->box, i, &points[i * d->box.n_parameters]);
+  }
+  /* of the scene's own design */
+  if (d->box.statics) PetscCall(PetscArraycpy(d->status, d->box.status, d->n_scenarios));
+  PetscCall(BoxFit(&d->box, d->n_train, points));
+  PetscCall(BoxCompress(&d->box, d->n_train, points));
+  PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }
 
@@ -122,12 +155,10 @@ PetscErrorCode DesignSolve(Design d, Results results)
   (void)results;
   PetscCall(PetscTime(&begun));
   PetscCall(DesignRead(d));
-  PetscCall(BoxSetUp(&d->box, 0, NULL, NULL)); /* the status of the scene's own values holds everywhere */
-  d->cube.nominal = d->uncertain.nominal = d->box.nominal;
-  d->cube.n_parameters = d->uncertain.n_parameters = d->box.n_parameters;
   PetscCall(DesignScenarios(d));
-  PetscCall(DesignMass(d));
+  PetscCall(DesignTrain(d));
   PetscCall(DesignFit(d));
+  PetscCall(DesignMass(d));
   PetscCall(PetscTime(&ended));
   d->seconds[0] = ended - begun;
   PetscCall(DesignSearch(d));
@@ -145,7 +176,8 @@ PetscErrorCode DesignDestroy(Design *design)
 
   PetscFunctionBeginUser;
   if (!d) PetscFunctionReturn(0);
-  PetscCall(PetscFree(d->scenario));
+  PetscCall(PetscFree3(d->scenario, d->status, d->apart));
+  PetscCall(PetscFree(d->train));
   PetscCall(PetscFree(d->cut));
   PetscCall(PetscFree(d->point));
   PetscCall(PetscFree(d->corner));

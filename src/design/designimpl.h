@@ -15,6 +15,8 @@ typedef struct {
   PetscReal change, mass;          /* |z - own| / sqrt(n); mass beside that of the scene */
   PetscBool solved, good;          /* in full, at the worst scenario; and there, too, nothing is unstable */
   PetscReal full_excess;           /* there */
+  PetscInt  n_classes, n_apart;    /* contact statuses of its scenarios; scenarios with none of the classes */
+  PetscInt  apart;                 /* most pairs that such a status differs in from the class taken */
 } DesignPoint;
 
 /* a + g' (z - at) <= 0 */
@@ -25,7 +27,7 @@ typedef struct {
 /* A corner of the uncertain box in full */
 typedef struct {
   PetscReal t[CUBE_MAX_VARIABLES], excess, sigma, omega, error;
-  PetscInt  n_unstable, n_modes;
+  PetscInt  n_unstable, n_modes, n_closed; /* closed pairs, -1 without a sliding state */
 } DesignCorner;
 
 struct _p_Design {
@@ -35,12 +37,16 @@ struct _p_Design {
   /* set by options */
   CubeOptions options, uncertain_options;
   PetscInt    n_inside, n_corners, max_designs;
+  PetscBool   corners_given;
   PetscReal   probability, margin, mass_weight;
   char        varied[2 * CUBE_MAX_TEXT];
   /* results */
   Cube           cube, uncertain;
   PetscInt       n_scenarios;
   PetscReal     *scenario;                       /* [n_scenarios][uncertain.n] t */
+  PetscInt      *status, *apart;                 /* [n_scenarios] classes of the design looked at (box.h) */
+  PetscReal     *train;                          /* [n_train][cube.n + uncertain.n] t of the points of the basis */
+  PetscInt       n_train;
   PetscReal      mass_slope[CUBE_MAX_VARIABLES]; /* d (m / m(0)) / d z */
   PetscReal      mass;                           /* kg of the moving unknowns, of the scene */
   PetscInt       n_cuts, n_points, best, n_full; /* full solutions: beside those of the basis */
@@ -61,6 +67,8 @@ PETSC_INTERN void DesignForget(Design design, const PetscReal good[]);
    Collective */
 PETSC_INTERN PetscErrorCode DesignScenarios(Design design);
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
+/* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */
+PETSC_INTERN PetscErrorCode DesignFindStatuses(Design design, const PetscReal z[], PetscBool *changed);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);
 /* full.c - the full solution of a design at a scenario t; at the corners of the uncertain box. Collective */
 PETSC_INTERN PetscErrorCode DesignFull(Design design, const PetscReal z[], const PetscReal t[], DesignCorner *corner);

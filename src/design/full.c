@@ -5,7 +5,7 @@
 PetscErrorCode DesignFull(Design d, const PetscReal z[], const PetscReal t[], DesignCorner *corner)
 {
   const ModesLimit in_force = ModesLimitInForce(&d->box.limit);
-  const Mode      *full;
+  BoxFull          full;
   PetscReal       *p;
 
   PetscFunctionBeginUser;
@@ -13,17 +13,18 @@ PetscErrorCode DesignFull(Design d, const PetscReal z[], const PetscReal t[], De
   PetscCall(PetscArraycpy(corner->t, t, d->uncertain.n));
   PetscCall(PetscMalloc1(d->cube.n_parameters, &p));
   DesignParameters(d, z, t, p);
-  PetscCall(PencilSetParameters(d->box.pencil, p));
-  PetscCall(ModesSolve(d->box.modes));
-  PetscCall(ModesGet(d->box.modes, &corner->n_modes, &full));
-  for (PetscInt i = 0; i < corner->n_modes; i++) {
-    const PetscReal excess = full[i].sigma - ModesLimitGrowth(&in_force, hypot(full[i].sigma, full[i].omega));
+  PetscCall(BoxSolveFull(&d->box, p, &full));
+  corner->n_modes  = full.n;
+  corner->n_closed = full.n_closed;
+  for (PetscInt i = 0; i < full.n; i++) {
+    const Mode     *mode   = &full.mode[i];
+    const PetscReal excess = mode->sigma - ModesLimitGrowth(&in_force, hypot(mode->sigma, mode->omega));
 
-    if (full[i].rigid) continue;
-    corner->n_unstable += ModesLimitJudge(&d->box.limit, full[i].sigma, full[i].omega, full[i].error) == MODE_UNSTABLE;
+    if (mode->rigid) continue;
+    corner->n_unstable += ModesLimitJudge(&d->box.limit, mode->sigma, mode->omega, mode->error) == MODE_UNSTABLE;
     if (excess <= corner->excess) continue;
     corner->excess = excess;
-    corner->sigma = full[i].sigma, corner->omega = full[i].omega, corner->error = full[i].error;
+    corner->sigma = mode->sigma, corner->omega = mode->omega, corner->error = mode->error;
   }
   d->n_full++;
   PetscCall(PetscFree(p));

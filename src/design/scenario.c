@@ -14,7 +14,8 @@ PetscErrorCode DesignScenarios(Design d)
 
   PetscFunctionBeginUser;
   d->n_scenarios = 1 + n_corners + n_inside;
-  PetscCall(PetscCalloc1(d->n_scenarios * PetscMax(1, n), &d->scenario));
+  PetscCall(PetscCalloc3(d->n_scenarios * PetscMax(1, n), &d->scenario, d->n_scenarios, &d->status, d->n_scenarios,
+                         &d->apart));
   PetscCall(SequenceSetUp(&sequence));
   for (PetscInt k = 0; k < n; k++) d->scenario[k] = d->uncertain.own[k];
   for (PetscInt i = 1; i < d->n_scenarios; i++) {
@@ -32,6 +33,56 @@ void DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], 
 {
   CubePoint(&d->cube, z, p);
   CubeMove(&d->uncertain, t, p);
+}
+
+/* A design whose statuses are asked for */
+typedef struct {
+  Design           design;
+  const PetscReal *z;
+} DesignAt;
+
+static PetscErrorCode ScenarioGet(void *ctx, PetscInt i, PetscReal p[])
+{
+  const DesignAt *at = ctx;
+  const Design    d  = at->design;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(p, d->box.nominal, d->box.n_base));
+  CubeMove(&d->cube, at->z, p);
+  CubeMove(&d->uncertain, &d->scenario[i * d->uncertain.n], p);
+  PetscFunctionReturn(0);
+}
+
+/* The class of each scenario of this design, which those looked at from now on take until others are found; whether
+   one has changed */
+PetscErrorCode DesignFindStatuses(Design d, const PetscReal z[], PetscBool *changed)
+{
+  PetscInt *before;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  if (!d->box.statics) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(d->n_scenarios, &before));
+  PetscCall(PetscArraycpy(before, d->status, d->n_scenarios));
+  PetscCall(BoxFindClasses(&d->box, d->n_scenarios, ScenarioGet, &(DesignAt){d, z}, d->status, d->apart));
+  for (PetscInt i = 0; i < d->n_scenarios; i++)
+    if (before[i] != d->status[i]) *changed = PETSC_TRUE;
+  PetscCall(PetscFree(before));
+  PetscFunctionReturn(0);
+}
+
+/* How many classes the scenarios have, and how many scenarios none of them */
+static void StatusesCount(const Design d, DesignPoint *point)
+{
+  point->n_classes = point->n_apart = point->apart = 0;
+  for (PetscInt i = 0; i < d->n_scenarios; i++) {
+    PetscInt first = 0;
+
+    while (d->status[first] != d->status[i]) first++;
+    point->n_classes += first == i ? 1 : 0;
+    point->n_apart += d->apart[i] ? 1 : 0;
+    point->apart = PetscMax(point->apart, d->apart[i]);
+  }
 }
 
 /* A scenario of a design */
@@ -78,6 +129,7 @@ static PetscErrorCode ScenarioLook(const Design d, const PetscReal z[], Scenario
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(d->cube.n_parameters, &p));
   DesignParameters(d, z, &d->scenario[s->index * d->uncertain.n], p);
+  BoxPutClass(box, d->status[s->index], p);
   PetscCall(BoxSolve(box, box->small.n_used ? PETSC_TRUE : PETSC_FALSE, p, &modes));
   s->excess     = PETSC_NINFINITY;
   s->n_unstable = s->n_cuts = 0;
@@ -147,6 +199,8 @@ PetscErrorCode DesignLook(Design d, PetscBool keep, DesignPoint *point)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  StatusesCount(d, point);
+  point->n_unstable = point->n_scenarios = 0;
   PetscCall(PetscCalloc1(n, &s));
   for (PetscInt i = 0; i < n; i++) {
     s[i].index = i;

@@ -50,26 +50,41 @@ static PetscErrorCode PointAccept(Design d, DesignPoint *point)
   PetscFunctionReturn(0);
 }
 
-/* The next row of the table */
+/* The next row of the table. It is looked at with the contact statuses of the design before; where it is good with
+   them its own are found, and if they are others it is looked at with these */
 static PetscErrorCode DesignTry(Design d, const PetscReal z[], DesignPoint **point)
 {
+  PetscBool changed = PETSC_FALSE;
+
   PetscFunctionBeginUser;
   *point = &d->point[d->n_points++];
   PetscCall(PetscArraycpy((*point)->z, z, d->cube.n));
   PointMeasure(d, *point);
   PetscCall(DesignLook(d, PETSC_TRUE, *point));
+  if (IsAllowed(d, *point)) PetscCall(DesignFindStatuses(d, z, &changed));
+  if (changed) PetscCall(DesignLook(d, PETSC_TRUE, *point));
   if (IsAllowed(d, *point)) PetscCall(PointAccept(d, *point));
   PetscFunctionReturn(0);
+}
+
+/* Whether a step leads away from the least bad design; the bounds may leave nothing to change */
+static PetscBool StepMoves(const Design d, const PetscReal z[])
+{
+  PetscReal most = 0;
+
+  for (PetscInt k = 0; k < d->cube.n; k++) most = PetscMax(most, PetscAbsReal(z[k] - d->point[d->best].z[k]));
+  return most > LEAST_RADIUS ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Until one is good: from the least bad one, and less far where a step has failed */
 static PetscErrorCode SearchGood(Design d)
 {
   PetscReal radius = RADIUS, z[CUBE_MAX_VARIABLES];
+  PetscBool moves  = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(z, d->cube.own, d->cube.n));
-  while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS) {
+  while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS && moves) {
     DesignPoint *point;
 
     PetscCall(DesignTry(d, z, &point));
@@ -80,6 +95,7 @@ static PetscErrorCode SearchGood(Design d)
       d->best = d->n_points - 1;
     if (!d->found) PetscCall(DesignStep(d, d->point[d->best].z, radius, z));
     PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
+    moves = StepMoves(d, z);
   }
   PetscFunctionReturn(0);
 }

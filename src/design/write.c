@@ -5,13 +5,13 @@
 static PetscErrorCode PointsWrite(Design d, Results results)
 {
   ResultsTable table;
-  char         line[CUBE_MAX_TEXT];
-  PetscReal    row[11 + CUBE_MAX_VARIABLES];
+  char         line[2 * CUBE_MAX_TEXT];
+  PetscReal    row[13 + CUBE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(line,
                          "design,scenarios,unstable_scenarios,unstable_modes,excess_rad_s,freq_hz,change,mass_ratio,"
-                         "solved,full_excess_rad_s,found",
+                         "solved,full_excess_rad_s,found,statuses,other_statuses",
                          sizeof(line)));
   for (PetscInt k = 0; k < d->cube.n; k++) {
     PetscCall(PetscStrlcat(line, ",", sizeof(line)));
@@ -28,13 +28,15 @@ static PetscErrorCode PointsWrite(Design d, Results results)
                                  p->omega / (2 * PETSC_PI),
                                  p->change,
                                  p->mass,
-                              p->solved ? 1 : 0,
-                              p->solved ? p->full_excess : NAN,
-                              d->found && i == d->best ? 1 : 0};
+                                 p->solved ? 1 : 0,
+                                 p->solved ? p->full_excess : NAN,
+                                 d->found && i == d->best ? 1 : 0,
+                                 (PetscReal)p->n_classes,
+                                 (PetscReal)p->n_apart};
 
-    PetscCall(PetscArraycpy(row, head, 11));
-    for (PetscInt k = 0; k < d->cube.n; k++) row[11 + k] = CubeValue(&d->cube, k, p->z[k]);
-    PetscCall(ResultsTableNumbers(table, 11 + d->cube.n, row));
+    PetscCall(PetscArraycpy(row, head, 13));
+    for (PetscInt k = 0; k < d->cube.n; k++) row[13 + k] = CubeValue(&d->cube, k, p->z[k]);
+    PetscCall(ResultsTableNumbers(table, 13 + d->cube.n, row));
   }
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
@@ -44,12 +46,13 @@ static PetscErrorCode PointsWrite(Design d, Results results)
 static PetscErrorCode CornersWrite(Design d, Results results)
 {
   ResultsTable table;
-  char         line[CUBE_MAX_TEXT];
-  PetscReal    row[6 + CUBE_MAX_VARIABLES];
+  char         line[2 * CUBE_MAX_TEXT];
+  PetscReal    row[7 + CUBE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
   if (!d->corner) PetscFunctionReturn(0);
-  PetscCall(PetscStrncpy(line, "modes,unstable,excess_rad_s,freq_hz,growth_rad_s,error_rad_s", sizeof(line)));
+  PetscCall(PetscStrncpy(line, "modes,unstable,excess_rad_s,freq_hz,growth_rad_s,error_rad_s,closed_pairs",
+                         sizeof(line)));
   for (PetscInt k = 0; k < d->uncertain.n; k++) {
     PetscCall(PetscStrlcat(line, ",", sizeof(line)));
     PetscCall(PetscStrlcat(line, d->uncertain.name[k], sizeof(line)));
@@ -58,13 +61,27 @@ static PetscErrorCode CornersWrite(Design d, Results results)
   for (PetscInt i = 0; i < d->n_corners; i++) {
     const DesignCorner *c      = &d->corner[i];
     const PetscReal     head[] = {
-          (PetscReal)c->n_modes, (PetscReal)c->n_unstable, c->excess, c->omega / (2 * PETSC_PI), c->sigma, c->error};
+      (PetscReal)c->n_modes, (PetscReal)c->n_unstable, c->excess, c->omega / (2 * PETSC_PI), c->sigma, c->error,
+      c->n_closed < 0 ? NAN : (PetscReal)c->n_closed};
 
-    PetscCall(PetscArraycpy(row, head, 6));
-    for (PetscInt k = 0; k < d->uncertain.n; k++) row[6 + k] = CubeValue(&d->uncertain, k, c->t[k]);
-    PetscCall(ResultsTableNumbers(table, 6 + d->uncertain.n, row));
+    PetscCall(PetscArraycpy(row, head, 7));
+    for (PetscInt k = 0; k < d->uncertain.n; k++) row[7 + k] = CubeValue(&d->uncertain, k, c->t[k]);
+    PetscCall(ResultsTableNumbers(table, 7 + d->uncertain.n, row));
   }
   PetscCall(ResultsTableClose(&table));
+  PetscFunctionReturn(0);
+}
+
+/* The model over both boxes, for the page */
+static PetscErrorCode DesignWriteModel(Design d, Results results)
+{
+  PetscInt  parameter[2 * CUBE_MAX_MOVED], n;
+  PetscReal lower[2 * CUBE_MAX_MOVED], upper[2 * CUBE_MAX_MOVED];
+
+  PetscFunctionBeginUser;
+  n = CubeMoved(&d->cube, parameter, lower, upper);
+  n += CubeMoved(&d->uncertain, &parameter[n], &lower[n], &upper[n]);
+  PetscCall(BoxExport(&d->box, &(BoxVaried){n, parameter, lower, upper}, results));
   PetscFunctionReturn(0);
 }
 
@@ -73,6 +90,7 @@ PetscErrorCode DesignWrite(Design d, Results results)
   PetscFunctionBeginUser;
   PetscCall(PointsWrite(d, results));
   PetscCall(CornersWrite(d, results));
+  PetscCall(DesignWriteModel(d, results));
   PetscFunctionReturn(0);
 }
 
@@ -98,6 +116,32 @@ static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer v
   PetscFunctionReturn(0);
 }
 
+/* Which contact statuses were looked at */
+static PetscErrorCode DesignStateView(Design d, const DesignPoint *last, PetscViewer viewer)
+{
+  const StatusList *list  = &d->box.statuses;
+  PetscInt          least = list->n_pairs, most = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < d->box.n_classes; i++) {
+    least = PetscMin(least, list->n_closed[i]);
+    most  = PetscMax(most, list->n_closed[i]);
+  }
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer,
+    "sliding state of each design at each scenario: %" PetscInt_FMT " statuses in both boxes, %" PetscInt_FMT
+    " to %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed",
+    d->box.n_classes, least, most, list->n_pairs));
+  if (last->n_apart)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer,
+      "; at %" PetscInt_FMT " scenarios of this one it is another: the nearest, %" PetscInt_FMT
+      " pairs apart at most, but for full solutions",
+      last->n_apart, last->apart));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DesignView(Design d, PetscViewer viewer)
 {
   const DesignPoint *first = &d->point[0], *last = &d->point[d->found ? d->best : d->n_points - 1];
@@ -120,6 +164,7 @@ PetscErrorCode DesignView(Design d, PetscViewer viewer)
                                      " unstable scenarios; widen -design_percent, or raise -design_max\n",
                                      d->n_points, last->n_scenarios));
   if (d->found) PetscCall(FoundView(d, last, viewer));
+  if (d->box.statics) PetscCall(DesignStateView(d, last, viewer));
   if (d->box.whole)
     PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns\n", d->box.basis.reduced.n_used));
   else

@@ -38,24 +38,24 @@ static PetscErrorCode CheckFull(Quiet q, const PetscReal t[])
   QuietChecks *c = &q->checks;
   ReducedModes modes;
   FullCheck    check = {0};
-  const Mode  *full;
+  BoxFull      full;
   PetscReal   *p;
-  PetscInt     n;
+  PetscBool    other;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(q->cube.n_parameters, &p));
   CubePoint(&q->cube, t, p);
   PetscCall(BoxSolve(&q->box, q->box.small.n_used ? PETSC_TRUE : PETSC_FALSE, p, &modes));
-  PetscCall(PencilSetParameters(q->box.pencil, p));
-  PetscCall(ModesSolve(q->box.modes));
-  PetscCall(ModesGet(q->box.modes, &n, &full));
-  FullCompare(&q->box.window, &q->box.limit, n, full, &modes, &check);
-  for (PetscInt i = 0; i < n; i++)
-    if (!full[i].rigid) c->full_growth = PetscMax(c->full_growth, full[i].sigma);
+  PetscCall(BoxSolveFull(&q->box, p, &full));
+  other = q->box.statics && full.status != q->box.status[0] ? PETSC_TRUE : PETSC_FALSE;
+  FullCompare(&q->box.window, &q->box.limit, full.n, full.mode, &modes, &check);
+  for (PetscInt i = 0; i < full.n; i++)
+    if (!full.mode[i].rigid) c->full_growth = PetscMax(c->full_growth, full.mode[i].sigma);
   c->n_full++;
+  c->n_full_other += other;
   c->n_full_unstable += check.n_unstable_full > 0 ? 1 : 0;
-  c->n_beyond += check.n_beyond;
-  c->true_error = PetscMax(c->true_error, check.error);
+  c->n_beyond += other ? 0 : check.n_beyond;
+  c->true_error = PetscMax(c->true_error, other ? 0 : check.error);
   PetscCall(ReducedModesDestroy(&modes));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);

@@ -59,8 +59,8 @@ PetscReal CubeNear(const Cube *cube, const PetscReal low[], const PetscReal high
 }
 
 /* The parameters of a variable, "inner_mu+outer_mu" */
-static PetscErrorCode VariableNames(MPI_Comm comm, Operators operators, PetscBool held, const char option[], Cube *cube,
-                                    PetscInt k)
+static PetscErrorCode VariableNames(MPI_Comm comm, Operators operators, CubeState state, const char option[],
+                                    Cube *cube, PetscInt k)
 {
   const OperatorsParameter *list;
   PetscInt                  n;
@@ -74,11 +74,10 @@ static PetscErrorCode VariableNames(MPI_Comm comm, Operators operators, PetscBoo
   PetscCall(PetscMalloc3(n_words, &cube->moved[k], n_words, &cube->lower[k], n_words, &cube->upper[k]));
   for (int m = 0; m < n_words; m++) {
     PetscCall(GridParameterFind(comm, operators, option, word[m], &cube->moved[k][m]));
-    PetscCall(GridParameterCheck(comm, operators, held, option, word[m]));
-    PetscCheck(!list[cube->moved[k][m]].state, comm, PETSC_ERR_USER_INPUT,
-               "%s %s changes modes through the sliding state alone, which is that of the scene everywhere; leave it "
-               "out",
-               option, word[m]);
+    PetscCall(GridParameterCheck(comm, operators, state != CUBE_NO_STATE ? PETSC_TRUE : PETSC_FALSE, option, word[m]));
+    PetscCheck(!list[cube->moved[k][m]].state || state == CUBE_OWN_STATE, comm, PETSC_ERR_USER_INPUT,
+               "%s %s changes modes through the sliding state alone, %s; leave it out", option, word[m],
+               state == CUBE_NO_STATE ? "about which they are not" : "which is that of the scene everywhere");
     for (PetscInt l = 0; l <= k; l++)
       for (PetscInt i = 0; i < (l == k ? m : cube->n_moved[l]); i++)
         PetscCheck(cube->moved[l][i] != cube->moved[k][m], comm, PETSC_ERR_USER_INPUT, "%s names '%s' twice", option,
@@ -123,7 +122,7 @@ static PetscErrorCode VariableEnds(MPI_Comm comm, Operators operators, const cha
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, const char prefix[], const CubeOptions *o,
+PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, CubeState state, const char prefix[], const CubeOptions *o,
                         Cube *cube)
 {
   const OperatorsParameter *list;
@@ -151,7 +150,7 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, cons
   for (int k = 0; k < n; k++) {
     PetscCall(PetscStrallocpy(word[k], &cube->name[k]));
     cube->n = k + 1;
-    PetscCall(VariableNames(comm, operators, held, option, cube, k));
+    PetscCall(VariableNames(comm, operators, state, option, cube, k));
     PetscCall(VariableEnds(comm, operators, prefix, o, cube, k));
     n_moved += cube->n_moved[k];
   }

@@ -27,10 +27,13 @@ typedef struct {
   PetscReal  own[CUBE_MAX_VARIABLES];                                 /* t of the scene's own values */
 } Cube;
 
+/* What modes are about: no sliding state, that of the scene everywhere, each point's own */
+typedef enum { CUBE_NO_STATE, CUBE_HELD_STATE, CUBE_OWN_STATE } CubeState;
+
 /* What options with that prefix ("quiet") say, of parameters that the operators have; `nominal` of the cube is set.
-   held: the sliding state stays that of the scene. Collective.
+   Collective.
    Errors: PETSC_ERR_USER_INPUT for names, values and boxes that cannot be. */
-PETSC_INTERN PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, PetscBool held, const char prefix[],
+PETSC_INTERN PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, CubeState state, const char prefix[],
                                      const CubeOptions *options, Cube *cube);
 PETSC_INTERN PetscErrorCode CubeDestroy(Cube *cube);
 /* All parameters p of a point t [n] */

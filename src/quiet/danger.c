@@ -212,21 +212,21 @@ PetscErrorCode QuietRefine(Quiet q)
 /* The mode of the full solution at t that grows fastest beyond the limit */
 static PetscErrorCode FullLook(Quiet q, DangerPoint *at)
 {
-  const Mode *full;
-  PetscInt    n;
-  PetscReal  *p;
+  BoxFull    full;
+  PetscReal *p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(q->cube.n_parameters, &p));
   CubePoint(&q->cube, at->t, p);
-  PetscCall(PencilSetParameters(q->box.pencil, p));
-  PetscCall(ModesSolve(q->box.modes));
-  PetscCall(ModesGet(q->box.modes, &n, &full));
+  PetscCall(BoxSolveFull(&q->box, p, &full));
+  at->other      = q->box.statics && full.status != q->box.status[0] ? PETSC_TRUE : PETSC_FALSE;
   at->full_sigma = at->full_omega = at->full_error = NAN;
-  for (PetscInt i = 0; i < n; i++) {
-    if (ModesLimitJudge(&q->box.limit, full[i].sigma, full[i].omega, full[i].error) != MODE_UNSTABLE) continue;
-    if (at->full_sigma >= full[i].sigma) continue;
-    at->full_sigma = full[i].sigma, at->full_omega = full[i].omega, at->full_error = full[i].error;
+  for (PetscInt i = 0; i < full.n; i++) {
+    const Mode *mode = &full.mode[i];
+
+    if (ModesLimitJudge(&q->box.limit, mode->sigma, mode->omega, mode->error) != MODE_UNSTABLE) continue;
+    if (at->full_sigma >= mode->sigma) continue;
+    at->full_sigma = mode->sigma, at->full_omega = mode->omega, at->full_error = mode->error;
   }
   at->confirmed = PetscIsNanReal(at->full_sigma) ? PETSC_FALSE : PETSC_TRUE;
   PetscCall(PetscFree(p));
@@ -234,7 +234,7 @@ static PetscErrorCode FullLook(Quiet q, DangerPoint *at)
 }
 
 /* The surface is known to the error of the model only: where the full solution does not grow yet the point steps
-   outward */
+   outward, within the box */
 PetscErrorCode QuietConfirm(Quiet q)
 {
   DangerPoint *at = &q->danger;
@@ -247,7 +247,9 @@ PetscErrorCode QuietConfirm(Quiet q)
   for (int step = 0; step < OUTWARD_STEPS && !at->confirmed; step++) {
     DangerPoint next;
 
-    Along(&q->cube, at->t, 1 + OUTWARD * (1 << step), t);
+    if (at->distance >= 1) break;
+    Along(&q->cube, at->t, PetscMin(1 + OUTWARD * (1 << step), 1 / at->distance), t);
+    for (PetscInt k = 0; k < q->cube.n; k++) t[k] = PetscMin(1, PetscMax(-1, t[k])); /* but for rounding they are */
     PetscCall(QuietLook(q, t, &next, &worst, &unstable));
     PetscCallMPI(MPI_Bcast(&next, (PetscMPIInt)sizeof(next), MPI_BYTE, 0, q->comm));
     PetscCall(FullLook(q, &next));

@@ -54,26 +54,80 @@ PetscErrorCode QuietGetVaried(Quiet q, const char **names)
   PetscFunctionReturn(0);
 }
 
-/* Points for the basis: the scene's own values, corners, a sequence */
+/* Points of the box: the scene's own values, corners, a sequence */
+typedef struct {
+  Quiet     quiet;
+  PetscInt  n, n_corners;
+  Sequence *sequence;
+} QuietPoints;
+
+/* In t; of more than six variables some move alike at the corners */
+static void QuietPoint(const QuietPoints *points, PetscInt i, PetscReal t[])
+{
+  const Cube *cube = &points->quiet->cube;
+
+  if (i > points->n_corners) SequencePoint(points->sequence, i - 1 - points->n_corners, t);
+  for (PetscInt k = 0; k < cube->n; k++)
+    t[k] = !i                      ? cube->own[k]
+           : i > points->n_corners ? 2 * t[k] - 1
+           : (i - 1) >> (k % 6) & 1 ? 1
+                                    : -1;
+}
+
+static PetscErrorCode QuietGet(void *ctx, PetscInt i, PetscReal p[])
+{
+  const Quiet q = ((const QuietPoints *)ctx)->quiet;
+  PetscReal   t[CUBE_MAX_VARIABLES];
+
+  PetscFunctionBeginUser;
+  QuietPoint(ctx, i, t);
+  PetscCall(PetscArraycpy(p, q->box.nominal, q->box.n_base));
+  if (i) CubeMove(&q->cube, t, p);
+  PetscFunctionReturn(0);
+}
+
+/* At how many of the points other pairs are closed than at the scene's own values */
+static PetscErrorCode QuietFindStatuses(Quiet q, QuietPoints *points)
+{
+  PetscInt *status, *apart;
+
+  PetscFunctionBeginUser;
+  if (!q->box.statics) PetscFunctionReturn(0);
+  q->n_status = points->n;
+  PetscCall(PetscMalloc2(points->n, &status, points->n, &apart));
+  PetscCall(BoxFindClasses(&q->box, points->n, QuietGet, points, status, apart));
+  for (PetscInt i = 0; i < points->n; i++) {
+    PetscReal t[CUBE_MAX_VARIABLES];
+
+    if (!apart[i]) continue;
+    QuietPoint(points, i, t);
+    q->other_distance = q->n_other ? PetscMin(q->other_distance, CubeDistance(&q->cube, t)) : CubeDistance(&q->cube, t);
+    q->apart          = PetscMax(q->apart, apart[i]);
+    q->n_other++;
+  }
+  PetscCall(PetscFree2(status, apart));
+  PetscFunctionReturn(0);
+}
+
+/* The basis, good at these points with the status of the scene's own values */
 static PetscErrorCode QuietFit(Quiet q)
 {
-  const PetscInt d = q->cube.n, n_corners = 1 << PetscMin(d, 6), n = 1 + n_corners + TRAIN, m = q->box.n_parameters;
-  Sequence       sequence = {SEQUENCE_SOBOL, 1, TRAIN, d, NULL};
-  PetscReal     *points, t[CUBE_MAX_VARIABLES];
+  const PetscInt n_corners = 1 << PetscMin(q->cube.n, 6), n = 1 + n_corners + TRAIN, m = q->box.n_parameters;
+  Sequence       sequence = {SEQUENCE_SOBOL, 1, TRAIN, q->cube.n, NULL};
+  QuietPoints    points   = {q, n, n_corners, &sequence};
+  PetscReal     *p;
 
   PetscFunctionBeginUser;
   PetscCall(SequenceSetUp(&sequence));
-  PetscCall(PetscMalloc1(n * m, &points));
-  PetscCall(PetscArraycpy(points, q->box.nominal, m));
-  for (PetscInt i = 1; i < n; i++) {
-    if (i > n_corners) SequencePoint(&sequence, i - 1 - n_corners, t);
-    for (PetscInt k = 0; k < d; k++)
-      t[k] = i > n_corners ? 2 * t[k] - 1 : (i - 1) >> (k % 6) & 1 ? 1 : -1; /* beyond six variables some move alike */
-    CubePoint(&q->cube, t, &points[i * m]);
+  PetscCall(PetscMalloc1(n * m, &p));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(PetscArraycpy(&p[i * m], q->box.nominal, m));
+    PetscCall(QuietGet(&points, i, &p[i * m]));
   }
-  PetscCall(BoxFit(&q->box, n, points));
-  PetscCall(BoxCompress(&q->box, n, points));
-  PetscCall(PetscFree(points));
+  PetscCall(QuietFindStatuses(q, &points));
+  PetscCall(BoxFit(&q->box, n, p));
+  PetscCall(BoxCompress(&q->box, n, p));
+  PetscCall(PetscFree(p));
   PetscCall(SequenceDestroy(&sequence));
   PetscFunctionReturn(0);
 }
@@ -129,7 +183,8 @@ static PetscErrorCode QuietSetUp(Quiet q)
 
   PetscFunctionBeginUser;
   q->cube.nominal = q->box.nominal;
-  PetscCall(CubeRead(q->comm, q->operators, q->box.statics ? PETSC_TRUE : PETSC_FALSE, "quiet", &q->options, &q->cube));
+  PetscCall(CubeRead(q->comm, q->operators, q->box.statics ? CUBE_HELD_STATE : CUBE_NO_STATE, "quiet", &q->options,
+                     &q->cube));
   PetscCheck(q->n_verify <= q->n_random, q->comm, PETSC_ERR_USER_INPUT,
              "-quiet_verify %" PetscInt_FMT " must be at most -quiet_random %" PetscInt_FMT, q->n_verify, q->n_random);
   PetscCall(BoxSetUp(&q->box, 0, NULL, NULL)); /* the status of the scene's own values holds everywhere */

@@ -28,7 +28,7 @@ typedef struct {
 typedef struct {
   PetscReal t[CUBE_MAX_VARIABLES], distance;
   PetscReal sigma, omega, error; /* rad/s, of the reduced model */
-  PetscBool found, confirmed;
+  PetscBool found, confirmed, other; /* other: its full solution has another contact status */
   PetscReal full_sigma, full_omega, full_error; /* of the full solution there; NaN: no mode of it grows */
   char      label[32];
 } DangerPoint;
@@ -36,6 +36,7 @@ typedef struct {
 /* Random points within what is said to be quiet */
 typedef struct {
   PetscInt  n, n_unstable, n_full, n_full_unstable, n_beyond;
+  PetscInt  n_full_other; /* of n_full, with another contact status, which errors and n_beyond leave out */
   PetscReal growth, full_growth; /* largest, 1/s */
   PetscReal error, true_error;   /* largest relative: estimated, and beside full solutions */
 } QuietChecks;
@@ -60,6 +61,9 @@ struct _p_Quiet {
   PetscReal      error;    /* largest of all middles */
   PetscReal      share[3]; /* of the volume, by CellState */
   DangerPoint    danger;   /* the nearest */
+  PetscInt       n_status, n_other, apart; /* points of the box whose status was looked at, those with another one than
+                                              the scene's own values, most pairs of such a one */
+  PetscReal      other_distance;           /* of the nearest of these, as CubeDistance() */
   QuietChecks    checks;
   PetscLogDouble seconds[4]; /* basis, cells, danger, checks */
 };

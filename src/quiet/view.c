@@ -80,6 +80,32 @@ static PetscErrorCode RandomView(Quiet q, PetscViewer viewer)
   PetscFunctionReturn(0);
 }
 
+/* Of which contact status the statement is, and whether the box has others */
+static PetscErrorCode QuietStateView(Quiet q, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "sliding state: what is shown is about the %" PetscInt_FMT
+                                   " pairs closed at the scene's own values; ",
+                                   BoxClosed(&q->box, 0)));
+  if (q->n_other)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "at %" PetscInt_FMT " of %" PetscInt_FMT
+                                     " points of the box others are, by %" PetscInt_FMT
+                                     " pairs at most, the nearest at %.3g of the box: there it says nothing of the "
+                                     "brake; full solutions have their own\n",
+                                     q->n_other, q->n_status, q->apart, (double)q->other_distance));
+  else
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "so they are at all of %" PetscInt_FMT " points of the box\n", q->n_status));
+  if (q->checks.n_full_other)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "%" PetscInt_FMT " of the random points in full have other pairs closed; errors "
+                                     "leave them out\n",
+                                     q->checks.n_full_other));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode QuietView(Quiet q, PetscViewer viewer)
 {
   const PetscInt  n     = q->box.small.n_used ? q->box.small.n_used : q->box.basis.reduced.n_used;
@@ -90,17 +116,14 @@ PetscErrorCode QuietView(Quiet q, PetscViewer viewer)
   PetscCall(DangerView(q, viewer));
   PetscCall(RandomView(q, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "what is shown holds for the reduced model of %" PetscInt_FMT " vectors%s; ",
-                                   n, q->exact ? "" : ", as far as the corners of the cells tell of the friction law"));
+                                   n, q->exact ? "" : ", as far as the corners of the cells tell"));
   if (q->box.whole)
     PetscCall(PetscViewerASCIIPrintf(viewer, "these are all unknowns: no error but rounding\n"));
   else
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "its error is an estimate, at most %.1e, from %" PetscInt_FMT " full solutions, and is taken off\n",
       (double)error, q->box.greedy.n_samples));
-  if (q->box.statics)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "sliding state: the %" PetscInt_FMT " pairs closed at the scene's own values, everywhere\n",
-      BoxClosed(&q->box, 0)));
+  if (q->box.statics) PetscCall(QuietStateView(q, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time: basis %.2f s, cells %.2f s, dangerous point %.2f s, checks %.2f s\n",
                                    q->seconds[0], q->seconds[1], q->seconds[2], q->seconds[3]));
   PetscFunctionReturn(0);

@@ -58,10 +58,12 @@ static PetscErrorCode StatementWrite(Quiet q, Results results)
                      "goal,size,quiet_share,dangerous_share,open_share,margin_rad_s,error,danger_distance,"
                      "danger_label,danger_freq_hz,danger_growth_rad_s,danger_error_rad_s,confirmed,full_freq_hz,"
                      "full_growth_rad_s,full_error_rad_s,cells,random,random_unstable,random_growth_rad_s,"
-                     "full,full_unstable,full_true_error,full_modes_beyond_error",
+                     "full,full_unstable,full_true_error,full_modes_beyond_error,full_other_status,"
+                     "closed_pairs,status_points,other_status,other_pairs,other_distance",
                      &table));
   PetscCall(ResultsTableRow(
-    table, "%s,%.15g,%.15g,%.15g,%.15g,%s,%.15g,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%d,%d,%d,%s,%d,%d,%.15g,%d",
+    table, "%s,%.15g,%.15g,%.15g,%.15g,%s,%.15g,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%d,%d,%d,%s,%d,%d,%.15g,%d,%d,"
+           "%s,%d,%d,%d,%s",
     goals[q->goal], (double)q->size, (double)q->share[CELL_QUIET], (double)q->share[CELL_DANGEROUS],
     (double)q->share[CELL_OPEN], TextOf(q->margin).text, (double)PetscMax(q->error, c->error),
     TextOf(d->found ? d->distance : NAN).text, d->label, TextOf(d->found ? d->omega / (2 * PETSC_PI) : NAN).text,
@@ -71,7 +73,9 @@ static PetscErrorCode StatementWrite(Quiet q, Results results)
                    : "no",
     TextOf(d->confirmed ? d->full_omega / (2 * PETSC_PI) : NAN).text, TextOf(d->confirmed ? d->full_sigma : NAN).text,
     TextOf(d->confirmed ? d->full_error : NAN).text, (int)q->n_tested, (int)c->n, (int)c->n_unstable,
-    TextOf(c->growth).text, (int)c->n_full, (int)c->n_full_unstable, (double)c->true_error, (int)c->n_beyond));
+    TextOf(c->growth).text, (int)c->n_full, (int)c->n_full_unstable, (double)c->true_error, (int)c->n_beyond,
+    (int)c->n_full_other, TextOf(q->box.statics ? (PetscReal)BoxClosed(&q->box, 0) : NAN).text, (int)q->n_status,
+    (int)q->n_other, (int)q->apart, TextOf(q->n_other ? q->other_distance : NAN).text));
   PetscCall(ResultsTableClose(&table));
   PetscFunctionReturn(0);
 }
@@ -81,7 +85,7 @@ static PetscErrorCode CellsWrite(Quiet q, Results results)
 {
   static const char *const states[] = {[CELL_OPEN] = "open", [CELL_QUIET] = "quiet", [CELL_DANGEROUS] = "dangerous"};
   ResultsTable             table;
-  char                     line[CUBE_MAX_TEXT] = "";
+  char                     line[3 * CUBE_MAX_TEXT] = ""; /* each name twice */
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(line, "state,margin_rad_s,growth_rad_s", sizeof(line)));

@@ -177,7 +177,7 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
   const OperatorsParameter *parameters;
   const char               *between = " at ";
   PetscInt                  n;
-  char                      one[192];
+  size_t                    length;
 
   PetscFunctionBeginUser;
   text[0] = 0;
@@ -186,8 +186,9 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (PetscInt i = 0; i < s->n_parameters; i++) {
     if (s->p[i] == parameters[i].value) continue;
-    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
-    PetscCall(PetscStrlcat(text, one, size));
+    PetscCall(PetscStrlen(text, &length)); /* PetscStrlcat() writes beyond the end of a text that is full */
+    PetscCall(
+      PetscSNPrintf(text + length, size - length, "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
     between = ", ";
   }
   PetscFunctionReturn(0);

@@ -3,7 +3,9 @@
 
     design.py spin RESULTS          growth begins at k = w^2 (n^2 / c^2 - g n / c - e): k and c are changed, w and n uncertain
     design.py oscillator RESULTS    two modes lock in at ((a - b) / 2)^2 + 1 - 4/3 mu = 0: a and b are changed, mu is uncertain
-    design.py share RESULTS         the same, where a fifth of the scenarios may stay unstable"""
+    design.py share RESULTS         the same, where a fifth of the scenarios may stay unstable
+    design.py state RESULTS MODES.. about a sliding state: corners in full, and the largest growth of all scenarios, beside -analysis modes
+                                    of the scene with the values of each, first the scene's own, then the corners in their order"""
 
 import csv
 import sys
@@ -27,7 +29,34 @@ def check(what, holds, value):
         FAULTS.append(what)
 
 
-def main(which, folder):
+def read(path):
+    """Rows."""
+    with path.open(newline="") as table:
+        return list(csv.DictReader(table))
+
+
+def state(folder, modes):
+    """The same brake, solved elsewhere."""
+    growth = []
+    for name in modes:
+        worst = max(read(Path(name, "modes.csv")), key=lambda row: float(row["growth_rad_s"]))
+        growth.append((float(worst["growth_rad_s"]), float(worst["freq_hz"])))
+    for row, (sigma, freq) in zip(read(folder / "design_corners.csv"), growth[1:], strict=True):
+        check("corner", abs(float(row["growth_rad_s"]) - sigma) <= 1e-6 * freq and abs(float(row["freq_hz"]) - freq) <= 1e-7 * freq,
+              (row["closed_pairs"], row["growth_rad_s"], sigma, row["freq_hz"], freq))
+    first = read(folder / "design.csv")[0]
+    sigma, freq = max(growth)
+    corner = read(folder / "design_corners.csv")[0]
+    found = float(first["excess_rad_s"]) - float(corner["excess_rad_s"]) + float(corner["growth_rad_s"])  # limit and all
+    near = abs(found - sigma) <= 1e-4 * 2 * numpy.pi * freq and abs(float(first["freq_hz"]) - freq) <= 1e-4 * freq
+    check("largest of all scenarios", near, (found, sigma))
+    check("statuses differ", int(first["statuses"]) > 1 and first["other_statuses"] == "0", first["statuses"])
+    return 1 if FAULTS else 0
+
+
+def main(which, folder, *others):
+    if which == "state":
+        return state(Path(folder), others)
     design, uncertain, margin = SCENES[which.replace("share", "oscillator")]
     with Path(folder, "design.csv").open(newline="") as table:
         rows = list(csv.DictReader(table))

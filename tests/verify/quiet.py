@@ -4,6 +4,8 @@
     quiet.py spin RESULTS          three parameters of options/affine.yaml: growth begins at k = w^2 (n^2 / c^2 - g n / c - e)
     quiet.py oscillator RESULTS    three parameters of options/quiet.yaml: two modes lock in at ((a - b) / 2)^2 + 1 - 4/3 mu = 0
     quiet.py ring RESULTS FOLDER   two parameters of tests/affine.py with the matrices in FOLDER: all eigenvalues on a dense grid, by scipy
+    quiet.py spike RESULTS         growth where |p - 0.7315| < 1e-3, which no point that is looked at hits
+    quiet.py crossing RESULTS      growth where |p - 1| < 2e-4: two modes lock in as they cross
 
 No point of what is said to be quiet may grow, no point of what is said to be dangerous may not. Of the true one at least half must be
 shown: the size of the largest box, the volume of the parts."""
@@ -130,8 +132,27 @@ def parts(folder, margin, n_points):
           HALF * share <= volume["quiet"] <= share + 3 / n_points**0.5, f"{volume['quiet']:.4f} of {share:.4f}")
 
 
+SPIKES = {"spike": (0.7315, 1e-3), "crossing": (1, 2e-4)}  # where growth is, half width
+
+
+def spike(which, folder):
+    """No quiet cell, and no part of the quiet box, reaches into the spike; next to it much is quiet."""
+    row, statement = read(folder / "quiet.csv")[0], read(folder / "quiet_statement.csv")[0]
+    at, half = SPIKES[which]
+    own, low, high = (float(row[name]) for name in ("own", "quiet_lower", "quiet_upper"))
+    reaches = [cell for cell in read(folder / "quiet_cells.csv") if cell["state"] == "quiet"
+               and float(cell["lower_p"]) < at + 0.99 * half and float(cell["upper_p"]) > at - 0.99 * half]
+    check("no quiet cell reaches into the spike", not reaches, reaches[:1])
+    check("nor does the box", high < at - 0.99 * half or low > at + 0.99 * half, (low, high))
+    check("the box comes near", max(abs(at - own) - (own - low if at < own else high - own) - half, 0) < 0.05 * abs(at - own), (low, high))
+    check("found, or declared", statement["confirmed"] == "yes" or float(statement["open_share"]) > 0, statement["confirmed"])
+    return 1 if FAULTS else 0
+
+
 def main(which, folder, matrices=None):
     folder = Path(folder)
+    if which in SPIKES:
+        return spike(which, folder)
     margin = {"spin": lambda: spin_margin, "oscillator": lambda: oscillator_margin,
               "ring": lambda: ring_margins(Path(matrices))}[which]()
     statement = read(folder / "quiet_statement.csv")[0]

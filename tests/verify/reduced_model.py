@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""What the page computes of reduced_model.bin beside squeal's own numbers: growth in the middle of each cell of quiet_cells.csv, to 1e-9
-of the largest frequency, by node; and that the JavaScript of the page has the same eigenvalues as scipy's QZ at one point. Where there is
-a Chromium the page of the folder is opened: its sliders give the same modes, and it says where it extrapolates. Without node it says
-so.
+"""What the page computes of reduced_model.bin beside squeal's own numbers: growth in the middle of each cell of quiet_cells.csv, or all
+modes of sweep.csv, to 1e-9 of the largest frequency, by node; and that the JavaScript of the page has the same eigenvalues as scipy's
+QZ at one point. Where there is a Chromium the page of the folder is opened: its sliders give the same modes, it states how many values
+a second it computes, and says where it extrapolates. Without node it says so.
 
     reduced_model.py RESULTS"""
 
 import csv
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -21,10 +22,11 @@ import scipy.linalg
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from browser import Browser, find_browser
 
-SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report/reduced.js"
+SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report"
 MOST = 60  # cells
 NODE = """
-const fs = require("fs"), {readModel, modesAt} = require(process.argv[1]), file = fs.readFileSync(process.argv[2]);
+const fs = require("fs"), read = name => fs.readFileSync(`${process.argv[1]}/${name}.js`), file = fs.readFileSync(process.argv[2]);
+const {readModel, modesAt} = new Function("module", read("dense") + read("reduced") + "; return module.exports;")({});
 const model = readModel(file.buffer.slice(file.byteOffset, file.byteOffset + file.length));
 const begun = Date.now(), found = JSON.parse(fs.readFileSync(0)).map(p => modesAt(model, p));
 console.log(JSON.stringify({found, seconds: (Date.now() - begun) / 1000}));
@@ -69,19 +71,45 @@ def page_says(folder, modes):
         return True
     with tempfile.TemporaryDirectory() as name:
         page = Path(name, "page.html")
-        subprocess.run([SOURCE.parents[2] / "report", folder, "-o", page], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([SOURCE.parents[1] / "report", folder, "-o", page], check=True, stdout=subprocess.DEVNULL)
         browser = Browser(find_browser())
         try:
             browser.open(page.as_uri(), 1000)
             own = until(browser, "[...document.querySelectorAll('.sliders tbody tr')].map(row => Number(row.cells[0].textContent))")
             browser.run("(s => {s.value = s.max; s.dispatchEvent(new Event('input'))})(document.querySelector('.sliders input'))")
-            outside = until(browser, "document.querySelector('.sliders.outside .said')?.textContent")
+            outside = until(browser, "document.querySelector('.sliders .beyond-line')?.textContent")
+            rate = browser.run("document.querySelector('.sliders .said').textContent")
             faults = list(browser.faults())
         finally:
             browser.close()
-    print(f"page: {own}; {outside}; {faults}")
-    return bool(own and outside and "extrapolates" in outside and not faults
+    print(f"page: {own}; {outside}; {rate}; {faults}")
+    return bool(own and outside and "extrapolates" in outside and re.search(r"computed at [\d.]+ values a second$", rate) and not faults
                 and numpy.allclose(own, [mode["freq"] for mode in modes], atol=6e-4))
+
+
+def by_node(node, folder, points):
+    """What reduced.js has at some points."""
+    done = subprocess.run([node, "-e", NODE, str(SOURCE), str(folder / "reduced_model.bin")], input=json.dumps(points),
+                          capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def sweep(folder, model, node):
+    """All modes of a sweep of one parameter, and of those linked with it."""
+    rows = {}
+    with (folder / "sweep.csv").open(newline="") as table:
+        for row in csv.DictReader(table):
+            rows.setdefault(float(row["value"]), []).append(complex(float(row["growth_rad_s"]), 2 * numpy.pi * float(row["freq_hz"])))
+    worst, n_modes = 0.0, 0
+    found = by_node(node, folder, [[value] * len(model["parameters"]) for value in rows])["found"]
+    for modes, given in zip(found, rows.values(), strict=True):
+        values = numpy.array([complex(mode["growth"], 2 * numpy.pi * mode["freq"]) for mode in modes])
+        if len(values) != len(given):
+            print(f"{len(values)} modes for {len(given)}")
+            return 1
+        worst, n_modes = max(worst, max(min(abs(values - value)) for value in given)), n_modes + len(given)
+    print(f"{n_modes} modes at {len(rows)} values: they differ by {worst:.1e} rad/s of {model['high']:.4g}")
+    return 0 if n_modes and worst <= 1e-9 * model["high"] else 1
 
 
 def main(folder):
@@ -91,14 +119,13 @@ def main(folder):
         return 0
     model, matrices = read(folder / "reduced_model.bin")
     names = [entry["name"] for entry in model["parameters"]]
+    if (folder / "sweep.csv").exists():
+        return sweep(folder, model, node)
     with (folder / "quiet_cells.csv").open(newline="") as table:
         cells = [row for row in csv.DictReader(table) if row["growth_rad_s"]][:MOST]
     points = [[entry["value"] for entry in model["parameters"]]]
     points += [[0.5 * (float(cell[f"lower_{name}"]) + float(cell[f"upper_{name}"])) for name in names] for cell in cells]
-    done = subprocess.run([node, "-e", NODE, str(SOURCE), str(folder / "reduced_model.bin")], input=json.dumps(points),
-                          capture_output=True, text=True, check=True)
-    answer = json.loads(done.stdout)
-    worst = 0.0
+    answer, worst = by_node(node, folder, points), 0.0
     for cell, modes in zip(cells, answer["found"][1:]):
         values = [complex(mode["growth"], 2 * numpy.pi * mode["freq"]) for mode in modes]
         excess = [value.real - max(model["limit_growth"], model["limit_ratio"] * abs(value)) for value in values]

@@ -225,7 +225,7 @@ class Chart:
         """Grid, values beside it, titles."""
         left, top, right, bottom = place.box
         pieces = [tag("text", panel.y.title, x=left - LEFT + 2, y=top - 9, class_="title")]
-        for value, text in panel.y.ticks(max(2, int((bottom - top) / 42))):
+        for value, text in panel.y.ticks(max(2, int((bottom - top) / 42))) if panel.y.title else ():
             y = f"{place([self.x.low], [value])[1][0]:.1f}"
             pieces += [tag("path", d=f"M{left} {y}H{right}", class_="grid"),
                        tag("text", text, x=left - 6, y=y, dy="0.35em", class_="tick end")]

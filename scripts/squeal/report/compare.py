@@ -8,6 +8,7 @@ from .modes import Modes, detail_of
 from .origin import cost_of
 
 COLOURS = ("blue", "orange", "green", "purple", "sky", "grey", "steel")
+OWN = "sweep", "frf", "map", "cycle", "sample", "quiet", "design"  # analyses whose options begin with their name
 SAME = 0.02  # modes of one label within this part of their frequency are one
 
 
@@ -22,14 +23,20 @@ def overview(folders, verdicts):
     return table("overview", columns, list(zip(folders, verdicts)))
 
 
+def option_of(scene, name):
+    """Its value where the analysis of the scene reads it."""
+    kind, analysis = name.split("_")[0], scene.value("analysis", "modes")
+    return "–" if kind in OWN and kind != analysis and name not in scene.given else scene.value(name, "–")
+
+
 def differences(folders):
     """Options that are not the same everywhere."""
     scenes = [folder.scene for folder in folders if folder.scene]
     if len(scenes) < 2:
         return missing("No comparison of options: fewer than two folders have a scene.yaml.")
     names = sorted({name for scene in scenes for name in (*scene.given, *scene.defaults)})
-    rows = [(name, [scene.value(name, "–") for scene in scenes]) for name in names]
-    rows = [row for row in rows if len(set(row[1])) > 1 and "–" not in row[1]]
+    rows = [(name, [option_of(scene, name) for scene in scenes]) for name in names]
+    rows = [row for row in rows if len(set(row[1])) > 1 and "–" not in row[1]]  # what only some read is no difference
     if not rows:
         return tag("p", "All options that they share are the same.")
     columns = [Column("option", lambda row: row[0], left=True)]

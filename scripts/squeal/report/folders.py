@@ -11,7 +11,7 @@ from .markup import missing
 
 TABLES = {"modes": "modes.csv", "static": "static.csv", "sweep": "sweep.csv", "frf": "frf.csv",
           "transient": "transient.csv", "map": "map.csv", "cycle": "cycle.csv", "sample": "samples.csv",
-          "conditions": "conditions.csv", "model": "reduced_model.bin"}
+          "conditions": "conditions.csv", "quiet": "quiet.csv", "design": "design.csv", "model": "reduced_model.bin"}
 UNFINISHED = ".part"
 SCRIPTS = Path(__file__).resolve().parents[2]
 

@@ -34,7 +34,7 @@ def slider(entry):
     return tag("label", f"{entry['name']} {entry['unit']}".strip(),
                tag("input", type="range", min=f"{first:.10g}", max=f"{high + reach:.10g}", step="any", value=f"{entry['value']:.17g}"),
                tag("output", figures(entry["value"], 5)),
-               tag("span", f"made for {figures(low, 4)} to {figures(high, 4)}", class_="quiet"))
+               tag("span", f"made for {figures(low, 4)} to {figures(high, 4)}", class_="made"))
 
 
 def model_part(folder, room):
@@ -48,7 +48,7 @@ def model_part(folder, room):
     said = (f"{count(model['n_used'], 'vector')}, of {count(model['n'] - model['n_used'], 'further one')} for the estimate of its error "
             "(an estimate, no bound). The modes are computed here, in the browser.")
     place = tag("div", [slider(entry) for entry in model["parameters"]], tag("button", "The scene's own values", type="button"),
-                tag("p", "", class_="said", role="status"), tag("div", table, class_="scroll"),
+                tag("p", "", class_="beyond-line", role="status"), tag("p", "", class_="said"), tag("div", table, class_="scroll"),
                 class_="sliders", data_source=f"{name}-data")
     content = section(name, "The model", tag("p", said), place,
                       tag("script", Markup(packed), type="application/octet-stream", id=f"{name}-data"))

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..tables import BadInput
+from .boxes import design_part, quiet_part
 from .compare import compare_section
 from .folders import Folder
 from .markup import Markup, Part, count, join, missing, section, tag
@@ -22,10 +23,10 @@ LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
           "frf": "Frequency response", "map": "Map of vibration", "cycle": "Limit cycles", "sample": "Samples",
-          "conditions": "Conditions", "model": "The model"}
+          "conditions": "Conditions", "quiet": "Quiet box", "design": "Design", "model": "The model"}
 SECTIONS = {"modes": modes_part, "static": static_part, "sweep": sweep_part, "transient": transient_part,
             "frf": response_part, "map": map_part, "cycle": cycle_part, "sample": sample_part,
-            "conditions": conditions_part, "model": model_part}
+            "conditions": conditions_part, "quiet": quiet_part, "design": design_part, "model": model_part}
 
 
 class Opening(NamedTuple):
@@ -103,7 +104,7 @@ def page(folders, title, opening, share):
     body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
                navigation(folders, opening),
                tag("main", first, compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
-               tag("script", resource("reduced.js"), type="text/plain", id="reduced-code")
+               tag("script", resource("dense.js"), resource("reduced.js"), type="text/plain", id="reduced-code")
                if any("model" in folder.analyses for folder in folders) else None,
                tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js", "sliders.js"))))
     return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])

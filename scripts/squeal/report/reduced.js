@@ -1,8 +1,9 @@
-// The reduced model of a sweep, a sample or a quiet box: its pencil at any values of the parameters, all eigenvalues by the QR
-// iteration, those of the band with vectors by Newton's method, their growth and the estimated error. No DOM: it runs in a worker
-// of the page and in node.
+// The reduced model of a sweep, a sample, a quiet box or a design: its pencil at any values of the parameters, all eigenvalues by the QR
+// iteration, those of the band with vectors by inverse iteration on the Hessenberg form, their growth and the estimated error. It stands
+// behind dense.js. No DOM: it runs in a worker of the page and in node.
 //
 //   Q(lambda; p) = lambda^2 M + lambda C + K,   each a sum of c_t(p) A_t, c monomials
+//   undamped (M^-1 K - kappa) x = 0, kappa = -lambda^2; damped the companion form A [h x; lambda x] = lambda [h x; lambda x]
 //   lambda := lambda - y'Q x / (y'Q'(lambda) x),   error |s' Q_zz^-1 r / (y'Q' x)|, r and s what vectors Z of the basis tell
 "use strict";
 
@@ -17,7 +18,9 @@ function coefficient(term, p) {
 
 // K, C, M at p on all n vectors, column-major
 function pencilAt(model, p) {
-  const n = model.n, pencil = {K: new Float64Array(n * n), C: new Float64Array(n * n), M: new Float64Array(n * n), damped: false};
+  const n = model.n, pencil = model.pencil ||= {K: new Float64Array(n * n), C: new Float64Array(n * n), M: new Float64Array(n * n)};
+  pencil.damped = false;
+  for (const kind of ["K", "C", "M"]) pencil[kind].fill(0);
   model.terms.forEach((term, t) => {
     const c = coefficient(term, p), sum = pencil[term.kind], A = model.matrices[t];
     if (!Number.isFinite(c)) throw new Error("a matrix is not finite at these values");
@@ -28,301 +31,140 @@ function pencilAt(model, p) {
   return pencil;
 }
 
-// Factors of A [n * n] (column-major) in place; the rows' order
-function factorReal(n, A) {
-  const order = new Int32Array(n);
-  for (let k = 0; k < n; k++) {
-    let best = k;
-    for (let i = k + 1; i < n; i++) if (Math.abs(A[k * n + i]) > Math.abs(A[k * n + best])) best = i;
-    order[k] = best;
-    if (A[k * n + best] === 0) throw new Error("the mass matrix is singular");
-    if (best !== k) for (let j = 0; j < n; j++) [A[j * n + k], A[j * n + best]] = [A[j * n + best], A[j * n + k]];
-    for (let i = k + 1; i < n; i++) A[k * n + i] /= A[k * n + k];
-    for (let j = k + 1; j < n; j++) {
-      const f = A[j * n + k];
-      if (f !== 0) for (let i = k + 1; i < n; i++) A[j * n + i] -= f * A[k * n + i];
-    }
-  }
-  return order;
+// The square block of A on rows and columns first .. first + n - 1
+function block(model, A, first, n) {
+  const out = new Float64Array(n * n);
+  for (let j = 0; j < n; j++) out.set(A.subarray((first + j) * model.n + first, (first + j) * model.n + first + n), j * n);
+  return out;
 }
 
-// B := A^-1 B, m columns
-function solveReal(n, LU, order, m, B) {
-  for (let c = 0; c < m; c++) {
-    const o = c * n;
-    for (let k = 0; k < n; k++) {
-      if (order[k] !== k) [B[o + k], B[o + order[k]]] = [B[o + order[k]], B[o + k]];
-      const f = B[o + k];
-      if (f !== 0) for (let i = k + 1; i < n; i++) B[o + i] -= f * LU[k * n + i];
-    }
-    for (let k = n - 1; k >= 0; k--) {
-      const f = (B[o + k] /= LU[k * n + k]);
-      if (f !== 0) for (let i = 0; i < k; i++) B[o + i] -= f * LU[k * n + i];
-    }
+// Factors of M on the vectors first .. first + n - 1, and M^-1 A of the other terms where M is the same at all values
+function massOf(model, pencil, first, n) {
+  const fixed = model.terms.every(term => term.kind !== "M" || !term.factors.length), key = `mass${first}`;
+  if (fixed && model[key]) return model[key];
+  const LU = block(model, pencil.M, first, n), mass = {LU, order: factorReal(n, LU), terms: null};
+  if (fixed) {
+    mass.terms = model.terms.map(({kind}, t) => {
+      if (kind === "M") return null;
+      const A = block(model, model.matrices[t], first, n);
+      solveReal(n, LU, mass.order, n, A);
+      return A;
+    });
+    model[key] = mass;
   }
+  return mass;
 }
 
-// Similar to an upper Hessenberg matrix by elimination with pivots, rows r [N][N] in place (EISPACK elmhes)
-function hessenberg(r) {
-  const N = r.length;
-  for (let m = 1; m < N - 1; m++) {
-    let best = m;
-    for (let i = m; i < N; i++) if (Math.abs(r[i][m - 1]) > Math.abs(r[best][m - 1])) best = i;
-    if (r[best][m - 1] === 0) continue;
-    if (best !== m) {
-      [r[best], r[m]] = [r[m], r[best]];
-      for (const row of r) [row[best], row[m]] = [row[m], row[best]];
-    }
-    const pivot = r[m][m - 1], top = r[m];
-    const f = new Float64Array(N);
-    for (let i = m + 1; i < N; i++) {
-      f[i] = r[i][m - 1] / pivot;
-      if (f[i] === 0) continue;
-      const row = r[i], factor = f[i];
-      row[m - 1] = 0;
-      for (let j = m; j < N; j++) row[j] -= factor * top[j];
-    }
-    for (const row of r) {
-      let sum = 0;
-      for (let i = m + 1; i < N; i++) sum += f[i] * row[i];
-      row[m] += sum;
-    }
+// M^-1 K or M^-1 C, column-major
+function overMass(model, pencil, mass, kind, p, first, n) {
+  if (!mass.terms) {
+    const A = block(model, pencil[kind], first, n);
+    solveReal(n, mass.LU, mass.order, n, A);
+    return A;
   }
+  const sum = new Float64Array(n * n);
+  model.terms.forEach((term, t) => {
+    if (term.kind !== kind) return;
+    const c = coefficient(term, p), A = mass.terms[t];
+    if (c !== 0) for (let i = 0; i < n * n; i++) sum[i] += c * A[i];
+  });
+  return sum;
 }
 
-// Scales rows and columns by powers of two to like sizes (EISPACK balanc, without permutations)
-function balance(r) {
-  const N = r.length;
-  for (let done = false; !done;) {
-    done = true;
-    for (let i = 0; i < N; i++) {
-      let column = 0, row = 0;
-      for (let j = 0; j < N; j++) if (j !== i) { column += Math.abs(r[j][i]); row += Math.abs(r[i][j]); }
-      if (column === 0 || row === 0) continue;
-      let f = 1;
-      const sum = column + row;
-      while (column < row / 2) { f *= 2; column *= 4; }
-      while (column >= row * 2) { f /= 2; column /= 4; }
-      if ((column + row) / f >= 0.95 * sum || f === 1) continue;
-      done = false;
-      for (let j = 0; j < N; j++) r[i][j] /= f;
-      for (let j = 0; j < N; j++) r[j][i] *= f;
+// The Hessenberg form on the vectors first .. first + n - 1
+function formOf(model, pencil, p, first, n) {
+  const mass = massOf(model, pencil, first, n), K = overMass(model, pencil, mass, "K", p, first, n);
+  const N = pencil.damped ? 2 * n : n, h = model.high, key = `form${first}-${N}`, form = model[key] ||= new Hessenberg(N), a = form.h;
+  if (!pencil.damped) for (let j = 0; j < n; j++) for (let i = 0; i < n; i++) a[i * N + j] = K[j * n + i];
+  else {
+    const C = overMass(model, pencil, mass, "C", p, first, n);
+    a.fill(0);
+    for (let j = 0; j < n; j++) {
+      a[j * N + n + j] = h;
+      for (let i = 0; i < n; i++) { a[(n + i) * N + j] = -K[j * n + i] / h; a[(n + i) * N + n + j] = -C[j * n + i]; }
     }
   }
+  form.reduce();
+  return {form, mass, n, h, damped: pencil.damped};
 }
 
-// Eigenvalues [re, im] of a Hessenberg matrix by the QR iteration with double shifts (EISPACK hqr)
-function hqr(a) {
-  const n = a.length, found = [];
-  let norm = 0, shift = 0;
-  for (let i = 0; i < n; i++) for (let j = Math.max(i - 1, 0); j < n; j++) norm += Math.abs(a[i][j]);
-  for (let last = n - 1; last >= 0;) {
-    for (let turn = 0; ; turn++) {
-      let l = last;
-      for (; l > 0; l--) {
-        const size = Math.abs(a[l - 1][l - 1]) + Math.abs(a[l][l]) || norm;
-        if (Math.abs(a[l][l - 1]) <= 2.2e-16 * size) { a[l][l - 1] = 0; break; }
-      }
-      let x = a[last][last];
-      if (l === last) { found.push([x + shift, 0]); last--; break; }
-      let y = a[last - 1][last - 1], w = a[last][last - 1] * a[last - 1][last];
-      if (l === last - 1) {
-        const p = 0.5 * (y - x), q = p * p + w, root = Math.sqrt(Math.abs(q));
-        x += shift;
-        if (q >= 0) {
-          const z = p + (p >= 0 ? root : -root);
-          found.push([x + z, 0], [z !== 0 ? x - w / z : x + z, 0]);
-        } else found.push([x + p, root], [x + p, -root]);
-        last -= 2;
-        break;
-      }
-      if (turn === 60) throw new Error("the QR iteration does not converge");
-      if (turn % 10 === 9) {
-        shift += x;
-        for (let i = 0; i <= last; i++) a[i][i] -= x;
-        const size = Math.abs(a[last][last - 1]) + Math.abs(a[last - 1][last - 2]);
-        x = y = 0.75 * size;
-        w = -0.4375 * size * size;
-      }
-      let m = last - 2, p, q, r;
-      for (; m >= l; m--) {
-        const z = a[m][m], s = y - z, t = x - z;
-        p = (t * s - w) / a[m + 1][m] + a[m][m + 1];
-        q = a[m + 1][m + 1] - z - t - s;
-        r = a[m + 2][m + 1];
-        const size = Math.abs(p) + Math.abs(q) + Math.abs(r);
-        p /= size; q /= size; r /= size;
-        if (m === l) break;
-        const u = Math.abs(a[m][m - 1]) * (Math.abs(q) + Math.abs(r));
-        if (u <= 2.2e-16 * Math.abs(p) * (Math.abs(a[m - 1][m - 1]) + Math.abs(z) + Math.abs(a[m + 1][m + 1]))) break;
-      }
-      for (let i = m + 2; i <= last; i++) { a[i][i - 2] = 0; if (i !== m + 2) a[i][i - 3] = 0; }
-      for (let k = m; k < last; k++) {
-        let size = 1;
-        if (k !== m) {
-          p = a[k][k - 1]; q = a[k + 1][k - 1]; r = k !== last - 1 ? a[k + 2][k - 1] : 0;
-          size = Math.abs(p) + Math.abs(q) + Math.abs(r);
-          if (size === 0) continue;
-          p /= size; q /= size; r /= size;
-        }
-        const s = (p >= 0 ? 1 : -1) * Math.sqrt(p * p + q * q + r * r);
-        if (k === m) { if (l !== m) a[k][k - 1] = -a[k][k - 1]; } else a[k][k - 1] = -s * size;
-        p += s;
-        const fx = p / s, fy = q / s, fz = r / s;
-        q /= p; r /= p;
-        const r0 = a[k], r1 = a[k + 1], r2 = k !== last - 1 ? a[k + 2] : null;
-        for (let j = k; j <= last; j++) {
-          let t = r0[j] + q * r1[j];
-          if (r2) { t += r * r2[j]; r2[j] -= t * fz; }
-          r1[j] -= t * fy;
-          r0[j] -= t * fx;
-        }
-        for (let i = l, end = Math.min(last, k + 3); i <= end; i++) {
-          const row = a[i];
-          let t = fx * row[k] + fy * row[k + 1];
-          if (r2) { t += fz * row[k + 2]; row[k + 2] -= t * r; }
-          row[k + 1] -= t * q;
-          row[k] -= t;
-        }
-      }
-    }
+// lambda of the band or near it, im >= 0, each with its s: the eigenvalue of the form, lambda or kappa = -lambda^2. Of a pair of complex
+// kappa the one that grows and the one that decays have one s
+function candidates(model, {form, damped}) {
+  const {N, wr, wi} = form, found = [];
+  form.eigenvalues();
+  const add = (lambda, s) => {
+    if (lambda[1] >= model.low * (1 - 1e-6) && lambda[1] <= model.high * (1 + 1e-6)) found.push({lambda, s});
+  };
+  for (let k = 0; k < N; k++) {
+    const re = wr[k], im = wi[k];
+    if (im < 0) continue;
+    if (damped) { add([re, im], [re, im]); continue; }
+    const size = Math.hypot(re, im), b = Math.sqrt(0.5 * (size + re)), a = im === 0 && re > 0 ? 0 : Math.sqrt(0.5 * (size - re));
+    add([a, im === 0 && re < 0 ? 0 : b], [re, im]);
   }
   return found;
 }
 
-// All eigenvalues lambda = [re, im], im >= 0, on the leading n_used vectors
-function eigenvalues(model, pencil) {
-  const n = model.n_used, stride = model.n, M = new Float64Array(n * n), K = new Float64Array(n * n), C = new Float64Array(n * n);
-  for (let j = 0; j < n; j++) {
-    for (let i = 0; i < n; i++) {
-      M[j * n + i] = pencil.M[j * stride + i]; K[j * n + i] = pencil.K[j * stride + i]; C[j * n + i] = pencil.C[j * stride + i];
-    }
-  }
-  const order = factorReal(n, M), h = model.high, N = pencil.damped ? 2 * n : n;
-  solveReal(n, M, order, n, K);
-  if (pencil.damped) solveReal(n, M, order, n, C);
-  const rows = Array.from({length: N}, () => new Float64Array(N));
-  for (let i = 0; i < n; i++) {
-    if (pencil.damped) rows[i][n + i] = h;
-    for (let j = 0; j < n; j++) {
-      if (!pencil.damped) rows[i][j] = K[j * n + i];
-      else { rows[n + i][j] = -K[j * n + i] / h; rows[n + i][n + j] = -C[j * n + i]; }
-    }
-  }
-  balance(rows);
-  hessenberg(rows);
-  const values = hqr(rows);
-  if (pencil.damped) return values.filter(([, im]) => im >= 0);
-  return values.filter(([, im]) => im >= 0).map(([re, im]) => {  // lambda^2 = -kappa; of a pair the one that grows
-    const size = Math.hypot(re, im), a = Math.sqrt(0.5 * (size + re)), b = Math.sqrt(0.5 * (size - re));
-    return [[b, a], [-b, a]].slice(0, im === 0 ? 1 : 2);
-  }).flat();
-}
-
-// Complex Q(lambda) on rows and columns first .. first + n - 1: re, im column-major
-function evaluate(model, pencil, [a, b], first, n) {
-  const stride = model.n, re = new Float64Array(n * n), im = new Float64Array(n * n), s = a * a - b * b, t = 2 * a * b;
-  for (let j = 0; j < n; j++) {
-    for (let i = 0; i < n; i++) {
-      const k = (first + j) * stride + first + i;
-      re[j * n + i] = s * pencil.M[k] + a * pencil.C[k] + pencil.K[k];
-      im[j * n + i] = t * pencil.M[k] + b * pencil.C[k];
-    }
-  }
-  return {n, re, im};
-}
-
-function factorComplex(Q) {
-  const {n, re, im} = Q, order = new Int32Array(n);
-  for (let k = 0; k < n; k++) {
-    let best = k, most = -1;
-    for (let i = k; i < n; i++) {
-      const size = Math.abs(re[k * n + i]) + Math.abs(im[k * n + i]);
-      if (size > most) { most = size; best = i; }
-    }
-    order[k] = best;
-    if (most === 0) { re[k * n + k] = 1e-300; continue; }
-    if (best !== k) for (let j = 0; j < n; j++) {
-      const o = j * n;
-      [re[o + k], re[o + best]] = [re[o + best], re[o + k]];
-      [im[o + k], im[o + best]] = [im[o + best], im[o + k]];
-    }
-    const d = re[k * n + k] ** 2 + im[k * n + k] ** 2, c = re[k * n + k] / d, s = -im[k * n + k] / d;
-    for (let i = k + 1; i < n; i++) {
-      const x = re[k * n + i], y = im[k * n + i];
-      re[k * n + i] = x * c - y * s;
-      im[k * n + i] = x * s + y * c;
-    }
-    for (let j = k + 1; j < n; j++) {
-      const x = re[j * n + k], y = im[j * n + k];
-      if (x === 0 && y === 0) continue;
-      for (let i = k + 1; i < n; i++) {
-        re[j * n + i] -= x * re[k * n + i] - y * im[k * n + i];
-        im[j * n + i] -= x * im[k * n + i] + y * re[k * n + i];
-      }
-    }
-  }
-  Q.order = order;
-  return Q;
-}
-
-// x := Q^-1 x, or Q^-T x, of one vector {re, im}
-function solveComplex(Q, transposed, x) {
-  const {n, re, im, order} = Q;
-  const divide = (k) => {
-    const d = re[k * n + k] ** 2 + im[k * n + k] ** 2, a = x.re[k], b = x.im[k];
-    x.re[k] = (a * re[k * n + k] + b * im[k * n + k]) / d;
-    x.im[k] = (b * re[k * n + k] - a * im[k * n + k]) / d;
-  };
-  const swap = (k) => {
-    const j = order[k];
-    [x.re[k], x.re[j]] = [x.re[j], x.re[k]];
-    [x.im[k], x.im[j]] = [x.im[j], x.im[k]];
-  };
-  const away = (i, k, entry) => {  // x_i -= entry x_k
-    x.re[i] -= re[entry] * x.re[k] - im[entry] * x.im[k];
-    x.im[i] -= re[entry] * x.im[k] + im[entry] * x.re[k];
-  };
-  if (!transposed) {
-    for (let k = 0; k < n; k++) swap(k);
-    for (let k = 0; k < n; k++) for (let i = k + 1; i < n; i++) away(i, k, k * n + i);
-    for (let k = n - 1; k >= 0; k--) { divide(k); for (let i = 0; i < k; i++) away(i, k, k * n + i); }
-  } else {
-    for (let k = 0; k < n; k++) { for (let i = 0; i < k; i++) away(k, i, k * n + i); divide(k); }
-    for (let k = n - 1; k >= 0; k--) for (let i = k + 1; i < n; i++) away(k, i, k * n + i);
-    for (let k = n - 1; k >= 0; k--) swap(k);
-  }
-}
+// Vectors have a part im where it is not zero
+const PARTS = ["re", "im"], partsIn = x => x.im ? PARTS : PARTS.slice(0, 1);
+const vector = (n, complex) => ({re: new Float64Array(n), im: complex ? new Float64Array(n) : null});
 
 function normalise(x) {
   let square = 0;
-  for (let i = 0; i < x.re.length; i++) square += x.re[i] ** 2 + x.im[i] ** 2;
+  for (const part of partsIn(x)) for (const value of x[part]) square += value * value;
   const f = 1 / Math.sqrt(square);
-  for (let i = 0; i < x.re.length; i++) { x.re[i] *= f; x.im[i] *= f; }
+  for (const part of partsIn(x)) for (let i = 0; i < x[part].length; i++) x[part][i] *= f;
+}
+
+// x and y of s by inverse iteration, of M^-1 Q; y is that of Q
+function vectorsOf({form, mass, n, damped}, [a, b]) {
+  const {N} = form, x = vector(N, b !== 0), y = vector(N, b !== 0);
+  for (let i = 0; i < N; i++) { x.re[i] = Math.cos(1 + i * i); y.re[i] = Math.sin(2 + i); }
+  form.shift(a, b);
+  for (let turn = 0; turn < 2; turn++) {
+    form.solve(x.re, x.im); normalise(x);
+    form.solveTransposed(y.re, y.im); normalise(y);
+  }
+  for (const part of partsIn(x)) {
+    form.back(x[part]);
+    form.backTransposed(y[part]);
+    if (damped) { x[part] = x[part].slice(0, n); y[part] = y[part].slice(n); }
+    solveTransposed(n, mass.LU, mass.order, y[part]);
+  }
+  normalise(x);
+  normalise(y);
+  return {x, y};
 }
 
 // A x, A real on rows of `to` and columns of `from` = [first, n]; transposed: A' x
 function times(A, stride, to, from, transposed, x) {
-  const y = {re: new Float64Array(to[1]), im: new Float64Array(to[1])};
-  for (let j = 0; j < from[1]; j++) {
-    for (let i = 0; i < to[1]; i++) {
-      const entry = transposed ? A[(to[0] + i) * stride + from[0] + j] : A[(from[0] + j) * stride + to[0] + i];
-      y.re[i] += entry * x.re[j];
-      y.im[i] += entry * x.im[j];
+  const y = vector(to[1], x.im);
+  for (const part of partsIn(x)) {
+    const v = x[part], w = y[part];
+    if (transposed) for (let j = 0; j < to[1]; j++) {
+      const o = (to[0] + j) * stride + from[0];
+      let sum = 0;
+      for (let i = 0; i < from[1]; i++) sum += A[o + i] * v[i];
+      w[j] = sum;
+    } else for (let j = 0; j < from[1]; j++) {
+      const o = (from[0] + j) * stride + to[0], f = v[j];
+      for (let i = 0; i < to[1]; i++) w[i] += A[o + i] * f;
     }
   }
   return y;
 }
 
-// sum over K, C, M of their power of lambda: Q x, or with derivative Q' x
-function applied(model, pencil, [a, b], to, from, transposed, x, derivative) {
+// The parts K x, C x, M x, and what they are with lambda: Q x, or with derivative Q' x
+const partsOf = (model, pencil, to, from, transposed, x) => ["K", "C", "M"].map(kind =>
+  kind === "C" && !pencil.damped ? null : times(pencil[kind], model.n, to, from, transposed, x));
+
+function united(parts, [a, b], derivative) {
   const weights = derivative ? [[0, 0], [1, 0], [2 * a, 2 * b]] : [[1, 0], [a, b], [a * a - b * b, 2 * a * b]];
-  const y = {re: new Float64Array(to[1]), im: new Float64Array(to[1])};
-  ["K", "C", "M"].forEach((kind, k) => {
+  const y = vector(parts[0].re.length, true);
+  parts.forEach((part, k) => {
     const [c, s] = weights[k];
-    if ((c === 0 && s === 0) || (kind === "C" && !pencil.damped)) return;
-    const part = times(pencil[kind], model.n, to, from, transposed, x);
-    for (let i = 0; i < to[1]; i++) {
+    if (part && (c !== 0 || s !== 0)) for (let i = 0; i < y.re.length; i++) {
       y.re[i] += c * part.re[i] - s * part.im[i];
       y.im[i] += c * part.im[i] + s * part.re[i];
     }
@@ -332,50 +174,82 @@ function applied(model, pencil, [a, b], to, from, transposed, x, derivative) {
 
 function dot(x, y) {
   let re = 0, im = 0;
-  for (let i = 0; i < x.re.length; i++) { re += x.re[i] * y.re[i] - x.im[i] * y.im[i]; im += x.re[i] * y.im[i] + x.im[i] * y.re[i]; }
+  for (let i = 0; i < x.re.length; i++) re += x.re[i] * y.re[i];
+  if (x.im) for (let i = 0; i < x.re.length; i++) { re -= x.im[i] * y.im[i]; im += x.re[i] * y.im[i] + x.im[i] * y.re[i]; }
   return [re, im];
 }
 
+const product = ([a, b], [c, d]) => [a * c - b * d, a * d + b * c];
 const quotient = ([a, b], [c, d]) => [(a * c + b * d) / (c * c + d * d), (b * c - a * d) / (c * c + d * d)];
 
-// One eigenvalue to all digits with its vectors, and the estimated error
-function refine(model, pencil, lambda) {
-  const n = model.n_used, own = [0, n], x = {re: new Float64Array(n), im: new Float64Array(n)};
-  for (let i = 0; i < n; i++) { x.re[i] = Math.cos(1 + i * i); x.im[i] = Math.sin(2 + i); }
-  const y = {re: x.im.slice(), im: x.re.slice()};
-  let step = Infinity, slope;
-  for (let turn = 0; turn < 5; turn++) {
-    const Q = factorComplex(evaluate(model, pencil, lambda, 0, n));
-    for (let k = 0; k < (turn ? 1 : 2); k++) {
-      solveComplex(Q, false, x); normalise(x);
-      solveComplex(Q, true, y); normalise(y);
-    }
-    slope = dot(y, applied(model, pencil, lambda, own, own, false, x, true));
-    const change = quotient(dot(y, applied(model, pencil, lambda, own, own, false, x, false)), slope), size = Math.hypot(...change);
-    if (!(size < 0.5 * step) || !(size < 1e-4 * Math.hypot(...lambda))) break;
-    lambda = [lambda[0] - change[0], lambda[1] - change[1]];
-    step = size;
-    if (size < 1e-14 * Math.hypot(...lambda)) break;
+// lambda of kappa, im >= 0, that grows (or neither)
+function rootOf([re, im], given) {
+  if (im === 0 && re > 0) return [0, Math.sqrt(re)];
+  const size = Math.hypot(re, im);
+  return [Math.sqrt(0.5 * (size - re)), given[1] === 0 ? 0 : Math.sqrt(0.5 * (size + re))];
+}
+
+// One eigenvalue to all digits with its vectors: undamped kappa := kappa + y'(K - kappa M) x / (y'M x)
+function refine(model, pencil, own, {lambda, s}) {
+  const {x, y} = vectorsOf(own, s), all = [0, own.n], parts = partsOf(model, pencil, all, all, false, x);
+  if (pencil.damped) {
+    const change = quotient(dot(y, united(parts, s, false)), dot(y, united(parts, s, true)));
+    if (Math.hypot(...change) < 1e-4 * Math.hypot(...s)) lambda = [s[0] - change[0], s[1] - change[1]];
+  } else {
+    const mass = dot(y, parts[2]), [a, b] = quotient(dot(y, parts[0]), mass), size = Math.hypot(...s);
+    if (Math.hypot(a - s[0], b - s[1]) < 1e-4 * size) s = s[1] === 0 ? [a, 0] : [a, b];
+    lambda = rootOf(s, lambda);
   }
-  return {lambda, error: estimate(model, pencil, lambda, x, y, slope)};
+  return {lambda, s, x, y, slope: pencil.damped ? dot(y, united(parts, lambda, true)) : dot(y, parts[2])};
 }
 
-function estimate(model, pencil, lambda, x, y, slope) {
-  const n = model.n_used, z = [n, model.n - n];
-  if (!z[1]) return 0;
-  const Q = factorComplex(evaluate(model, pencil, lambda, n, z[1]));
-  const r = applied(model, pencil, lambda, z, [0, n], false, x, false), s = applied(model, pencil, lambda, z, [0, n], true, y, false);
-  solveComplex(Q, false, r);
-  return Math.hypot(...quotient(dot(s, r), slope));
+// s' Q_zz^-1 r, by the form of Q_zz, over y' Q' x; undamped Q' = 2 lambda M
+function estimate(model, pencil, rest, {lambda, s, x, y, slope}) {
+  if (!rest) return 0;
+  const {form, mass, n, h, damped} = rest, z = [model.n_used, n], own = [0, model.n_used];
+  const apply = (v, transposed) => {
+    const parts = partsOf(model, pencil, z, own, transposed, v);
+    if (damped) return united(parts, lambda, false);
+    for (let i = 0; i < n; i++) {  // (K - kappa M) v
+      const re = parts[2].re[i], im = v.im ? parts[2].im[i] : 0;
+      parts[0].re[i] -= s[0] * re - s[1] * im;
+      if (v.im) parts[0].im[i] -= s[0] * im + s[1] * re;
+    }
+    return parts[0];
+  };
+  const r = apply(x, false), left = apply(y, true), v = vector(form.N, x.im), shift = damped ? lambda : s;
+  for (const part of partsIn(v)) {
+    solveReal(n, mass.LU, mass.order, 1, r[part]);
+    for (let i = 0; i < n; i++) v[part][damped ? n + i : i] = damped ? -r[part][i] : r[part][i];
+    form.forth(v[part]);
+  }
+  form.shift(...shift);
+  form.solve(v.re, v.im);
+  for (const part of partsIn(v)) {
+    form.back(v[part]);
+    v[part] = v[part].slice(0, n);
+    if (damped) for (let i = 0; i < n; i++) v[part][i] /= h;
+  }
+  const derivative = damped ? slope : product([2 * lambda[0], 2 * lambda[1]], slope);
+  return Math.hypot(...quotient(dot(left, v), derivative));
 }
 
-// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s
-function modesAt(model, p) {
-  const pencil = pencilAt(model, p), within = (w) => w >= model.low * (1 - 1e-6) && w <= model.high * (1 + 1e-6);
-  return eigenvalues(model, pencil).filter(([, w]) => within(w)).map((value) => refine(model, pencil, value))
-    .filter(({lambda: [, w]}) => w >= model.low && w <= model.high)
-    .map(({lambda, error}) => ({freq: lambda[1] / (2 * Math.PI), growth: lambda[0], error}))
-    .sort((a, b) => a.freq - b.freq);
+// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of the one `chosen`, by its place
+function modesAt(model, p, chosen = -1) {
+  const pencil = pencilAt(model, p), own = formOf(model, pencil, p, 0, model.n_used), modes = [];
+  const found = candidates(model, own).map(mode => refine(model, pencil, own, mode));
+  const rest = model.n > model.n_used ? formOf(model, pencil, p, model.n_used, model.n - model.n_used) : null;
+  for (const mode of found) {
+    const {lambda: [a, b], x, s} = mode;
+    if (b < model.low || b > model.high) continue;
+    const error = estimate(model, pencil, rest, mode), freq = b / (2 * Math.PI);
+    if (!pencil.damped && a > 0) {  // of kappa itself is the one that decays, of its conjugate the one that grows
+      modes.push({freq, growth: -a, error, x});
+      modes.push({freq, growth: a, error, x: {re: x.re, im: x.im?.map(value => -value) ?? null}});
+    } else modes.push({freq, growth: a, error, x});
+  }
+  modes.sort((a, b) => a.freq - b.freq || b.growth - a.growth);
+  return modes.map(({freq, growth, error, x}, k) => k === chosen ? {freq, growth, error, x} : {freq, growth, error});
 }
 
 // The model of a file's bytes: a line of JSON, then the matrices as float64
@@ -387,4 +261,4 @@ function readModel(buffer) {
   return model;
 }
 
-if (typeof module !== "undefined") module.exports = {readModel, modesAt, pencilAt, eigenvalues};
+if (typeof module !== "undefined") module.exports = {readModel, modesAt, pencilAt};

@@ -70,7 +70,7 @@ def mesh_words(scene):
     """Where the mesh comes from."""
     if scene.value("model_mesh"):
         return f"The mesh is the file {scene.value('model_mesh')}."
-    if any(scene.value(f"operators_{kind}_k") not in ("", "0") for kind in ("load", "dense")):
+    if scene.value("terms") or any(scene.value(f"operators_{kind}_k") not in ("", "0") for kind in ("load", "dense")):
         return "The scene is given by matrices, without a mesh."
     inner, outer, thick = (1e3 * scene.number(f"rig_disc_{name}") for name in ("inner", "outer", "thickness"))
     rings = scene.value("rig_disc_elements")
@@ -202,6 +202,11 @@ def analysis_words(scene):
     if kind == "frf":
         return (f"Response to 1 N at {scene.value('frf_force').replace(',', ' along ')}, "
                 f"{range_words(scene.value('frf_frequencies'))}, Hz, about {about}.")
+    several = {"sample": ("Samples of", "sample_variables"), "quiet": ("Quiet box over", "quiet_parameters"),
+               "design": ("Design by", "design_parameters")}
+    if kind in several and scene.names(several[kind][1]):
+        begin, names = several[kind]
+        return f"{begin} {listed(name.replace('+', ' with ') for name in scene.names(names))}: all modes {band}, about {about}."
     return f"Complex modes {band}, about {about}, {scene.value('operators_mass', 'consistent')} mass."
 
 

@@ -6,8 +6,9 @@
    a_k a lower bound of |s - c_k(p)| over the cell, c_k = value_k + E_kk(p): generalised diagonal dominance. The
    weights are those of v = T v + w with T the right side by a_k, found by iteration and then put to the test.
 
-   Quiet, damped     every lambda of the region R is nearest to one of the centres c_i that come near R; then
-                     a_i >= dist(c_i, R) and a_k >= |c_i - c_k| / 2 of the others that come near
+   Quiet, damped     a lambda of the region R may be nearest to one of the centres c_i that come near R; then
+                     a_i >= dist(c_i, R) and a_k >= |c_i - c_k| / 2 of the others that come near. Or it is nearest to
+                     a centre that does not; then all of them are at least as far as these must be
    quiet, undamped   kappa is real all over the cell where modes stay apart: no eigenvalue on the line half way between
                      neighbours, so that the strip between two lines holds one eigenvalue everywhere, which is real as
                      its conjugate would be in the strip, too
@@ -167,6 +168,15 @@ static PetscBool PieceIsQuiet(const CellFrame *f, Work *w, PetscInt i, PetscReal
   return IsDominant(f, w, 1, &i, margin);
 }
 
+/* The rest of R, which is NEARBY at least from all centres */
+static PetscBool RestIsQuiet(const CellFrame *f, const CellRegion *r, Work *w, PetscInt first)
+{
+  PetscReal margin;
+
+  for (PetscInt k = 0; k < f->N; k++) w->a[k] = PetscMax(w->far[k], NEARBY * r->high - w->centre[k].error);
+  return IsDominant(f, w, 1, &first, &margin);
+}
+
 static PetscErrorCode DampedIsQuiet(const CellFrame *f, const CellRegion *r, Work *w, PetscBool *quiet,
                                     PetscReal *margin, PetscInt *axis)
 {
@@ -184,7 +194,7 @@ static PetscErrorCode DampedIsQuiet(const CellFrame *f, const CellRegion *r, Wor
   }
   if (!w->n) w->order[w->n++] = first;
   *axis = AxisOf(f, first);
-  if (nearest <= 0) *quiet = PETSC_FALSE;
+  if (nearest <= 0 || !RestIsQuiet(f, r, w, first)) *quiet = PETSC_FALSE;
   for (PetscInt m = 0; m < w->n && *quiet; m++) {
     PetscReal of_piece;
 

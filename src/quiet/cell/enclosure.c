@@ -4,7 +4,8 @@
       c(p) - c(pc) = sum_j dc/dt_j (xi) (t_j - tc_j),   |rest| <= sum_j h_j max |dc/dt_j - dc/dt_j (pc)|,
 
    and a derivative of a monomial is one itself: it grows or falls along each parameter that keeps its sign, so that the
-   extremes of it over the cell are at corners.
+   extremes of it over the cell are at corners. (Of p^2 across zero the largest distance from the middle is at a corner,
+   too.) Parameters that one variable moves in step keep that as long as their powers have one sign.
 */
 #include "enclosure.h"
 
@@ -79,6 +80,23 @@ static PetscErrorCode FactorCheck(MPI_Comm comm, const Cube *cube, const Operato
   PetscFunctionReturn(0);
 }
 
+/* Whether a variable moves several parameters of a term of which the corners do not tell all: powers of both signs, as
+   in a^2 / b, or parameters that are not positive */
+static PetscBool StepsAgainst(const Cube *cube, const OperatorsTerm *term, PetscInt j)
+{
+  PetscInt  n = 0, n_up = 0;
+  PetscBool positive = PETSC_TRUE;
+
+  for (PetscInt m = 0; m < cube->n_moved[j]; m++)
+    for (PetscInt k = 0; k < term->n; k++) {
+      if (term->factor[k].friction || term->factor[k].parameter != cube->moved[j][m]) continue;
+      n++;
+      n_up += term->factor[k].power > 0 ? 1 : 0;
+      if (!(cube->lower[j][m] > 0)) positive = PETSC_FALSE;
+    }
+  return n > 1 && !(positive && (n_up == 0 || n_up == n)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode EnclosureCheck(MPI_Comm comm, const Cube *cube, const OperatorsParameter parameter[], PetscInt n_terms,
                               const OperatorsTerm term[], PetscBool *exact)
 {
@@ -87,8 +105,10 @@ PetscErrorCode EnclosureCheck(MPI_Comm comm, const Cube *cube, const OperatorsPa
   for (PetscInt i = 0; i < n_terms; i++) {
     PetscBool varies = PETSC_FALSE;
 
-    for (PetscInt j = 0; j < cube->n; j++)
+    for (PetscInt j = 0; j < cube->n; j++) {
       if (TermVaries(cube, &term[i], j)) varies = PETSC_TRUE;
+      if (StepsAgainst(cube, &term[i], j)) *exact = PETSC_FALSE;
+    }
     for (PetscInt k = 0; k < term[i].n && varies; k++) {
       const OperatorsFriction *friction = term[i].factor[k].friction;
 

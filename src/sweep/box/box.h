@@ -24,6 +24,7 @@ typedef struct {
   StatusList    statuses;             /* empty without statics */
   PetscInt     *status;               /* [points of BoxSetUp() + 1] of each, of the nominal point in the end */
   StaticsMany   equilibria;           /* how they were found */
+  PetscInt      n_classes;            /* the first statuses, which the pencil knows */
   StatusPencil  groups_of;            /* the parameters of the statuses */
   Pencil        pencil;
   ReducedWindow window; /* of the eigenvalues asked for */
@@ -42,8 +43,20 @@ typedef struct {
 PETSC_INTERN PetscErrorCode BoxSetUp(Box *box, PetscInt n, StaticsPoint get, void *ctx);
 /* status.c - statuses of n points and of the nominal one, behind them, and the pencil that holds at all. Collective. */
 PETSC_INTERN PetscErrorCode BoxLinearise(Box *box, PetscInt n, StaticsPoint get, void *ctx);
-/* Puts the status of point i, as BoxSetUp() had it, into p [n_parameters]. Not collective. */
+/* Puts the status of point i, as BoxSetUp() had it, or one of its classes, into p [n_parameters]. Not collective. */
 PETSC_INTERN void BoxPutStatus(const Box *box, PetscInt i, PetscReal p[]);
+PETSC_INTERN void BoxPutClass(const Box *box, PetscInt status, PetscReal p[]);
+/* The classes of n other points, with statics: `status` [n] that of fewest other pairs, and how many these are, `apart`
+   [n]. Collective. */
+PETSC_INTERN PetscErrorCode BoxFindClasses(Box *box, PetscInt n, StaticsPoint get, void *ctx, PetscInt status[],
+                                           PetscInt apart[]);
+/* A point by the eigensolver, about its own sliding state; modes are the eigensolver's until it solves again */
+typedef struct {
+  PetscInt    n, status, n_closed; /* closed: -1 without statics */
+  const Mode *mode;
+} BoxFull;
+/* At p [n_base or more]. Collective. */
+PETSC_INTERN PetscErrorCode BoxSolveFull(Box *box, const PetscReal p[], BoxFull *full);
 /* Pairs that are closed there, of all ranks; -1 without statics */
 PETSC_INTERN PetscInt BoxClosed(const Box *box, PetscInt i);
 /* Enlarges the basis until all n points [n][n_parameters] are estimated within rtol, the first of them by the

@@ -79,6 +79,7 @@ static PetscErrorCode StatusesLinearise(Box *box, PetscInt n)
   PetscCheck(!exact, box->comm, PETSC_ERR_SUP,
              "a basis about the sliding state with -contact_law constraint: which pairs are closed changes from point "
              "to point; give -contact_law penalty or -modes_contact all");
+  box->n_classes    = box->statuses.n;
   box->pencil       = box->groups_of.pencil;
   box->n_parameters = box->groups_of.n_parameters;
   PetscCall(PetscRealloc((size_t)box->n_parameters * sizeof(*box->nominal), &box->nominal));
@@ -92,7 +93,10 @@ static PetscErrorCode StatusesLinearise(Box *box, PetscInt n)
 
 PetscErrorCode BoxLinearise(Box *box, PetscInt n, StaticsPoint get, void *ctx)
 {
+  const OperatorsParameter *list;
+
   PetscFunctionBeginUser;
+  PetscCall(OperatorsGetParameters(box->operators, &box->n_base, &list));
   if (box->statics) {
     PetscCall(StatusesFind(box, n + 1, &(PointsAndNominal){box, n, get, ctx}));
     PetscCall(StatusesLinearise(box, n));
@@ -103,12 +107,65 @@ PetscErrorCode BoxLinearise(Box *box, PetscInt n, StaticsPoint get, void *ctx)
   PetscFunctionReturn(0);
 }
 
-void BoxPutStatus(const Box *box, PetscInt i, PetscReal p[])
+void BoxPutClass(const Box *box, PetscInt status, PetscReal p[])
 {
   const PetscInt n_groups = box->groups_of.n_groups;
 
   for (PetscInt g = 0; g < n_groups; g++)
-    p[box->n_parameters - n_groups + g] = box->groups_of.closed[box->status[i] * n_groups + g];
+    p[box->n_parameters - n_groups + g] = box->groups_of.closed[status * n_groups + g];
+}
+
+void BoxPutStatus(const Box *box, PetscInt i, PetscReal p[])
+{
+  if (box->status) BoxPutClass(box, box->status[i], p);
+}
+
+PetscErrorCode BoxFindClasses(Box *box, PetscInt n, StaticsPoint get, void *ctx, PetscInt status[], PetscInt apart[])
+{
+  const PetscInt n_local = box->statuses.n_local;
+  PetscBool     *row;
+  char          *closed;
+  StaticsMany    how;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2((size_t)n * n_local, &closed, n_local, &row));
+  PetscCall(StaticsSolveMany(box->statics, n, get, ctx, closed, &how));
+  PetscCall(StaticsRelease(box->statics));
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt k = 0; k < n_local; k++) row[k] = closed[(size_t)i * n_local + k] ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(StatusListNearest(&box->statuses, box->n_classes, row, &status[i], &apart[i]));
+  }
+  PetscCall(PetscFree2(closed, row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxSolveFull(Box *box, const PetscReal p[], BoxFull *full)
+{
+  SlidingState state;
+  Pencil       pencil = box->pencil;
+  PetscBool   *closed;
+
+  PetscFunctionBeginUser;
+  *full = (BoxFull){.status = 0, .n_closed = -1};
+  if (box->statics) {
+    PetscCall(StaticsSolveSliding(box->statics, p, &state));
+    PetscCall(StaticsRelease(box->statics));
+    PetscCall(PetscMalloc1(state.n_pairs, &closed));
+    for (PetscInt k = 0; k < state.n_pairs; k++) closed[k] = state.group[k] >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(StatusListAdd(&box->statuses, closed, &full->status));
+    full->n_closed = box->statuses.n_closed[full->status];
+    PetscCall(OperatorsLinearise(box->operators, &state, &pencil));
+    PetscCall(SlidingStateDestroy(&state));
+    PetscCall(PetscFree(closed));
+  } else {
+    PetscCall(PencilSetParameters(pencil, p));
+  }
+  PetscCall(ModesSetPencil(box->modes, pencil));
+  PetscCall(ModesSolve(box->modes));
+  PetscCall(ModesGet(box->modes, &full->n, &full->mode));
+  PetscCall(ModesSetPencil(box->modes, box->pencil));
+  if (box->statics) PetscCall(PencilDestroy(&pencil));
+  PetscFunctionReturn(0);
 }
 
 PetscInt BoxClosed(const Box *box, PetscInt i)

@@ -50,6 +50,26 @@ PetscErrorCode StatusListAdd(StatusList *list, const PetscBool closed[], PetscIn
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode StatusListNearest(const StatusList *list, PetscInt n, const PetscBool closed[], PetscInt *index,
+                                 PetscInt *apart)
+{
+  PetscMPIInt length;
+  PetscInt   *differ;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMPIIntCast(n, &length));
+  PetscCall(PetscCalloc1(n, &differ));
+  for (PetscInt s = 0; s < n; s++)
+    for (PetscInt p = 0; p < list->n_local; p++) differ[s] += closed[p] != list->closed[s * list->n_local + p] ? 1 : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, differ, length, MPIU_INT, MPI_SUM, list->comm));
+  *index = 0;
+  for (PetscInt s = 1; s < n; s++)
+    if (differ[s] < differ[*index]) *index = s;
+  *apart = differ[*index];
+  PetscCall(PetscFree(differ));
+  PetscFunctionReturn(0);
+}
+
 /* Divides the n groups of pairs by status s: group g gives 2 g (open there) and 2 g + 1 (closed), of which those
    that some rank has pairs of are numbered anew, in this order on all ranks. n never exceeds the number of pairs. */
 static PetscErrorCode GroupsDivide(const StatusList *list, PetscInt s, PetscInt *n, PetscInt group[])

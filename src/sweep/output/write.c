@@ -2,6 +2,7 @@
    The tables of a sweep: sweep.csv, onsets.csv, parameters.csv, and where asked for verify.csv and sensitivities.csv.
 */
 #include "sweep/sweepimpl.h"
+#include "sweep/box/box.h"
 
 static const char *const event_kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
 static const char *const by_damping[]  = {"negative_damping", "positive_damping"}; /* in place of the first two */
@@ -271,6 +272,43 @@ static const SweepTable sensitivity_table = {
   SensitivityRows,
 };
 
+/* The reduced model over the ranges of the axes, for the page; none where a value of an axis is the only one */
+static PetscErrorCode SweepWriteModel(Sweep sweep, Results results)
+{
+  const SweepGrid *grid      = &sweep->grid;
+  Box              box       = {.comm         = sweep->comm,
+                                .operators    = sweep->operators,
+                                .nominal      = grid->base,
+                                .n_parameters = grid->n_parameters,
+                                .window       = sweep->window,
+                                .limit        = sweep->limit,
+                                .groups_of    = {.n_groups = grid->n_groups}};
+  BoxVaried        varied    = {0, NULL, NULL, NULL};
+  PetscInt        *parameter = NULL, n = 0;
+  PetscReal       *ends      = NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < grid->n_axes; a++) {
+    if (grid->n[a] < 2) PetscFunctionReturn(0);
+    n += grid->n_moved[a];
+  }
+  PetscCall(PetscMalloc2(n, &parameter, 2 * n, &ends));
+  for (PetscInt a = 0; a < grid->n_axes; a++)
+    for (PetscInt m = 0; m < grid->n_moved[a]; m++, varied.n++) {
+      parameter[varied.n] = grid->parameter[a][m];
+      ends[varied.n] = ends[n + varied.n] = grid->value[a][0];
+      for (PetscInt i = 1; i < grid->n[a]; i++) {
+        ends[varied.n]     = PetscMin(ends[varied.n], grid->value[a][i]);
+        ends[n + varied.n] = PetscMax(ends[n + varied.n], grid->value[a][i]);
+      }
+    }
+  varied.parameter = parameter, varied.lower = ends, varied.upper = ends + n;
+  box.basis.reduced = sweep->basis.reduced;
+  PetscCall(BoxExport(&box, &varied, results));
+  PetscCall(PetscFree2(parameter, ends));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SweepWrite(Sweep sweep, Results results)
 {
   PetscFunctionBeginUser;
@@ -279,6 +317,7 @@ PetscErrorCode SweepWrite(Sweep sweep, Results results)
   if (sweep->is_confirmed) PetscCall(TableWrite(sweep, results, &onset_table));
   if (sweep->n_checks) PetscCall(TableWrite(sweep, results, &check_table));
   if (sweep->sensitivities && sweep->basis.reduced.n) PetscCall(TableWrite(sweep, results, &sensitivity_table));
+  if (sweep->method != SWEEP_FULL && sweep->basis.reduced.n) PetscCall(SweepWriteModel(sweep, results));
   PetscCall(SweepForget(sweep));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,373 @@
+// Dense matrices of the page: factors, a Hessenberg form, its eigenvalues by the QR iteration, and shifted systems with it, each in the
+// square of the size. No DOM, nothing of models: reduced.js begins after it, in a worker of the page and in node.
+//
+//   A = S H S^-1,   S of scaling by powers of two and elimination (EISPACK balanc, elmhes),   H upper Hessenberg, kept by rows
+"use strict";
+
+// Factors of A [n * n] (column-major) in place; the rows' order
+function factorReal(n, A) {
+  const order = new Int32Array(n);
+  for (let k = 0; k < n; k++) {
+    let best = k;
+    for (let i = k + 1; i < n; i++) if (Math.abs(A[k * n + i]) > Math.abs(A[k * n + best])) best = i;
+    order[k] = best;
+    if (A[k * n + best] === 0) throw new Error("the mass matrix is singular");
+    if (best !== k) for (let j = 0; j < n; j++) { const t = A[j * n + k]; A[j * n + k] = A[j * n + best]; A[j * n + best] = t; }
+    for (let i = k + 1; i < n; i++) A[k * n + i] /= A[k * n + k];
+    for (let j = k + 1; j < n; j++) {
+      const f = A[j * n + k];
+      if (f !== 0) for (let i = k + 1; i < n; i++) A[j * n + i] -= f * A[k * n + i];
+    }
+  }
+  return order;
+}
+
+// B := A^-1 B, m columns
+function solveReal(n, LU, order, m, B) {
+  for (let c = 0; c < m; c++) {
+    const o = c * n;
+    for (let k = 0; k < n; k++) {
+      const j = order[k], f = B[o + j];
+      B[o + j] = B[o + k];
+      B[o + k] = f;
+      if (f !== 0) for (let i = k + 1; i < n; i++) B[o + i] -= f * LU[k * n + i];
+    }
+    for (let k = n - 1; k >= 0; k--) {
+      const f = (B[o + k] /= LU[k * n + k]);
+      if (f !== 0) for (let i = 0; i < k; i++) B[o + i] -= f * LU[k * n + i];
+    }
+  }
+}
+
+// b := A^-T b
+function solveTransposed(n, LU, order, b) {
+  for (let k = 0; k < n; k++) {
+    let sum = b[k];
+    for (let i = 0; i < k; i++) sum -= LU[k * n + i] * b[i];
+    b[k] = sum / LU[k * n + k];
+  }
+  for (let k = n - 1; k >= 0; k--) {
+    let sum = b[k];
+    for (let i = k + 1; i < n; i++) sum -= LU[k * n + i] * b[i];
+    b[k] = b[order[k]];
+    b[order[k]] = sum;
+  }
+}
+
+// Scales rows and columns of a [N * N] by powers of two to like sizes; d: the scales
+function balance(N, a, d) {
+  d.fill(1);
+  for (let done = false; !done;) {
+    done = true;
+    for (let i = 0; i < N; i++) {
+      let column = 0, row = 0;
+      for (let j = 0; j < N; j++) if (j !== i) { column += Math.abs(a[j * N + i]); row += Math.abs(a[i * N + j]); }
+      if (column === 0 || row === 0) continue;
+      let f = 1;
+      const sum = column + row;
+      while (column < row / 2) { f *= 2; column *= 4; }
+      while (column >= row * 2) { f /= 2; column /= 4; }
+      if ((column + row) / f >= 0.95 * sum || f === 1) continue;
+      done = false;
+      d[i] *= f;
+      for (let j = 0; j < N; j++) a[i * N + j] /= f;
+      for (let j = 0; j < N; j++) a[j * N + i] *= f;
+    }
+  }
+}
+
+// Eliminates below the subdiagonal of a [N * N], whose places keep the factors; the rows' order
+function eliminate(N, a, order) {
+  const factors = new Float64Array(N);
+  for (let m = 1; m < N - 1; m++) {
+    let best = m;
+    for (let i = m + 1; i < N; i++) if (Math.abs(a[i * N + m - 1]) > Math.abs(a[best * N + m - 1])) best = i;
+    order[m] = best;
+    if (best !== m) {
+      for (let j = m - 1; j < N; j++) { const t = a[best * N + j]; a[best * N + j] = a[m * N + j]; a[m * N + j] = t; }
+      for (let i = 0; i < N; i++) { const t = a[i * N + best]; a[i * N + best] = a[i * N + m]; a[i * N + m] = t; }
+    }
+    const pivot = a[m * N + m - 1], top = m * N;
+    if (pivot === 0) continue;
+    for (let i = m + 1; i < N; i++) {
+      const f = a[i * N + m - 1] / pivot, row = i * N;
+      a[row + m - 1] = factors[i] = f;
+      if (f !== 0) for (let j = m; j < N; j++) a[row + j] -= f * a[top + j];
+    }
+    for (let i = 0; i < N; i++) {
+      const row = i * N;
+      let sum = 0;
+      for (let k = m + 1; k < N; k++) sum += factors[k] * a[row + k];
+      a[row + m] += sum;
+    }
+  }
+}
+
+// Eigenvalues wr + i wi of the Hessenberg matrix a [n * n], which is destroyed, by the QR iteration with double shifts (EISPACK hqr)
+function hqr(n, a, wr, wi) {
+  let norm = 0, shift = 0;
+  for (let i = 0; i < n; i++) for (let j = Math.max(i - 1, 0); j < n; j++) norm += Math.abs(a[i * n + j]);
+  for (let last = n - 1; last >= 0;) {
+    for (let turn = 0; ; turn++) {
+      let l = last;
+      for (; l > 0; l--) {
+        const size = Math.abs(a[(l - 1) * n + l - 1]) + Math.abs(a[l * n + l]) || norm;
+        if (Math.abs(a[l * n + l - 1]) <= 2.2e-16 * size) { a[l * n + l - 1] = 0; break; }
+      }
+      let x = a[last * n + last];
+      if (l === last) { wr[last] = x + shift; wi[last] = 0; last--; break; }
+      let y = a[(last - 1) * n + last - 1], w = a[last * n + last - 1] * a[(last - 1) * n + last];
+      if (l === last - 1) {
+        const p = 0.5 * (y - x), q = p * p + w, root = Math.sqrt(Math.abs(q));
+        x += shift;
+        const z = p + (p >= 0 ? root : -root);
+        wr[last - 1] = q >= 0 ? x + z : x + p;
+        wr[last] = q < 0 ? x + p : z !== 0 ? x - w / z : x + z;
+        wi[last - 1] = q < 0 ? root : 0;
+        wi[last] = -wi[last - 1];
+        last -= 2;
+        break;
+      }
+      if (turn === 60) throw new Error("the QR iteration does not converge");
+      if (turn % 10 === 9) {
+        shift += x;
+        for (let i = 0; i <= last; i++) a[i * n + i] -= x;
+        const size = Math.abs(a[last * n + last - 1]) + Math.abs(a[(last - 1) * n + last - 2]);
+        x = y = 0.75 * size;
+        w = -0.4375 * size * size;
+      }
+      step(n, a, l, last, x, y, w);
+    }
+  }
+}
+
+// One double step on rows and columns l .. last
+function step(n, a, l, last, x, y, w) {
+  let m = last - 2, p, q, r;
+  for (; m >= l; m--) {
+    const z = a[m * n + m], s = y - z, t = x - z;
+    p = (t * s - w) / a[(m + 1) * n + m] + a[m * n + m + 1];
+    q = a[(m + 1) * n + m + 1] - z - t - s;
+    r = a[(m + 2) * n + m + 1];
+    const size = Math.abs(p) + Math.abs(q) + Math.abs(r);
+    p /= size; q /= size; r /= size;
+    if (m === l) break;
+    const u = Math.abs(a[m * n + m - 1]) * (Math.abs(q) + Math.abs(r));
+    if (u <= 2.2e-16 * Math.abs(p) * (Math.abs(a[(m - 1) * n + m - 1]) + Math.abs(z) + Math.abs(a[(m + 1) * n + m + 1]))) break;
+  }
+  for (let i = m + 2; i <= last; i++) { a[i * n + i - 2] = 0; if (i !== m + 2) a[i * n + i - 3] = 0; }
+  for (let k = m; k < last; k++) {
+    const three = k !== last - 1, r0 = k * n, r1 = r0 + n, r2 = r1 + n;
+    let size = 1;
+    if (k !== m) {
+      p = a[r0 + k - 1]; q = a[r1 + k - 1]; r = three ? a[r2 + k - 1] : 0;
+      size = Math.abs(p) + Math.abs(q) + Math.abs(r);
+      if (size === 0) continue;
+      p /= size; q /= size; r /= size;
+    }
+    const s = (p >= 0 ? 1 : -1) * Math.sqrt(p * p + q * q + r * r);
+    if (k === m) { if (l !== m) a[r0 + k - 1] = -a[r0 + k - 1]; } else a[r0 + k - 1] = -s * size;
+    p += s;
+    const fx = p / s, fy = q / s, fz = r / s;
+    q /= p; r /= p;
+    if (three) reflect3(n, a, k, l, last, fx, fy, fz, q, r); else reflect2(n, a, k, l, last, fx, fy, q);
+  }
+}
+
+function reflect3(n, a, k, l, last, fx, fy, fz, q, r) {
+  const r0 = k * n, r1 = r0 + n, r2 = r1 + n;
+  for (let j = k; j <= last; j++) {
+    const t = a[r0 + j] + q * a[r1 + j] + r * a[r2 + j];
+    a[r0 + j] -= t * fx; a[r1 + j] -= t * fy; a[r2 + j] -= t * fz;
+  }
+  for (let i = l * n + k, end = Math.min(last, k + 3) * n + k; i <= end; i += n) {
+    const t = fx * a[i] + fy * a[i + 1] + fz * a[i + 2];
+    a[i] -= t; a[i + 1] -= t * q; a[i + 2] -= t * r;
+  }
+}
+
+function reflect2(n, a, k, l, last, fx, fy, q) {
+  const r0 = k * n, r1 = r0 + n;
+  for (let j = k; j <= last; j++) {
+    const t = a[r0 + j] + q * a[r1 + j];
+    a[r0 + j] -= t * fx; a[r1 + j] -= t * fy;
+  }
+  for (let i = l * n + k, end = Math.min(last, k + 3) * n + k; i <= end; i += n) {
+    const t = fx * a[i] + fy * a[i + 1];
+    a[i] -= t; a[i + 1] -= t * q;
+  }
+}
+
+// A = S H S^-1 and systems with A - s, s = a + i b. Vectors are two arrays, re and im; im is null for real ones with a real s
+class Hessenberg {
+  constructor(N) {
+    this.N = N;
+    this.h = new Float64Array(N * N);  // by rows
+    this.work = new Float64Array(N * N);
+    this.im = new Float64Array(N * N);
+    this.d = new Float64Array(N);
+    this.wr = new Float64Array(N);
+    this.wi = new Float64Array(N);
+    this.order = new Int32Array(N);
+    this.lr = new Float64Array(N);
+    this.li = new Float64Array(N);
+    this.swapped = new Uint8Array(N);
+  }
+
+  // Of what stands in h. The scales of the first matrix serve for all that come after it, which are much like it
+  reduce() {
+    const {N, h, d} = this;
+    if (d[0] === 0) balance(N, h, d);
+    else for (let i = 0; i < N; i++) for (let j = 0, f = 1 / d[i]; j < N; j++) h[i * N + j] *= f * d[j];
+    eliminate(this.N, this.h, this.order);
+  }
+
+  eigenvalues() {
+    this.work.set(this.h);
+    hqr(this.N, this.work, this.wr, this.wi);
+  }
+
+  // Factors of H - s; a pivot that is zero becomes a tiny one, as it should be for vectors
+  shift(a, b) {
+    const N = this.N, u = this.work, v = this.im, tiny = 2.2e-16 * (Math.abs(a) + Math.abs(b)) || 1e-300;
+    this.complex = b !== 0;
+    for (let i = 0; i < N; i++) {
+      for (let j = Math.max(0, i - 1); j < N; j++) u[i * N + j] = this.h[i * N + j];
+      u[i * N + i] -= a;
+      if (!this.complex) continue;
+      v.fill(0, i * N + Math.max(0, i - 1), (i + 1) * N);
+      v[i * N + i] = -b;
+    }
+    for (let k = 0; k < N; k++) {
+      const row = k * N, next = row + N;
+      if (k === N - 1) { if (Math.abs(u[row + k]) + (this.complex ? Math.abs(v[row + k]) : 0) < tiny) u[row + k] = tiny; break; }
+      const mine = Math.abs(u[row + k]) + (this.complex ? Math.abs(v[row + k]) : 0);
+      const other = Math.abs(u[next + k]) + (this.complex ? Math.abs(v[next + k]) : 0);
+      this.swapped[k] = other > mine ? 1 : 0;
+      if (other > mine) for (let j = k; j < N; j++) {
+        let t = u[row + j]; u[row + j] = u[next + j]; u[next + j] = t;
+        if (this.complex) { t = v[row + j]; v[row + j] = v[next + j]; v[next + j] = t; }
+      }
+      if (Math.max(mine, other) < tiny) u[row + k] = tiny;
+      if (this.complex) this.clearComplex(k, row, next);
+      else {
+        const f = this.lr[k] = u[next + k] / u[row + k];
+        if (f !== 0) for (let j = k + 1; j < N; j++) u[next + j] -= f * u[row + j];
+      }
+    }
+  }
+
+  clearComplex(k, row, next) {
+    const u = this.work, v = this.im, a = u[row + k], b = v[row + k], d = a * a + b * b, x = u[next + k], y = v[next + k];
+    const f = this.lr[k] = (x * a + y * b) / d, g = this.li[k] = (y * a - x * b) / d;
+    if (f !== 0 || g !== 0) for (let j = k + 1; j < this.N; j++) {
+      u[next + j] -= f * u[row + j] - g * v[row + j];
+      v[next + j] -= f * v[row + j] + g * u[row + j];
+    }
+  }
+
+  // x := (H - s)^-1 x
+  solve(re, im) {
+    const N = this.N, u = this.work, v = this.im;
+    if (!im) { this.solveRe(re); return; }
+    for (let k = 0; k < N - 1; k++) {
+      if (this.swapped[k]) { let t = re[k]; re[k] = re[k + 1]; re[k + 1] = t; t = im[k]; im[k] = im[k + 1]; im[k + 1] = t; }
+      const f = this.lr[k], g = this.li[k];
+      re[k + 1] -= f * re[k] - g * im[k];
+      im[k + 1] -= f * im[k] + g * re[k];
+    }
+    for (let k = N - 1; k >= 0; k--) {
+      const o = k * N;
+      let x = re[k], y = im[k];
+      for (let j = k + 1; j < N; j++) {
+        x -= u[o + j] * re[j] - v[o + j] * im[j];
+        y -= u[o + j] * im[j] + v[o + j] * re[j];
+      }
+      const a = u[o + k], b = v[o + k], d = a * a + b * b;
+      re[k] = (x * a + y * b) / d;
+      im[k] = (y * a - x * b) / d;
+    }
+  }
+
+  solveRe(x) {
+    const N = this.N, u = this.work;
+    for (let k = 0; k < N - 1; k++) {
+      if (this.swapped[k]) { const t = x[k]; x[k] = x[k + 1]; x[k + 1] = t; }
+      x[k + 1] -= this.lr[k] * x[k];
+    }
+    for (let k = N - 1; k >= 0; k--) {
+      const o = k * N;
+      let sum = x[k];
+      for (let j = k + 1; j < N; j++) sum -= u[o + j] * x[j];
+      x[k] = sum / u[o + k];
+    }
+  }
+
+  solveTransposedRe(x) {
+    const N = this.N, u = this.work;
+    for (let k = 0; k < N; k++) {
+      const o = k * N, f = x[k] /= u[o + k];
+      for (let j = k + 1; j < N; j++) x[j] -= u[o + j] * f;
+    }
+    for (let k = N - 2; k >= 0; k--) {
+      x[k] -= this.lr[k] * x[k + 1];
+      if (this.swapped[k]) { const t = x[k]; x[k] = x[k + 1]; x[k + 1] = t; }
+    }
+  }
+
+  // x := (H - s)^-T x
+  solveTransposed(re, im) {
+    const N = this.N, u = this.work, v = this.im;
+    if (!im) { this.solveTransposedRe(re); return; }
+    for (let k = 0; k < N; k++) {
+      const o = k * N, a = u[o + k], b = v[o + k], d = a * a + b * b;
+      const x = (re[k] * a + im[k] * b) / d, y = (im[k] * a - re[k] * b) / d;
+      re[k] = x; im[k] = y;
+      for (let j = k + 1; j < N; j++) {
+        re[j] -= u[o + j] * x - v[o + j] * y;
+        im[j] -= u[o + j] * y + v[o + j] * x;
+      }
+    }
+    for (let k = N - 2; k >= 0; k--) {
+      const f = this.lr[k], g = this.li[k];
+      re[k] -= f * re[k + 1] - g * im[k + 1];
+      im[k] -= f * im[k + 1] + g * re[k + 1];
+      if (this.swapped[k]) { let t = re[k]; re[k] = re[k + 1]; re[k + 1] = t; t = im[k]; im[k] = im[k + 1]; im[k + 1] = t; }
+    }
+  }
+
+  // x := S x
+  back(x) {
+    const N = this.N, h = this.h;
+    for (let m = N - 2; m > 0; m--) {
+      const f = x[m];
+      for (let i = m + 1; i < N; i++) x[i] += h[i * N + m - 1] * f;
+      const j = this.order[m], t = x[m];
+      x[m] = x[j]; x[j] = t;
+    }
+    for (let i = 0; i < N; i++) x[i] *= this.d[i];
+  }
+
+  // x := S^-1 x
+  forth(x) {
+    const N = this.N, h = this.h;
+    for (let i = 0; i < N; i++) x[i] /= this.d[i];
+    for (let m = 1; m < N - 1; m++) {
+      const j = this.order[m], t = x[m];
+      x[m] = x[j]; x[j] = t;
+      for (let i = m + 1; i < N; i++) x[i] -= h[i * N + m - 1] * x[m];
+    }
+  }
+
+  // y := S^-T y
+  backTransposed(y) {
+    const N = this.N, h = this.h;
+    for (let m = N - 2; m > 0; m--) {
+      let sum = y[m];
+      for (let i = m + 1; i < N; i++) sum -= h[i * N + m - 1] * y[i];
+      const j = this.order[m];
+      y[m] = y[j]; y[j] = sum;
+    }
+    for (let i = 0; i < N; i++) y[i] /= this.d[i];
+  }
+}
