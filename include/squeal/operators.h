@@ -92,6 +92,24 @@ PetscErrorCode OperatorsMarkSuperelement(Operators operators, PetscInt k, PetscB
 PetscErrorCode OperatorsGetSuperelementForce(Operators operators, const PetscReal p[], PetscInt k, Vec u,
                                              const PetscReal displacement[], PetscReal force[3]);
 
+/* A share of a displacement of a node, by its number over all ranks, in an unknown */
+typedef struct {
+  PetscInt  row, number, direction;
+  PetscReal weight;
+} OperatorsSuperelementNode;
+
+/* All superelements as one, alike on all ranks; matrices [n][n] by columns, NULL for none */
+typedef struct {
+  PetscInt                   n, n_apart, n_nodes;
+  PetscInt                  *apart; /* [n] number among the unknowns apart, -1 of a node */
+  OperatorsSuperelementNode *node;  /* [n_nodes] */
+  PetscReal                 *K, *M, *C; /* N/m, kg, N s/m */
+} OperatorsSuperelements;
+
+/*@ OperatorsGetSuperelements - that at p, for what has no terms. Collective; the caller destroys it. @*/
+PetscErrorCode OperatorsGetSuperelements(Operators operators, const PetscReal p[], OperatorsSuperelements *all);
+PetscErrorCode OperatorsDestroySuperelements(OperatorsSuperelements *all);
+
 /*@ OperatorsViewSuperelements - a line of each. Collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsViewSuperelements(Operators operators, PetscViewer viewer);
 

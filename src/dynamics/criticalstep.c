@@ -7,11 +7,12 @@
    lagged by half a step; for b = 1/2 and C = beta K it is dt = -beta + sqrt(beta^2 + 4 / omega^2)). Contact only
    restricts the motion, which lowers the frequencies.
 
-   Lanczos iteration (SLEPc) on the symmetric M^-1/2 (K + s C) M^-1/2 at s = 2 / dt. With its largest eigenvector x,
-   x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from above, since another vector may be
-   worse at the new dt. lambda_max is raised by the tolerance of the residual, not by the residual that is left, which
-   hangs on rounding and ranks: the eigenvalue itself has twice its digits. Upper bound of lambda_max for the check:
-   that of the single elements.
+   Lanczos iteration (SLEPc) on the symmetric M^-1/2 (K + s C) M^-1/2 at s = 2 / dt, M^-1/2 standing for the
+   symmetric Q D^-1/2 with its transpose where superelements make M more than the diagonal D (BodiesApplyRoot()).
+   With its largest eigenvector x, x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from
+   above, since another vector may be worse at the new dt. lambda_max is raised by the tolerance of the residual, not
+   by the residual that is left, which hangs on rounding and ranks: the eigenvalue itself has twice its digits. Upper
+   bound of lambda_max for the check: that of the single elements.
 */
 #include "dynamicsimpl.h"
 #include "base/algebra/synchronize.h"
@@ -54,12 +55,15 @@ static PetscErrorCode StepPencilApply(StepPencil *p, Vec x)
 
   PetscFunctionBeginUser;
   PetscCall(StateVectorFromVec(d->model, d->layout, x, p->x));
+  PetscCall(BodiesApplyRoot(d->bodies, p->scale, p->x));
   for (PetscInt i = 0; i < d->layout->n; i++) p->x[i] *= p->scale[i];
   PetscCall(BodiesApply(d->bodies, p->x, p->kx, p->cx));
   for (PetscInt i = 0; i < d->layout->n; i++) {
     p->kx[i] *= p->scale[i];
     p->cx[i] *= p->scale[i];
   }
+  PetscCall(BodiesApplyRoot(d->bodies, p->scale, p->kx));
+  PetscCall(BodiesApplyRoot(d->bodies, p->scale, p->cx));
   PetscFunctionReturn(0);
 }
 

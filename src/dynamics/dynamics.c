@@ -140,6 +140,28 @@ static PetscErrorCode DynamicsSetUpPoints(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+/* What has no place for the unknowns of superelements that no node has */
+static PetscErrorCode DynamicsCheckSuperelements(Dynamics d)
+{
+  const char *what = d->b != 0.5 ? "-ts_central_b other than 0.5" : d->filters_dir[0] ? "-dynamics_filters" : NULL;
+
+  PetscFunctionBeginUser;
+  if (!OperatorsCountSuperelements(d->operators)) PetscFunctionReturn(0);
+  if (d->shape[0]) what = "-dynamics_shape";
+  if (ModelHasGravity(d->model)) what = "-model_gravity";
+  for (PetscInt i = 0; i < d->n_interfaces; i++) {
+    PetscReal rotation[3];
+    PetscBool turns;
+
+    PetscCall(ContactProjectorGetTurning(d->projector, i, &turns, rotation));
+    if (turns) what = "-..._kinematics turning";
+  }
+  PetscCheck(!what, d->comm, PETSC_ERR_SUP,
+             "%s is not supported with -superelements in time on the mesh: leave it out, or take -dynamics_model reduced",
+             what);
+  PetscFunctionReturn(0);
+}
+
 /* The order matters: the bodies before all that stands in their layout, supports and motions (minv = 0) before the
    critical step, the step before the history, which fits its intervals to it, and a restart before the times are
    checked. */
@@ -150,9 +172,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscFunctionBeginUser;
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
-  PetscCheck(!OperatorsCountSuperelements(d->operators), d->comm, PETSC_ERR_SUP,
-             "-superelements are not supported in time on the mesh, whose mass matrix would have to be factored: take "
-             "-dynamics_model reduced");
+  PetscCall(DynamicsCheckSuperelements(d));
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
   PetscCall(ModelGetMesh(d->model, &d->mesh));

@@ -4,6 +4,28 @@
 */
 #include "dynamicsimpl.h"
 
+/* Unknowns that no node has, which the last rank has in x, on every rank */
+static PetscErrorCode StateApartFrom(const Layout *layout, Vec x, PetscReal state[])
+{
+  const PetscScalar *value;
+  PetscInt           n;
+  PetscMPIInt        n_ranks, rank;
+  MPI_Comm           comm;
+
+  PetscFunctionBeginUser;
+  if (!layout->n_apart) PetscFunctionReturn(0);
+  PetscCall(PetscObjectGetComm((PetscObject)x, &comm));
+  PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArrayRead(x, &value));
+  if (rank == n_ranks - 1)
+    PetscCall(PetscArraycpy(&state[layout->apart], &value[n - layout->n_apart], layout->n_apart));
+  PetscCall(VecRestoreArrayRead(x, &value));
+  PetscCallMPI(MPI_Bcast(&state[layout->apart], (PetscMPIInt)layout->n_apart, MPIU_REAL, n_ranks - 1, comm));
+  PetscFunctionReturn(0);
+}
+
 /* state = Q get(x), rows of Q the basis of each node; what get() leaves at held directions is taken along */
 static PetscErrorCode StateVectorFrom(Model model, const Layout                                        *layout,
                                       PetscErrorCode (*get)(Model model, Vec x, PetscReal nodal[]), Vec x,
@@ -17,6 +39,7 @@ static PetscErrorCode StateVectorFrom(Model model, const Layout                 
   PetscCall(PetscArrayzero(state, layout->n));
   for (PetscInt i = 0; i < layout->n_vertices; i++)
     if (layout->at[i] >= 0) LayoutSet(layout, i, &value[3 * i], state);
+  PetscCall(StateApartFrom(layout, x, state));
   PetscCall(PetscFree(value));
   PetscFunctionReturn(0);
 }
@@ -56,6 +79,8 @@ PetscErrorCode StateVectorToVec(Model model, const Layout *layout, const PetscRe
       if (row >= begin && row < end) value[row - begin] = here[d];
     }
   }
+  for (PetscInt i = 0; i < layout->n_apart && end == mesh->n_unknowns; i++)
+    value[end - begin - layout->n_apart + i] = state[layout->apart + i];
   PetscCall(VecRestoreArray(x, &value));
   PetscFunctionReturn(0);
 }

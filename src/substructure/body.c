@@ -101,19 +101,21 @@ static const char *TermName(const OperatorsTerm *term, const OperatorsParameter 
 }
 
 /* Looks at a matrix of a term that was not there before: takes its part, or leaves it out */
-static PetscErrorCode BodyTakeMatrix(Substructure s, const OperatorsTerm *term, IS unknowns, PetscBool joined[], Mat *A)
+static PetscErrorCode BodyTakeMatrix(Substructure s, const OperatorsTerm *term, IS unknowns, Mat *A)
 {
   SubstructureBody         *body = &s->body;
   const OperatorsParameter *parameter;
   PetscInt                  n;
   PetscReal                 norm;
-  PetscBool                 joins;
+  PetscBool                 joins, *rows;
 
   PetscFunctionBeginUser;
   *A = NULL;
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameter));
-  PetscCall(TermJoins(s, term->A, unknowns, joined, &joins));
-  if (joins && !body->joint[0]) PetscCall(PetscStrncpy(body->joint, TermName(term, parameter), sizeof(body->joint)));
+  PetscCall(PetscCalloc1(body->n_own, &rows));
+  PetscCall(TermJoins(s, term->A, unknowns, rows, &joins));
+  if (joins) PetscCall(BodyJoin(body, rows, TermName(term, parameter)));
+  PetscCall(PetscFree(rows));
   if (joins) PetscFunctionReturn(0);
   PetscCall(MatCreateSubMatrix(term->A, unknowns, unknowns, MAT_INITIAL_MATRIX, A));
   PetscCall(MatNorm(*A, NORM_FROBENIUS, &norm));
@@ -122,7 +124,7 @@ static PetscErrorCode BodyTakeMatrix(Substructure s, const OperatorsTerm *term, 
 }
 
 /* The terms that act on the parts alone, several of which may share a matrix */
-static PetscErrorCode BodyTakeTerms(Substructure s, IS unknowns, PetscBool joined[])
+static PetscErrorCode BodyTakeTerms(Substructure s, IS unknowns)
 {
   SubstructureBody    *body = &s->body;
   const OperatorsTerm *term;
@@ -143,7 +145,7 @@ static PetscErrorCode BodyTakeTerms(Substructure s, IS unknowns, PetscBool joine
       Mat A;
 
       seen[n_seen++] = term[t].A;
-      PetscCall(BodyTakeMatrix(s, &term[t], unknowns, joined, &A));
+      PetscCall(BodyTakeMatrix(s, &term[t], unknowns, &A));
       number[k] = A ? body->n_matrices : -1;
       if (A) body->A[body->n_matrices++] = A;
     }
@@ -183,8 +185,32 @@ static PetscErrorCode BodyMarkContacts(Substructure s, IS unknowns)
   PetscFunctionReturn(0);
 }
 
+/* What presses a follower presses what it follows: Z' of ones at such rows */
+static PetscErrorCode BodyPassPressed(Substructure s, const PetscBool keep[], Mat Z)
+{
+  SubstructureBody *body = &s->body;
+  PetscScalar      *value;
+  PetscInt          n = 0;
+  Vec               all, leaders;
+
+  PetscFunctionBeginUser;
+  if (!Z) PetscFunctionReturn(0);
+  PetscCall(MatCreateVecs(Z, &leaders, &all));
+  PetscCall(VecGetArrayWrite(all, &value));
+  for (PetscInt k = 0; k < body->n_own; k++) value[k] = body->pressed[k];
+  PetscCall(VecRestoreArrayWrite(all, &value));
+  PetscCall(MatMultTranspose(Z, all, leaders));
+  PetscCall(VecGetArray(leaders, &value));
+  for (PetscInt k = 0; k < body->n_own; k++)
+    if (keep[k] && value[n++] != 0) body->pressed[k] = PETSC_TRUE;
+  PetscCall(VecRestoreArray(leaders, &value));
+  PetscCall(VecDestroy(&leaders));
+  PetscCall(VecDestroy(&all));
+  PetscFunctionReturn(0);
+}
+
 /* Leaves of the unknowns those that follow none inside: Z'A Z for all matrices */
-static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], PetscBool joined[], Mat Z)
+static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], Mat Z)
 {
   SubstructureBody *body = &s->body;
   PetscInt          n    = 0;
@@ -203,7 +229,8 @@ static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], Pe
     if (!keep[k]) continue;
     body->node[n]    = body->node[k];
     body->pressed[n] = body->pressed[k];
-    joined[n++]      = joined[k];
+    body->by[n]      = body->by[k];
+    body->joined[n++] = body->joined[k];
   }
   body->n_own = n;
   PetscFunctionReturn(0);
@@ -243,12 +270,13 @@ PetscErrorCode BodyCreate(Substructure s)
   PetscCall(ModelGetMesh(s->model, &mesh));
   PetscCall(BodyMark(s, mesh));
   PetscCall(BodyNumber(s, mesh, &unknowns));
-  PetscCall(PetscCalloc2(body->n_own, &body->joined, body->n_own, &body->pressed));
+  PetscCall(PetscCalloc3(body->n_own, &body->joined, body->n_own, &body->pressed, body->n_own, &body->by));
   PetscCall(PetscMalloc1(body->n_own, &keep));
-  PetscCall(BodyTakeTerms(s, unknowns, body->joined));
+  PetscCall(BodyTakeTerms(s, unknowns));
   PetscCall(BodyMarkContacts(s, unknowns));
-  PetscCall(BodyFollow(s, unknowns, keep, body->joined, &Z));
-  PetscCall(BodyTakeLeaders(s, keep, body->joined, Z));
+  PetscCall(BodyFollow(s, unknowns, keep, &Z));
+  PetscCall(BodyPassPressed(s, keep, Z));
+  PetscCall(BodyTakeLeaders(s, keep, Z));
   PetscCall(PetscFree(keep));
   PetscCall(MatDestroy(&Z));
   PetscCall(ISDestroy(&unknowns));
@@ -270,7 +298,7 @@ PetscErrorCode BodyDestroy(SubstructureBody *body)
   PetscCall(PetscFree(body->A));
   PetscCall(PetscFree2(body->term, body->of_term));
   PetscCall(PetscFree(body->node));
-  PetscCall(PetscFree2(body->joined, body->pressed));
+  PetscCall(PetscFree3(body->joined, body->pressed, body->by));
   PetscCall(PetscFree(body->has_part));
   PetscFunctionReturn(0);
 }

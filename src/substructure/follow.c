@@ -108,11 +108,11 @@ static PetscErrorCode FollowMark(Mat all, IS unknowns, PetscBool joined[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBool joined[], Mat *Z)
+PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], Mat *Z)
 {
   Mat       all, back, whole, inside;
   PetscInt  n, n_mixed;
-  PetscBool frees = PETSC_FALSE;
+  PetscBool frees = PETSC_FALSE, *joined;
   Mat       E;
 
   PetscFunctionBeginUser;
@@ -124,6 +124,7 @@ PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBo
   PetscCall(MatTranspose(E, MAT_INITIAL_MATRIX, &back)); /* u = Z E' u */
   PetscCall(MatMatMult(all, back, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &whole));
   PetscCall(MatCreateSubMatrix(whole, unknowns, unknowns, MAT_INITIAL_MATRIX, &inside));
+  PetscCall(PetscCalloc1(n, &joined));
   PetscCall(FollowSort(whole, inside, unknowns, keep, joined, &n_mixed));
   PetscCall(FollowMark(whole, unknowns, joined));
   for (PetscInt k = 0; k < n; k++)
@@ -134,8 +135,8 @@ PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBo
              "-superelement_parts: %" PetscInt_FMT " displacements follow both the parts and others, by a tie, a rigid "
              "point or an equation: that is not supported; make these others parts of the superelement",
              n_mixed);
-  if (frees && !s->body.joint[0])
-    PetscCall(PetscStrncpy(s->body.joint, "a tie, a rigid point or an equation", sizeof(s->body.joint)));
+  if (frees) PetscCall(BodyJoin(&s->body, joined, "a tie, a rigid point or an equation"));
+  PetscCall(PetscFree(joined));
   PetscCall(FollowCreate(s, inside, keep, Z));
   PetscCall(MatDestroy(&inside));
   PetscCall(MatDestroy(&whole));

@@ -180,19 +180,27 @@ static PetscErrorCode InterfaceCreateE(Substructure s)
 /* Raises the error for what is left out and acts on rows that are not of the interface */
 static PetscErrorCode InterfaceCheckJoined(Substructure s, const PetscBool is_on[])
 {
-  PetscInt n[2] = {0, 0};
+  PetscInt n[2] = {0, 0}, by = 0;
+  char     names[512] = "";
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->body.n_own; k++) {
     n[0] += s->body.joined[k] && !is_on[k];
+    if (!is_on[k]) by |= s->body.by[k];
     n[1] += s->body.pressed[k] && !is_on[k];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 2, MPIU_INT, MPI_SUM, s->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &by, 1, MPIU_INT, MPI_BOR, s->comm));
+  for (PetscInt j = 0; j < s->body.n_joints; j++) {
+    if (!(by >> j & 1)) continue;
+    PetscCall(PetscStrlcat(names, names[0] ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, s->body.joint[j], sizeof(names)));
+  }
   PetscCheck(!n[0], s->comm, PETSC_ERR_USER_INPUT,
              "-superelement_parts: %s joins them to others at %" PetscInt_FMT
              " displacements that are in none of -superelement_sets: name the set of these nodes, or the others as "
              "parts too",
-             s->body.joint, n[0]);
+             names, n[0]);
   PetscCheck(!n[1], s->comm, PETSC_ERR_USER_INPUT,
              "-superelement_parts: contacts, which no superelement has, act on them at %" PetscInt_FMT
              " displacements that are in none of -superelement_sets: name their surfaces as sets, or leave out "

@@ -1,5 +1,6 @@
 /* What shows whether matrices and ties act beyond the parts: numbers outside of them */
 #include "substructureimpl.h"
+#include <string.h>
 
 PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe)
 {
@@ -39,5 +40,21 @@ PetscErrorCode BodyMarkRows(Vec answer, IS unknowns, PetscBool joined[], PetscIn
   }
   PetscCall(ISRestoreIndices(unknowns, &unknown));
   PetscCall(VecRestoreArrayRead(answer, &value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyJoin(SubstructureBody *body, const PetscBool rows[], const char name[])
+{
+  PetscInt j = 0;
+
+  PetscFunctionBeginUser;
+  while (j < body->n_joints && strcmp(body->joint[j], name)) j++;
+  j = PetscMin(j, SUBSTRUCTURE_JOINTS - 1);
+  if (j == body->n_joints) PetscCall(PetscStrncpy(body->joint[body->n_joints++], name, sizeof(body->joint[0])));
+  for (PetscInt k = 0; k < body->n_own; k++) {
+    if (!rows[k]) continue;
+    body->joined[k] = PETSC_TRUE;
+    body->by[k] |= (PetscInt)1 << j;
+  }
   PetscFunctionReturn(0);
 }

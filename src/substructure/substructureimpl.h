@@ -8,6 +8,8 @@
 
 typedef enum { SUBSTRUCTURE_FIXED, SUBSTRUCTURE_FREE, SUBSTRUCTURE_NONE, N_SUBSTRUCTURE_METHODS } SubstructureMethod;
 
+#define SUBSTRUCTURE_JOINTS 16
+
 /* The parts by themselves. Their unknowns are those of their nodes that neither a support holds nor a tie or a rigid
    point inside moves: the rows of all matrices here, spread over the ranks as their nodes are. */
 typedef struct {
@@ -15,7 +17,9 @@ typedef struct {
   PetscInt             *node;            /* [n_own] 3 local node + direction */
   PetscBool            *joined;          /* [n_own] what is left out acts there */
   PetscBool            *pressed;         /* [n_own] contacts act there, which are left out */
-  char                  joint[160];      /* the first thing left out, such as pad_young; empty for none */
+  PetscInt             *by;              /* [n_own] bits of the joints that do */
+  PetscInt              n_joints;        /* things left out, such as pad_young; the last one stands for all others */
+  char                  joint[SUBSTRUCTURE_JOINTS][96];
   PetscInt              n_matrices;
   Mat                  *A;        /* [n_matrices] */
   PetscInt              n_terms;  /* those that act on the parts, of the operators */
@@ -96,14 +100,16 @@ PETSC_INTERN PetscErrorCode BodyCreate(Substructure s);
 PETSC_INTERN PetscErrorCode BodyDestroy(SubstructureBody *body);
 /* The sums K, M, C of the terms of the parts, with these matrices for theirs; C NULL without damping. Collective. */
 PETSC_INTERN PetscErrorCode BodySum(const Substructure s, const Mat A[], Mat *K, Mat *M, Mat *C);
+/* Rows that something left out acts on, by its name. Not collective. */
+PETSC_INTERN PetscErrorCode BodyJoin(SubstructureBody *body, const PetscBool rows[], const char name[]);
 /* probe.c - a number for each unknown that others are not likely to cancel in a sum; 0 for those of the parts.
    Collective. */
 PETSC_INTERN PetscErrorCode BodyCreateProbe(Mat A, IS unknowns, Vec *probe);
 /* Marks the unknowns [of this rank] at which the answer to it is not zero, and counts them. Not collective. */
 PETSC_INTERN PetscErrorCode BodyMarkRows(Vec answer, IS unknowns, PetscBool joined[], PetscInt *n_marked);
 /* follow.c - what follows others: Z [all unknowns of the parts][those that follow none inside], NULL without; keep
-   [unknowns of this rank] tells these, joined where something outside moves one. Collective. */
-PETSC_INTERN PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], PetscBool joined[], Mat *Z);
+   [unknowns of this rank] tells these. Collective. */
+PETSC_INTERN PetscErrorCode BodyFollow(Substructure s, IS unknowns, PetscBool keep[], Mat *Z);
 
 /* interface.c - the unknowns of the sets, with `all` those inside behind them; E. Collective. */
 PETSC_INTERN PetscErrorCode InterfaceCreate(Substructure s, PetscBool all);

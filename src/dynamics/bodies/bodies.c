@@ -54,6 +54,7 @@ static PetscErrorCode BodiesSetUpDamping(Bodies b)
   for (PetscInt i = 0; i < b->n_joints; i++)
     for (int j = 0; j < 6; j++)
       if (b->joint[i].like->viscosity[j] != 0) b->damped = PETSC_TRUE;
+  if (b->super.all.C) b->damped = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->damped, 1, MPIU_BOOL, MPI_LOR, b->comm));
   if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->layout.damping));
   PetscFunctionReturn(0);
@@ -102,10 +103,12 @@ PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
   PetscCall(SharedSetUp(b));
   PetscCall(BodiesFindSwept(b));
   PetscCall(BodiesLayOut(b));
+  PetscCall(SuperLayOut(b));
   PetscCall(GeneralSetUp(b));
   PetscCall(PointsSetUp(b));
   PetscCall(JointsSetUpRows(b));
   PetscCall(BodiesSetMasses(b));
+  PetscCall(SuperSetMasses(b));
   PetscCall(BodiesSetUpDamping(b));
   for (int i = 0; i < 2; i++) PetscCall(PetscCalloc1(b->layout.n, &b->work[i]));
   PetscFunctionReturn(0);
@@ -135,6 +138,7 @@ static PetscErrorCode BodiesAdvanceKernels(Bodies b, PetscBool early, BodiesWork
   PetscCall(GeneralAdvance(&b->general, early, w));
   PointsAdvance(b, early, w);
   PetscCall(JointsAdvance(b, early, w));
+  PetscCall(SuperAdvance(b, early, w));
   PetscFunctionReturn(0);
 }
 
@@ -193,6 +197,7 @@ static PetscErrorCode BodiesGetElementForces(Bodies b, const PetscReal u[], Pets
   PetscCall(BodiesCellsAddForces(b, u, ku));
   PointsAddForces(b, u, ku);
   PetscCall(JointsAddForces(b, u, ku));
+  PetscCall(SuperAddForces(b, u, ku));
   PetscFunctionReturn(0);
 }
 
@@ -232,6 +237,7 @@ PetscErrorCode BodiesDestroy(Bodies *bodies)
   PetscCall(PetscFree(b->point));
   PetscCall(JointsDestroyRows(b));
   PetscCall(TiedDestroy(&b->tied));
+  PetscCall(SuperDestroy(b));
   PetscCall(PetscFree(b->frame));
   PetscCall(PetscFree(b->body));
   PetscCall(PetscFree2(b->layout.at, b->layout.step));

@@ -22,6 +22,7 @@ typedef struct {
   const PetscBool *owned;        /* [n_vertices] exactly one rank owns each node */
   PetscReal       *part, *total; /* [n] masses of this rank's cells alone, and complete ones, kg */
   PetscReal       *minv;         /* [n] 1 / total, 0 in held directions and padding */
+  PetscInt         apart, n_apart; /* where unknowns of superelements that no node has stand, on every rank */
   PetscReal       *damping;      /* [n] C v of the last BodiesAdvance(), N; NULL without damping */
 } Layout;
 
@@ -107,6 +108,10 @@ PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
    which holds
     all others but those of contact, complete at every copy: then minv f is the acceleration. Collective. @*/
 PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
+
+/*@ BodiesApplyRoot - x = (I + G'Y G) x, with which scale = D^-1/2 times it is the symmetric root of M^-1, superelements
+    included; x itself without. Complete at every copy. Collective. @*/
+PetscErrorCode BodiesApplyRoot(Bodies bodies, const PetscReal scale[], PetscReal x[]);
 
 /*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);

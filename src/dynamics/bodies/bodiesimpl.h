@@ -87,6 +87,25 @@ typedef struct {
   Vec      q[2], x, mass;       /* work; kg, [3 n] */
 } Tied;
 
+/* A share of component `at` of the state in an unknown of a superelement */
+typedef struct {
+  PetscInt  row, vertex, at;
+  PetscReal weight;
+  PetscBool owned, shared;
+} SuperEntry;
+
+/* All superelements as one: points/superelement.c */
+typedef struct {
+  OperatorsSuperelements all;
+  PetscInt               n, n_entries, first, last; /* unknowns; rows that this rank multiplies */
+  SuperEntry            *entry;                     /* [n_entries] */
+  PetscInt              *slot;                      /* [n] where an unknown apart stands, -1 */
+  PetscReal             *X, *Y;                     /* [n][n] */
+  PetscReal              bound[2];                  /* of K and C, (rad/s)^2 and rad/s */
+  PetscReal             *q, *g, *h, *part;          /* [n] work */
+  PetscMPIInt           *count, *start;             /* [ranks] */
+} Super;
+
 /* Sums over ranks at shared nodes, in ascending order of the ranks, so that all copies are bitwise equal */
 typedef struct {
   MPI_Comm     comm;
@@ -118,6 +137,7 @@ struct _p_Bodies {
   PetscReal   *joint_motion; /* [n_joints][6] of the last call */
   PetscReal   *reaction;     /* X of the points with mass, [6 n_heavy][6 n_heavy] */
   Tied         tied;
+  Super        super;
   Shared       share;
   PetscBool    damped;  /* there is damping on some rank */
   PetscReal   *work[2]; /* [layout.n] each, for BodiesApply() and BodiesSetState() */
@@ -199,13 +219,24 @@ PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
 PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
 
 /* What moves a local node besides its cells: bits */
-enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4 };
+enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4, BODIES_AT_SUPER = 8 };
 
 /* points/tied.c - matrices of ties, after the last BodiesHold(), where none of their nodes, whose bits are in mark
    [n_nodes], moves otherwise; forces in the place of those on their nodes, or motions */
 PETSC_INTERN PetscErrorCode TiedSetUp(Bodies bodies, const unsigned char mark[]);
 PETSC_INTERN PetscErrorCode TiedApply(Bodies bodies, PetscBool forces, PetscReal x[]);
 PETSC_INTERN PetscErrorCode TiedDestroy(Tied *tied);
+
+/* points/superelement.c - numbers of the state; masses of these, after those of the nodes; nodes in mark [n_nodes]; X
+   and Y, after the last BodiesHold(), where none of the nodes moves otherwise; superforce.c - forces as of points */
+PETSC_INTERN PetscErrorCode SuperLayOut(Bodies bodies);
+PETSC_INTERN PetscErrorCode SuperSetMasses(Bodies bodies);
+PETSC_INTERN PetscErrorCode SuperGetMarks(Bodies bodies, unsigned char mark[]);
+PETSC_INTERN PetscErrorCode SuperSetUp(Bodies bodies, const unsigned char mark[]);
+PETSC_INTERN PetscErrorCode SuperAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
+PETSC_INTERN PetscErrorCode SuperAddForces(Bodies bodies, const PetscReal u[], PetscReal ku[]);
+PETSC_INTERN PetscErrorCode SuperAddInertia(Bodies bodies, PetscReal f[]);
+PETSC_INTERN PetscErrorCode SuperDestroy(Bodies bodies);
 
 /* sharedvertices.c - Begin sends what x has at shared nodes, End replaces it by the sums */
 PETSC_INTERN PetscErrorCode SharedSetUp(Bodies bodies);

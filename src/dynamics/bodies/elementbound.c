@@ -2,7 +2,7 @@
    Bound of the largest omega^2 from single elements (B. M. Irons and G. Treharne, 1971): with K and M sums over cells,
    max x'Kx / x'Mx <= max over cells of the same quotient; with C_e = alpha M_e + beta K_e the quotient of K_e + s C_e
    is (1 + s beta) lambda_e + s alpha. Springs and dashpots add at most (k + s c) / m of a node,
-   bushings and points the trace of diag(k + s c) B M^-1 B'.
+   bushings and points the trace of diag(k + s c) B M^-1 B', superelements likewise one (points/superelement.c).
 */
 #include "bodiesimpl.h"
 #include <petscblaslapack.h>
@@ -133,5 +133,6 @@ PetscErrorCode BodiesGetElementBound(Bodies b, PetscReal s, PetscReal *bound)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPIU_REAL, MPI_MAX, b->comm));
   *bound = largest[0] + largest[1];
   PetscCall(JointsAddBound(b, s, bound));
+  *bound += b->super.bound[0] + s * b->super.bound[1];
   PetscFunctionReturn(0);
 }

@@ -262,13 +262,13 @@ PetscErrorCode SuperelementsSetUp(Operators o)
     s->first_apart = apart;
     apart += s->n_apart;
     PetscCall(SuperelementPlace(o, s));
-    for (int i = 0; i < N_SUPERELEMENT && !o->omit; i++) {
+    for (int i = 0; i < N_SUPERELEMENT; i++) {
       PetscCall(SuperelementLoad(o, s, i));
       if (s->A[i]) like = s->A[i];
     }
     PetscCall(SuperelementCheckStiffness(o, s));
-    if (!o->omit) PetscCall(SuperelementCheckMass(o, s));
-    if (like) PetscCall(SuperelementCreateB(o, s, like, &B));
+    PetscCall(SuperelementCheckMass(o, s));
+    if (like && !o->omit) PetscCall(SuperelementCreateB(o, s, like, &B));
     for (int i = 0; i < N_SUPERELEMENT; i++) PetscCall(SuperelementAddTerm(o, s, i, B));
     PetscCall(MatDestroy(&B));
   }

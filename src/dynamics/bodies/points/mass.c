@@ -160,6 +160,8 @@ PetscErrorCode BodiesSetPoints(Bodies b, PetscInt n_contact, const PetscInt cont
     PetscCall(PetscFree(S));
   }
   PetscCall(PetscFree(heavy));
+  PetscCall(SuperSetUp(b, mark));
+  PetscCall(SuperGetMarks(b, mark));
   PetscCall(TiedSetUp(b, mark));
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
@@ -174,6 +176,7 @@ PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
   PetscFunctionBeginUser;
   PetscCall(RigidPointsAdvance(b, f));
   PetscCall(TiedApply(b, PETSC_TRUE, f));
+  PetscCall(SuperAddInertia(b, f));
   if (!n) PetscFunctionReturn(0);
   PetscCall(JointsMotion(b, b->layout.minv, f));
   for (PetscInt m = 0, p = 0; m < b->n_joints; m++) {

@@ -186,7 +186,7 @@ static void TiedFindFaults(Bodies b, const Tied *t, const unsigned char mark[], 
     for (int j = 0; j < 3; j++)
       if (b->layout.minv[b->layout.at[v] + j * b->layout.step[v]] == 0) fault[TIED_HELD] = 1;
     if (mark[v] & BODIES_IN_CONTACT) fault[TIED_IN_CONTACT] = 1;
-    if (mark[v] & (BODIES_AT_RIGID | BODIES_AT_HEAVY)) fault[TIED_AT_POINT] = 1;
+    if (mark[v] & (BODIES_AT_RIGID | BODIES_AT_HEAVY | BODIES_AT_SUPER)) fault[TIED_AT_POINT] = 1;
   }
 }
 
@@ -194,7 +194,7 @@ static void TiedFindFaults(Bodies b, const Tied *t, const unsigned char mark[], 
 static PetscErrorCode TiedCheckNodes(Bodies b, const Tied *t, const unsigned char mark[])
 {
   static const char *const what[N_TIED_FAULTS]  = {"supports or motions hold", "a contact surface has",
-                                                   "a point that has a mass, or is joined rigidly, has"};
+                                                   "a superelement, or a point that has a mass or is joined rigidly, has"};
   PetscInt                 fault[N_TIED_FAULTS] = {0};
 
   PetscFunctionBeginUser;
