@@ -236,6 +236,23 @@ static PetscReal PairFoot(ContactProjector p, ProjectorPair *pair, const PetscRe
   return ContactBasis(facet, pair->natural, along, pair->weight, pair->e);
 }
 
+/* A pair at its place for Gauss-Seidel, Cartesian; mass 0 where the directions are coupled */
+static void PairPlaceRow(const ContactProjector p, const ProjectorPair *pair, ProjectorRow *row)
+{
+  const PetscReal *minv = p->nodes.minv;
+
+  *row = (ProjectorRow){.mass = pair->w > 0 ? 1 / pair->w : 0};
+  if (p->sliding[pair->interface].turning) row->D = &p->frame[pair->interface].D[0][0];
+  for (int i = 0; i < 4; i++) {
+    row->node[i]   = (int)pair->node[i];
+    row->weight[i] = pair->weight[i];
+    row->push[i]   = pair->weight[i] * minv[3 * pair->node[i]];
+  }
+  row->node[4] = (int)pair->slave;
+  row->push[4] = minv[3 * pair->slave];
+  for (int d = 0; d < 3; d++) row->n[d] = pair->e[0][d];
+}
+
 /* PETSC_FALSE: no facet in reach. A triangle gets its first node as a fourth one with weight 0, so that sums over
    nodes need no branch. */
 PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const PetscReal predicted[], PetscReal deepest)
@@ -270,29 +287,19 @@ PetscBool PairPlace(ContactProjector p, PetscInt k, const PetscReal u[], const P
   }
   PairTurn(frame, pair);
   PairSetCompliance(&p->nodes, pair);
+  PairPlaceRow(p, pair, &p->row[k]);
   if (pair->found) pair->gap = PairGap(p, pair, p->nodes.rest, p->nodes.rest);
   pair->ready = PETSC_TRUE;
   return PETSC_TRUE;
 }
 
-/* The same for Gauss-Seidel, without the directions */
-INTO_VERSIONS void PairSetRow(const ContactProjector p, const ProjectorPair *pair, const PetscReal impulse[3],
-                              ProjectorRow *row)
+/* What changes from step to step of a pair as Gauss-Seidel sees it */
+INTO_VERSIONS void PairSetRow(const ProjectorPair *pair, const PetscReal impulse[3], ProjectorRow *row)
 {
-  const PetscReal *minv = p->nodes.minv;
-
-  *row = (ProjectorRow){.mass = pair->w > 0 ? 1 / pair->w : 0, .mu = pair->mu};
-  if (p->sliding[pair->interface].turning) row->D = &p->frame[pair->interface].D[0][0];
-  for (int i = 0; i < 4; i++) {
-    row->node[i]   = (int)pair->node[i];
-    row->weight[i] = pair->weight[i];
-    row->push[i]   = pair->weight[i] * minv[3 * pair->node[i]];
-  }
-  row->node[4] = (int)pair->slave;
-  row->push[4] = minv[3 * pair->slave];
+  row->mu = pair->mu;
   for (int d = 0; d < 3; d++) {
-    row->n[d] = pair->e[0][d];
-    row->p[d] = impulse[d];
+    row->p[d]      = impulse[d];
+    row->offset[d] = 0;
     for (int i = 0; i < 3; i++) row->offset[d] += pair->e[i][d] * pair->offset[i];
   }
 }
@@ -356,7 +363,7 @@ INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep
   PairGuess(pair, p->order, step->kick, impulse);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) pair->p[i] += pair->e[i][j] * impulse[j];
-  PairSetRow(p, pair, impulse, &p->row[k]);
+  PairSetRow(pair, impulse, &p->row[k]);
 }
 
 static VERSIONS void PairsPrepareAll(ContactProjector p, const ContactStep *step)

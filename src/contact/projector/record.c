@@ -23,59 +23,59 @@ INTO_VERSIONS void GuessesMeasure(const ProjectorPair *pair, const PetscReal lam
   }
 }
 
-/* Force of a pair from its impulse; the last ones become older */
-INTO_VERSIONS void PairSetForce(ProjectorPair *pair, PetscReal kick, PetscReal miss[PROJECTOR_PAST])
+/* Force of a pair from that along n, t, b; the last ones become older */
+INTO_VERSIONS void PairSetForce(ProjectorPair *pair, const PetscReal force[3], PetscReal miss[PROJECTOR_PAST])
 {
   PetscReal lambda[3] = {0, 0, 0};
 
   for (int i = 0; i < 3 && pair->facet >= 0; i++)
-    for (int d = 0; d < 3; d++) lambda[d] += pair->e[i][d] * (pair->p[i] / kick);
+    for (int d = 0; d < 3; d++) lambda[d] += pair->e[i][d] * force[i];
   GuessesMeasure(pair, lambda, miss);
   for (int i = PROJECTOR_PAST - 1; i > 0; i--)
     for (int d = 0; d < 3; d++) pair->lambda[i][d] = pair->lambda[i - 1][d];
   for (int d = 0; d < 3; d++) pair->lambda[0][d] = lambda[d];
 }
 
-/* Forces (N) on the nodes, which the root adds up in the order of the pairs */
-INTO_VERSIONS void ForcesSet(ContactProjector p, PetscReal kick)
+/* Adds the force of a pair (N) to its nodes; on the slave it is along the directions turned to the ground */
+INTO_VERSIONS void PairPressNodes(const ProjectorPair *pair, const PetscReal along[3], PetscReal force[])
 {
-  const PetscInt n     = ShareCountSent(&p->share);
-  PetscReal     *force = p->nodes.force, miss[PROJECTOR_PAST] = {0};
+  const PetscReal *lambda = pair->lambda[0];
+  PetscReal        slave[3];
 
-  for (PetscInt i = 0; i < n; i++)
-    for (int d = 0; d < 3; d++) force[3 * p->share.send_node[i] + d] = 0;
-  for (PetscInt k = 0; k < p->n_pairs; k++) {
-    ProjectorPair   *pair   = &p->pair[k];
-    const PetscReal *lambda = pair->lambda[0];
-
-    PairSetForce(pair, kick, miss);
-    if (pair->facet < 0 || pair->p[0] == 0) continue;
-    for (int d = 0; d < 3; d++) {
-      for (int k = 0; k < pair->n_own; k++)
-        for (int i = 0; i < 3; i++)
-          force[3 * pair->own[k] + d] += pair->own_weight[k] * pair->turned[i][d] * (pair->p[i] / kick);
-      for (int j = 0; j < 4; j++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
-    }
-    for (int j = 12; j < 3 * pair->n; j++) force[3 * pair->node[j / 3] + j % 3] -= pair->weight[j / 3] * lambda[j % 3];
-  }
-  p->order = 0;
-  for (int i = 1; i < PROJECTOR_PAST; i++)
-    if (miss[i] < miss[p->order]) p->order = i;
+  for (int d = 0; d < 3; d++)
+    slave[d] = pair->turned[0][d] * along[0] + pair->turned[1][d] * along[1] + pair->turned[2][d] * along[2];
+  for (int k = 0; k < pair->n_own; k++)
+    for (int d = 0; d < 3; d++) force[3 * pair->own[k] + d] += pair->own_weight[k] * slave[d];
+  for (int j = 0; j < 4; j++)
+    for (int d = 0; d < 3; d++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
+  for (int j = 4; j < pair->n; j++)
+    for (int d = 0; d < 3; d++) force[3 * pair->node[j] + d] -= pair->weight[j] * lambda[d];
 }
 
-/* State of a pair: gap = q_n dt (m), lambda_n = p_n / kick (N); friction on the master is the opposite of that on the
-   slave. One whose impulse is rounding, which bodies leave that touch and move together, is open. A slave that faces
-   nothing has an infinite gap. */
-INTO_VERSIONS void StateSet(const ProjectorPair *pair, const ContactStep *step, PetscReal noise, ContactState *state)
+/* Order of the guess that would have missed least */
+static PetscInt OrderBest(const PetscReal miss[PROJECTOR_PAST])
+{
+  PetscInt best = 0;
+
+  for (int i = 1; i < PROJECTOR_PAST; i++)
+    if (miss[i] < miss[best]) best = i;
+  return best;
+}
+
+/* State of a pair with a force (N) along n, t, b: gap = q_n dt (m); friction on the master is the opposite of that on
+   the slave. One whose impulse is rounding, which bodies leave that touch and move together, is open. A slave that
+   faces nothing has an infinite gap. */
+INTO_VERSIONS void StateSet(const ProjectorPair *pair, const PetscReal force[3], PetscReal dt, PetscReal noise,
+                            ContactState *state)
 {
   *state = (ContactState){.status = CONTACT_OPEN, .gap = PETSC_INFINITY};
   if (pair->facet < 0) return;
   state->status   = pair->p[0] > noise ? pair->status : CONTACT_OPEN;
-  state->gap      = pair->q[0] * step->dt;
-  state->lambda_n = pair->p[0] / step->kick;
+  state->gap      = pair->q[0] * dt;
+  state->lambda_n = force[0];
   for (int i = 0; i < 2; i++) {
-    state->slip[i]     = pair->q[1 + i] * step->dt;
-    state->lambda_t[i] = -pair->p[1 + i] / step->kick;
+    state->slip[i]     = pair->q[1 + i] * dt;
+    state->lambda_t[i] = -force[1 + i];
   }
 }
 
@@ -146,23 +146,32 @@ static PetscReal FrictionAlong(const Directions *d)
   return length > 0 ? Vec3Dot(d->friction, d->along) / length : Vec3Length(d->friction);
 }
 
+/* Forces are added to the nodes in the order of the pairs, by the root */
 VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const ProjectorConvergence *convergence)
 {
-  Directions directions[CONTACT_MAX] = {0};
+  Directions     directions[CONTACT_MAX] = {0};
+  const PetscInt n                       = ShareCountSent(&p->share);
+  PetscReal      miss[PROJECTOR_PAST]    = {0};
 
-  ForcesSet(p, step->kick);
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < 3; d++) p->nodes.force[3 * p->share.send_node[i] + d] = 0;
   for (PetscInt i = 0; i < p->n_interfaces; i++) SumsBegin(&p->sums[i], convergence);
   for (PetscInt k = 0; k < p->n_pairs; k++) {
-    const ProjectorPair *pair  = &p->pair[k];
-    const PetscInt       i     = pair->interface;
-    ContactState        *state = &p->state[k];
+    ProjectorPair  *pair     = &p->pair[k];
+    const PetscInt  i        = pair->interface;
+    ContactState   *state    = &p->state[k];
+    const PetscReal force[3] = {pair->p[0] / step->kick, pair->p[1] / step->kick, pair->p[2] / step->kick};
 
-    StateSet(pair, step, convergence->noise, state);
+    PairSetForce(pair, force, miss);
+    StateSet(pair, force, step->dt, convergence->noise, state);
     p->sums[i].n[state->status]++;
     if (pair->facet < 0) continue;
     for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];
-    if (state->lambda_n != 0) InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
+    if (state->lambda_n == 0) continue;
+    PairPressNodes(pair, force, p->nodes.force);
+    InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
   }
+  p->order = OrderBest(miss);
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     p->sums[i].friction = FrictionAlong(&directions[i]);
     ContactSumsCompare(&p->sums[i]);

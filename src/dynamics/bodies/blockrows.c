@@ -124,10 +124,13 @@ static void GeneralAdvanceNodes(const General *general, PetscInt begin, PetscInt
 
 PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *w)
 {
+  const PetscInt begin = early ? 0 : general->n_early, end = early ? general->n_early : general->n;
+
   PetscFunctionBeginUser;
-  if (early)
-    GeneralAdvanceNodes(general, 0, general->n_early, w);
-  else
-    GeneralAdvanceNodes(general, general->n_early, general->n, w);
+  GeneralAdvanceNodes(general, begin, end, w);
+  if (end > begin)
+    PetscCall(PetscLogFlops(
+      2 * BLOCK_FLOPS * (PetscLogDouble)(general->stiffness.start[end] - general->stiffness.start[begin]) +
+      NODE_FLOPS * (PetscLogDouble)(end - begin)));
   PetscFunctionReturn(0);
 }

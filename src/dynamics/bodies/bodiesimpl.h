@@ -14,6 +14,12 @@ typedef struct {
   PetscReal centre[3];
 } BodiesFrame;
 
+/* Products and sums: of a node and a line beside it, K v; of a damped node all else, ku, d, f and four energies; of a
+   block of 3 x 3 that serves once */
+#define STENCIL_FLOPS 34
+#define NODE_FLOPS    48
+#define BLOCK_FLOPS   18
+
 /* Consecutive nodes k of all lines (from a multiple of STENCIL_WIDTH, to one of its half); `early` ones have nodes
    that ranks share, `first` and `last` ones the ends of open lines */
 typedef struct {
@@ -36,6 +42,7 @@ typedef struct {
   PetscReal  *inside, *first, *last; /* [stride]: 1 at nodes, at node 0, at the last node, else 0 */
   PetscInt    n_ranges;
   SweptRange *range;
+  PetscInt    n_near; /* neighbours of all lines, those of damping of its own too: for the count of flops */
 } SweptBody;
 
 /* Rows of 3 x 3 blocks, each block row after row */

@@ -134,6 +134,15 @@ static void SweptAdvanceRange(const SweptBody *s, const SweptRange *range, Bodie
     SweptAdvanceLines(s, range, PETSC_FALSE, w);
 }
 
+static PetscErrorCode SweptAdvanceCounted(const SweptBody *s, const SweptRange *range, BodiesWork *w)
+{
+  PetscFunctionBeginUser;
+  SweptAdvanceRange(s, range, w);
+  PetscCall(PetscLogFlops((PetscLogDouble)(range->end - range->begin) *
+                          (STENCIL_FLOPS * (PetscLogDouble)s->n_near + NODE_FLOPS * s->lines->n_lines)));
+  PetscFunctionReturn(0);
+}
+
 /* Ghosts of a closed body: the last node before the first one and the reverse; or zeros, as padding has to be
    between calls */
 static void SweptSetGhosts(const SweptBody *s, PetscBool zero, PetscReal v[])
@@ -154,7 +163,7 @@ PetscErrorCode SweptAdvance(const SweptBody *s, PetscBool early, BodiesWork *w)
   PetscFunctionBeginUser;
   if (early) SweptSetGhosts(s, PETSC_FALSE, w->v);
   for (PetscInt i = 0; i < s->n_ranges; i++)
-    if (s->range[i].early == early) SweptAdvanceRange(s, &s->range[i], w);
+    if (s->range[i].early == early) PetscCall(SweptAdvanceCounted(s, &s->range[i], w));
   if (!early) SweptSetGhosts(s, PETSC_TRUE, w->v);
   PetscFunctionReturn(0);
 }
@@ -190,6 +199,7 @@ PetscErrorCode SweptSetRanges(SweptBody *s, const PetscBool shared[])
 
   PetscFunctionBeginUser;
   PetscCall(SweptSetFlags(s));
+  for (PetscInt l = 0; l < s->lines->n_lines; l++) s->n_near += s->stiffness[l].n + s->damping[l].n;
   PetscCall(PetscMalloc1(n_blocks, &s->range));
   for (PetscInt k = 0; k < n; k += STENCIL_WIDTH) {
     SweptRange *last  = s->n_ranges ? &s->range[s->n_ranges - 1] : NULL;

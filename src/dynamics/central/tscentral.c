@@ -107,6 +107,7 @@ static PetscErrorCode CentralMove(TS ts, const CentralStep *step)
     KickAndDriftTwo(step, &a);
   else
     KickAndDrift(a.n, step, a.minv, a.f, a.v, a.u);
+  PetscCall(PetscLogFlops((a.f_old ? 7.0 : 5.0) * (PetscLogDouble)a.n));
   PetscCall(VecRestoreArray(step->u, &a.u));
   PetscCall(VecRestoreArray(step->v, &a.v));
   if (step->f_old) PetscCall(VecRestoreArrayRead(step->f_old, &a.f_old));
