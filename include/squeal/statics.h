@@ -50,6 +50,7 @@ typedef struct {
   PetscReal rubbing;             /* sum of the lengths of that of each pair, N */
   PetscReal moment;              /* with a -rotation: of friction on the master about that axis, against it, N m */
   PetscReal centre[3];           /* of the normal forces, m */
+  PetscReal area, closing;       /* of all pairs, m^2; the largest of a pair, m */
 } StaticsResultant;
 
 /* Line F = k d + c fitted to normal force against approach of the second rows of nodes */

@@ -50,6 +50,8 @@ static void StaticsAddResultant(const ContactInterface *c, const ContactPair *pa
   r->moment += BrakingMoment(c, pair->x, f);
   r->n[state->status]++;
   r->normal += state->lambda_n;
+  r->area += pair->area;
+  r->closing = PetscMax(r->closing, -state->gap);
   for (int d = 0; d < 3; d++) {
     r->force[d] += -state->lambda_n * pair->n[d] + f[d];
     r->friction[d] += f[d];
@@ -71,12 +73,41 @@ static PetscErrorCode StaticsSetResultants(Statics s)
 
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->n, CONTACT_N_STATUS, MPIU_INT, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->normal, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->area, 1, MPIU_REAL, MPI_SUM, s->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->closing, 1, MPIU_REAL, MPI_MAX, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->rubbing, 1, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &r->moment, 1, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->friction, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->force, 3, MPIU_REAL, MPI_SUM, s->comm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->centre, 3, MPIU_REAL, MPI_SUM, s->comm));
     for (int d = 0; d < 3 && r->normal != 0; d++) r->centre[d] /= r->normal;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Warns, once, of surfaces that yield by more than a tenth of the contact's size (m), or that yield and carry nothing
+   beside the loads: bodies go through each other, by a k_n of another unit or next to none */
+static PetscErrorCode StaticsWarnClosing(Statics s)
+{
+  const char *metre;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(s->model, "m", &metre));
+  for (PetscInt i = 0; i < s->rows.n_interfaces && !s->deep; i++) {
+    const ContactInterface *c    = &s->rows.interface[i];
+    const StaticsResultant *r    = &s->resultant[i];
+    const PetscReal         size = PetscSqrtReal(r->area);
+    const PetscBool nothing = r->closing > 1e-9 * size && r->normal <= 1e-9 * s->peak ? PETSC_TRUE : PETSC_FALSE;
+
+    if (!(r->area > 0) || c->law != CONTACT_PENALTY || (r->closing <= 0.1 * size && !nothing)) continue;
+    s->deep = PETSC_TRUE;
+    PetscCall(PetscFPrintf(s->comm, stderr,
+                           "squeal: warning: contact %s, of %.3g %s, closes by %.3g %s under %.3g N: its bodies go "
+                           "through each other; is -%s_%s right?\n",
+                           c->name, (double)size, metre, (double)r->closing, metre, (double)r->normal, c->name,
+                           !PressureIsLinear(&c->pressure) ? "pressure_law"
+                           : c->per_area                   ? "kn_per_area"
+                                                           : "kn"));
   }
   PetscFunctionReturn(0);
 }
@@ -168,6 +199,7 @@ PetscErrorCode StaticsSetState(Statics s, Vec f, const PetscReal l[])
   PetscCall(PetscFree(w));
   PetscCall(StaticsSetResultants(s));
   PetscCall(StaticsMeasureEquilibrium(s, f, l));
+  PetscCall(StaticsWarnClosing(s));
   if (s->stage == StagesCount(s) - 1) PetscCall(StaticsMeasureKKT(s)); /* in which all slides that is told to */
   PetscFunctionReturn(0);
 }

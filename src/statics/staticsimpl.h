@@ -215,6 +215,7 @@ struct _p_Statics {
   PetscReal         equilibrium; /* relative residual */
   PetscInt          n_free;      /* rigid motions held by pins */
   StaticsResultant *resultant;   /* [interfaces] */
+  PetscBool         deep;        /* surfaces that yield too far have been warned of */
   /* wear (wear/wear.c) */
   PetscBool  wears;  /* asked for */
   PetscReal *worn;   /* [n_pairs] by which gaps have grown, m */
