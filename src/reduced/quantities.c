@@ -28,7 +28,7 @@ static const Quantity rows[] = {
   {"-dynamics_dense",
    "most pairs of a reduced transient for a dense compliance, beyond: a solution with the sparse factors in each "
    "product",
-   NULL, QUANTITY_INT, REDUCED_AT(request.dense), .initial = 1500, QUANTITY_WITHIN(0, 1e9), .idle = ReducedIdle,
+   NULL, QUANTITY_INT, REDUCED_AT(request.dense), .initial = 2500, QUANTITY_WITHIN(0, 1e9), .idle = ReducedIdle,
    .in = RUN_TRANSIENT},
   {"-dynamics_contact",
    "of a reduced model: rigid surfaces, or surfaces that yield as -..._kn or -..._pressure_law of their contact says",

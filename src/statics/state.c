@@ -85,8 +85,8 @@ static PetscErrorCode StaticsSetResultants(Statics s)
   PetscFunctionReturn(0);
 }
 
-/* Warns, once, of surfaces that yield by more than a tenth of the contact's size (m), or that yield and carry nothing
-   beside the loads: bodies go through each other, by a k_n of another unit or next to none */
+/* Warns, once, of surfaces that yield by more than a tenth of the contact's size (m), or that yield and carry less
+   than rounding of the forces: bodies go through each other, by a k_n of another unit or next to none */
 static PetscErrorCode StaticsWarnClosing(Statics s)
 {
   const char *metre;
@@ -97,7 +97,8 @@ static PetscErrorCode StaticsWarnClosing(Statics s)
     const ContactInterface *c    = &s->rows.interface[i];
     const StaticsResultant *r    = &s->resultant[i];
     const PetscReal         size = PetscSqrtReal(r->area);
-    const PetscBool nothing = r->closing > 1e-9 * size && r->normal <= 1e-9 * s->peak ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool nothing =
+      r->closing > 1e-9 * size && r->normal <= PETSC_MACHINE_EPSILON * s->peak ? PETSC_TRUE : PETSC_FALSE;
 
     if (!(r->area > 0) || c->law != CONTACT_PENALTY || (r->closing <= 0.1 * size && !nothing)) continue;
     s->deep = PETSC_TRUE;

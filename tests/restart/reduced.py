@@ -41,7 +41,7 @@ def main():
     parser.add_argument("launcher")
     parser.add_argument("--ranks", default="1")
     parser.add_argument("--scene", choices=("brake", "tied"), default="brake")
-    parser.add_argument("--dense", default="1500", help="-dynamics_dense")
+    parser.add_argument("--dense", default="2500", help="-dynamics_dense")
     arguments = parser.parse_args()
     program = starter(arguments.squeal)
 

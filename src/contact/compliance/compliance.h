@@ -62,6 +62,7 @@ typedef struct {
 
 /* W as a map of forces [n][3] (N) to motions [n][3] (m) */
 typedef struct {
+  MPI_Comm         comm; /* of the ranks that share it, with the same numbers */
   void            *ctx;
   const PetscReal *kappa; /* [n] about the stiffness of each pair alone, N/m, positive; copied */
   const PetscReal *tau;   /* [n][3] springs of the directions held, N/m, stiff beside kappa, else 0 */

@@ -19,8 +19,8 @@
    friction that follows the normal force, and as many more as pairs have changed; where these are many the springs are
    set anew, which costs a factorisation.
 */
+#include "base/algebra/copies.h"
 #include "complianceimpl.h"
-#include <petscksp.h>
 
 #define KRYLOV_RTOL   1e-6 /* of the residual: Newton's method takes the rest out in its next step */
 #define KRYLOV_MAX_IT 120
@@ -217,7 +217,7 @@ static PetscErrorCode KrylovPress(PC pc, Vec from, Vec to)
   PetscFunctionReturn(0);
 }
 
-/* GMRES on one rank's copy of the vectors: all ranks have the same numbers, and take the same steps */
+/* GMRES on each rank's copy of the vectors, which are the same numbers; products are made by all together */
 static PetscErrorCode KrylovCreate(ContactCompliance c, PetscInt rows, KSP *ksp)
 {
   Mat A;
@@ -232,6 +232,7 @@ static PetscErrorCode KrylovCreate(ContactCompliance c, PetscInt rows, KSP *ksp)
   PetscCall(KSPGMRESSetRestart(*ksp, KRYLOV_MAX_IT));
   PetscCall(KSPSetPCSide(*ksp, PC_RIGHT));
   PetscCall(KSPSetTolerances(*ksp, KRYLOV_RTOL, 0, PETSC_DEFAULT, KRYLOV_MAX_IT));
+  PetscCall(CopiesEndTogether(c->krylov.map.comm, *ksp));
   PetscCall(KSPGetPC(*ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, c));
@@ -262,6 +263,7 @@ PetscErrorCode ComplianceKrylovSolve(ContactCompliance c)
   PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, solution, &x));
   PetscCall(KSPSolve(ksp, b, x));
   PetscCall(KSPGetIterationNumber(ksp, &its));
+  PetscCallMPI(MPI_Bcast(solution, (PetscMPIInt)rows, MPIU_REAL, 0, c->krylov.map.comm));
   PetscCall(PetscArraycpy(c->rhs, solution, rows));
   if (!c->krylov.n_first) c->krylov.n_first = PetscMax(1, its);
   c->krylov.n_more += PetscMax(0, its - c->krylov.n_first);

@@ -6,13 +6,16 @@
    A line C ~ o + s lambda_n has s on the diagonal of W, and o in the displacement without forces. A linear law is one
    line. Another law is a line through its own point at the forces of the iterate before, whose s stays from step to
    step as long as that converges fast, by SPRING_FAST each time; where not, lines are tangents from then on in this
-   step: Newton's method. */
+   step: Newton's method. Forces on lines that are not the last ones are found to SPRING_LOOSE of what the laws are
+   missed by. */
 #include "complianceimpl.h"
 
 #define SPRING_SETTLED 1e-13 /* of the largest force, or of the largest closing beyond the onset */
 #define SPRING_ROUNDED 1e-9  /* no better after one more iteration: what rounding of r leaves */
 #define SPRING_FAST    0.3
 #define SPRING_MAX_IT  100
+#define SPRING_LOOSE   0.01
+#define SPRING_FIRST   1e-4 /* relative tolerance on the first lines */
 
 /* W with the compliances of the lines on its diagonal; scales, and nothing of what was factored before */
 static PetscErrorCode SpringsSetDiagonal(ContactCompliance c)
@@ -125,9 +128,17 @@ static PetscErrorCode SpringsBegin(ContactCompliance c, const PetscReal lambda[]
   PetscFunctionReturn(0);
 }
 
+/* Tolerance on the present lines, where laws were missed by `miss` before; that of the step where it is the last */
+static PetscReal SpringsTolerance(const ContactCompliance c, PetscReal miss, PetscReal rtol)
+{
+  if (!c->springs.curved) return rtol;
+  return PetscMax(rtol, miss < PETSC_MAX_REAL ? PetscMin(SPRING_FIRST, SPRING_LOOSE * miss) : SPRING_FIRST);
+}
+
 PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                       PetscReal lambda[])
 {
+  const PetscReal  rtol   = c->rtol;
   PetscReal        before = PETSC_MAX_REAL, miss = PETSC_MAX_REAL;
   ComplianceReport sum      = {.steps = 1};
   PetscBool        tangents = PETSC_FALSE;
@@ -135,6 +146,7 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
   PetscFunctionBeginUser;
   if (c->springs.curved) PetscCall(SpringsBegin(c, lambda));
   for (PetscInt it = 0; it < SPRING_MAX_IT; it++) {
+    c->rtol = SpringsTolerance(c, miss, rtol);
     for (PetscInt i = 0; i < 3 * c->n; i++) c->springs.q[i] = q[i] + (i % 3 ? 0 : c->springs.line[i / 3].closing);
     PetscCall(ComplianceSolveLines(c, c->springs.q, slip0, lambda));
     sum.iterations += c->report.iterations;
@@ -143,11 +155,12 @@ PetscErrorCode ComplianceSolveSprings(ContactCompliance c, const PetscReal q[], 
     if (!c->springs.curved || !c->report.converged) break;
     SpringsTake(c);
     miss = SpringsMiss(c->n, c->springs.law, c->springs.point);
-    if (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2)) break;
+    if (c->rtol == rtol && (miss <= SPRING_SETTLED || (miss <= SPRING_ROUNDED && miss > before / 2))) break;
     if (miss > SPRING_FAST * before) tangents = PETSC_TRUE;
     PetscCall(SpringsMove(c, tangents));
     before = miss;
   }
+  c->rtol              = rtol;
   c->report.iterations = sum.iterations;
   c->report.factors    = sum.factors;
   c->report.route      = sum.route;

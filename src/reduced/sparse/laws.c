@@ -3,8 +3,8 @@
    solved by conjugate gradients with W^-1 in the place of A^-1: A is W and a little where the damping of the bodies is
    a part beta of their stiffness, the same for all or not.
 */
+#include "base/algebra/copies.h"
 #include "sparse.h"
-#include <petscksp.h>
 
 #define LAG_RTOL   1e-14 /* of the residual of q, in the norm of b */
 #define LAG_ENOUGH 1e-12 /* the same, where rounding leaves more */
@@ -83,12 +83,15 @@ static PetscErrorCode LagSolve(SparseLaws l, const PetscReal b[], PetscReal x[])
   PetscCall(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetInitialGuessNonzero(ksp, PETSC_TRUE));
   PetscCall(KSPSetTolerances(ksp, LAG_RTOL, 0, PETSC_DEFAULT, LAG_MAX_IT));
+  PetscCall(CopiesEndTogether(l->sparse->run->comm, ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, l));
   PetscCall(PCShellSetApply(pc, LagPress));
   PetscCall(KSPSolve(ksp, right, solution));
   PetscCall(KSPGetResidualNorm(ksp, &left));
+  PetscCallMPI(MPI_Bcast(x, (PetscMPIInt)n, MPIU_REAL, 0, l->sparse->run->comm));
+  PetscCallMPI(MPI_Bcast(&left, 1, MPIU_REAL, 0, l->sparse->run->comm));
   PetscCheck(
     left <= LAG_ENOUGH * size, l->sparse->run->comm, PETSC_ERR_NOT_CONVERGED,
     "damped forces on what the modes leave out: residual %.2e of %.2e after %d iterations of conjugate gradients; "
@@ -260,7 +263,8 @@ PetscErrorCode SparseLawsCreate(ReducedSparse sparse, ReducedStepper stepper, Sp
 
 void SparseLawsGetMap(SparseLaws l, ComplianceMap *map)
 {
-  *map = (ComplianceMap){l, l->sparse->kappa, l->tau, LawsMove, LawsMoveNearly, LawsHold, LawsPress};
+  *map = (ComplianceMap){
+    l->sparse->run->comm, l, l->sparse->kappa, l->tau, LawsMove, LawsMoveNearly, LawsHold, LawsPress};
 }
 
 PetscErrorCode SparseLawsDestroy(SparseLaws *laws)
