@@ -222,6 +222,31 @@ def nastran(folder, program, half, loaded):
           abs(one[0] / half[0] - 1) < 1e-3 and max(abs(one / half - 1)) > 1e-4, (one, half))
 
 
+def ansys(folder, program, half):
+    """The same bar as an archive of Ansys: SOLID186, a rigid region, BEAM188 in a row."""
+    _, node = bar(PIECES)
+    text = bar(PIECES)[0].split("*ELEMENT")[1].split("*NSET")[0].replace(",\n", ",").splitlines()[1:]
+    solids = [[int(word) for word in line.split(",")] for line in text if line]
+    rods_at = {9000 + k: (10.0 * (PIECES + k), 0.0, 0.0) for k in range(PIECES + 1)} | {9500: (10.0 * PIECES, 0.0, 50.0)}
+    places = {n: (5.0 * i, j * A / 4 - A / 2, k * B / 2 - B / 2) for (i, j, k), n in node.items()} | rods_at
+    rows = []
+    for number, *nodes in solids:
+        head = (1, 1, 1, 1, 0, 0, 0, 0, 20, 0, number, *nodes[:8])
+        rows += ["".join(f"{v:8d}" for v in head), "".join(f"{v:8d}" for v in nodes[8:])]
+    rows += ["".join(f"{v:8d}" for v in (1, 2, 1, 2, 0, 0, 0, 0, 3, 0, 8100 + k, 9000 + k, 9001 + k, 9500)) for k in range(PIECES)]
+    count = len(solids) + PIECES
+    lines = ["/PREP7", "ET,1,186", "ET,2,188", f"NBLOCK,6,SOLID,9500,{len(places)}", "(3i9,6e21.13e3)",
+             *(f"{n:9d}{0:9d}{0:9d}" + "".join(f"{v:21.13E}" for v in x) for n, x in sorted(places.items())), "N,R5.3,LOC,       -1,",
+             f"EBLOCK,19,SOLID,{count},{count}", "(19i8)", *rows, "      -1", f"MP,EX,1,{YOUNG}", f"MP,PRXY,1,{POISSON}",
+             f"MP,DENS,1,{DENSITY}", "SECTYPE,2,BEAM,RECT,ROD", f"SECDATA,{A},{B}"]
+    lines += [f"D,{n},ALL,0" for (i, _, _), n in node.items() if i == 0]
+    lines += [f"CERIG,9000,{n},ALL" for (i, _, _), n in node.items() if i == 2 * PIECES]
+    found, said = frequencies(folder, program, "\n".join([*lines, "MODOPT,LANB,8", "FINISH"]) + "\n", "cdb")
+    check("BEAM188 beside *BEAM SECTION", max(abs(found / half - 1)) < 1e-6, (found, half, said))
+    found, said = frequencies(folder, program, "\n".join([*lines, "MODOPT,LANB,8", "FINISH"]).replace("RECT", "T") + "\n", "cdb")
+    check("a section that is not read has a line", any("a section that is not read (RECT" in line for line in said), said)
+
+
 def not_read(folder):
     for about, section, said in (
             ("a section that is not read", SECTION.replace("RECT", "L").replace(f"{A}, {B}", "1., 1., 1., 1."),
@@ -241,6 +266,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
         half, loaded = halves(Path(name), program)
         nastran(Path(name), program, half, loaded)
+        ansys(Path(name), program, half)
         not_read(Path(name))
     program.end()
     return 1 if FAILED else 0

@@ -18,6 +18,7 @@ from squeal.decks import written
 from squeal.decks.balance import sums
 from squeal.decks.convert import convert
 from squeal.export.calculix import run_calculix
+from squeal.tables import BadInput
 
 import numpy as np
 from served import starter
@@ -65,6 +66,16 @@ class Plate:
             self.ids[at] = len(self.ids) + 1
             self.x.append(place(at[0] / ends[0], at[1] / ends[1]))
         return self.ids[at]
+
+    def ansys(self, holds, section, real="", kind=181):
+        """An archive; hold of a side (axis, end) and labels."""
+        lines = ["/PREP7", f"ET,1,{kind}", f"NBLOCK,6,SOLID,{len(self.x)},{len(self.x)}", "(3i9,6e21.13e3)",
+                 *(f"{k:9d}{0:9d}{0:9d}" + "".join(f"{v:21.13E}" for v in x) for k, x in enumerate(self.x, 1)), "N,R5.3,LOC,       -1,",
+                 f"EBLOCK,19,SOLID,{len(self.elements)},{len(self.elements)}", "(19i8)"]
+        lines += ["".join(f"{v:8d}" for v in (1, 1, 1, 1, 0, 0, 0, 0, len(row), 0, k, *row)) for k, row in enumerate(self.elements, 1)]
+        lines += ["      -1", f"MP,EX,1,{YOUNG}", f"MP,PRXY,1,{POISSON}", f"MP,DENS,1,{DENSITY}", *section, *([real] if real else [])]
+        lines += [f"D,{n},{label},0" for axis, end, labels in holds for n in self.side(axis, end) for label in labels]
+        return "\n".join([*lines, "MODOPT,LANB,6", "FINISH"]) + "\n"
 
     def side(self, axis, end):
         return [number for at, number in self.ids.items() if at[axis] == (self.ends[axis] if end else 0)]
@@ -131,6 +142,24 @@ def acts(folder):
     check("mass", abs(total.mass - 1e3 * LENGTH * WIDTH * THICK * DENSITY) < 1e-12, total.mass)
 
 
+def archives(folder, program, plain, clamped):
+    """Shells of Ansys with thickness by section or real constant beside those of Abaqus; layers have a line."""
+    side, block = [(0, 0, ("ALL",))], ["SECTYPE,1,SHELL,,", "SECOFFSET,MID", "SECBLOCK,     1", f"  {THICK}, 1, 0.0, 3"]
+    for about, section, real, kind, counts, other in (
+            ("SHELL181 with SECBLOCK is S4", block, "", 181, (24, 12), plain),
+            ("SHELL63 with R is S4", [], f"R,1,{THICK}", 63, (24, 12), plain),
+            ("SHELL281 with SECDATA is S8R", ["SECTYPE,1,SHELL", f"SECDATA,{THICK},1,0,5", "SECOFFSET,TOP"], "", 281, (16, 8), clamped)):
+        plate = Plate("S8R" if kind == 281 else "S4", counts, flat)
+        found, said = frequencies(folder, program, plate.ansys(side, section, real, kind), "cdb")
+        check(about, np.allclose(found, other, rtol=SAME, atol=0), (found, other, said))
+    (folder / "deck.cdb").write_text(Plate("S4", (4, 2), flat).ansys(side, [*block, "SECDATA,1.0,1,0,3"]))
+    try:
+        lines = str(convert(folder / "deck.cdb", "mm-t-s", folder / "deck"))
+    except BadInput as error:
+        lines = str(error)
+    check("two layers have a line", "2 layers: not taken; let Ansys write a superelement" in lines or "no volume elements" in lines, lines)
+
+
 def main():
     program = starter(sys.argv[1])
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
@@ -147,6 +176,7 @@ def main():
         plain = beside(folder, program, "S4, clamped", Plate("S4", (24, 12), flat).abaqus(["L, 1, 6"]), 0.013)
         nastran = frequencies(folder, program, Plate("S4", (24, 12), flat).nastran(), "bdf")[0]
         check("CQUAD4 is S4", np.allclose(nastran, plain, rtol=SAME, atol=0), (nastran, plain))
+        archives(folder, program, plain, clamped)
         beside(folder, program, "S4, a panel of a cylinder", Plate("S4", (24, 16), panel).abaqus(["L, 1, 6"]), 0.006)
         beside(folder, program, "S8R, a fold", Plate("S8R", (16, 8), folded).abaqus(["L, 1, 6"]), 0.014)
         branch, rows = Plate("S4", (24, 12), flat), 13

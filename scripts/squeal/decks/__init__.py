@@ -9,7 +9,7 @@
                 systems; mesh.py grid points and solids; model.py properties, materials, supports; springs.py, loads.py,
                 contact.py, joined.py, shells.py
   ansys/        Ansys' archive: read.py commands; blocks.py blocks; mesh.py nodes, elements, components; model.py;
-                joined.py; bolts.py pretension sections
+                joined.py; bolts.py pretension sections; sections.py shells and beams
   mesh/         elements.py shapes: corners, edges, faces, numbers and order of nodes of Gmsh; faces.py faces of the cells: of
                 sets of nodes, on the boundary, by their corners; middles.py nodes in the middle of edges that are left out;
                 orientation.py elements that are mirror images; shells.py shells as solids;

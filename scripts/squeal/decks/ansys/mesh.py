@@ -4,6 +4,7 @@ import re
 
 import numpy
 
+from .sections import BEAMS, SHELLS, add_shell_cells
 from ..deck import Block, Index, shape_of
 from ..mesh.middles import fill_middles
 
@@ -11,7 +12,7 @@ KNOWN = {"ET", "LOCAL"}
 MOST = 10**9
 # Number of a type -> nodes
 SOLIDS = {185: 8, 45: 8, 186: 20, 95: 20, 187: 10, 92: 10, 285: 4}
-JOINTS = {21, 14, 184, 179}  # ansys/joined.py, bolts.py
+JOINTS = {21, 14, 184, 179, *BEAMS}  # ansys/joined.py, bolts.py, sections.py
 FACETS = {173: "contact", 174: "contact", 175: "contact", 170: "target"}  # elements on surfaces
 DIFFERS = {("hex8", 185): "SOLID185 becomes hex8 of squeal, QM6, which is that of its enhanced strains, KEYOPT(2) = 3 (or 2)",
            ("hex8", 45): "SOLID45 becomes hex8 of squeal, QM6, which is that with its extra shapes",
@@ -47,6 +48,7 @@ class Mesh:
         self.own_held = {}  # node -> {own direction: (value, place)}
         self.selected = "ALL"  # nodes that ALL means: an array, or "" where this is not known
         self.systems = {0: (False, numpy.eye(3), numpy.zeros(3)), 1: (True, numpy.eye(3), numpy.zeros(3))}
+        self.shells, self.waiting_shells = [], []  # (type, cells, head, place); (type, head, nodes, rows, block) before they are cells
         self.waiting = []  # (block, head, lines): solids before their middles are there
 
 
@@ -142,6 +144,9 @@ def add_type(deck, mesh, block, kind, found):
     head, nodes, rows = found
     lines = rows + block.first + 1
     positive(block, head[:, 10], "an element", rows)
+    if kind in SHELLS:
+        mesh.waiting_shells.append((kind, head, nodes, rows, block))
+        return
     if kind not in SOLIDS:
         mesh.others.add(head[:, 10], head[:, 10], lines, block.header.place.file)
         if kind in FACETS:
@@ -203,6 +208,7 @@ def add_solids(deck, mesh):
         mesh.cells.add(head[:, 10], cells, lines, block.place.file)
         mesh.materials.append(head[:, 0])
         mesh.systems_of.append(head[:, 4])
+    mesh.shells = add_shell_cells(deck, mesh, mesh.waiting_shells)
 
 
 def read_component(deck, mesh, block):

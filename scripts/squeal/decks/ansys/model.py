@@ -241,6 +241,9 @@ def pressure_on_face(deck, mesh, command):
     values = [command.real(k) for k in range(5, len(command.words)) if command.word(k)]
     cell = int(mesh.cells.find([command.whole(1)], "element")[0][0])
     at = numpy.searchsorted(deck.firsts(), cell, side="right") - 1
+    if deck.blocks[at].plain is not None:
+        deck.note(command.place, "SFE on a shell: not taken; press its nodes by F, or its surface in the scene")
+        return
     face = FACES[deck.blocks[at].shape.family].get(command.whole(2))
     if face is None or not values:
         raise command.place.wrong(f"SFE: face {command.word(2)} of element {command.word(1)} has no pressure, or there is no such face")

@@ -5,7 +5,7 @@ import re
 import numpy
 
 from ...tables import BadInput
-from . import bolts as ansys_bolts, joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
+from . import bolts as ansys_bolts, sections as ansys_sections, joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
 from .blocks import BLOCK, DATABASE, Command, read_block
 from ..deck import Deck, Place
 from ..text import line_starts, read_bytes
@@ -37,7 +37,7 @@ def commands_of(path, text, first, parameters):
             line = "*SET"
         words = [word.strip() for word in line.split(",")]
         if re.match(r"[-+.\d(]", words[0]):
-            if found and found[-1].words[0] == "RLBLOCK":
+            if found and found[-1].words[0] in ("RLBLOCK", "SECBLOCK"):
                 found[-1].lines.append(line)
                 continue
             if found and DATABASE.match(found[-1].words[-1]) and before == found[-1].words[0]:
@@ -85,6 +85,10 @@ def read_ansys(path):
         return deck
     taken = ansys_bolts.read_bolts(deck, commands, mesh)
     commands = [command for command in commands if not any(command is other for other in taken)]
+    sections, taken = ansys_sections.read_sections(commands)
+    commands = [command for command in commands if not any(command is other for other in taken)]
+    ansys_sections.set_shells(deck, mesh, sections, ansys_joined.real_constants(commands))
+    ansys_sections.read_beams(deck, mesh, sections)
     ansys_joined.read_joined(deck, commands, mesh)
     ansys_model.read_model(deck, commands, mesh)
     if not any(command.words[0] in ("FINISH", "FINI", "SOLVE") for command in commands):
