@@ -85,6 +85,7 @@ def twins(folder, alone):
     chance = [row for row in table if row["regime"] == "bistable"]
     wrong = [row for row in table if (row["regime"] == "bistable") != (0 < int(row["runs_vibrating"]) < int(row["runs"]))
              or (row["decided_by"] == "rounding") != (row["regime"] == "bistable") or "+stable" in row["regimes"]]
+    wrong += unlisted(table)
     wrong += [row for row in chance if not row["regimes"].startswith("stable+")
               or not float(row["force_rms_p05_n"]) < float(row["force_rms_p95_n"])]
     chaotic = [(row, own) for row, own in zip(table, single) if row["runs"] == row["runs_vibrating"] == "4"]
@@ -94,6 +95,19 @@ def twins(folder, alone):
     print(f"{len(calm)} rows without twins or with one that agrees, {kept} of these vibrate, {len(changed)} numbers changed, {len(loose)} "
           f"errors smaller; {len(chaotic)} chaotic, {len(chance)} bistable, {len(wrong)} wrong")
     return bool(changed or loose or wrong) or not (kept and chaotic) or len(table) != len(single)
+
+
+def unlisted(table):
+    """Rows that lack a regime which chance may give them, beside a bistable row, or that have one beside rows of their own regime."""
+    found = []
+    for i, row in enumerate(table):
+        near = [other for other in table[max(0, i - 1):i] + table[i + 1:i + 2]
+                if all(other.get(key) == row.get(key) for key in ("direction", "value_2"))]
+        two = "stable" in row["regimes"].split("+") and row["regimes"] != "stable"
+        must = near and near[0] is table[i - 1] and near[0]["regime"] == "bistable"
+        may = any((other["regime"] == "stable") != (row["regime"] == "stable") or other["regime"] == "bistable" for other in near)
+        found += [row] * (row["regime"] not in ("bistable", "unknown") and (two and not may or must and not two))
+    return found
 
 
 def chance(folder):

@@ -11,13 +11,14 @@ from ..tables import BadInput
 SCENE = ROOT / "options/small_brake_map.yaml"
 GALLERY = "gallery"
 VIBRATES = {"cycle", "sticking", "growth"}
-CHANCE = "bistable"
+CHANCE, STABLE = "bistable", "stable"
 MOVED = 1e-3  # relative
 
 
 class Judged(NamedTuple):
     """Pairs of rows of two runs that were compared: how many; of these both vibrate; rounding moves the rms by MOVED; the rms is beyond
-    the error of the first; so is the frequency; the regime is none of those of the other; one says bistable and the other does not."""
+    the error of the first; so is the frequency; the regime is none of those of the other; one says bistable and the other neither does
+    nor lists two regimes."""
     pairs: int = 0
     loud: int = 0
     moved: int = 0
@@ -58,6 +59,12 @@ def rows_of(args, name, ranks, core):
         return list(csv.DictReader(file)), seconds
 
 
+def lists_both(row):
+    """Whether a row says that it may vibrate and may not."""
+    regimes = set(row["regimes"].split("+"))
+    return STABLE in regimes and bool(VIBRATES & regimes)
+
+
 def judge(one, other):
     """Of a row and the same of another run."""
     if one["direction"] != other["direction"] or one["value"] != other["value"]:
@@ -68,7 +75,8 @@ def judge(one, other):
     error = float(one["error_estimate"]) * float(one["force_rms_n"])
     moved = loud and off["force_rms_n"] > MOVED * float(one["force_rms_n"])
     return Judged(1, loud, moved, loud and not off["force_rms_n"] <= error, loud and off["freq_hz"] > float(one["freq_error_hz"]),
-                  not chance and other["regime"] not in one["regimes"].split("+"), chance and one["regime"] != other["regime"])
+                  not chance and other["regime"] not in one["regimes"].split("+"),
+                  chance and one["regime"] != other["regime"] and not (lists_both(one) and lists_both(other)))
 
 
 def judge_map(args, name):
@@ -97,13 +105,13 @@ def study(args):
         total, rows, chance, errors = total + found, rows + n, chance + n_chance, errors + stated
         print(f"map {name}: {n} rows, {n_chance} bistable; {found.pairs} pairs: {found.loud} both vibrate, "
               f"{found.moved} moved, rms beyond its error in {found.beyond}, frequency in {found.line}; another regime {found.regime}; "
-              f"bistable in one of two {found.chance} "
+              f"bistable in one, one regime in the other {found.chance} "
               f"({seconds:.0f} s)", flush=True)
     missed = total.beyond + total.regime
     errors.sort()
     print(f"{len(names)} maps, {rows} rows, {chance} bistable; of {total.pairs} pairs of runs of a row {total.pairs - missed} "
           f"({share(total.pairs - missed, total.pairs)}) are inside the error of the first, or named bistable in one; of the {total.loud} "
           f"that both vibrate {share(total.loud - total.beyond, total.loud)}, of the {total.moved} of these that rounding moves by "
-          f"{MOVED:g} {share(total.moved - total.beyond, total.moved)}; a row and its other run named bistable in one alone: "
+          f"{MOVED:g} {share(total.moved - total.beyond, total.moved)}; bistable in one, one regime in the other: "
           f"{share(total.chance, total.pairs)}; stated error, median {errors[len(errors) // 2] if errors else math.nan:.2g}")
     return missed + total.chance <= 0.05 * total.pairs and total.beyond <= 0.05 * total.moved

@@ -115,6 +115,23 @@ void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
   *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down};
 }
 
+/* Two neighbours of a chain where the transients of the first are each another one, and some of all die out and some
+   vibrate: chance decides at which of the two each ends, and n that end alike do not exclude the other end, whose share
+   may be up to 1 - 0.05^(1/n). Both rows list both regimes. */
+static void ChainListChance(MapPoint *before, MapPoint *row)
+{
+  MapPoint *const both[2] = {before, row};
+  PetscBool       dies = PETSC_FALSE, vibrates = PETSC_FALSE;
+
+  for (int i = 0; i < 2; i++) {
+    if (both[i]->regime == MAP_UNKNOWN) return;
+    if (both[i]->regime == MAP_STABLE || both[i]->regime == MAP_BISTABLE) dies = PETSC_TRUE;
+    if (both[i]->regime != MAP_STABLE) vibrates = PETSC_TRUE;
+  }
+  for (int i = 0; i < 2 && dies && vibrates; i++)
+    both[i]->regimes |= 1 << (both[i]->regime == MAP_STABLE ? MAP_CYCLE : MAP_STABLE);
+}
+
 /* Rows are kept after each point, with the state at its end; rows that an earlier run kept are not run again. A
    failed point breaks the chain: the next one begins at its own sliding state. */
 PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
@@ -129,8 +146,11 @@ PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
   if (w->bodies->kept) PetscCall(MapResumeChain(map, chain, &first, row, &kept));
   if (first) good = row[first - 1].end != MAP_FAILED ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt k = first; k < map->n_linked; k++) {
+    const PetscBool apart = k && w->n_twins > 1 && w->n_alive == w->n_twins ? PETSC_TRUE : PETSC_FALSE;
+
     MapChainPlace(map, chain, k, &row[k]);
     PetscCall(MarchPoint(w, good, &row[k], &good));
+    if (apart) ChainListChance(&row[k - 1], &row[k]);
     PetscCall(MapKeepChain(map, chain, k + 1, row, &kept));
     PetscCall(ProgressStep(&map->progress));
   }
