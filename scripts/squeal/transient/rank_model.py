@@ -65,10 +65,10 @@ def step_time(counts, ranks, rate, contact, fine=1):
 
 
 def print_model(program, words, one):
-    """Counts and times. one: a run on one rank with seconds, steps and its log."""
+    """Counts and times. one: a run on one rank with seconds, its share of a processor, steps and its log."""
     counts = [Counts(program, words, ranks) for ranks in RANKS]
-    contact = one.log["ContactProject"][0] / one.steps
-    rate = counts[0].flops[0] / (one.seconds / one.steps - contact)
+    contact = one.share * one.log["ContactProject"][0] / one.steps
+    rate = counts[0].flops[0] / (one.share * one.seconds / one.steps - contact)
     print_table("counts of a step", ("ranks", "flops", "most of a rank", "of mean", "messages", "bytes", "bytes of contact"),
                 *(c.row() for c in counts))
     print(f"  one rank: {rate / 1e9:.2f} Gflop/s, contact {1e6 * contact:.1f} us; network {1e6 * LATENCY:g} us, {BANDWIDTH / 1e9:g} GB/s")
