@@ -103,21 +103,21 @@ static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
   PetscFunctionReturn(0);
 }
 
-/* Gives all ranks the points first to last - 1 of the list, each from the rank that solved it */
-static PetscErrorCode PointsShare(Sample s, PetscInt first, PetscInt last, const PetscInt list[])
+PetscErrorCode SampleShare(Sample s, PetscInt first, PetscInt n, const PetscInt list[])
 {
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
-  for (PetscInt k = first; k < last; k++) {
-    const PetscMPIInt owner   = PointGroupsOwner(&s->box.groups, k);
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscMPIInt owner   = PointGroupsOwner(&s->box.groups, first + k);
     SamplePoint      *point   = &s->point[list[k]];
     PetscReal         head[2] = {(PetscReal)point->n, point->worst};
 
     PetscCallMPI(MPI_Bcast(head, 2, MPIU_REAL, owner, s->comm));
     point->n     = (PetscInt)head[0];
     point->worst = head[1];
+    if (rank != owner) PetscCall(PetscFree(point->mode));
     if (rank != owner) PetscCall(PetscMalloc1(point->n, &point->mode));
     PetscCallMPI(
       MPI_Bcast(point->mode, (PetscMPIInt)(point->n * (PetscInt)sizeof(SampleMode)), MPI_BYTE, owner, s->comm));
@@ -125,8 +125,8 @@ static PetscErrorCode PointsShare(Sample s, PetscInt first, PetscInt last, const
   PetscFunctionReturn(0);
 }
 
-/* Solves the points of the list */
-static PetscErrorCode PointsRun(Sample s, PetscInt n, const PetscInt list[])
+/* Solves the points of the list from the first on that is not yet */
+static PetscErrorCode PointsRun(Sample s, PetscInt n, PetscInt list[])
 {
   const PetscInt batch = BATCH * s->box.groups.n_groups;
   PetscMPIInt    rank;
@@ -135,7 +135,7 @@ static PetscErrorCode PointsRun(Sample s, PetscInt n, const PetscInt list[])
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
   PetscCall(ProgressBegin(&progress, "samples", n));
-  for (PetscInt first = 0; first < n; first += batch) {
+  for (PetscInt first = s->pass.first; first < n; first += batch) {
     const PetscInt last = PetscMin(n, first + batch);
 
     for (PetscInt k = first; k < last; k++) {
@@ -143,7 +143,8 @@ static PetscErrorCode PointsRun(Sample s, PetscInt n, const PetscInt list[])
       if (PointGroupsOwner(&s->box.groups, k) == rank) PetscCall(SampleSolvePoint(s, list[k], &s->point[list[k]]));
       PetscCall(ProgressStep(&progress));
     }
-    PetscCall(PointsShare(s, first, last, list));
+    PetscCall(SampleKeep(s, PETSC_FALSE, first, last - first, &list[first]));
+    PetscCall(SampleShare(s, first, last - first, &list[first]));
   }
   PetscCall(ProgressEnd(&progress));
   PetscFunctionReturn(0);
@@ -168,27 +169,48 @@ static PetscErrorCode PointsExceeding(Sample s, PetscInt *n, PetscInt list[])
   PetscFunctionReturn(0);
 }
 
-/* All points are solved anew where the nominal modes are no longer as many, since branches are numbered by them. */
+/* A pass over the points of the list. All are solved anew where the nominal modes are no longer as many as in the pass
+   before, since branches are numbered by them. */
+static PetscErrorCode PassRun(Sample s)
+{
+  SamplePass *pass = &s->pass;
+  PetscInt   *all;
+
+  PetscFunctionBeginUser;
+  if (!pass->begun) PetscCall(SampleKeep(s, PETSC_TRUE, 0, pass->n, pass->list));
+  PetscCall(BasisGrow(s, pass->n, pass->list));
+  PetscCall(NominalSolve(s));
+  if (pass->round && s->nominal.n != pass->n_before) {
+    PetscCall(PetscMalloc1(s->n_points, &all));
+    for (PetscInt i = 0; i < s->n_points; i++) all[i] = i;
+    PetscCall(PointsRun(s, s->n_points, all));
+    PetscCall(PetscFree(all));
+  } else {
+    PetscCall(PointsRun(s, pass->n, pass->list));
+  }
+  pass->n_before = s->nominal.n;
+  pass->first    = 0;
+  pass->begun    = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SamplePoints(Sample s)
 {
-  PetscInt *list, n = s->n_points;
+  SamplePass *pass = &s->pass;
+  PetscInt    n;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->n_points, &s->point));
-  PetscCall(PetscMalloc1(s->n_points, &list));
-  for (PetscInt i = 0; i < n; i++) list[i] = i;
-  for (int round = 0; round < SAMPLE_ROUNDS && n; round++) {
-    const PetscInt n_before = s->nominal.n;
-
-    PetscCall(BasisGrow(s, n, list));
-    PetscCall(NominalSolve(s));
-    if (round && s->nominal.n != n_before)
-      for (n = 0; n < s->n_points; n++) list[n] = n;
-    PetscCall(PointsRun(s, n, list));
+  PetscCall(PetscMalloc1(s->n_points, &pass->list));
+  pass->n = s->n_points;
+  for (PetscInt i = 0; i < pass->n; i++) pass->list[i] = i;
+  PetscCall(SampleResume(s));
+  for (; pass->round < SAMPLE_ROUNDS && pass->n; pass->round++) {
+    PetscCall(PassRun(s));
     if (s->box.whole) break;
-    PetscCall(PointsExceeding(s, &n, list));
+    PetscCall(PointsExceeding(s, &pass->n, pass->list));
   }
-  PetscCall(PetscFree(list));
+  n = pass->n;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->n_divided, 1, MPIU_INT, MPI_SUM, s->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->n_large, 1, MPIU_INT, MPI_SUM, s->comm));
   PetscCheck(s->box.whole || !n, s->comm, PETSC_ERR_NOT_CONVERGED,

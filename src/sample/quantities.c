@@ -80,6 +80,8 @@ static const Quantity rows[] = {
    QUANTITY_NOT_NEGATIVE},
   {"-sample_groups", "ranks that share the samples (0: all; the full solutions use all ranks)", NULL, QUANTITY_INT,
    SAMPLE_AT(box.n_groups), QUANTITY_NOT_NEGATIVE},
+  {"-sample_restart", "go on where a run of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
+   SAMPLE_AT(restart), .initial = PETSC_TRUE},
   {"-sample_conditions",
    "CSV file of conditions in place of samples: condition, direction (forward, reverse), and columns named like "
    "options "

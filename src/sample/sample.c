@@ -148,11 +148,11 @@ PetscErrorCode SampleSolve(Sample s, Results results)
   PetscLogDouble begun, ended;
 
   PetscFunctionBeginUser;
-  (void)results;
   PetscCall(ConditionsCheckOptions(s));
   PetscCall(SampleFindVariables(s));
   PetscCall(SamplesCheckValues(s));
   PetscCall(PetscTime(&begun));
+  PetscCall(SampleJournalOpen(s, results));
   PetscCall(BoxSetUp(&s->box, s->n_points, SampleGet, s));
   PetscCall(SamplePoints(s));
   PetscCall(PetscTime(&ended));
@@ -176,6 +176,8 @@ PetscErrorCode SampleDestroy(Sample *sample)
   PetscCall(PetscFree(s->point));
   PetscCall(PetscFree(s->variable));
   PetscCall(PetscFree(s->factor));
+  PetscCall(PetscFree(s->pass.list));
+  PetscCall(ChecksumDestroy(&s->journal.scene));
   PetscCall(PetscFree(s->reversed));
   PetscCall(PetscFree(s->band));
   for (PetscInt k = 0; k < s->n_ignored; k++) PetscCall(PetscFree(s->ignored[k]));

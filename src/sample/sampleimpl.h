@@ -57,6 +57,14 @@ typedef struct {
   char      label[32];
 } SampleBranch;
 
+/* A pass over points: which of them, and how many of these are solved */
+typedef struct {
+  PetscInt  round, n_before; /* modes of the nominal point in the pass before */
+  PetscInt  n, *list, first;
+  PetscInt  n_files;
+  PetscBool begun; /* its beginning is kept */
+} SamplePass;
+
 struct _p_Sample {
   PetscInt     n_verify; /* full solutions to compare with */
   SampleCheck *check;    /* [n_verify] */
@@ -70,6 +78,7 @@ struct _p_Sample {
   char            correlations[SAMPLE_MAX_TEXT];
   PetscInt        n, n_rows, seed; /* samples; rows of the design of the indices, 0 for none */
   char            varied[SAMPLE_MAX_TEXT];
+  PetscBool       restart;
   PetscBool       n_given, kind_given, seed_given, drawn; /* drawn: there were -sample_variables beside a file */
   char            file[PETSC_MAX_PATH_LEN];               /* of conditions, "" for samples */
   PetscInt        n_ignored, n_edges, n_columns;
@@ -90,7 +99,10 @@ struct _p_Sample {
   PetscInt       n_large;        /* points that were solved on the whole basis */
   SampleBranch  *branch;         /* [nominal.n + 1] */
   PetscInt       n_divided;      /* solutions that following the branches took */
-  PetscLogDouble seconds[2];     /* basis and points; full solutions beside them */
+  SamplePass     pass;
+  Results        results;
+  Journal        journal;    /* what a killed run goes on from */
+  PetscLogDouble seconds[2]; /* basis and points; full solutions beside them */
 };
 
 extern const QuantityTable sample_quantities;
@@ -135,11 +147,19 @@ PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal va
 PETSC_INTERN PetscErrorCode SampleParameters(Sample sample, PetscInt i, PetscReal p[]);
 /* All but what its status is: StaticsPoint of the sample as context */
 PETSC_INTERN PetscErrorCode SampleGet(void *sample, PetscInt i, PetscReal p[]);
-/* points.c - the basis and all points on it */
+/* points.c - gives all ranks the points list[n], the k-th in a pass of which is first + k, each from the rank that solved
+   it; the basis and all points on it */
+PETSC_INTERN PetscErrorCode SampleShare(Sample sample, PetscInt first, PetscInt n, const PetscInt list[]);
 PETSC_INTERN PetscErrorCode SamplePoints(Sample sample);
 /* Modes at p on the model of fewer vectors, where it is good enough, or on the whole basis; their branches [modes->n]
    from the nominal modes, freed by the caller. Not collective. */
 PETSC_INTERN PetscErrorCode SampleModesAt(Sample sample, const PetscReal p[], ReducedModes *modes, PetscInt **branch);
+/* kept.c - the journal, before BoxSetUp(); keeps the beginning of a pass with its list [n], or what was solved of it;
+   takes up what an earlier run kept; deletes all that is kept */
+PETSC_INTERN PetscErrorCode SampleJournalOpen(Sample sample, Results results);
+PETSC_INTERN PetscErrorCode SampleKeep(Sample sample, PetscBool begins, PetscInt first, PetscInt n, PetscInt list[]);
+PETSC_INTERN PetscErrorCode SampleResume(Sample sample);
+PETSC_INTERN PetscErrorCode SampleForget(Sample sample);
 /* verify.c - full solutions at some samples; which one the k-th is */
 PETSC_INTERN PetscErrorCode SampleVerify(Sample sample);
 PETSC_INTERN PetscInt       SampleVerified(Sample sample, PetscInt k);

@@ -220,12 +220,13 @@ PetscErrorCode SampleWrite(Sample s, Results results)
   PetscCall(SamplesVerifyWrite(s, results));
   if (s->file[0]) {
     PetscCall(ConditionsWrite(s, results));
-    PetscFunctionReturn(0);
+  } else {
+    PetscCall(SamplesWrite(s, results));
+    PetscCall(ModesRows(s, results));
+    PetscCall(ProbabilityWrite(s, results));
+    PetscCall(IndicesWrite(s, results));
+    PetscCall(SampleModelWrite(s, results));
   }
-  PetscCall(SamplesWrite(s, results));
-  PetscCall(ModesRows(s, results));
-  PetscCall(ProbabilityWrite(s, results));
-  PetscCall(IndicesWrite(s, results));
-  PetscCall(SampleModelWrite(s, results));
+  PetscCall(SampleForget(s));
   PetscFunctionReturn(0);
 }

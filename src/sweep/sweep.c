@@ -118,8 +118,7 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 }
 
 /* The reduced model: the basis is orthonormal in M of the first point; a small system takes all unit vectors, a
-   larger one greedy samples. Room for samples is that of the sweep and of SweepRobustness(), max_samples each, and
-   of the points that are only looked at. With contact statuses max_samples is no less than the places, as in the
+   larger one greedy samples. Room for samples is that of the sweep, max_samples, and of the points that are only looked at. With contact statuses max_samples is no less than the places, as in the
    worst case each has a status of its own. Where modes beyond the growth that was asked for were found
    (greedy.reach), window.rtol admits those whose estimated error, POINTS_MARGIN included, is below rtol. */
 static PetscErrorCode ModelMake(Sweep sweep)
@@ -142,15 +141,10 @@ static PetscErrorCode ModelMake(Sweep sweep)
     sweep->max_samples = PetscMax(sweep->max_samples, sweep->grid.n_places);
   sweep->greedy.max_samples = sweep->max_samples;
   sweep->greedy.progress    = &sweep->progress;
-  PetscCall(
-    PetscCalloc1(2 * sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
+  PetscCall(PetscCalloc1(sweep->max_samples + 2 + PetscMax(GREEDY_LOOKS, sweep->grid.n_places), &sweep->greedy.sample));
   sweep->greedy.last = PETSC_MAX_REAL;
   PetscCall(BasisFillWhole(&sweep->basis, &sweep->whole));
-  if (!sweep->whole && sweep->restart) { /* kept in the output folder as it grows */
-    PetscCall(SweepResume(sweep));
-    sweep->greedy.keep     = SweepKeep;
-    sweep->greedy.keep_ctx = sweep;
-  }
+  if (!sweep->whole && sweep->restart) PetscCall(SweepResume(sweep)); /* kept in the output folder as it grows */
   if (!sweep->whole) PetscCall(BasisMake(sweep, PETSC_FALSE));
   if (sweep->greedy.reach > sweep->window.growth) sweep->window.rtol = sweep->rtol / POINTS_MARGIN;
   if (sweep->whole) sweep->window.rtol = PETSC_MAX_REAL;

@@ -4,7 +4,7 @@
 #include <squeal/quantity.h>
 #include <squeal/sweep.h>
 #include "results/journal/journal.h"
-#include "sweep/basis/greedy.h"
+#include "sweep/basis/kept.h"
 #include "sweep/grid/status.h"
 #include "sweep/track/track.h"
 #include "sweep/grid/grid.h"
@@ -85,8 +85,9 @@ struct _p_Sweep {
   Journal       journal; /* what a killed sweep goes on from */
   /* of a sweep without basis: those solved, being taken up while it is not to be written */
   JournalPack    places;
-  PetscInt       n_files, n_kept; /* files; vectors in them, or places */
-  PetscLogDouble seconds[5];      /* basis, points, onsets, verification, contact statuses */
+  PetscInt       n_kept;     /* places in them */
+  BasisKept      kept;       /* of a reduced sweep */
+  PetscLogDouble seconds[5]; /* basis, points, onsets, verification, contact statuses */
 };
 
 /* quantities.c - rows of the options */
@@ -134,13 +135,8 @@ PETSC_INTERN PetscErrorCode SweepVerify(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepReal(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepRealSolve(Sweep sweep, const PetscReal p[], const ReducedWindow *window,
                                            ReducedModes *modes);
-/* restart.c - the journal; name of file k; columns first .. n - 1 of vectors to or from values; keeps the full
-   solutions so far (ctx is the sweep), takes up what an earlier run kept, and deletes all that is kept in the folder,
-   also by longer sweeps */
+/* restart.c - the journal; takes up the full solutions that an earlier run kept, and keeps those that come; deletes all
+   that is kept in the folder, also by longer sweeps */
 PETSC_INTERN PetscErrorCode SweepJournalOpen(Sweep sweep);
-PETSC_INTERN PetscErrorCode SweepFileName(PetscInt k, char name[64]);
-PETSC_INTERN PetscErrorCode SweepVectorsMove(BV vectors, PetscInt first, PetscInt n, PetscBool read,
-                                             PetscReal values[]);
-PETSC_INTERN PetscErrorCode SweepKeep(void *ctx);
 PETSC_INTERN PetscErrorCode SweepResume(Sweep sweep);
 PETSC_INTERN PetscErrorCode SweepForget(Sweep sweep);

@@ -24,10 +24,17 @@ typedef struct {
   PetscReal nearest; /* m: least distance of a closing from 0 */
 } ManyAnswer;
 
-/* manydense.c - closed [n_pairs] and closings w - gap [n_pairs], m, from the closed pairs to begin with. Not
+/* manydense.c - closed [n_pairs] and closings w - gap [n_pairs], m, from the closed pairs to begin with; q [n]. Not
    collective. */
 PETSC_INTERN PetscErrorCode ManySolve(const ManyModel *model, const ManyPoint *point, char closed[],
-                                      PetscReal closing[], ManyAnswer *answer);
+                                      PetscReal closing[], PetscReal q[], ManyAnswer *answer);
+
+/* near.c - statuses, displacements and rows of the statics at p, from the displacements that they have, by the factors
+   that they have; found is false where that does not settle. Collective. */
+PETSC_INTERN PetscErrorCode ManyNear(Statics statics, const PetscReal p[], PetscBool *found);
+/* Makes the displacements of the statics those of a force in a pair, as all ranks number them, the pairs closed [local]
+   as they are at p. Collective. */
+PETSC_INTERN PetscErrorCode ManyInfluence(Statics statics, const PetscReal p[], const char closed[], PetscInt pair);
 
 /* The basis on the mesh */
 typedef struct {
@@ -46,6 +53,8 @@ typedef struct {
 PETSC_INTERN PetscErrorCode ManyBasisCreate(Statics statics, ManyBasis *basis, PetscBool *good);
 /* Adds the equilibrium that the statics have just found */
 PETSC_INTERN PetscErrorCode ManyBasisAdd(ManyBasis *basis);
+/* Makes V q the displacements of the statics. Collective. */
+PETSC_INTERN PetscErrorCode ManyBasisExpand(const ManyBasis *basis, PetscReal q[]);
 /* The point p on the basis, with arrays of the caller: c [n_terms], f [n], k, slide, gap [n_pairs]. Collective. */
 PETSC_INTERN PetscErrorCode ManyBasisPoint(const ManyBasis *basis, const PetscReal p[], ManyPoint *point);
 PETSC_INTERN PetscErrorCode ManyBasisDestroy(ManyBasis *basis);

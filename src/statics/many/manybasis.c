@@ -150,6 +150,19 @@ PetscErrorCode ManyBasisCreate(Statics statics, ManyBasis *b, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ManyBasisExpand(const ManyBasis *b, PetscReal q[])
+{
+  Vec v;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVCreateVec(b->space.V, &v));
+  PetscCall(BVSetActiveColumns(b->space.V, 0, b->space.n));
+  PetscCall(BVMultVec(b->space.V, 1, 0, v, q));
+  PetscCall(PencilExpand(b->bodies, PETSC_FALSE, v, b->statics->u));
+  PetscCall(VecDestroy(&v));
+  PetscFunctionReturn(0);
+}
+
 /* Numbers of the pairs of this rank, for all */
 static PetscErrorCode ManyPairsGather(const ManyBasis *b, const PetscReal local[], PetscReal all[])
 {

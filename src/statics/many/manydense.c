@@ -58,23 +58,24 @@ typedef struct {
   PetscReal *A, *b; /* [n][n], [n] */
 } ManySystem;
 
-/* closing [n_pairs] of the leading m vectors; the system is kept */
+/* q [m] and closing [n_pairs] of the leading m vectors; the system is kept */
 static PetscErrorCode SystemSolve(const ManyModel *model, const ManyPoint *point, const ManySystem *system, PetscInt m,
-                                  PetscReal closing[], PetscBool *singular)
+                                  PetscReal q[], PetscReal closing[], PetscBool *singular)
 {
   const PetscReal *A = system->A, *b = system->b;
   const PetscInt   n = model->n, n_pairs = model->n_pairs;
-  PetscReal       *part, *q;
+  PetscReal       *part;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(m * m, &part, m, &q));
+  PetscCall(PetscMalloc1(m * m, &part));
   for (PetscInt j = 0; j < m; j++) PetscCall(PetscArraycpy(&part[j * m], &A[j * n], m));
   PetscCall(PetscArraycpy(q, b, m));
-  PetscCall(DenseSolveWith(m, part, 1, q, singular));
+  *singular = PETSC_FALSE;
+  if (m) PetscCall(DenseSolveWith(m, part, 1, q, singular));
   for (PetscInt i = 0; i < n_pairs; i++) closing[i] = -point->gap[i];
   for (PetscInt j = 0; j < m && !*singular; j++)
     for (PetscInt i = 0; i < n_pairs; i++) closing[i] += q[j] * model->G[j * n_pairs + i];
-  PetscCall(PetscFree2(part, q));
+  PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
 }
 
@@ -96,12 +97,12 @@ static PetscInt StatusesChange(PetscInt n_pairs, const PetscReal closing[], char
 static PetscErrorCode AnswerJudge(const ManyModel *model, const ManyPoint *point, const ManySystem *system,
                                   const PetscReal closing[], ManyAnswer *answer)
 {
-  PetscReal *less, largest = 0;
+  PetscReal *less, *q, largest = 0;
   PetscBool  singular;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(model->n_pairs, &less));
-  PetscCall(SystemSolve(model, point, system, model->n_less, less, &singular));
+  PetscCall(PetscMalloc2(model->n_pairs, &less, model->n, &q));
+  PetscCall(SystemSolve(model, point, system, model->n_less, q, less, &singular));
   answer->error   = singular ? PETSC_MAX_REAL : 0;
   answer->nearest = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < model->n_pairs; i++) largest = PetscMax(largest, PetscAbsReal(closing[i]));
@@ -110,12 +111,12 @@ static PetscErrorCode AnswerJudge(const ManyModel *model, const ManyPoint *point
     answer->error   = PetscMax(answer->error, PetscAbsReal(less[i] - closing[i]));
     answer->nearest = PetscMin(answer->nearest, PetscAbsReal(closing[i]));
   }
-  PetscCall(PetscFree(less));
+  PetscCall(PetscFree2(less, q));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ManySolve(const ManyModel *model, const ManyPoint *point, char closed[], PetscReal closing[],
-                         ManyAnswer *answer)
+                         PetscReal q[], ManyAnswer *answer)
 {
   const PetscInt n = model->n;
   PetscReal     *K, *A, *b;
@@ -128,7 +129,7 @@ PetscErrorCode ManySolve(const ManyModel *model, const ManyPoint *point, char cl
     for (PetscInt i = 0; i < n * n && point->c[t] != 0; i++) K[i] += point->c[t] * model->A[t][i];
   for (PetscInt it = 0; it < MANY_ITERATIONS && !answer->found && !singular; it++) {
     PetscCall(SystemForm(model, point, K, closed, A, b));
-    PetscCall(SystemSolve(model, point, &(ManySystem){A, b}, n, closing, &singular));
+    PetscCall(SystemSolve(model, point, &(ManySystem){A, b}, n, q, closing, &singular));
     if (!singular && !StatusesChange(model->n_pairs, closing, closed)) answer->found = PETSC_TRUE;
   }
   if (answer->found) PetscCall(AnswerJudge(model, point, &(ManySystem){A, b}, closing, answer));

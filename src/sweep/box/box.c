@@ -63,6 +63,10 @@ PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[])
   PetscFunctionBeginUser;
   if (box->whole) PetscFunctionReturn(0);
   box->groups.store = &store;
+  if (box->journal && !box->kept.basis) {
+    box->kept = (BasisKept){.journal = box->journal, .basis = &box->basis, .greedy = &box->greedy, .begin = box->begin};
+    PetscCall(BasisResume(&box->kept));
+  }
   PetscCall(GreedyRun(g, n, points, &box->basis));
   box->groups.store = NULL;
   PetscCall(PointStoreDestroy(&store));

@@ -4,7 +4,7 @@
 */
 #pragma once
 
-#include "sweep/basis/greedy.h"
+#include "sweep/basis/kept.h"
 #include "sweep/grid/groups.h"
 #include "sweep/track/track.h"
 #include <squeal/statics.h>
@@ -19,6 +19,8 @@ typedef struct {
   PetscReal   rtol;
   const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt    max_solutions, n_groups;
+  const Journal *journal; /* for what a killed run goes on from, or NULL; */
+  const char    *begin;   /* its files begin so */
   /* */
   PetscInt      n_base, n_parameters; /* parameters of the operators; of the pencil, with those of the statuses */
   StatusList    statuses;             /* empty without statics */
@@ -31,6 +33,7 @@ typedef struct {
   ModesLimit    limit;
   Basis         basis;
   Greedy        greedy;
+  BasisKept     kept;
   PointGroups   groups;
   Progress      progress;
   PetscBool     whole; /* the basis is the whole space: no error but rounding */

@@ -42,13 +42,56 @@ static PetscErrorCode StatusesNumber(Box *box, PetscInt n, const char closed[])
   PetscFunctionReturn(0);
 }
 
+/* Keeps the statuses [size] of all points for a run that goes on */
+static PetscErrorCode StatusesKeep(Box *box, size_t size, char closed[])
+{
+  JournalPack pack = {.write = PETSC_TRUE};
+  JournalItem item;
+  char        name[64];
+  PetscBool   kept;
+
+  PetscFunctionBeginUser;
+  if (!box->journal) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_restart_statuses", box->begin));
+  PetscCall(JournalPackMove(&pack, &box->equilibria, sizeof(box->equilibria)));
+  PetscCall(JournalPackMove(&pack, closed, size));
+  item = (JournalItem){"statuses", pack.n, pack.word};
+  PetscCall(JournalKeep(box->journal, name, 1, &item, &kept));
+  PetscCall(JournalPackDestroy(&pack));
+  PetscFunctionReturn(0);
+}
+
+/* Takes up what StatusesKeep() kept; taken = whether it is there, whole and of this run */
+static PetscErrorCode StatusesTake(Box *box, size_t size, char closed[], PetscBool *taken)
+{
+  JournalItem item = {"statuses", -1, NULL};
+  JournalPack pack = {.good = PETSC_TRUE};
+  char        name[64], then[64];
+
+  PetscFunctionBeginUser;
+  *taken = PETSC_FALSE;
+  if (!box->journal) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(name, sizeof(name), "%s_restart_statuses", box->begin));
+  PetscCall(PetscSNPrintf(then, sizeof(then), "the %s begins anew", box->journal->run));
+  PetscCall(JournalTake(box->journal, name, then, 1, &item, taken));
+  if (!*taken) PetscFunctionReturn(0);
+  pack.word = item.values;
+  pack.n    = item.n;
+  PetscCall(JournalPackMove(&pack, &box->equilibria, sizeof(box->equilibria)));
+  PetscCall(JournalPackMove(&pack, closed, size));
+  *taken = pack.good;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, taken, 1, MPIU_BOOL, MPI_LAND, box->comm));
+  PetscCall(JournalPackDestroy(&pack));
+  PetscFunctionReturn(0);
+}
+
 /* Statuses of n points from statics */
 static PetscErrorCode StatusesFind(Box *box, PetscInt n, PointsAndNominal *points)
 {
   const ContactPair *pair;
   Contact            contact;
   PetscInt           n_local, n_all;
-  PetscBool          affine;
+  PetscBool          affine, taken;
   char              *closed;
 
   PetscFunctionBeginUser;
@@ -61,8 +104,12 @@ static PetscErrorCode StatusesFind(Box *box, PetscInt n, PointsAndNominal *point
   PetscCall(ContactGetPairs(contact, &n_local, &n_all, &pair));
   PetscCall(StatusListCreate(box->comm, n_local, &box->statuses));
   PetscCall(PetscMalloc1((size_t)n * n_local, &closed));
-  PetscCall(StaticsSolveMany(box->statics, n, PointGet, points, closed, &box->equilibria));
-  PetscCall(StaticsRelease(box->statics));
+  PetscCall(StatusesTake(box, (size_t)n * n_local, closed, &taken));
+  if (!taken) {
+    PetscCall(StaticsSolveMany(box->statics, n, PointGet, points, closed, &box->equilibria));
+    PetscCall(StaticsRelease(box->statics));
+    PetscCall(StatusesKeep(box, (size_t)n * n_local, closed));
+  }
   PetscCall(StatusesNumber(box, n, closed));
   PetscCall(PetscFree(closed));
   PetscFunctionReturn(0);

@@ -134,6 +134,6 @@ PetscErrorCode FollowPointMove(MPI_Comm comm, JournalPack *pack, FollowPoint *po
   if (pack->write) vectors->n = n;
   PetscCheck(pack->write || (pack->good && vectors->n == n), PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "a kept point lacks vectors");
-  PetscCall(SweepVectorsMove(point->vectors, 0, h.size, pack->write ? PETSC_FALSE : PETSC_TRUE, vectors->values));
+  PetscCall(BasisVectorsMove(point->vectors, 0, h.size, pack->write ? PETSC_FALSE : PETSC_TRUE, vectors->values));
   PetscFunctionReturn(0);
 }

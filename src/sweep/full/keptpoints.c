@@ -101,7 +101,7 @@ PetscErrorCode SweepKeepPlace(Sweep sweep, PetscInt i, LinePoints *points, Follo
   h.has_before = follow->before ? 1 : 0;
   h.has_first  = follow->first && follow->first != follow->before ? 1 : 0;
   h.same       = follow->first && follow->first == follow->before ? 1 : 0;
-  PetscCall(SweepFileName(0, name));
+  PetscCall(BasisKeptName("sweep", 0, name));
   PetscCall(PlaceMove(sweep, i, points));
   sweep->n_kept = h.n_places;
   if (!JournalIsDue(h.n_places)) PetscFunctionReturn(0);
@@ -148,7 +148,7 @@ PetscErrorCode SweepResumePlaces(Sweep sweep, Follow *follow)
   sweep->places = (JournalPack){.write = PETSC_TRUE, .good = PETSC_TRUE};
   if (!sweep->restart) PetscFunctionReturn(0);
   PetscCall(SweepJournalOpen(sweep));
-  PetscCall(SweepFileName(0, name));
+  PetscCall(BasisKeptName("sweep", 0, name));
   PetscCall(JournalTake(&sweep->journal, name, "the sweep begins anew", N_KEPT_ITEMS, item, &taken));
   if (!taken) PetscFunctionReturn(0);
   pack.word = item[ITEM_STATE].values;
