@@ -3,20 +3,22 @@
    (manybasis.c); all others are solved on it (manydense.c). The status of a point is known where the closing of every
    pair is farther from 0 than MANY_SURE times the error, which is estimated by what the last third of the vectors
    change; where true errors were seen to exceed their estimates at the last MANY_RECENT points solved on the mesh, as
-   many times more: a poor basis long ago tells nothing of the present one. Points whose status is not known are solved on
-   the mesh, those of the largest error first, and the basis takes them in: each makes the others better known. On the
-   mesh the factors of the first point serve all others (near.c).
+   many times more: a poor basis long ago tells nothing of the present one. Points whose status is not known
+   are solved on the mesh, those of the largest error first, and the basis takes them in: each makes the others better
+   known. On the mesh the factors of the first point serve all others (near.c). Behind the first points the basis takes in
+   the influences of pairs that open and close, since a change of status is a kink that equilibria alone hold badly.
 */
 #include "many.h"
 #include "base/gather.h"
 #include "base/process/progress.h"
 
-#define MANY_FIRST  16  /* points on the mesh before the basis is used */
-#define MANY_ROUND  16  /* points on the mesh before it is used again */
-#define MANY_MOST   250 /* vectors, beyond which all that is left is solved on the mesh */
-#define MANY_SURE   2   /* on the estimate, which is the error of the smaller model: that of the larger one is less */
-#define MANY_RECENT 32  /* points whose errors beside their estimates count */
-#define MANY_BATCH  64  /* points of each rank whose data are made before they are solved */
+#define MANY_FIRST      16  /* points on the mesh before the basis is used */
+#define MANY_ROUND      16  /* points on the mesh before it is used again */
+#define MANY_MOST       400 /* vectors, beyond which all that is left is solved on the mesh */
+#define MANY_SURE       2 /* on the estimate, which is the error of the smaller model: that of the larger one is less */
+#define MANY_RECENT     16  /* points whose errors beside their estimates count */
+#define MANY_INFLUENCES 125 /* vectors with those of pairs that open and close, at most */
+#define MANY_BATCH      64  /* points of each rank whose data are made before they are solved */
 
 /* Of all points */
 typedef struct {
@@ -27,6 +29,7 @@ typedef struct {
   char        *closed;                     /* [n][local pairs] */
   PetscReal   *error;                      /* [n] m, negative where the status is known */
   PetscReal    ratio, recent[MANY_RECENT]; /* largest true error beside its estimate; those of the last points */
+  ManyLoad    *load;                       /* [n] */
   PetscInt     n_mesh;
   char        *begin; /* [pairs of all ranks] statuses to begin with */
   Progress     progress;
@@ -130,8 +133,25 @@ static void ManyTake(Many *m, PetscInt i, PetscInt begin, const char closed[], c
   m->error[i] = answer[1] > MANY_SURE * sure * answer[0] ? -1 : answer[0];
 }
 
+/* Statuses of all pairs [of all ranks] to begin point i with: those that were found there last, or of the first point */
+static PetscErrorCode PointBegin(const Many *m, PetscInt i, char closed[])
+{
+  const PetscInt n_pairs = m->s->rows.n_pairs;
+  char          *all;
+
+  PetscFunctionBeginUser;
+  if (m->error[i] <= 0 || m->error[i] == PETSC_MAX_REAL) {
+    PetscCall(PetscArraycpy(closed, m->begin, m->s->rows.n_pairs_all));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(GatherRecords(m->s->comm, n_pairs, 1, &m->closed[(size_t)i * n_pairs], NULL, &all));
+  PetscCall(PetscArraycpy(closed, all, m->s->rows.n_pairs_all));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
 /* Solves the points list[n] on the basis, shared among the ranks: owner r of the k-th is k mod size */
-static PetscErrorCode BatchSolve(Many *m, const ManyBasis *basis, PetscInt n, const PetscInt list[])
+static PetscErrorCode BatchSolve(Many *m, ManyBasis *basis, PetscInt n, const PetscInt list[])
 {
   const PetscInt n_pairs = basis->model.n_pairs;
   PetscMPIInt    rank, size, count;
@@ -148,12 +168,13 @@ static PetscErrorCode BatchSolve(Many *m, const ManyBasis *basis, PetscInt n, co
   PetscCall(PetscCalloc2(2 * n, &answer, n * n_pairs, &closed));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(m->get(m->ctx, list[k], p));
-    PetscCall(ManyBasisPoint(basis, p, &points[k]));
+    PetscCall(ManyBasisPoint(basis, p, &m->load[list[k]], &points[k]));
+    PetscCall(PointBegin(m, list[k], &closed[k * n_pairs]));
+    if (k % size != rank) PetscCall(PetscArrayzero(&closed[k * n_pairs], n_pairs));
   }
   for (PetscInt k = rank; k < n; k += size) {
     ManyAnswer one;
 
-    PetscCall(PetscArraycpy(&closed[k * n_pairs], m->begin, n_pairs));
     PetscCall(ManySolve(&basis->model, &points[k], &closed[k * n_pairs], closing, q, &one));
     answer[2 * k]     = one.error;
     answer[2 * k + 1] = one.nearest;
@@ -170,7 +191,7 @@ static PetscErrorCode BatchSolve(Many *m, const ManyBasis *basis, PetscInt n, co
 }
 
 /* All points whose status is not known, on the basis; list [n_open] are those of which it still is not */
-static PetscErrorCode OpenSolve(Many *m, const ManyBasis *basis, PetscInt *n_open, PetscInt list[])
+static PetscErrorCode OpenSolve(Many *m, ManyBasis *basis, PetscInt *n_open, PetscInt list[])
 {
   PetscMPIInt size;
   PetscInt    n = *n_open;
@@ -221,7 +242,7 @@ static PetscErrorCode PointTake(Many *m, ManyBasis *basis, PetscInt i)
   PetscCall(ManyPointsCreate(&basis->model, 1, &point));
   PetscCall(PetscCalloc4(m->s->n_parameters, &p, n_pairs, &closing, basis->model.n, &q, n_pairs, &closed));
   PetscCall(m->get(m->ctx, i, p));
-  PetscCall(ManyBasisPoint(basis, p, point));
+  PetscCall(ManyBasisPoint(basis, p, &m->load[i], point));
   PetscCall(PetscArraycpy(closed, m->begin, n_pairs));
   PetscCall(ManySolve(&basis->model, point, closed, closing, q, &answer));
   found = answer.found;
@@ -279,12 +300,13 @@ static PetscErrorCode InfluencesTake(Many *m, ManyBasis *basis)
   for (PetscInt i = 0; i < m->n; i++)
     for (PetscInt k = 0; k < n_pairs; k++)
       if (m->closed[(size_t)i * n_pairs + k] != own[k]) changes[k] = 1;
-  PetscCall(GatherRecords(m->s->comm, n_pairs, 1, changes, NULL, (void *)&all));
-  for (PetscInt k = 0; k < basis->model.n_pairs && basis->model.n < MANY_MOST / 2; k++) {
+  PetscCall(GatherRecords(m->s->comm, n_pairs, 1, changes, NULL, &all));
+  for (PetscInt k = 0; k < basis->model.n_pairs && basis->model.n < MANY_INFLUENCES; k++) {
     if (!all[k]) continue;
     PetscCall(ManyInfluence(m->s, p, own, k));
     PetscCall(ManyBasisAdd(basis));
   }
+  basis->n_influences = basis->model.n;
   PetscCall(PetscFree(all));
   PetscCall(PetscFree(changes));
   PetscCall(PetscFree(p));
@@ -321,6 +343,7 @@ static PetscErrorCode ManyRun(Many *m, PetscInt list[], ManyBasis *basis)
   }
   PetscCall(OpenSolve(m, basis, &n_open, list));
   if (n_open) PetscCall(InfluencesTake(m, basis));
+  if (n_open) PetscCall(OpenRefine(m, basis, &n_open, list));
   while (n_open && basis->model.n < MANY_MOST) {
     PetscCall(OpenSolve(m, basis, &n_open, list));
     if (n_open) PetscCall(OpenRefine(m, basis, &n_open, list));
@@ -339,6 +362,8 @@ PetscErrorCode StaticsSolveMany(Statics s, PetscInt n, StaticsPoint get, void *c
   PetscCall(StaticsSetUp(s, NULL));
   PetscCall(PetscMalloc1(n, &list));
   PetscCall(PetscCalloc1(n, &m.error));
+  PetscCall(PetscMalloc1(n, &m.load));
+  for (PetscInt i = 0; i < n; i++) m.load[i].n = -1;
   PetscCall(ProgressBegin(&m.progress, "equilibria on the mesh", n));
   PetscCall(ManyRun(&m, list, &basis));
   PetscCall(ProgressEnd(&m.progress));
@@ -346,6 +371,7 @@ PetscErrorCode StaticsSolveMany(Statics s, PetscInt n, StaticsPoint get, void *c
   PetscCall(ManyBasisDestroy(&basis));
   PetscCall(PetscFree(m.begin));
   PetscCall(PetscFree(m.error));
+  PetscCall(PetscFree(m.load));
   PetscCall(PetscFree(list));
   PetscFunctionReturn(0);
 }

@@ -36,16 +36,29 @@ PETSC_INTERN PetscErrorCode ManyNear(Statics statics, const PetscReal p[], Petsc
    as they are at p. Collective. */
 PETSC_INTERN PetscErrorCode ManyInfluence(Statics statics, const PetscReal p[], const char closed[], PetscInt pair);
 
+#define MANY_LOADS   32  /* loads of which those of all points are sums; others are projected each time */
+#define MANY_VECTORS 512 /* room for their products */
+
+/* The loads of a point: their parts of those that the basis keeps; n is -1 before they are found */
+typedef struct {
+  PetscInt  n;
+  PetscReal part[MANY_LOADS];
+} ManyLoad;
+
 /* The basis on the mesh */
 typedef struct {
-  Statics   statics;
-  Pencil    bodies; /* all pairs open */
-  PetscInt  n_terms;
-  PetscInt *term; /* [n_terms] of the pencil's, those of the stiffness */
-  Subspace  space;
-  PetscReal scale; /* m, of displacements */
-  PetscInt  n_blocks, *block_end;
-  ManyModel model;
+  Statics    statics;
+  Pencil     bodies; /* all pairs open */
+  PetscInt   n_terms;
+  PetscInt  *term; /* [n_terms] of the pencil's, those of the stiffness */
+  Subspace   space;
+  PetscReal  scale;        /* m, of displacements */
+  PetscInt   n_influences; /* vectors until the last influence of a pair: those of the model for the error, and half of
+                             the equilibria behind them */
+  BV         loads;        /* [n_loads] orthonormal, of which those of all points are made */
+  PetscInt   n_loads;
+  PetscReal *loaded; /* [MANY_LOADS][MANY_VECTORS] V'loads */
+  ManyModel  model;
 } ManyBasis;
 
 /* manybasis.c - from the equilibrium that the statics have just found; good is false where its bodies are not those
@@ -56,5 +69,5 @@ PETSC_INTERN PetscErrorCode ManyBasisAdd(ManyBasis *basis);
 /* Makes V q the displacements of the statics. Collective. */
 PETSC_INTERN PetscErrorCode ManyBasisExpand(const ManyBasis *basis, PetscReal q[]);
 /* The point p on the basis, with arrays of the caller: c [n_terms], f [n], k, slide, gap [n_pairs]. Collective. */
-PETSC_INTERN PetscErrorCode ManyBasisPoint(const ManyBasis *basis, const PetscReal p[], ManyPoint *point);
+PETSC_INTERN PetscErrorCode ManyBasisPoint(ManyBasis *basis, const PetscReal p[], ManyLoad *load, ManyPoint *point);
 PETSC_INTERN PetscErrorCode ManyBasisDestroy(ManyBasis *basis);

@@ -7,6 +7,7 @@
 #include "solver/block/orthonormal.h"
 
 #define MANY_DROP  1e-11 /* beside the first equilibrium: shorter ones add nothing */
+#define MANY_SAME  1e-13 /* of a load: what it has beyond others is rounding */
 #define MANY_AGREE 1e-7  /* of |K u|: the bodies of statics are the terms of the pencil */
 
 /* Whether sum_t c_t A_t u = K u of statics at the equilibrium found last, q its unknowns */
@@ -112,7 +113,26 @@ static PetscErrorCode EquilibriumTake(const ManyBasis *b, Vec q)
   PetscFunctionReturn(0);
 }
 
-/* The model for the error has two thirds of the vectors: those that came first */
+/* V'loads of the vectors from the first on */
+static PetscErrorCode ManyLoadsExtend(ManyBasis *b, PetscInt first)
+{
+  Vec v;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVSetActiveColumns(b->loads, 0, b->n_loads));
+  for (PetscInt j = first; j < b->space.n && b->n_loads; j++) {
+    PetscReal part[MANY_LOADS];
+
+    PetscCall(BVGetColumn(b->space.V, j, &v));
+    PetscCall(BVDotVec(b->loads, v, part));
+    PetscCall(BVRestoreColumn(b->space.V, j, &v));
+    for (PetscInt k = 0; k < b->n_loads; k++) b->loaded[k * MANY_VECTORS + j] = part[k];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The model for the error has two thirds of the vectors: those that came first; behind influences these and half of
+   what came later */
 PetscErrorCode ManyBasisAdd(ManyBasis *b)
 {
   const PetscInt first = b->space.n;
@@ -130,7 +150,8 @@ PetscErrorCode ManyBasisAdd(ManyBasis *b)
   PetscCall(BVDestroy(&block));
   for (PetscInt t = 0; t < b->n_terms; t++) b->model.A[t] = b->space.term[t].small;
   b->model.n      = b->space.n;
-  b->model.n_less = 2 * b->space.n / 3;
+  b->model.n_less = b->n_influences ? (b->n_influences + b->space.n) / 2 : 2 * b->space.n / 3;
+  PetscCall(ManyLoadsExtend(b, first));
   PetscCall(ManyRowsExtend(b, first));
   PetscFunctionReturn(0);
 }
@@ -143,6 +164,8 @@ PetscErrorCode ManyBasisCreate(Statics statics, ManyBasis *b, PetscBool *good)
   *b = (ManyBasis){.statics = statics};
   PetscCall(OperatorsLineariseBodies(statics->operators, NULL, PETSC_FALSE, &b->bodies));
   PetscCall(ManyTermsTake(b));
+  PetscCall(BlockCreate(b->space.V, MANY_LOADS, &b->loads));
+  PetscCall(PetscCalloc1(MANY_LOADS * MANY_VECTORS, &b->loaded));
   PetscCall(BVCreateVec(b->space.V, &q));
   PetscCall(EquilibriumTake(b, q));
   PetscCall(BodiesAgree(b, q, good));
@@ -193,23 +216,59 @@ static PetscErrorCode LawsTake(const ManyBasis *b, const PetscReal p[], ManyPoin
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ManyBasisPoint(const ManyBasis *b, const PetscReal p[], ManyPoint *point)
+/* The load g at p in the unknowns of the basis, by its caller */
+static PetscErrorCode LoadCreate(const ManyBasis *b, const PetscReal p[], Vec *g)
 {
-  Statics              s = b->statics;
+  PetscReal size = 0;
+  Vec       f;
+
+  PetscFunctionBeginUser;
+  PetscCall(StaticsCreateLoad(b->statics->operators, p, StagesGet(b->statics, 0), &f, &size));
+  PetscCall(BVCreateVec(b->space.V, g));
+  PetscCall(PencilProjectForce(b->bodies, PETSC_FALSE, f, *g));
+  PetscCall(VecDestroy(&f));
+  PetscFunctionReturn(0);
+}
+
+/* The parts of a load, which may be one more for the basis; n stays -1 where there is no room for it */
+static PetscErrorCode LoadFind(ManyBasis *b, Vec g, ManyLoad *load)
+{
+  const PetscInt n = b->n_loads;
+  PetscReal      whole, rest;
+
+  PetscFunctionBeginUser;
+  if (n == MANY_LOADS) PetscFunctionReturn(0);
+  PetscCall(BVInsertVec(b->loads, n, g));
+  PetscCall(VecNorm(g, NORM_2, &whole));
+  PetscCall(BVOrthogonalizeColumn(b->loads, n, load->part, &rest, NULL));
+  load->n = n;
+  if (rest <= MANY_SAME * whole) PetscFunctionReturn(0);
+  load->part[load->n++] = rest;
+  PetscCall(BVScaleColumn(b->loads, n, 1 / rest));
+  b->n_loads++;
+  PetscCall(BVGetColumn(b->loads, n, &g));
+  PetscCall(BVDotVec(b->space.V, g, &b->loaded[n * MANY_VECTORS]));
+  PetscCall(BVRestoreColumn(b->loads, n, &g));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ManyBasisPoint(ManyBasis *b, const PetscReal p[], ManyLoad *load, ManyPoint *point)
+{
   const OperatorsTerm *terms;
   PetscInt             n;
-  PetscReal            size = 0;
-  Vec                  f, g;
+  Vec                  g = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PencilGetTerms(b->bodies, &n, &terms));
   for (PetscInt t = 0; t < b->n_terms; t++) point->c[t] = OperatorsTermCoefficient(&terms[b->term[t]], p);
-  PetscCall(StaticsCreateLoad(s->operators, p, StagesGet(s, 0), &f, &size));
-  PetscCall(BVCreateVec(b->space.V, &g));
-  PetscCall(PencilProjectForce(b->bodies, PETSC_FALSE, f, g));
   PetscCall(BVSetActiveColumns(b->space.V, 0, b->space.n));
-  PetscCall(BVDotVec(b->space.V, g, point->f));
-  PetscCall(VecDestroy(&f));
+  if (load->n < 0) PetscCall(LoadCreate(b, p, &g));
+  if (g) PetscCall(LoadFind(b, g, load));
+  if (load->n < 0) PetscCall(BVDotVec(b->space.V, g, point->f));
+  for (PetscInt j = 0; j < b->space.n && load->n >= 0; j++) {
+    point->f[j] = 0;
+    for (PetscInt k = 0; k < load->n; k++) point->f[j] += load->part[k] * b->loaded[k * MANY_VECTORS + j];
+  }
   PetscCall(VecDestroy(&g));
   PetscCall(LawsTake(b, p, point));
   PetscFunctionReturn(0);
@@ -219,6 +278,8 @@ PetscErrorCode ManyBasisDestroy(ManyBasis *b)
 {
   PetscFunctionBeginUser;
   PetscCall(SubspaceDestroy(&b->space));
+  PetscCall(BVDestroy(&b->loads));
+  PetscCall(PetscFree(b->loaded));
   PetscCall(PencilDestroy(&b->bodies));
   PetscCall(PetscFree(b->term));
   PetscCall(PetscFree(b->model.A));
