@@ -106,6 +106,28 @@ PetscErrorCode SampleKeep(Sample s, PetscBool begins, PetscInt first, PetscInt n
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SampleShare(Sample s, PetscInt first, PetscInt n, const PetscInt list[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscMPIInt owner   = PointGroupsOwner(&s->box.groups, first + k);
+    SamplePoint      *point   = &s->point[list[k]];
+    PetscReal         head[2] = {(PetscReal)point->n, point->worst};
+
+    PetscCallMPI(MPI_Bcast(head, 2, MPIU_REAL, owner, s->comm));
+    point->n     = (PetscInt)head[0];
+    point->worst = head[1];
+    if (rank != owner) PetscCall(PetscFree(point->mode));
+    if (rank != owner) PetscCall(PetscMalloc1(point->n, &point->mode));
+    PetscCallMPI(
+      MPI_Bcast(point->mode, (PetscMPIInt)(point->n * (PetscInt)sizeof(SampleMode)), MPI_BYTE, owner, s->comm));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* One file; good is false where it is not what it should be */
 static PetscErrorCode PassTake(Sample s, JournalPack *pack, PetscBool *good)
 {

@@ -103,28 +103,6 @@ static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SampleShare(Sample s, PetscInt first, PetscInt n, const PetscInt list[])
-{
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(s->comm, &rank));
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscMPIInt owner   = PointGroupsOwner(&s->box.groups, first + k);
-    SamplePoint      *point   = &s->point[list[k]];
-    PetscReal         head[2] = {(PetscReal)point->n, point->worst};
-
-    PetscCallMPI(MPI_Bcast(head, 2, MPIU_REAL, owner, s->comm));
-    point->n     = (PetscInt)head[0];
-    point->worst = head[1];
-    if (rank != owner) PetscCall(PetscFree(point->mode));
-    if (rank != owner) PetscCall(PetscMalloc1(point->n, &point->mode));
-    PetscCallMPI(
-      MPI_Bcast(point->mode, (PetscMPIInt)(point->n * (PetscInt)sizeof(SampleMode)), MPI_BYTE, owner, s->comm));
-  }
-  PetscFunctionReturn(0);
-}
-
 /* Solves the points of the list from the first on that is not yet */
 static PetscErrorCode PointsRun(Sample s, PetscInt n, PetscInt list[])
 {
@@ -171,7 +149,7 @@ static PetscErrorCode PointsExceeding(Sample s, PetscInt *n, PetscInt list[])
 
 /* A pass over the points of the list. All are solved anew where the nominal modes are no longer as many as in the pass
    before, since branches are numbered by them. */
-static PetscErrorCode PassRun(Sample s)
+static PetscErrorCode SamplePassRun(Sample s)
 {
   SamplePass *pass = &s->pass;
   PetscInt   *all;
@@ -206,7 +184,7 @@ PetscErrorCode SamplePoints(Sample s)
   for (PetscInt i = 0; i < pass->n; i++) pass->list[i] = i;
   PetscCall(SampleResume(s));
   for (; pass->round < SAMPLE_ROUNDS && pass->n; pass->round++) {
-    PetscCall(PassRun(s));
+    PetscCall(SamplePassRun(s));
     if (s->box.whole) break;
     PetscCall(PointsExceeding(s, &pass->n, pass->list));
   }

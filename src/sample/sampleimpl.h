@@ -147,19 +147,19 @@ PETSC_INTERN PetscErrorCode SampleValues(Sample sample, PetscInt i, PetscReal va
 PETSC_INTERN PetscErrorCode SampleParameters(Sample sample, PetscInt i, PetscReal p[]);
 /* All but what its status is: StaticsPoint of the sample as context */
 PETSC_INTERN PetscErrorCode SampleGet(void *sample, PetscInt i, PetscReal p[]);
-/* points.c - gives all ranks the points list[n], the k-th in a pass of which is first + k, each from the rank that solved
-   it; the basis and all points on it */
-PETSC_INTERN PetscErrorCode SampleShare(Sample sample, PetscInt first, PetscInt n, const PetscInt list[]);
+/* points.c - the basis and all points on it */
 PETSC_INTERN PetscErrorCode SamplePoints(Sample sample);
 /* Modes at p on the model of fewer vectors, where it is good enough, or on the whole basis; their branches [modes->n]
    from the nominal modes, freed by the caller. Not collective. */
 PETSC_INTERN PetscErrorCode SampleModesAt(Sample sample, const PetscReal p[], ReducedModes *modes, PetscInt **branch);
 /* kept.c - the journal, before BoxSetUp(); keeps the beginning of a pass with its list [n], or what was solved of it;
-   takes up what an earlier run kept; deletes all that is kept */
+   takes up what an earlier run kept; deletes all that is kept; gives all ranks the points list [n], the k-th in a
+   pass of which is first + k, each from the rank that solved it */
 PETSC_INTERN PetscErrorCode SampleJournalOpen(Sample sample, Results results);
 PETSC_INTERN PetscErrorCode SampleKeep(Sample sample, PetscBool begins, PetscInt first, PetscInt n, PetscInt list[]);
 PETSC_INTERN PetscErrorCode SampleResume(Sample sample);
 PETSC_INTERN PetscErrorCode SampleForget(Sample sample);
+PETSC_INTERN PetscErrorCode SampleShare(Sample sample, PetscInt first, PetscInt n, const PetscInt list[]);
 /* verify.c - full solutions at some samples; which one the k-th is */
 PETSC_INTERN PetscErrorCode SampleVerify(Sample sample);
 PETSC_INTERN PetscInt       SampleVerified(Sample sample, PetscInt k);

@@ -118,9 +118,10 @@ static PetscErrorCode BasisMake(Sweep sweep, PetscBool exceeding)
 }
 
 /* The reduced model: the basis is orthonormal in M of the first point; a small system takes all unit vectors, a
-   larger one greedy samples. Room for samples is that of the sweep, max_samples, and of the points that are only looked at. With contact statuses max_samples is no less than the places, as in the
-   worst case each has a status of its own. Where modes beyond the growth that was asked for were found
-   (greedy.reach), window.rtol admits those whose estimated error, POINTS_MARGIN included, is below rtol. */
+   larger one greedy samples. Room for samples is that of the sweep, max_samples, and of the points that are only
+   looked at. With contact statuses max_samples is no less than the places, as in the worst case each has a status of
+   its own. Where modes beyond the growth that was asked for were found (greedy.reach), window.rtol admits those whose
+   estimated error, POINTS_MARGIN included, is below rtol. */
 static PetscErrorCode ModelMake(Sweep sweep)
 {
   PetscReal *p;

@@ -3,10 +3,11 @@
    (manybasis.c); all others are solved on it (manydense.c). The status of a point is known where the closing of every
    pair is farther from 0 than MANY_SURE times the error, which is estimated by what the last third of the vectors
    change; where true errors were seen to exceed their estimates at the last MANY_RECENT points solved on the mesh, as
-   many times more: a poor basis long ago tells nothing of the present one. Points whose status is not known
-   are solved on the mesh, those of the largest error first, and the basis takes them in: each makes the others better
-   known. On the mesh the factors of the first point serve all others (near.c). Behind the first points the basis takes in
-   the influences of pairs that open and close, since a change of status is a kink that equilibria alone hold badly.
+   many times more: a poor basis long ago tells nothing of the present one. Points whose status is not known are
+   solved on the mesh, those of the largest error first, and the basis takes them in: each makes the others better
+   known. On the mesh the factors of the first point serve all others (near.c). Behind the first points the basis
+   takes in the influences of pairs that open and close, since a change of status is a kink that equilibria alone hold
+   badly.
 */
 #include "many.h"
 #include "base/gather.h"
@@ -133,8 +134,8 @@ static void ManyTake(Many *m, PetscInt i, PetscInt begin, const char closed[], c
   m->error[i] = answer[1] > MANY_SURE * sure * answer[0] ? -1 : answer[0];
 }
 
-/* Statuses of all pairs [of all ranks] to begin point i with: those that were found there last, or of the first point */
-static PetscErrorCode PointBegin(const Many *m, PetscInt i, char closed[])
+/* Statuses of all pairs [of all ranks] to begin point i with: those found there last, or of the first point */
+static PetscErrorCode ManyPointBegin(const Many *m, PetscInt i, char closed[])
 {
   const PetscInt n_pairs = m->s->rows.n_pairs;
   char          *all;
@@ -169,7 +170,7 @@ static PetscErrorCode BatchSolve(Many *m, ManyBasis *basis, PetscInt n, const Pe
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(m->get(m->ctx, list[k], p));
     PetscCall(ManyBasisPoint(basis, p, &m->load[list[k]], &points[k]));
-    PetscCall(PointBegin(m, list[k], &closed[k * n_pairs]));
+    PetscCall(ManyPointBegin(m, list[k], &closed[k * n_pairs]));
     if (k % size != rank) PetscCall(PetscArrayzero(&closed[k * n_pairs], n_pairs));
   }
   for (PetscInt k = rank; k < n; k += size) {
@@ -229,7 +230,7 @@ static PetscErrorCode RatioLook(Many *m, const PetscReal closing[], const ManyAn
 }
 
 /* Point i on the mesh from what the basis has there, and into it, with a look at how far the basis was off */
-static PetscErrorCode PointTake(Many *m, ManyBasis *basis, PetscInt i)
+static PetscErrorCode ManyPointTake(Many *m, ManyBasis *basis, PetscInt i)
 {
   const PetscInt n_pairs = basis->model.n_pairs;
   PetscReal     *p, *closing, *q;
@@ -267,7 +268,7 @@ static PetscErrorCode OpenRefine(Many *m, ManyBasis *basis, PetscInt *n_open, Pe
   PetscCall(PetscMalloc1(*n_open, &error));
   for (PetscInt k = 0; k < *n_open; k++) error[k] = m->error[list[k]];
   PetscCall(PetscSortRealWithArrayInt(*n_open, error, list));
-  for (PetscInt k = *n_open - n; k < *n_open; k++) PetscCall(PointTake(m, basis, list[k]));
+  for (PetscInt k = *n_open - n; k < *n_open; k++) PetscCall(ManyPointTake(m, basis, list[k]));
   *n_open -= n;
   PetscCall(PetscFree(error));
   PetscFunctionReturn(0);
@@ -285,8 +286,8 @@ static PetscErrorCode BeginTake(Many *m, PetscInt i)
   PetscFunctionReturn(0);
 }
 
-/* The influences of pairs that are closed at some points and open at others, as far as the basis knows, into it: a change
-   of status is then no kink of what it must hold */
+/* The influences of pairs that are closed at some points and open at others, as far as the basis knows, into it: a
+   change of status is then no kink of what it must hold */
 static PetscErrorCode InfluencesTake(Many *m, ManyBasis *basis)
 {
   const PetscInt n_pairs = m->s->rows.n_pairs;
@@ -338,7 +339,7 @@ static PetscErrorCode ManyRun(Many *m, PetscInt list[], ManyBasis *basis)
   }
   PetscCall(ManyBasisAdd(basis));
   for (PetscInt i = 0; i < m->n - 1; i++) {
-    if (i < MANY_FIRST) PetscCall(PointTake(m, basis, i));
+    if (i < MANY_FIRST) PetscCall(ManyPointTake(m, basis, i));
     if (m->error[i] >= 0) list[n_open++] = i;
   }
   PetscCall(OpenSolve(m, basis, &n_open, list));

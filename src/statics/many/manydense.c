@@ -55,14 +55,15 @@ static PetscErrorCode SystemForm(const ManyModel *model, const ManyPoint *point,
 
 /* The system A q = b */
 typedef struct {
-  PetscReal *A, *b; /* [n][n], [n] */
+  PetscReal *A, *b, *q; /* [n][n], [n], [n] */
 } ManySystem;
 
 /* q [m] and closing [n_pairs] of the leading m vectors; the system is kept */
 static PetscErrorCode SystemSolve(const ManyModel *model, const ManyPoint *point, const ManySystem *system, PetscInt m,
-                                  PetscReal q[], PetscReal closing[], PetscBool *singular)
+                                  PetscReal closing[], PetscBool *singular)
 {
   const PetscReal *A = system->A, *b = system->b;
+  PetscReal       *q = system->q;
   const PetscInt   n = model->n, n_pairs = model->n_pairs;
   PetscReal       *part;
 
@@ -102,7 +103,7 @@ static PetscErrorCode AnswerJudge(const ManyModel *model, const ManyPoint *point
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(model->n_pairs, &less, model->n, &q));
-  PetscCall(SystemSolve(model, point, system, model->n_less, q, less, &singular));
+  PetscCall(SystemSolve(model, point, &(ManySystem){system->A, system->b, q}, model->n_less, less, &singular));
   answer->error   = singular ? PETSC_MAX_REAL : 0;
   answer->nearest = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < model->n_pairs; i++) largest = PetscMax(largest, PetscAbsReal(closing[i]));
@@ -129,10 +130,10 @@ PetscErrorCode ManySolve(const ManyModel *model, const ManyPoint *point, char cl
     for (PetscInt i = 0; i < n * n && point->c[t] != 0; i++) K[i] += point->c[t] * model->A[t][i];
   for (PetscInt it = 0; it < MANY_ITERATIONS && !answer->found && !singular; it++) {
     PetscCall(SystemForm(model, point, K, closed, A, b));
-    PetscCall(SystemSolve(model, point, &(ManySystem){A, b}, n, q, closing, &singular));
+    PetscCall(SystemSolve(model, point, &(ManySystem){A, b, q}, n, closing, &singular));
     if (!singular && !StatusesChange(model->n_pairs, closing, closed)) answer->found = PETSC_TRUE;
   }
-  if (answer->found) PetscCall(AnswerJudge(model, point, &(ManySystem){A, b}, closing, answer));
+  if (answer->found) PetscCall(AnswerJudge(model, point, &(ManySystem){A, b, q}, closing, answer));
   PetscCall(PetscFree3(K, A, b));
   PetscFunctionReturn(0);
 }

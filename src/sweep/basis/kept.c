@@ -1,7 +1,7 @@
 /*
    What a killed run goes on from that has a basis: the full solutions behind it, after each of them a file
-   <begin>_restart_<k> with its new vectors. The dense model is made again from the same blocks of vectors: on one rank bit
-   by bit the same. Files of another run and damaged ones are named, not read.
+   <begin>_restart_<k> with its new vectors. The dense model is made again from the same blocks of vectors: on one
+   rank bit by bit the same. Files of another run and damaged ones are named, not read.
 */
 #include "kept.h"
 #include "base/process/interrupt.h"
