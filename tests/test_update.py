@@ -304,7 +304,7 @@ def main():
         bar = Bar(Path(folder) / "row", row, 19)
         if coverage:
             check_coverage(bar, coverage)
-            check_onset(Path(folder) / "brake", max(coverage // 4, 1))
+            check_onset(Path(folder) / "brake", max(coverage // 8, 1))
         else:
             check_eight(Bar(Path(folder) / "comb", comb, 23), "comb", 0.3)
             check_eight(bar, "row", 2)
