@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Pre-tensioned bolts of decks (tests/bolted.py) beside CalculiX: displacements of all nodes and shortenings of the bolts, in elements
 that both programs have alike (nodes of faces of second order have other areas there): tightened by forces, by a length, two bolts at
-once, and then loaded with the lengths that they have. Breaks when a tension, an axis, the side of a cut or the lock of a later step is
-lost. The reference are CalculiX' own equations of *PRE-TENSION SECTION (its printed digits are 7).
+once, and then loaded with the lengths that they have; a clearance of the joint, in closed form. Breaks when a tension, an axis, the side
+of a cut or the lock of a later step is lost. The reference are CalculiX' own equations of *PRE-TENSION SECTION (its printed digits
+are 7).
 
     test_import_bolts.py SQUEAL"""
 
@@ -85,11 +86,24 @@ def beside(program, about, kind, bolts, steps, tensions=None):
         check(f"{about}: tensions", off <= 1e-8, f"{off:.1e}, 1e-8 allowed")
 
 
+def clearances(program):
+    """A gap v of the whole joint: the upper flange moves down by v, and the bolt is shortened by v more, all else alike."""
+    lengths = []
+    for value in (0.0, 2e-7, -1e-7, 3e-4):
+        text = deck("C3D8I", 1, (forces([0.1]),))
+        text = text.replace("*CONTACT PAIR", f"*CLEARANCE, MASTER=LOW_TOP, SLAVE=UP_BOTTOM, VALUE={value}\n*CONTACT PAIR", 1)
+        with tempfile.TemporaryDirectory() as name:
+            lengths.append(squeal(program, Path(name), text)[2][0, 1])
+    off = abs((numpy.array(lengths[1:]) - lengths[0]) / numpy.array([2e-10, -1e-10, 3e-7]) - 1).max()
+    check("*CLEARANCE of a joint that a bolt closes: its shortening grows by it", off <= 1e-6, f"{off:.1e}, 1e-6 allowed")
+
+
 def main(program):
     fixed = "*CLOAD, OP=NEW\nTOP, 3, 1e-3\nTOP, 1, 3e-4\n*BOUNDARY, FIXED\n" + f"{REFERENCE}, 1, 1\n{REFERENCE + 1}, 1, 1"
     beside(program, "a force, C3D8I", "C3D8I", 1, (forces([0.1]),), [0.1])
     beside(program, "a length", "C3D8I", 1, (f"*BOUNDARY\n{REFERENCE}, 1, 1, 1e-6",))
     beside(program, "two forces", "C3D8I", 2, (forces([0.1, 0.25]),), [0.1, 0.25])
+    clearances(program)
     beside(program, "two forces, then pulled with their lengths", "C3D8I", 2, (forces([0.1, 0.25]), fixed))
 
 

@@ -156,9 +156,9 @@ static PetscErrorCode DynamicsCheckSuperelements(Dynamics d)
     PetscCall(ContactProjectorGetTurning(d->projector, i, &turns, rotation));
     if (turns) what = "-..._kinematics turning";
   }
-  PetscCheck(!what, d->comm, PETSC_ERR_SUP,
-             "%s is not supported with -superelements in time on the mesh: leave it out, or take -dynamics_model reduced",
-             what);
+  PetscCheck(
+    !what, d->comm, PETSC_ERR_SUP,
+    "%s is not supported with -superelements in time on the mesh: leave it out, or take -dynamics_model reduced", what);
   PetscFunctionReturn(0);
 }
 

@@ -227,9 +227,9 @@ static PetscErrorCode BodyTakeLeaders(Substructure s, const PetscBool keep[], Ma
   }
   for (PetscInt k = 0; k < body->n_own; k++) {
     if (!keep[k]) continue;
-    body->node[n]    = body->node[k];
-    body->pressed[n] = body->pressed[k];
-    body->by[n]      = body->by[k];
+    body->node[n]     = body->node[k];
+    body->pressed[n]  = body->pressed[k];
+    body->by[n]       = body->by[k];
     body->joined[n++] = body->joined[k];
   }
   body->n_own = n;

@@ -40,6 +40,7 @@ class Result:
     joined: object = None  # what joins nodes, of joined/
     beams: object = None  # the superelement of joined/beams.py
     assembly: object = None
+    gaps: list = field(default_factory=list)  # (entry of a contact, its slave surface, gap, place)
     entries: list = field(default_factory=list)
 
     def firsts(self):

@@ -12,6 +12,7 @@ from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
 from .joined.entries import write_equations
 from ..mesh.petsc_matrix import write_matrix
+from .mesh.faces import surface_nodes
 from .mesh.gmsh_file import write_mesh
 from .mesh.meshes import MED, read_meshes
 from .nastran.read import read_nastran
@@ -68,6 +69,23 @@ def add_files(result, output):
     return files
 
 
+def add_gaps(result, output):
+    """Files of the gaps of contacts, whose entries get their names."""
+    files = []
+    for entry, surface, value, place in result.gaps:
+        files.append((output.with_name(f"{output.name}_{entry.name}_gap.csv"), surface, value))
+        entry.rows.append(("gap", ("file", files[-1][0]), str(place)))
+    return files
+
+
+def write_gaps(result, units, files):
+    """The gap at each node of the slave, in SI."""
+    for path, surface, value in files:
+        rows = [",".join(f"{v:.17g}" for v in (*result.x[node], value * units.length))
+                for node in surface_nodes(result, result.surfaces[surface]).tolist()]
+        path.write_text("\n".join(["x_m,y_m,z_m,gap_m", *rows]) + "\n", encoding="utf-8")
+
+
 def write_beams(result, units, files):
     """Matrices and table of the superelement, in SI."""
     if not files:
@@ -105,7 +123,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         raise BadInput(f"{path}:1: places are not finite")
     mesh, scene, table = (output.with_name(output.name + ending) for ending in (".msh", ".yaml", "_equations.csv"))
     equations = table if result.joined.follows else None
-    files = add_files(result, output)
+    files, tables = add_files(result, output), add_gaps(result, output)
     lines, notes = scene_lines(deck, result, chosen, why, (mesh, equations)), [printable(note) for note in remarks(deck)]
     missing = deck.missing()
     if strict and missing:
@@ -115,6 +133,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         if equations:
             write_equations(table, result)
         write_beams(result, chosen, files)
+        write_gaps(result, chosen, tables)
         write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None
@@ -125,6 +144,6 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
     if result.beams:
         balance.append(f"beams: a superelement of {len(result.beams.words)} unknowns, {result.beams.mass * chosen.mass:.6g} kg, "
                        "which are in no part above")
-    written = " ".join(map(str, filter(None, (mesh, scene, equations, *files.values()))))
+    written = " ".join(map(str, filter(None, (mesh, scene, equations, *files.values(), *(path for path, *_ in tables)))))
     return [printable(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
             f"{len(result.points)} sets of nodes", *notes, *balance, written]

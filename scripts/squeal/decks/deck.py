@@ -203,6 +203,7 @@ class Contact:
     centre: tuple = ()
     turning: Place = None  # where the rotation is from
     damping: Place = None  # where friction damping is from
+    gap: tuple = ()  # of the unloaded surfaces at all nodes of the slave, and its Place
 
 
 @dataclass

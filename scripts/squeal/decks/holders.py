@@ -223,6 +223,8 @@ def add_contacts(assembly):
             hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s, '
                          'or where it holds by friction kt: its stiffness along the surface')
         assembly.add("contacts", contact.name, rows, hints)
+        if contact.gap:
+            assembly.result.gaps.append((assembly.result.entries[-1], slave, *contact.gap))
 
 
 def add_ties(assembly):

@@ -18,15 +18,14 @@ static PetscErrorCode SharesGather(Operators o, const Superelement *s, PetscInt 
   for (PetscInt k = 0; k < s->n_shares; k++) {
     const SuperelementShare *share = &s->share[k];
 
-    mine[k] = (OperatorsSuperelementNode){first + share->row, mesh->number[share->at / 3], share->at % 3,
-                                          share->weight};
+    mine[k] =
+      (OperatorsSuperelementNode){first + share->row, mesh->number[share->at / 3], share->at % 3, share->weight};
   }
   PetscCall(PetscMPIIntCast((PetscInt)((size_t)s->n_shares * sizeof(*mine)), &bytes));
   PetscCallMPI(MPI_Allgather(&bytes, 1, MPI_INT, count, 1, MPI_INT, o->comm));
   for (PetscMPIInt r = 0; r < n_ranks; r++) start[r] = total, total += count[r];
   PetscCall(PetscRealloc((size_t)all->n_nodes * sizeof(*mine) + (size_t)total, &all->node));
-  PetscCallMPI(
-    MPI_Allgatherv(mine, bytes, MPI_BYTE, all->node + all->n_nodes, count, start, MPI_BYTE, o->comm));
+  PetscCallMPI(MPI_Allgatherv(mine, bytes, MPI_BYTE, all->node + all->n_nodes, count, start, MPI_BYTE, o->comm));
   all->n_nodes += total / (PetscInt)sizeof(*mine);
   PetscCall(PetscFree3(mine, count, start));
   PetscFunctionReturn(0);

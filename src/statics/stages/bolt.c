@@ -2,13 +2,18 @@
    Bolts that a stage tightens to a tension (model/scene/loads/bolt.c): their shortenings d solve T(d) = F, where T(d)
    is the tension at the end of the stage, found as without them, from where the stage before left the pairs. Status and
    friction make T piecewise smooth: Broyden's method (C. G. Broyden, Math. Comp. 19, 1965) from the slopes T_i / d_i of
-   a first solution; on linear pieces it ends after 2 n steps. All solutions share one factorisation.
+   a first solution; on linear pieces it ends after 2 n steps. While gaps below a bolt close it carries nothing, and its
+   shortening grows as a geometric series. All solutions share one factorisation.
 */
 #include "statics/staticsimpl.h"
 #include <petscblaslapack.h>
 
 #define BOLT_RTOL  1e-10 /* of the largest tension */
 #define BOLT_STEPS 60
+#define BOLT_SLACK 1e-6 /* of the tension asked for: less than that is none */
+#define BOLT_GROWS                                                                                                     \
+  4 /* times the shortening so far is added to that of a bolt without tension; or half the way to
+                           what was too much */
 
 /* The n bolts that stage k tightens, with d (m), T - F (N), dT/dd (N/m, by columns); the pairs before the stage; its
    loads: those before (borrowed), its own, their size */
@@ -17,7 +22,8 @@ typedef struct {
   Vec            f0, *f;
   PetscReal     *size;
   PetscInt       n, *load;
-  PetscReal     *d, *off, *J, *step;
+  PetscReal     *d, *off, *J, *step, *asked;
+  PetscReal     *last, *had, *high; /* d and T - F when it had tension last, last 0 before; a d of too much, 0 before */
   PetscBool      rested;
   ContactStatus *status;
   ContactState  *state;
@@ -30,7 +36,7 @@ static PetscBool BoltBegins(Statics s, PetscInt k, const ModelScene *scene, Pets
   const Stage *stage = StagesGet(s, k), *before = StagesGet(s, k - 1);
 
   return scene->loads[i].has_tension && stage->load[i] > 0 && !(before && before->load[i] > 0) ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+                                                                                               : PETSC_FALSE;
 }
 
 /* Shares of the loads of a stage but for the bolts that it tightens, which are counted */
@@ -49,7 +55,9 @@ static PetscErrorCode BoltsBegin(Statics s, Bolts *b)
     if (BoltBegins(s, k, scene, i)) b->n++;
   }
   if (!b->n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc5(b->n, &b->load, b->n, &b->d, b->n, &b->off, b->n * b->n, &b->J, b->n, &b->step));
+  PetscCall(
+    PetscMalloc6(b->n, &b->load, b->n, &b->d, b->n, &b->off, b->n * b->n, &b->J, b->n, &b->step, b->n, &b->asked));
+  PetscCall(PetscCalloc3(b->n, &b->last, b->n, &b->had, b->n, &b->high));
   PetscCall(PetscMalloc2(s->rows.n_pairs, &b->status, s->rows.n_pairs, &b->state));
   PetscCall(PetscArraycpy(b->status, s->status, s->rows.n_pairs));
   PetscCall(PetscArraycpy(b->state, s->state, s->rows.n_pairs));
@@ -66,7 +74,8 @@ static PetscErrorCode BoltsEnd(Bolts *b)
 {
   PetscFunctionBeginUser;
   if (!b->n) PetscFunctionReturn(0);
-  PetscCall(PetscFree5(b->load, b->d, b->off, b->J, b->step));
+  PetscCall(PetscFree6(b->load, b->d, b->off, b->J, b->step, b->asked));
+  PetscCall(PetscFree3(b->last, b->had, b->high));
   PetscCall(PetscFree2(b->status, b->state));
   PetscCall(VecDestroy(&b->u));
   PetscFunctionReturn(0);
@@ -107,16 +116,44 @@ static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
   s->n_tightened++;
   for (PetscInt j = 0; j < b->n; j++) {
     OperatorsBolt bolt;
-    PetscReal     asked;
 
     PetscCall(BoltGet(s, b->load[j], &bolt));
-    PetscCall(BoltAsked(s, b->load[j], &asked));
-    b->off[j] = bolt.tension - asked;
-    largest = PetscMax(largest, PetscAbsReal(b->off[j]));
-    most    = PetscMax(most, asked);
+    PetscCall(BoltAsked(s, b->load[j], &b->asked[j]));
+    b->off[j] = bolt.tension - b->asked[j];
+    largest   = PetscMax(largest, PetscAbsReal(b->off[j]));
+    most      = PetscMax(most, b->asked[j]);
   }
   *good = largest <= BOLT_RTOL * most ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
+}
+
+static PetscBool BoltIsSlack(const Bolts *b, PetscInt j)
+{
+  return b->off[j] + b->asked[j] <= BOLT_SLACK * b->asked[j] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* What a solution tells: J += (dT - J step) step' / step'step where all bolts had tension before and after the step,
+   else the slope of each that has, from where it had tension last, or from none */
+static void BoltsLearn(Bolts *b, PetscBool smooth)
+{
+  PetscReal length = 0;
+
+  for (PetscInt j = 0; j < b->n; j++) length += smooth ? PetscSqr(b->d[j] - b->last[j]) : 0;
+  for (PetscInt i = 0; i < b->n; i++) {
+    PetscReal rest = b->off[i] - b->had[i];
+
+    if (BoltIsSlack(b, i)) continue;
+    for (PetscInt j = 0; j < b->n; j++) rest -= b->J[i + b->n * j] * (b->d[j] - b->last[j]);
+    for (PetscInt j = 0; j < b->n && length > 0; j++) b->J[i + b->n * j] += rest * (b->d[j] - b->last[j]) / length;
+    if (length == 0 && b->d[i] != b->last[i])
+      b->J[i + b->n * i] = (b->off[i] - (b->last[i] > 0 ? b->had[i] : -b->asked[i])) / (b->d[i] - b->last[i]);
+  }
+  for (PetscInt i = 0; i < b->n; i++) {
+    if (BoltIsSlack(b, i)) continue;
+    b->last[i] = b->d[i];
+    b->had[i]  = b->off[i];
+    if (b->off[i] > 0) b->high[i] = b->d[i];
+  }
 }
 
 /* Shortenings of the cells at the cuts alone, and slopes from the solution with these */
@@ -136,18 +173,13 @@ static PetscErrorCode BoltsGuess(Statics s, Bolts *b, PetscBool *good)
   }
   PetscCall(BoltsTry(s, b, good));
   PetscCall(PetscArrayzero(b->J, b->n * b->n));
-  for (PetscInt j = 0; j < b->n; j++) {
-    PetscReal slope;
-
-    PetscCall(BoltAsked(s, b->load[j], &asked));
-    slope              = (b->off[j] + asked) / b->d[j];
-    b->J[j + b->n * j] = slope > 0 && slope <= stiffness[j] ? slope : stiffness[j];
-  }
+  for (PetscInt j = 0; j < b->n; j++) b->J[j + b->n * j] = stiffness[j];
+  BoltsLearn(b, PETSC_FALSE);
   PetscCall(PetscFree(stiffness));
   PetscFunctionReturn(0);
 }
 
-/* d -= J^-1 (T - F) */
+/* d -= J^-1 (T - F), but for bolts without tension, whose d grows */
 static PetscErrorCode BoltsStep(Statics s, Bolts *b)
 {
   PetscBLASInt n, one = 1, info, *pivot;
@@ -157,7 +189,12 @@ static PetscErrorCode BoltsStep(Statics s, Bolts *b)
   PetscCall(PetscBLASIntCast(b->n, &n));
   PetscCall(PetscMalloc2(b->n * b->n, &J, b->n, &pivot));
   PetscCall(PetscArraycpy(J, b->J, b->n * b->n));
-  for (PetscInt j = 0; j < b->n; j++) b->step[j] = -b->off[j];
+  for (PetscInt j = 0; j < b->n; j++) {
+    const PetscBool slack = BoltIsSlack(b, j);
+
+    b->step[j] = !slack ? -b->off[j] : b->high[j] > 0 ? 0.5 * (b->high[j] - b->d[j]) : BOLT_GROWS * b->d[j];
+    for (PetscInt i = 0; i < b->n && slack; i++) J[j + b->n * i] = i == j ? 1 : 0;
+  }
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, J, &n, pivot, b->step, &n, &info));
   PetscCheck(!info, s->comm, PETSC_ERR_NOT_CONVERGED,
              "bolts of stage %s: their tensions do not depend on their shortenings one by one",
@@ -165,16 +202,6 @@ static PetscErrorCode BoltsStep(Statics s, Bolts *b)
   for (PetscInt j = 0; j < b->n; j++) b->d[j] += b->step[j];
   PetscCall(PetscFree2(J, pivot));
   PetscFunctionReturn(0);
-}
-
-/* J += (T - F) step' / step'step, T - F after the step, in shortenings over those of now */
-static void BoltsUpdate(Bolts *b)
-{
-  PetscReal length = 0;
-
-  for (PetscInt j = 0; j < b->n; j++) length += PetscSqr(b->step[j]);
-  for (PetscInt j = 0; j < b->n && length > 0; j++)
-    for (PetscInt i = 0; i < b->n; i++) b->J[i + b->n * j] += b->off[i] * b->step[j] / length;
 }
 
 PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f)
@@ -197,9 +224,15 @@ PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f
                "-%s_tension: after %d solutions %.6g N are missing of it: does something hold the bolt, or does it "
                "hold nothing?",
                scene->loads[b.load[0]].name, BOLT_STEPS, (double)-b.off[0]);
+    PetscBool smooth = PETSC_TRUE;
+
+    for (PetscInt j = 0; j < b.n; j++)
+      if (BoltIsSlack(&b, j)) smooth = PETSC_FALSE;
     PetscCall(BoltsStep(s, &b));
     PetscCall(BoltsTry(s, &b, &good));
-    BoltsUpdate(&b);
+    for (PetscInt j = 0; j < b.n; j++)
+      if (BoltIsSlack(&b, j)) smooth = PETSC_FALSE;
+    BoltsLearn(&b, smooth);
   }
   PetscCall(BoltsEnd(&b));
   PetscFunctionReturn(0);

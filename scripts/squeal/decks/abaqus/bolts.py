@@ -1,5 +1,5 @@
-"""Abaqus and CalculiX: pre-tension sections. What holds or loads the node of one is its tension or shortening: a force tightens it in
-the step where it acts, after which the length stays, as behind a lock."""
+"""Abaqus and CalculiX: pre-tension sections, and clearances of contacts. What holds or loads the node of a section is its tension or
+shortening: a force tightens it in the step where it acts, after which the length stays, as behind a lock."""
 
 import numpy
 
@@ -7,6 +7,7 @@ from .joined import one_node
 from .material import numbers
 from .sets import surface_of
 from ..bolts import Bolt, normal_of, side_of
+from ..text import real
 
 
 def do_section(reader, scope, card):
@@ -72,4 +73,25 @@ def tighten(deck, bolt, forces, moved, locked):
     deck.bolts.append(bolt)
 
 
-CARDS = {"PRE-TENSION SECTION": do_section}
+def do_clearance(reader, scope, card):
+    """One gap of two surfaces, in the place of that of the mesh; negative where they overlap."""
+    if not card.options.get("VALUE") or {"TABULAR", "CPSET"} & set(card.options):
+        reader.deck.note(card.place, "*CLEARANCE: only MASTER, SLAVE and VALUE are read: not taken; give the contact a `gap`")
+        for word in ("TABULAR", "CPSET", "BOLT"):
+            card.options.pop(word, None)
+        return
+    names = [surface_of(reader, scope, card.need(word), card.place) for word in ("SLAVE", "MASTER")]
+    reader.clearances.append((names, real(card.options["VALUE"], card.place), card.place))
+
+
+def give_gaps(reader):
+    """Clearances to the contacts of their surfaces."""
+    for names, value, place in reader.clearances:
+        found = [contact for contact in reader.deck.contacts if [contact.slave, contact.master] == names]
+        for contact in found:
+            contact.gap = value, place
+        if not found:
+            reader.deck.note(place, f"*CLEARANCE: there is no *CONTACT PAIR of {names[0]}, {names[1]}: not taken")
+
+
+CARDS = {"PRE-TENSION SECTION": do_section, "CLEARANCE": do_clearance}

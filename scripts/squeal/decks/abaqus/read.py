@@ -27,7 +27,6 @@ PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of th
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
 INSTEAD = {"CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
                                    "give the contact an `interference`",
-           "CLEARANCE": "give the contact a `gap`, or move its surfaces in the mesh",
            "SHELL GENERAL SECTION": "its shells have no thickness",
            "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
@@ -53,6 +52,7 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
                           "TIED"},
+         "CLEARANCE": {"MASTER", "SLAVE", "VALUE"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
          "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
@@ -228,6 +228,7 @@ class Reader:
         self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
+        self.clearances = []  # (slave and master, value, place)
         self.of_bolts = []  # forces of all steps, those that ended too
         self.supports = []  # (step, Support) as they come
         self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC
@@ -336,6 +337,7 @@ class Reader:
         abaqus_loads.finish_loads(self)
         abaqus_connectors.finish(self)
         abaqus_model.finish(self)
+        abaqus_bolts.give_gaps(self)
         abaqus_material.finish_sections(self.deck)
         for name, place in self.unplaced.items():
             self.deck.note(place, f"*PART {name}: no *INSTANCE places it, not in the mesh")

@@ -73,7 +73,9 @@ def set_shells(deck, mesh, sections, constants):
             chosen = cells[(head[:, 3] == section) & (head[:, 2] == number)]
             said = sections.get(section)
             if said and said.kind == "SHELL" and len(said.rows) == 1 and said.offset in SIDES:
-                thickness = numbers_of(said.rows[0][:1], said.place)[0]
+                thickness = (numbers_of(said.rows[0][:1], said.place) or [0.0])[0]
+                if thickness <= 0:
+                    raise said.place.wrong(f"SECTYPE {section}: a shell of the thickness {thickness:g}")
                 set_thickness(deck, chosen, thickness, SIDES[said.offset] * thickness)
             elif said and said.kind == "SHELL":
                 deck.note(said.place, f"SECTYPE {section}: " + (f"{len(said.rows)} layers" if len(said.rows) != 1 else

@@ -51,15 +51,16 @@ static PetscErrorCode SuperSetEntries(Bodies b, const OperatorsSuperelements *al
 
 PetscErrorCode SuperLayOut(Bodies b)
 {
-  Super         *s = &b->super;
-  PetscMPIInt    n_ranks, rank;
+  Super      *s = &b->super;
+  PetscMPIInt n_ranks, rank;
 
   PetscFunctionBeginUser;
   if (!OperatorsCountSuperelements(b->operators)) PetscFunctionReturn(0);
   PetscCall(OperatorsGetSuperelements(b->operators, NULL, &s->all));
   s->n = s->all.n;
   PetscCheck(s->n <= SUPER_MOST, b->comm, PETSC_ERR_SUP,
-             "superelements with %" PetscInt_FMT " unknowns, more than %d, are not supported in time on the mesh: reduce "
+             "superelements with %" PetscInt_FMT
+             " unknowns, more than %d, are not supported in time on the mesh: reduce "
              "them (-analysis superelement)",
              s->n, SUPER_MOST);
   PetscCallMPI(MPI_Comm_size(b->comm, &n_ranks));
@@ -108,7 +109,7 @@ static PetscErrorCode SuperCheckNodes(Bodies b, const unsigned char mark[])
   static const char *const what[] = {"are on a contact surface", "are of a point that is joined rigidly",
                                      "are of a point with a mass", "are driven by a motion"};
   PetscInt                 fault[PETSC_STATIC_ARRAY_LENGTH(what)] = {0};
-  const Super             *s = &b->super;
+  const Super             *s                                      = &b->super;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < s->n_entries; i++) {
@@ -123,10 +124,11 @@ static PetscErrorCode SuperCheckNodes(Bodies b, const unsigned char mark[])
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, fault, PETSC_STATIC_ARRAY_LENGTH(what), MPIU_INT, MPI_MAX, b->comm));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(what); k++)
-    PetscCheck(!fault[k] || (k == 0 && !s->all.M), b->comm, PETSC_ERR_SUP,
-               "superelements are joined to nodes that %s, which is not supported in time on the mesh: join them to other "
-               "nodes, or take -dynamics_model reduced",
-               what[k]);
+    PetscCheck(
+      !fault[k] || (k == 0 && !s->all.M), b->comm, PETSC_ERR_SUP,
+      "superelements are joined to nodes that %s, which is not supported in time on the mesh: join them to other "
+      "nodes, or take -dynamics_model reduced",
+      what[k]);
   PetscFunctionReturn(0);
 }
 
@@ -308,9 +310,10 @@ PetscErrorCode SuperSetUp(Bodies b, const unsigned char mark[])
   PetscCallMPI(MPI_Comm_rank(b->comm, &rank));
   if (!rank) PetscCall(SuperFactor(s, S, &least));
   PetscCallMPI(MPI_Bcast(&least, 1, MPIU_REAL, 0, b->comm));
-  PetscCheck(least > 0, b->comm, PETSC_ERR_SUP,
-             "superelements: their mass with that of the mesh is not positive definite, and cannot be factored in time on "
-             "the mesh: take -dynamics_model reduced");
+  PetscCheck(
+    least > 0, b->comm, PETSC_ERR_SUP,
+    "superelements: their mass with that of the mesh is not positive definite, and cannot be factored in time on "
+    "the mesh: take -dynamics_model reduced");
   PetscCallMPI(MPI_Bcast(s->bound, 2, MPIU_REAL, 0, b->comm));
   PetscCall(PetscMPIIntCast(n, &count));
   for (PetscInt j = 0; j < n; j++) {

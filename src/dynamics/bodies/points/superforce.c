@@ -9,7 +9,7 @@
 /* y = A x, A [n][n] symmetric by columns: rows of this rank, then those of the others */
 static PetscErrorCode SuperMultiply(Bodies b, const PetscReal A[], const PetscReal x[], PetscReal y[])
 {
-  const Super       *s = &b->super;
+  const Super       *s    = &b->super;
   const PetscScalar  unit = 1, zero = 0;
   const PetscBLASInt one = 1;
   PetscBLASInt       n, rows;

@@ -104,10 +104,9 @@ PetscErrorCode BoltSetUp(Model model, Load *load)
 PetscErrorCode BoltView(const Load *load, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  bolt %s: cut at %s, its side %s drawn by %.6g %s along %.6g,%.6g,%.6g\n",
-                                   load->name, load->set, load->part,
-                                   (double)(load->has_tension ? load->tension : load->shortening),
-                                   load->has_tension ? "N" : "m", (double)load->axis[0], (double)load->axis[1],
-                                   (double)load->axis[2]));
+  PetscCall(PetscViewerASCIIPrintf(
+    viewer, "  bolt %s: cut at %s, its side %s drawn by %.6g %s along %.6g,%.6g,%.6g\n", load->name, load->set,
+    load->part, (double)(load->has_tension ? load->tension : load->shortening), load->has_tension ? "N" : "m",
+    (double)load->axis[0], (double)load->axis[1], (double)load->axis[2]));
   PetscFunctionReturn(0);
 }
