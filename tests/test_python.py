@@ -39,6 +39,8 @@ fails("no results of squeal", api.read, "nowhere")
 small = api.run("options/oscillator.yaml", contact_mu=1, folder="small", program=os.environ["PROGRAM"], output_fields=False)
 fails("no such table; there are modes", small.table, "mode")
 fails("-output_fields 0", small.shape, 1)
+(small.folder / "modes.h5").write_bytes(b"no HDF5")
+fails("modes.h5: cannot be read", small.shape, 1)
 fails("is no kind of picture", small.picture, "mode")
 assert small.scene["contact_mu"] == "1" and small.table("modes")["label"][0] == "u2" and "UNSTABLE" in small.printed
 shapes = api.run("options/free_ring.yaml", folder="shapes", rig_disc_elements=(6, 32, 1))

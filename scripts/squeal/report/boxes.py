@@ -104,10 +104,11 @@ def quiet_verdict(statement):
                 f"dangerous, {figures(100 * statement['open_share'], 4)} % is left open.")
     if statement["size"] <= 0:
         return "No box about the scene's own values is quiet."
-    text = f"No mode of the band grows in {figures(statement['size'], 4)} of the box"
+    text = f"No mode of the band grows in {'all' if statement['size'] == 1 else figures(statement['size'], 4)} of the box"
     if math.isfinite(statement["danger_distance"]):
         text += f"; the nearest dangerous point is at {figures(statement['danger_distance'], 4)}"
-    return text + (", for the contact status of the scene's own values." if statement["other_status"] else ".")
+    return text + (f"; this is about the contact status of the scene's own values, which {statement['other_status']} of "
+                   f"{statement['status_points']} points of the box do not have." if statement["other_status"] else ".")
 
 
 def quiet_part(folder, _):

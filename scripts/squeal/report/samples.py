@@ -137,7 +137,7 @@ def bubble_figure(folder, rows):
         panel.points([row["condition"]], [row["freq_hz"]], "vermilion" if row["class"] == "unstable" else "grey",
                      [f"{row['name']}: {row['label']} {fixed(row['freq_hz'], 1)} Hz, {figures(row['growth_rad_s'], 4)} 1/s, "
                       f"{row['class']}"],
-                     1.2 + 14 * math.sqrt(abs(row["growth_rad_s"]) / largest))
+                     2.2 + 14 * math.sqrt(abs(row["growth_rad_s"]) / largest))
     chart = Chart("modes of conditions", Axis.about("condition", numpy.array([row["condition"] for row in rows])), [panel])
     keys = legend([("vermilion", "line", "unstable"), ("grey", "line", "decays or is neutral")])
     return figure(f"{folder.key}-bubbles", "Modes of the conditions", [keys, chart.markup(f"{folder.key}-bubbles-chart")],
@@ -157,5 +157,6 @@ def conditions_part(folder, _):
     content = section(f"{folder.key}-conditions", "Conditions",
                       bubble_figure(folder, rows) if rows else missing("No condition has a mode in the band."),
                       tag("h4", "Occurrence by frequency band"), table(f"{folder.key}-bands", columns, bands[:-1]))
-    return Part(content, None, [], f"{bands[-1]['conditions']} conditions are unstable, "
+    n = bands[-1]["conditions"]
+    return Part(content, None, [], f"{count(n, 'condition')} {'is' if n == 1 else 'are'} unstable, "
                                    f"{figures(bands[-1]['occurrence_percent'], 3)} % of all.")

@@ -204,6 +204,8 @@ def analysis_words(scene):
                 f"{range_words(scene.value('frf_frequencies'))}, Hz, about {about}.")
     several = {"sample": ("Samples of", "sample_variables"), "quiet": ("Quiet box over", "quiet_parameters"),
                "design": ("Design by", "design_parameters")}
+    if kind == "sample" and scene.value("sample_conditions"):
+        return f"Conditions of {scene.value('sample_conditions')}: all modes {band}, about {about}."
     if kind in several and scene.names(several[kind][1]):
         begin, names = several[kind]
         return f"{begin} {listed(name.replace('+', ' with ') for name in scene.names(names))}: all modes {band}, about {about}."
