@@ -29,6 +29,10 @@ typedef PetscOptionItems OptionsItems;
 @*/
 PetscErrorCode OptionsGetNames(MPI_Comm comm, const char option[], PetscInt *n, char ***names);
 
+/*@ OptionsTextAppend - puts text behind text, as much as there is room for: PetscStrlcat() writes beyond the end of one
+    that is nearly full. Not collective. @*/
+PetscErrorCode OptionsTextAppend(char text[], const char more[], size_t size);
+
 /*@ OptionsCheckName - raises the error of OptionsGetNames() for a word that `option` gives as the name of an option of
    its
     own: it is no identifier, or other options begin with it or with what stands before its first underscore.

@@ -20,12 +20,12 @@ static PetscErrorCode ProbeFind(Frf frf, const ModelScene *scene, const char opt
   *index = -1;
   for (PetscInt i = 0; i < scene->n_probes; i++) {
     if (!strcmp(scene->probes[i].name, name)) *index = i;
-    PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, scene->probes[i].name, sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, i ? ", " : "", sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, scene->probes[i].name, sizeof(valid)));
   }
   for (PetscInt i = 0; i < scene->n_circles && !strcmp(option, "-frf_probes"); i++) {
-    PetscCall(PetscStrlcat(valid, i ? ", " : valid[0] ? "; or -circles: " : "none; or -circles: ", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, scene->circles[i].name, sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, i ? ", " : valid[0] ? "; or -circles: " : "none; or -circles: ", sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, scene->circles[i].name, sizeof(valid)));
   }
   PetscCheck(*index >= 0, frf->comm, PETSC_ERR_USER_INPUT, "%s '%s' is none of the -probes: %s", option, name,
              valid[0] ? valid : "there are none, give -probes NAME -NAME_at x,y,z");

@@ -77,10 +77,10 @@ static PetscErrorCode SetListNames(Model model, PetscBool cells, char list[], si
     if (skip) continue;
     if (cells) PetscCall(SetHasCells(model, name, &has));
     if (!has) continue;
-    if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
-    PetscCall(PetscStrlcat(list, "'", size));
-    PetscCall(PetscStrlcat(list, name, size));
-    PetscCall(PetscStrlcat(list, "'", size));
+    if (list[0]) PetscCall(OptionsTextAppend(list, ", ", size));
+    PetscCall(OptionsTextAppend(list, "'", size));
+    PetscCall(OptionsTextAppend(list, name, size));
+    PetscCall(OptionsTextAppend(list, "'", size));
   }
   PetscFunctionReturn(0);
 }

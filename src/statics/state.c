@@ -3,6 +3,7 @@
    displacements as they are, not from the small system.
 */
 #include "staticsimpl.h"
+#include <squeal/options.h>
 #include "base/algebra/vec3.h"
 
 /* of the loads, unbalanced: beyond it forces have no more than six figures, and nothing that follows from them is of
@@ -210,7 +211,7 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
   const OperatorsParameter *parameters;
   const char               *between = " at ";
   PetscInt                  n;
-  size_t                    length;
+  char                      one[192];
 
   PetscFunctionBeginUser;
   text[0] = 0;
@@ -219,9 +220,8 @@ PetscErrorCode StaticsPlace(Statics s, char text[], size_t size)
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (PetscInt i = 0; i < s->n_parameters; i++) {
     if (s->p[i] == parameters[i].value) continue;
-    PetscCall(PetscStrlen(text, &length)); /* PetscStrlcat() writes beyond the end of a text that is full */
-    PetscCall(
-      PetscSNPrintf(text + length, size - length, "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
+    PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s %.6g", between, parameters[i].name, (double)s->p[i]));
+    PetscCall(OptionsTextAppend(text, one, size));
     between = ", ";
   }
   PetscFunctionReturn(0);

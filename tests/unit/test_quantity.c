@@ -4,6 +4,7 @@
    References: the definitions of the rows below.
 */
 #include "check.h"
+#include <squeal/options.h>
 #include <squeal/quantity.h>
 #include <string.h>
 
@@ -228,6 +229,19 @@ static PetscErrorCode TestChecksum(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: text is written behind the end of a list that is nearly full, as PetscStrlcat() does */
+static PetscErrorCode TestAppend(int *failed)
+{
+  char list[16 + 8] = "";
+
+  PetscFunctionBeginUser;
+  memset(list + 16, '~', 8);
+  for (int i = 0; i < 4; i++) PetscCall(OptionsTextAppend(list, "abcdefg", 16));
+  *failed += CheckTrue("a list as long as there is room", !strcmp(list, "abcdefgabcdefga"), (double)strlen(list));
+  *failed += CheckTrue("nothing behind it", !memcmp(list + 16, "~~~~~~~~", 8), 0);
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
   char *words[] = {argv[0], "-speed", "0.5", NULL}, **command = words; /* what TestRefuse() judges */
@@ -239,6 +253,7 @@ int main(int argc, char **argv)
   PetscCall(TestLimits(&failed));
   PetscCall(TestRefuse(&failed));
   PetscCall(TestChecksum(&failed));
+  PetscCall(TestAppend(&failed));
   PetscCall(PetscOptionsClear(NULL));
   PetscCall(PetscFinalize());
   printf("%d failed\n", failed);

@@ -207,6 +207,16 @@ PetscErrorCode OptionsGetWords(MPI_Comm comm, const char option[], PetscInt *n, 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OptionsTextAppend(char text[], const char more[], size_t size)
+{
+  size_t length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrlen(text, &length));
+  PetscCall(PetscStrncpy(text + length, more, size - length));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsGetItems(const char option[], PetscInt *n, char *items[], PetscBool *set)
 {
   PetscFunctionBeginUser;

@@ -6,6 +6,7 @@
    nothing changes, at most as often as there are ranks in a row along a body.
 */
 #include "model/modelimpl.h"
+#include <squeal/options.h>
 #include "base/gather.h"
 #include <petscsf.h>
 #include <stdlib.h>
@@ -228,7 +229,7 @@ static PetscErrorCode BodyAppendPlace(Model model, const PetscInt body[], PetscI
   PetscCall(ModelGetUnit(model, "m", &unit));
   PetscCall(PetscSNPrintf(place, sizeof(place), " about %.4g, %.4g, %.4g %s", (double)middle[0], (double)middle[1],
                           (double)middle[2], unit));
-  PetscCall(PetscStrlcat(text, place, size));
+  PetscCall(OptionsTextAppend(text, place, size));
   PetscFunctionReturn(0);
 }
 
@@ -249,8 +250,8 @@ PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, siz
   PetscCall(PetscSNPrintf(text, size, "%s%s", piece ? "a piece of " : "", n > 1 ? "parts" : "part"));
   for (PetscInt i = 0, named = 0; i < mesh->n_parts; i++) {
     if (!(bits[i] & 1)) continue;
-    PetscCall(PetscStrlcat(text, named++ ? ", " : " ", size));
-    PetscCall(PetscStrlcat(text, mesh->part[i], size));
+    PetscCall(OptionsTextAppend(text, named++ ? ", " : " ", size));
+    PetscCall(OptionsTextAppend(text, mesh->part[i], size));
   }
   if (piece) PetscCall(BodyAppendPlace(model, body, b, size, text));
   PetscCall(PetscFree(bits));

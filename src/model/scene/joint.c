@@ -18,6 +18,7 @@
    negative and none exceeds the sum of the two others.
 */
 #include "model/modelimpl.h"
+#include <squeal/options.h>
 #include "base/algebra/vec3.h"
 
 #define AXES_PARALLEL    1e-6 /* sine of the angle between axis 1 and 2 below which they are one */
@@ -229,8 +230,8 @@ PetscErrorCode JointFindPoint(Model model, const char load[], const char name[],
   *index = -1;
   for (PetscInt i = 0; i < s->n_points; i++) {
     if (!strcmp(s->points[i].name, name)) *index = i;
-    PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, s->points[i].name, sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, i ? ", " : "", sizeof(valid)));
+    PetscCall(OptionsTextAppend(valid, s->points[i].name, sizeof(valid)));
   }
   PetscCheck(*index >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_point %s is none of the -points: %s", load, name,
              valid[0] ? valid : "there are none");

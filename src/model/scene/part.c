@@ -52,8 +52,8 @@ PetscErrorCode ModelFindPart(Model model, const char name[], const char part[], 
   *index = -1;
   if (!part[0]) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < model->scene.n_parts; i++) {
-    PetscCall(PetscStrlcat(names, i ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, model->scene.parts[i].name, sizeof(names)));
+    PetscCall(OptionsTextAppend(names, i ? ", " : "", sizeof(names)));
+    PetscCall(OptionsTextAppend(names, model->scene.parts[i].name, sizeof(names)));
     if (!strcmp(model->scene.parts[i].name, part)) *index = i;
   }
   PetscCheck(*index >= 0, model->comm, PETSC_ERR_USER_INPUT, "-%s_part %s is none of the -parts: %s", name, part,

@@ -5,6 +5,7 @@
    it was.
 */
 #include "changes.h"
+#include <squeal/options.h>
 #include <string.h>
 
 PetscErrorCode ChangeCountParameterTerms(Modes modes, PetscInt *n)
@@ -20,8 +21,8 @@ PetscErrorCode ChangeCountParameterTerms(Modes modes, PetscInt *n)
 static PetscErrorCode NamesAppend(const char name[], size_t size, char list[])
 {
   PetscFunctionBeginUser;
-  if (list[0]) PetscCall(PetscStrlcat(list, ", ", size));
-  PetscCall(PetscStrlcat(list, name, size));
+  if (list[0]) PetscCall(OptionsTextAppend(list, ", ", size));
+  PetscCall(OptionsTextAppend(list, name, size));
   PetscFunctionReturn(0);
 }
 
