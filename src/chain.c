@@ -251,6 +251,7 @@ PetscErrorCode ChainCheckOptions(MPI_Comm comm, Chain *chain)
   if (scope.uses == USES_ALL) PetscFunctionReturn(0); /* it reads what any analysis would */
   PetscCall(ScopeGetRun(comm, &scope, &run));
   PetscCall(ChainVisit(chain, &(QuantityVisitor){QuantitiesRefuse, &run}));
+  PetscCall(ScopeCheckLaws(comm, &scope));
   PetscFunctionReturn(0);
 }
 

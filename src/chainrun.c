@@ -254,15 +254,15 @@ SHOW(ChainViewCycle, CycleView(chain->cycle, viewer))
 #define LINEAR (USES_DAMPING | USES_SPIN)
 const AnalysisRow chain_analyses[N_ANALYSES] = {
   [ANALYSIS_MODES]  = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, ChainViewModes,
-                       .uses = LINEAR},
+                       .uses = LINEAR | USES_LAWS},
   [ANALYSIS_SWEEP]  = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep, ChainViewSweep,
                        .add = ChainAddSweep, .uses = LINEAR},
   [ANALYSIS_STATIC] = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics, ChainViewStatics,
-                       .does = RUN_EQUILIBRIUM, .uses = USES_LOADS},
+                       .does = RUN_EQUILIBRIUM, .uses = USES_LOADS | USES_LAWS},
   [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainViewTransient,
                           ChainJudgeReduced, .does = RUN_HISTORY, .uses = USES_LOADS | USES_PLACES | USES_DAMPING},
   [ANALYSIS_FRF]       = {SQUEAL_FRF, SHOWN_FRF, ChainGivePencil, ChainSolveFrf, ChainWriteFrf, ChainViewFrf,
-                          .does = RUN_EPS | RUN_PEP, .uses = LINEAR | USES_PLACES},
+                          .does = RUN_EPS | RUN_PEP, .uses = LINEAR | USES_PLACES | USES_LAWS},
   [ANALYSIS_MAP]       = {SQUEAL_DYNAMICS, SHOWN_MAP, NULL, ChainSolveMap, NULL, ChainViewMap, ChainJudgeMap,
                           .uses = USES_LOADS | USES_DAMPING},
   [ANALYSIS_CYCLE]  = {SQUEAL_DYNAMICS, SHOWN_CYCLE, NULL, ChainSolveCycle, NULL, ChainViewCycle, .add = ChainAddCycle,

@@ -48,7 +48,9 @@ static PetscErrorCode ScopeAddDamping(const Scope *s, QuantityRun *run)
   PetscCall(OperatorsHaveDamping(s->operators, &sure));
   if (s->model) PetscCall(ModelGetScene(s->model, &scene));
   for (PetscInt i = 0; s->model && i < scene->n_parts; i++)
-    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0 || scene->parts[i].spin.rate != 0) sure = PETSC_TRUE;
+    if (scene->parts[i].alpha > 0 || scene->parts[i].beta > 0 || scene->parts[i].spin.rate != 0 ||
+        scene->parts[i].law.kind)
+      sure = PETSC_TRUE;
   for (PetscInt i = 0; s->model && i < scene->n_dashpots; i++)
     if (Vec3Dot(scene->dashpots[i].value, scene->dashpots[i].value) > 0) sure = PETSC_TRUE;
   for (PetscInt i = 0; s->model && i < scene->n_joints + scene->n_points; i++) {
@@ -101,6 +103,50 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
   run->does |= RUN_BODIES;
   PetscCall(ModelGetScene(s->model, &scene));
   if (Vec3Dot(scene->gravity, scene->gravity) > 0) run->does |= RUN_WEIGHT;
+  PetscFunctionReturn(0);
+}
+
+/* The option of the first part or matrix whose stiffness depends on the frequency, empty for none */
+static PetscErrorCode ScopeNameLaw(const Scope *s, size_t size, char text[], PetscBool *hysteretic)
+{
+  const ModelScene *scene;
+  const char       *option;
+  char              name[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsNameLaw(s->operators, size, text, hysteretic));
+  if (s->model) PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; s->model && i < scene->n_parts && !text[0]; i++) {
+    const Part *p = &scene->parts[i];
+
+    if (!p->law.kind) continue;
+    *hysteretic = p->law.kind == VISCOELASTIC_HYSTERETIC ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(ViscoelasticName(&p->law, 0, &option, name));
+    PetscCall(PetscSNPrintf(text, size, "-%s_%s", p->name, option));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *s)
+{
+  const char *folder;
+  char        option[256];
+  PetscBool   hysteretic;
+
+  PetscFunctionBeginUser;
+  PetscCall(ScopeNameLaw(s, sizeof(option), option, &hysteretic));
+  if (!option[0]) PetscFunctionReturn(0);
+  PetscCall(OperatorsGetSave(s->operators, &folder));
+  PetscCheck(s->uses & USES_LAWS, comm, PETSC_ERR_USER_INPUT,
+             "%s makes the stiffness depend on the frequency, which -analysis %s does not know as yet, only modes, frf "
+             "and static, which has the static stiffness; %s",
+             option, AnalysisNames[s->analysis],
+             hysteretic && s->model ? "give -model_loss_frequency, Hz, for damping that is exact there"
+                                    : "leave it out, or damp with -..._beta or a -..._kind damping matrix");
+  PetscCheck(!folder[0], comm, PETSC_ERR_USER_INPUT,
+             "-operators_save %s: %s makes the stiffness depend on the frequency, which no matrix has; leave one of "
+             "them out",
+             folder, option);
   PetscFunctionReturn(0);
 }
 

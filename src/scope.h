@@ -10,7 +10,8 @@ typedef enum {
   USES_PLACES  = 2, /* probes and circles */
   USES_DAMPING = 4, /* dashpots, and that of the parts */
   USES_SPIN    = 8, /* of the parts */
-  USES_ALL     = 15,
+  USES_LAWS    = 16, /* of parts whose stiffness depends on the frequency; in statics their static one */
+  USES_ALL     = 31,
 } SceneUse;
 
 /* A run; model and contact are NULL for matrices without a mesh */
@@ -29,6 +30,8 @@ typedef struct {
 } Scope;
 
 /* All that the run does. Collective. */
+/* Raises an error for a material whose stiffness depends on the frequency, where the analysis would leave that out */
+PETSC_INTERN PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *scope);
 PETSC_INTERN PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *scope, QuantityRun *run);
 
 /* Says which things of the model the run does not use. Collective. */

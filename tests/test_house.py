@@ -48,7 +48,7 @@ BELOW |= {"results": {"base", "quantity", "kernels", "results"},
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",
-                  "joint": "kernels", "material": "kernels", "mesh": "kernels", "options": "base",
+                  "joint": "kernels", "material": "kernels", "viscoelastic": "kernels", "mesh": "kernels", "options": "base",
                   "frictionlaw": "contact", "pressurelaw": "contact", "pencil": "operators", "projector": "contact", "sys": "base"}
 # Signatures that a library lays down
 LAID_DOWN = {"KeepError": "PetscPushErrorHandler()", "GroupKeepError": "PetscPushErrorHandler()",
@@ -72,12 +72,12 @@ REFUSED = {"QuantitiesRefuse": "the rows themselves",
            "FindAll": "whether there is damping: the matrices tell"}
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
-UNITLESS = set("""axis frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at dynamics_step_fraction
-    contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol cycle_rtol cycle_range
-    cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m operators_dense_c operators_dense_h
-    ts_central_b pressure_m wear_exponent wear_settled sample_rtol mean deviation lower upper peak quiet_rtol quiet_tolerance
-    quiet_lower quiet_upper design_rtol design_probability design_mass design_margin design_lower design_upper design_uncertain_lower
-    design_uncertain_upper""".split())
+UNITLESS = set("""axis frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at
+    dynamics_step_fraction contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol
+    cycle_rtol cycle_range cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m
+    operators_dense_c operators_dense_h ts_central_b pressure_m wear_exponent wear_settled zener_order table_temperature
+    table_loss_factor sample_rtol mean deviation lower upper peak quiet_rtol quiet_tolerance quiet_lower quiet_upper design_rtol
+    design_probability design_mass design_margin design_lower design_upper design_uncertain_lower design_uncertain_upper""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
                  re.IGNORECASE)
 

@@ -5,6 +5,7 @@
 
 #include <petscsys.h>
 #include <squeal/elasticity.h>
+#include <squeal/viscoelastic.h>
 
 /* Axes that a material may be given by: those that are its own, of a cylinder its axis, and a point of that */
 enum { AXIS_1, AXIS_2, AXIS_3, AXIS_CYLINDER, AXIS_CENTRE, N_AXES };
@@ -38,14 +39,16 @@ typedef struct {
 
 /* Material of one body; SI units */
 typedef struct {
-  char           *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
-  PetscReal       young;         /* Young's modulus, Pa, > 0; E_1 where not isotropic */
-  PetscReal       poisson;       /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
-  PetscReal       density;       /* kg/m^3, > 0 */
-  PetscReal       alpha;         /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
-  PetscReal       beta;          /* Rayleigh factor of the stiffness, s, loss included */
-  PetscReal       loss;          /* loss factor at the scene's loss_frequency, part of beta */
-  ElasticityAsked asked;
-  Anisotropy      anisotropy;
-  Spin            spin;
+  char             *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
+  PetscReal         young;         /* Young's modulus, Pa, > 0; E_1 where not isotropic */
+  PetscReal         poisson;       /* Poisson's ratio, in (-1, 0.5); not read where not isotropic */
+  PetscReal         density;       /* kg/m^3, > 0 */
+  PetscReal         alpha;         /* Rayleigh factor of the mass, 1/s: C = alpha M + beta K */
+  PetscReal         beta;          /* Rayleigh factor of the stiffness, s, loss included */
+  PetscReal         loss; /* loss factor at the scene's loss_frequency, part of beta; without one that of `law` */
+  ElasticityAsked   asked;
+  Anisotropy        anisotropy;
+  Spin              spin;
+  ViscoelasticAsked viscous;
+  Viscoelastic      law; /* of the stiffness, at the values of the scene */
 } Part;

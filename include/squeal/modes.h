@@ -68,7 +68,8 @@ typedef struct {
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes);
 
 /*@ ModesSetPencil - the system to solve, at the point that it has when ModesSolve() is called; it must stay until the
-    modes are written or another pencil is set. Not collective. @*/
+    modes are written or another pencil is set. Its reference frequency (PencilSetReference()) becomes the middle of the
+    band, or the target, where it has none. Collective. @*/
 PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 
 /*@

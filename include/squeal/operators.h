@@ -25,6 +25,7 @@ typedef struct {
   PetscBool       length;       /* it is the size of the row's vector, hence not negative */
   PetscBool       divides;      /* something is divided by it: beyond the row's limits it is not 0 */
   PetscBool       damps;        /* its term is damping, which its unit does not tell */
+  PetscBool       law;          /* of a stiffness that depends on the eigenvalue (viscoelastic.h) */
   PetscBool       body;         /* of parts, springs or dashpots, not of a contact */
   PetscBool stressing; /* the stress of a spin depends on it, and was found with its value (OperatorsCheckMoved()) */
   PetscBool state;   /* the sliding state alone depends on it: size of a load, mu of a contact that holds by friction */
@@ -112,6 +113,10 @@ PetscErrorCode OperatorsDestroySuperelements(OperatorsSuperelements *all);
 
 /*@ OperatorsViewSuperelements - a line of each. Collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsViewSuperelements(Operators operators, PetscViewer viewer);
+
+/*@ OperatorsNameLaw - the option, with its dash, of the first of -terms whose stiffness depends on the frequency, empty
+    for none, and whether it is hysteretic. Not collective. @*/
+PetscErrorCode OperatorsNameLaw(Operators operators, size_t size, char option[], PetscBool *hysteretic);
 
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);

@@ -9,6 +9,13 @@
    = 0; where displacements follow others (OperatorsGetDependents()), their Z is a factor of both. Without either Zl =
    Zr = identity, and nothing is projected.
 
+   Materials whose stiffness depends on the eigenvalue (viscoelastic.h) make it a nonlinear problem,
+
+      T(lambda) = lambda^2 M + lambda C + K + sum_j h_j(lambda) A_j,   h = G(lambda) - Re G(i w) - lambda Im G(i w) / w,
+
+   A_j of such a part or matrix per unit of modulus: K and C have what G is at a reference frequency w (rad/s,
+   PencilSetReference()), h_j the rest, zero there. Without a reference K is the static one, C has nothing of them.
+
    A pencil has a point p of its own, as a PETSc object has its values: matrices that are handed out are formed at p
    when they are asked for, in place where the pattern allows, so that many points cost no new symbolic work. It owns
    the terms of the contact; those of the bodies it shares with the operators. Whoever needs two pencils makes two.
@@ -33,6 +40,13 @@ typedef struct {
   PetscReal   ratio;                          /* v / V */
 } OperatorsFriction;
 
+/* The modulus G(lambda) of a material, a function of several parameters */
+typedef struct {
+  Viscoelastic law;                                /* of the scene */
+  PetscInt     young;                              /* index of E, -1: it is that of the scene */
+  PetscInt     parameter[VISCOELASTIC_PARAMETERS]; /* index of each value, -1 likewise */
+} OperatorsLaw;
+
 /* A part of the pencil whose coefficient is a monomial of parameters: c(p) A, c = scale * prod_i p_i^power_i, where
    |p_i| stands for p_i if absolute, mu or mu' where it is friction. K, C and M of the pencil are the sums of the terms
    of their kind. */
@@ -52,10 +66,14 @@ typedef struct {
     const OperatorsFriction *friction; /* borrowed from the operators, NULL for none */
     PetscBool                slope;    /* mu' of it, else mu */
   } factor[OPERATORS_MAX_FACTORS];
-  PetscInt    constraint; /* of the friction of an exact contact: which of its left null spaces; else -1 */
-  const char *cause_kind; /* what the term is, in words, where it may make modes grow or decay */
-  char        cause[OPERATORS_MAX_CAUSE]; /* the contact, option or matrix that it comes from */
-  PetscInt    cause_index;                /* among those of PencilGetCauses() */
+  /* borrowed from the operators, NULL for none: of K and C, one more factor Re G(i reference), Im G(i reference) /
+     reference; 0 without a reference */
+  const OperatorsLaw *law;
+  PetscReal           reference;  /* rad/s */
+  PetscInt            constraint; /* of the friction of an exact contact: which of its left null spaces; else -1 */
+  const char         *cause_kind; /* what the term is, in words, where it may make modes grow or decay */
+  char                cause[OPERATORS_MAX_CAUSE]; /* the contact, option or matrix that it comes from */
+  PetscInt            cause_index;                /* among those of PencilGetCauses() */
 } OperatorsTerm;
 
 /* One of the reasons why modes grow or decay */
@@ -66,15 +84,26 @@ typedef struct {
   char        name[OPERATORS_MAX_CAUSE]; /* of the contact, or of the option or matrix, e.g. pad_beta */
 } PencilCause;
 
+/* h(lambda) A beyond K and C, at the point of the pencil */
+typedef struct {
+  Mat          A; /* reference */
+  PetscBool    symmetric;
+  PetscReal    scale, reference; /* of A; rad/s, 0 for none */
+  Viscoelastic law;
+  PetscComplex at; /* G(i reference), Pa */
+} PencilLaw;
+
 /* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed. Where only friction makes K
    unsymmetric, and -operators_factors is not lu, K = K_even + left' right, K_even symmetric, left and right with a row
    for each closed pair; NULL else. */
 typedef struct {
-  Mat       K, C, M;   /* C is NULL without damping */
-  PetscBool symmetric; /* K, M (and C) symmetric */
-  PetscBool singular;  /* M is loaded and has no mass along some directions that are no unknowns */
-  Mat       K_even, left, right;
-  PetscBool prefers_even; /* -operators_factors symmetric */
+  Mat              K, C, M;   /* C is NULL without damping */
+  PetscBool        symmetric; /* K, M (and C) symmetric */
+  PetscBool        singular;  /* M is loaded and has no mass along some directions that are no unknowns */
+  Mat              K_even, left, right;
+  PetscBool        prefers_even; /* -operators_factors symmetric */
+  PetscInt         n_laws;
+  const PencilLaw *law; /* [n_laws] */
 } PencilMatrices;
 
 /* Matrices of all unknowns, before any projection: K + mu H, M, C; borrowed; C and H may be NULL. With -terms K is
@@ -122,6 +151,7 @@ PetscErrorCode OperatorsLinearise(Operators operators, const SlidingState *state
 /*@
    OperatorsLineariseBodies - makes the pencil of the bodies by themselves at a point p [parameters], NULL for that of
    the scene: every pair open, neither damping nor spin, and where they are to be `apart` no bushing between two sets.
+   Materials whose stiffness depends on the frequency have that at the reference (PencilSetReference()), without loss.
    Bodies that share nodes, ties and rigid points stay one; supports and springs to the ground stay. Collective.
 @*/
 PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[], PetscBool apart, Pencil *bodies);
@@ -268,6 +298,25 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *matrices);
 
 /*@ PencilGetParts - the matrices of all unknowns, friction apart. Collective. @*/
 PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts);
+
+/*@ PencilLawAt - h(lambda) of a law, in the unit of its A, and its derivative; lambda in rad/s, Im lambda >= 0. Not
+    collective. @*/
+PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex *slope);
+
+/*@ PencilHasLaws - whether stiffness depends on the eigenvalue. Not collective. @*/
+PetscBool PencilHasLaws(Pencil pencil);
+
+/*@ PencilGetReference - the frequency that PencilSetReference() set. Not collective. @*/
+PetscReal PencilGetReference(Pencil pencil);
+
+/*@ PencilCheckRange - raises PETSC_ERR_USER_INPUT where a law tells nothing for some of the frequencies range[0] to
+    range[1], rad/s, which `option` asks for. Collective. @*/
+PetscErrorCode PencilCheckRange(Pencil pencil, const char option[], const PetscReal range[2]);
+
+/*@ PencilSetReference - the frequency, rad/s, at which K and C have all of such a stiffness; 0 for none. Matrices that
+    were got before are to be got again. Collective; nothing without laws.
+    Errors: PETSC_ERR_ARG_WRONGSTATE for another one after PencilReleaseTerms(). @*/
+PetscErrorCode PencilSetReference(Pencil pencil, PetscReal omega);
 
 /*@ PencilGetMass - the mass matrix of all unknowns (borrowed). Collective. @*/
 PetscErrorCode PencilGetMass(Pencil pencil, Mat *M);

@@ -5,7 +5,8 @@
 
       Q(lambda) u = Q'(lambda) x,   Q(lambda)^T v = Q'(lambda)^T y,   lambda := lambda - v^T Q' x / (v^T Q' u),
 
-   where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K. Convergence is cubic: three or four
+   where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K; of T(lambda), with materials of the
+   frequency, as well. Convergence is cubic: three or four
    complex factorisations of size n, where all eigenvalues with their vectors cost a hundred. Where a step changed
    lambda by little its factors serve again: that is inverse iteration on Q(lambda) + (mu - lambda) Q'(lambda), which
    differs from Q(mu) by the square of the change.
@@ -32,6 +33,12 @@ void DensePencilEvaluate(const DensePencil *q, PetscComplex lambda, PetscInt fir
 
       Q[j * n + i] = q->K[at] + (q->damped ? lambda * q->C[at] : 0) + lambda * lambda * q->M[at];
     }
+  for (PetscInt l = 0; l < q->n_laws; l++) {
+    const PetscComplex h = PencilLawAt(q->law[l].law, lambda, NULL);
+
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = 0; i < n; i++) Q[j * n + i] += h * q->law[l].A[(first + j) * q->n + first + i];
+  }
 }
 
 PetscErrorCode DensePencilDestroy(DensePencil *pencil)
@@ -41,21 +48,36 @@ PetscErrorCode DensePencilDestroy(DensePencil *pencil)
   PetscFunctionReturn(0);
 }
 
-/* z = op(Q'(lambda)) x = 2 lambda op(M) x + op(C) x */
+/* z += a op(A) x */
+static PetscErrorCode TimesAdd(PetscInt n, const PetscReal A[], PetscComplex a, PetscBool transposed,
+                               const PetscComplex x[], PetscComplex z[])
+{
+  PetscComplex *Ax;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &Ax));
+  PetscCall(DenseTimes(&(DenseBlock){A, n, n, n}, transposed, 1, x, Ax));
+  for (PetscInt i = 0; i < n; i++) z[i] += a * Ax[i];
+  PetscCall(PetscFree(Ax));
+  PetscFunctionReturn(0);
+}
+
+/* z = op(T'(lambda)) x = 2 lambda op(M) x + op(C) x + sum_j h_j' op(A_j) x */
 static PetscErrorCode DerivativeApply(const DensePencil *q, PetscComplex lambda, PetscBool transposed,
                                       const PetscComplex x[], PetscComplex z[])
 {
   const PetscInt n = q->n;
-  PetscComplex  *Cx;
 
   PetscFunctionBeginUser;
   PetscCall(DenseTimes(&(DenseBlock){q->M, n, n, n}, transposed, 1, x, z));
   for (PetscInt i = 0; i < n; i++) z[i] *= 2 * lambda;
-  if (!q->damped) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(n, &Cx));
-  PetscCall(DenseTimes(&(DenseBlock){q->C, n, n, n}, transposed, 1, x, Cx));
-  for (PetscInt i = 0; i < n; i++) z[i] += Cx[i];
-  PetscCall(PetscFree(Cx));
+  if (q->damped) PetscCall(TimesAdd(n, q->C, 1, transposed, x, z));
+  for (PetscInt l = 0; l < q->n_laws; l++) {
+    PetscComplex slope;
+
+    (void)PencilLawAt(q->law[l].law, lambda, &slope);
+    if (slope != 0) PetscCall(TimesAdd(n, q->law[l].A, slope, transposed, x, z));
+  }
   PetscFunctionReturn(0);
 }
 

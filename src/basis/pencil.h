@@ -2,16 +2,26 @@
 #pragma once
 
 #include "base/algebra/dense.h"
+#include <squeal/pencil.h>
 
-/* Q(lambda) = lambda^2 M + lambda C + K, [n * n] each */
+/* h(lambda) A, A [n * n] */
 typedef struct {
-  PetscInt   n;
-  PetscBool  damped;    /* C is not zero */
-  PetscBool  symmetric; /* all terms, and no damping */
-  PetscReal *K, *C, *M; /* C is not read without damping */
+  const PencilLaw *law;
+  PetscReal       *A;
+} DenseLaw;
+
+/* T(lambda) = lambda^2 M + lambda C + K + sum_j h_j(lambda) A_j, [n * n] each; what solves for all eigenvalues leaves
+   out h */
+typedef struct {
+  PetscInt        n;
+  PetscBool       damped;    /* C is not zero */
+  PetscBool       symmetric; /* all terms, and no damping */
+  PetscReal      *K, *C, *M; /* C is not read without damping */
+  PetscInt        n_laws;
+  const DenseLaw *law; /* borrowed */
 } DensePencil;
 
-/* Q(lambda) on the unknowns first .. first + n - 1, [n * n] */
+/* T(lambda) on the unknowns first .. first + n - 1, [n * n] */
 void DensePencilEvaluate(const DensePencil *pencil, PetscComplex lambda, PetscInt first, PetscInt n, PetscComplex Q[]);
 PetscErrorCode DensePencilDestroy(DensePencil *pencil);
 

@@ -50,8 +50,15 @@ typedef struct {
   Mat                   X, R, AX[2];
 } ResidualPart;
 
-/* R += lambda^power AX, mode by mode: with lambda^power = a + i b the columns are a xr - b xi and a xi + b xr */
-static PetscErrorCode ResidualScale(const ResidualPart *p, int power, Mat AX)
+/* What a matrix of T is multiplied by: 0 .. 2 a power of lambda, else that of a law */
+static PetscComplex ResidualFactor(const PencilMatrices *pencil, PetscInt which, PetscComplex lambda)
+{
+  if (which > 2) return PencilLawAt(&pencil->law[which - 3], lambda, NULL);
+  return which == 2 ? lambda * lambda : which == 1 ? lambda : 1;
+}
+
+/* R += c AX, mode by mode: with c = a + i b the columns are a xr - b xi and a xi + b xr; which: ResidualFactor() */
+static PetscErrorCode ResidualScale(const PencilMatrices *pencil, const ResidualPart *p, PetscInt which, Mat AX)
 {
   const ComplexColumns *c = p->c;
   const PetscScalar    *ax;
@@ -65,7 +72,7 @@ static PetscErrorCode ResidualScale(const ResidualPart *p, int power, Mat AX)
   PetscCall(MatDenseGetArrayRead(AX, &ax));
   PetscCall(MatDenseGetArray(p->R, &r));
   for (PetscInt j = p->first; j < p->end; j++) {
-    const PetscComplex a  = power == 2 ? c->lambda[j] * c->lambda[j] : power == 1 ? c->lambda[j] : 1;
+    const PetscComplex a  = ResidualFactor(pencil, which, c->lambda[j]);
     const PetscReal    re = creal(a), im = cimag(a);
     const PetscInt     at = c->column[j] - c->column[p->first], two = c->column[j + 1] - c->column[j] == 2;
     const PetscScalar *xr = &ax[at * ldx], *xi = &ax[(at + 1) * ldx];
@@ -130,7 +137,7 @@ static PetscErrorCode ResidualAddFriction(const PencilMatrices *pencil, const Re
   PetscFunctionBeginUser;
   PetscCall(MatMatMult(pencil->left, p->X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &LX));
   PetscCall(MatTransposeMatMult(pencil->right, LX, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &RLX));
-  PetscCall(ResidualScale(p, 0, RLX));
+  PetscCall(ResidualScale(pencil, p, 0, RLX));
   PetscCall(MatDestroy(&RLX));
   PetscCall(MatDestroy(&LX));
   PetscFunctionReturn(0);
@@ -145,8 +152,15 @@ static PetscErrorCode ResidualMakePart(const PencilMatrices *pencil, PetscBool t
   PetscFunctionBeginUser;
   PetscCall(ResidualMultiply(A, (PetscBool[3]){pairs ? PETSC_FALSE : transposed, transposed, transposed}, p->X, Y));
   if (pairs) PetscCall(ResidualAddFriction(pencil, p));
-  if (pencil->C) PetscCall(ResidualScale(p, 1, p->AX[0]));
-  PetscCall(ResidualScale(p, 2, p->AX[1]));
+  if (pencil->C) PetscCall(ResidualScale(pencil, p, 1, p->AX[0]));
+  PetscCall(ResidualScale(pencil, p, 2, p->AX[1]));
+  for (PetscInt l = 0; l < pencil->n_laws; l++) {
+    const PencilLaw *law = &pencil->law[l];
+
+    PetscCall(ResidualMultiply((Mat[3]){law->A}, (PetscBool[3]){law->symmetric ? PETSC_FALSE : transposed}, p->X,
+                               (Mat[3]){p->AX[0]}));
+    PetscCall(ResidualScale(pencil, p, 3 + l, p->AX[0]));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -130,6 +130,15 @@ PetscErrorCode SubspaceAddPencil(Subspace *s, const PencilMatrices *pencil)
     SubspaceAddTerm(s, pencil->left ? pencil->K_even : pencil->K, pencil->symmetric || pencil->left, PETSC_FALSE));
   PetscCall(SubspaceAddTerm(s, pencil->C, pencil->symmetric, PETSC_FALSE));
   PetscCall(SubspaceAddTerm(s, pencil->M, pencil->symmetric, PETSC_FALSE));
+  s->n_laws = pencil->n_laws;
+  PetscCall(PetscCalloc1(s->n_laws, &s->law));
+  PetscCall(PetscCalloc1(s->n_laws, &s->turned));
+  for (PetscInt i = 0; i < s->n_laws; i++) {
+    s->law[i].law = &pencil->law[i];
+    PetscCall(SubspaceAddTerm(s, pencil->law[i].A, pencil->law[i].symmetric, PETSC_FALSE));
+    s->turned[i]   = pencil->law[i];
+    s->turned[i].A = s->term[SUBSPACE_PENCIL + i].transposed;
+  }
   if (!pencil->left) PetscFunctionReturn(0);
   PetscCall(TermSetPairs(s->comm, pencil->left, pencil->right, &s->term[SUBSPACE_K]));
   PetscFunctionReturn(0);
@@ -209,11 +218,14 @@ DensePencil SubspacePencil(const Subspace *s)
 {
   const SubspaceTerm *term = s->term;
 
+  for (PetscInt i = 0; i < s->n_laws; i++) s->law[i].A = term[SUBSPACE_PENCIL + i].small;
   return (DensePencil){.n      = s->n,
                        .damped = term[SUBSPACE_C].A ? PETSC_TRUE : PETSC_FALSE,
                        .K      = term[SUBSPACE_K].small,
                        .C      = term[SUBSPACE_C].small,
-                       .M      = term[SUBSPACE_M].small};
+                       .M      = term[SUBSPACE_M].small,
+                       .n_laws = s->n_laws,
+                       .law    = s->law};
 }
 
 PetscErrorCode SubspaceDestroy(Subspace *s)
@@ -229,6 +241,8 @@ PetscErrorCode SubspaceDestroy(Subspace *s)
     PetscCall(PetscFree(term->small));
   }
   PetscCall(PetscFree(s->term));
+  PetscCall(PetscFree(s->law));
+  PetscCall(PetscFree(s->turned));
   PetscCall(BVDestroy(&s->V));
   s->n = s->n_terms = 0;
   PetscFunctionReturn(0);

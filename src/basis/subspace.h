@@ -17,7 +17,7 @@ typedef struct {
   PetscReal *small;              /* [n * n], column-major */
 } SubspaceTerm;
 
-/* The first three terms of a pencil. Without damping there is no C: A and small are NULL. */
+/* The first three terms of a pencil, before those of its laws. Without damping there is no C: A and small are NULL. */
 enum { SUBSPACE_K, SUBSPACE_C, SUBSPACE_M, SUBSPACE_PENCIL };
 
 /* Damped modes let V'MV differ from the identity by `loose` and measure it (BlockFactorise()): they put it into their
@@ -32,6 +32,9 @@ typedef struct {
   PetscInt      n, room; /* columns; for how many there is to be room at least */
   PetscInt      n_terms;
   SubspaceTerm *term;
+  PetscInt      n_laws; /* of the pencil, their terms from SUBSPACE_PENCIL on */
+  DenseLaw     *law;    /* [n_laws] as SubspacePencil() hands them out */
+  PencilLaw    *turned; /* [n_laws] with A' */
 } Subspace;
 
 /* No columns and no terms, vectors in the unknowns of the square matrix like */

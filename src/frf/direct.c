@@ -39,24 +39,39 @@ static PetscErrorCode DirectInsert(Vec from, Vec to)
   PetscFunctionReturn(0);
 }
 
+/* -omega C - sum_l Im h_l A_l, the laws of materials */
+static PetscErrorCode DirectLoss(const PencilMatrices *pencil, PetscReal omega, Mat *loss)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(pencil->C ? pencil->C : pencil->law[0].A, MAT_COPY_VALUES, loss));
+  PetscCall(MatScale(*loss, pencil->C ? -omega : 0));
+  for (PetscInt l = 0; l < pencil->n_laws; l++)
+    PetscCall(MatAXPY(*loss, -cimag(PencilLawAt(&pencil->law[l], CMPLX(0, omega), NULL)), pencil->law[l].A,
+                      DIFFERENT_NONZERO_PATTERN));
+  PetscFunctionReturn(0);
+}
+
 /* A at omega, rad/s: [A0, -omega C; -omega C, -A0], A0 = K - omega^2 M, or A0 alone. Both off-diagonal blocks are
    one matrix. MatConvert() interleaves the rows of both blocks by rank, as DirectInsert() has the vectors: each
    rank's v, then its w. */
 static PetscErrorCode DirectMatrix(const PencilMatrices *pencil, PetscReal omega, Mat *A)
 {
-  Mat block[4];
+  const PetscBool real = pencil->C || pencil->n_laws ? PETSC_FALSE : PETSC_TRUE;
+  Mat             block[4];
 
   PetscFunctionBeginUser;
   PetscCall(MatDuplicate(pencil->K, MAT_COPY_VALUES, &block[0]));
   PetscCall(MatAXPY(block[0], -omega * omega, pencil->M, DIFFERENT_NONZERO_PATTERN));
-  if (!pencil->C) {
+  for (PetscInt l = 0; l < pencil->n_laws; l++)
+    PetscCall(MatAXPY(block[0], creal(PencilLawAt(&pencil->law[l], CMPLX(0, omega), NULL)), pencil->law[l].A,
+                      DIFFERENT_NONZERO_PATTERN));
+  if (real) {
     *A = block[0];
     PetscFunctionReturn(0);
   }
   PetscCall(MatDuplicate(block[0], MAT_COPY_VALUES, &block[3]));
   PetscCall(MatScale(block[3], -1));
-  PetscCall(MatDuplicate(pencil->C, MAT_COPY_VALUES, &block[1]));
-  PetscCall(MatScale(block[1], -omega));
+  PetscCall(DirectLoss(pencil, omega, &block[1]));
   block[2] = block[1];
   PetscCall(MatCreateNest(PetscObjectComm((PetscObject)pencil->K), 2, NULL, 2, NULL, block, A));
   PetscCall(MatConvert(*A, MATAIJ, MAT_INPLACE_MATRIX, A));
@@ -72,7 +87,7 @@ static PetscErrorCode DirectCreate(Frf frf, const PencilMatrices *pencil, Direct
   PetscInt n;
 
   PetscFunctionBeginUser;
-  d->parts = pencil->C ? 2 : 1;
+  d->parts = pencil->C || pencil->n_laws ? 2 : 1;
   PetscCall(FrfProject(frf, &b, &l));
   PetscCall(VecGetLocalSize(b, &n));
   PetscCall(VecCreateMPI(frf->comm, d->parts * n, PETSC_DETERMINE, &d->b));

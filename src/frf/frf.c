@@ -138,9 +138,25 @@ PetscErrorCode FrfSetUp(Frf frf)
   PetscFunctionReturn(0);
 }
 
+/* Raises an error for what a material whose stiffness depends on the frequency does not tell */
+static PetscErrorCode FrfCheckLaws(Frf frf)
+{
+  const PetscReal ends[2] = {2 * PETSC_PI * frf->freq[0], 2 * PETSC_PI * frf->freq[frf->n - 1]};
+
+  PetscFunctionBeginUser;
+  if (!PencilHasLaws(frf->pencil)) PetscFunctionReturn(0);
+  PetscCall(PencilCheckRange(frf->pencil, "-frf_frequencies",
+                             (PetscReal[2]){PetscMin(ends[0], ends[1]), PetscMax(ends[0], ends[1])}));
+  PetscCheck(!frf->n_times, frf->comm, PETSC_ERR_USER_INPUT,
+             "-frf_times: an impulse response does not know stiffness that depends on the frequency as yet; leave it "
+             "out");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FrfSolve(Frf frf)
 {
   PetscFunctionBeginUser;
+  PetscCall(FrfCheckLaws(frf));
   PetscCall(PetscCalloc3(frf->n * frf->n_outputs, &frf->re, frf->n * frf->n_outputs, &frf->im, frf->n, &frf->error));
   if (frf->method == FRF_DIRECT)
     PetscCall(FrfSolveDirect(frf));

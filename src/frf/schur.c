@@ -15,10 +15,11 @@
    (g in rad/s or (rad/s)^2), with E added to K where it is to be rounded otherwise. */
 static PetscErrorCode SchurForm(const ModesSpace *space, PetscBool rounded, const PetscReal b[], FrfSchur *s)
 {
-  const PetscReal square = s->damped ? s->shift * s->shift : -s->shift, *E = space->space.term[SPACE_E].small;
-  DensePencil     pencil = SubspacePencil(&space->space);
-  PetscReal      *Q, *K;
-  PetscBLASInt   *pivot;
+  const PetscReal  square = s->damped ? s->shift * s->shift : -s->shift;
+  const PetscReal *E      = space->space.term[SPACE_E(space)].small;
+  DensePencil      pencil = SubspacePencil(&space->space);
+  PetscReal       *Q, *K;
+  PetscBLASInt    *pivot;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(s->n * s->n, &Q, s->n * s->n, &K, s->n, &pivot));
@@ -69,6 +70,10 @@ PetscErrorCode FrfSchurCreate(const ModesSpace *space, PetscBool rounded, PetscR
   PetscFunctionBeginUser;
   *s = (FrfSchur){
     .n = n, .shift = shift, .n_outputs = ends->n_outputs, .damped = space->pencil.C ? PETSC_TRUE : PETSC_FALSE};
+  if (space->pencil.n_laws) {
+    PetscCall(FrfLawsCreate(space, rounded, ends, &s->laws));
+    PetscFunctionReturn(0);
+  }
   s->length = s->damped ? 2 * n : n;
   PetscCall(PetscCalloc1(s->length * s->length, &s->T));
   PetscCall(PetscCalloc4(s->length, &s->b, ends->n_outputs * s->length, &s->l, 2 * FRF_BATCH * s->length, &s->x,
@@ -148,7 +153,13 @@ PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscInt n, const PetscReal om
   PetscBool singular = PETSC_FALSE, regular;
 
   PetscFunctionBeginUser;
-  *pole   = -1;
+  *pole = -1;
+  for (PetscInt f = 0; f < n && s->laws.pencil.n_laws; f++) {
+    PetscCall(
+      FrfLawsRespond(&s->laws, omega[f], s->n_outputs, &re[f * s->n_outputs], &im[f * s->n_outputs], &singular));
+    if (singular) *pole = f;
+  }
+  if (s->laws.pencil.n_laws) PetscFunctionReturn(0);
   regular = SchurFill(s, n, omega);
   if (regular) PetscCall(SchurSolve(s, s->damped ? 2 * n : n, &singular));
   if (n > 1 && (singular || !regular)) {
@@ -169,6 +180,7 @@ PetscErrorCode FrfSchurRespond(const FrfSchur *s, PetscInt n, const PetscReal om
 PetscErrorCode FrfSchurDestroy(FrfSchur *s)
 {
   PetscFunctionBeginUser;
+  if (s->laws.pencil.n_laws) PetscCall(FrfLawsDestroy(&s->laws));
   PetscCall(PetscFree(s->T));
   PetscCall(PetscFree4(s->b, s->l, s->x, s->B));
   PetscFunctionReturn(0);

@@ -233,6 +233,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   s = &m->scene;
+  for (PetscInt i = 0; i < s->n_parts; i++) PetscCall(ViscoelasticFree(&s->parts[i].law));
   PetscCall(RecordsDestroy(s->n_parts, sizeof(*s->parts), 2, s->parts));
   PetscCall(RecordsDestroy(s->n_supports, sizeof(*s->supports), 2, s->supports));
   PetscCall(RecordsDestroy(s->n_springs, sizeof(*s->springs), 2, s->springs));

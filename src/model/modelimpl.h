@@ -143,7 +143,7 @@ PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
 /* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
 PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
 
-/* part.c - the loss factors as stiffness damping; errors for those without -model_loss_frequency, and for the
+/* part.c - the loss factors as stiffness damping, or laws of the stiffness; an error for the
    reverse */
 PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
 

@@ -107,8 +107,9 @@ static const Quantity part[] = {
    .varies = VARIES_ALL | VARIES_DAMPING},
   {"-beta", "Rayleigh factor of the stiffness", "s", QUANTITY_REAL, PART(beta), QUANTITY_NOT_NEGATIVE, MOVING,
    .varies = VARIES_ALL | VARIES_DAMPING},
-  {"-loss_factor", "loss factor at -model_loss_frequency, adds to beta", NULL, QUANTITY_REAL, PART(loss),
-   QUANTITY_NOT_NEGATIVE, MOVING},
+  {"-loss_factor", "loss factor of the stiffness at every frequency; with -model_loss_frequency there, adds to beta",
+   NULL, QUANTITY_REAL, PART(loss), QUANTITY_NOT_NEGATIVE, MOVING, VISCOELASTIC_VARIES},
+  VISCOELASTIC_ROWS(Part, viscous, MOVING),
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
    PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,
    .unread = "; it belongs to modes, sweep, frf, sample, quiet and design; in time a contact's -..._kinematics turning "

@@ -51,11 +51,31 @@ static PetscErrorCode ComplexVecMultAdd(Mat A, PetscComplex a, ComplexVec x, Vec
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ComplexVecAddLaws(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, ComplexVec z,
+                                 ComplexVec d)
+{
+  Vec work;
+
+  PetscFunctionBeginUser;
+  if (!pencil->n_laws) PetscFunctionReturn(0);
+  PetscCall(VecDuplicate(x.r, &work));
+  for (PetscInt l = 0; l < pencil->n_laws; l++) {
+    PetscComplex       slope;
+    const PetscComplex h = PencilLawAt(&pencil->law[l], lambda, &slope);
+
+    if (z.r) PetscCall(ComplexVecMultAdd(pencil->law[l].A, h, x, work, z));
+    if (d.r && lambda != 0) PetscCall(ComplexVecMultAdd(pencil->law[l].A, slope / (2 * lambda), x, work, d));
+  }
+  PetscCall(VecDestroy(&work));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work, ComplexVec z)
 {
   PetscFunctionBeginUser;
   PetscCall(ComplexVecMult(pencil->M, x, z));
   if (pencil->C && cabs(lambda) > 0) PetscCall(ComplexVecMultAdd(pencil->C, 1 / (2 * lambda), x, work, z));
+  PetscCall(ComplexVecAddLaws(pencil, lambda, x, (ComplexVec){NULL, NULL}, z));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /*
-   Complex vectors as pairs of real ones. Q(lambda) = lambda^2 M + lambda C + K, and D(lambda) = M + C / (2 lambda),
-   so that Q' = 2 lambda D.
+   Complex vectors as pairs of real ones. Q(lambda) = lambda^2 M + lambda C + K + sum_j h_j(lambda) A_j, the sum that of
+   laws of materials (pencil.h), and D(lambda) = M + (C + sum_j h_j' A_j) / (2 lambda), so that Q' = 2 lambda D.
 */
 #pragma once
 
@@ -22,6 +22,9 @@ PETSC_INTERN PetscErrorCode ComplexVecDot(ComplexVec x, ComplexVec z, PetscCompl
 /* z += a x, z = A x; z.i must be there */
 PETSC_INTERN PetscErrorCode ComplexVecAXPY(PetscComplex a, ComplexVec x, ComplexVec z);
 PETSC_INTERN PetscErrorCode ComplexVecMult(Mat A, ComplexVec x, ComplexVec z);
+/* z += sum_j h_j A_j x, d += sum_j h_j' A_j x / (2 lambda); either may be without parts */
+PETSC_INTERN PetscErrorCode ComplexVecAddLaws(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x,
+                                              ComplexVec z, ComplexVec d);
 /* z = D(lambda) x */
 PETSC_INTERN PetscErrorCode ComplexVecApplyD(const PencilMatrices *pencil, PetscComplex lambda, ComplexVec x, Vec work,
                                              ComplexVec z);

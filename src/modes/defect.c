@@ -54,6 +54,7 @@ PetscErrorCode DefectMeasure(const PencilMatrices *pencil, PetscComplex lambda, 
     PetscCall(ComplexVecMult(A[k], v[1], work));
     PetscCall(ComplexVecAXPY(factor[k], work, Qx));
   }
+  PetscCall(ComplexVecAddLaws(pencil, lambda, (ComplexVec){v[1].r, v[1].i}, Qx, (ComplexVec){NULL, NULL}));
   PetscCall(VecScale(Qx.i, -1));
   PetscCall(InnerSize(v[0], Qx, &defect->departure));
   PetscFunctionReturn(0);

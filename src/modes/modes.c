@@ -22,8 +22,11 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 
 PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
 {
+  const PetscReal middle = 2 * PETSC_PI * (modes->has_band ? (modes->band[0] + modes->band[1]) / 2 : modes->target);
+
   PetscFunctionBeginUser;
   modes->pencil = pencil;
+  if (pencil && PencilHasLaws(pencil) && PencilGetReference(pencil) == 0) PetscCall(PencilSetReference(pencil, middle));
   PetscFunctionReturn(0);
 }
 
@@ -160,13 +163,39 @@ static PetscErrorCode SolveWhole(Modes modes, const PencilMatrices *pencil, Wind
 static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, Window *window)
 {
   PetscFunctionBeginUser;
+  PetscCheck(
+    modes->damping != DAMPING_PEP || !pencil->n_laws, modes->comm, PETSC_ERR_USER_INPUT,
+    "-modes_damping pep: the stiffness of a part depends on the frequency, which is no quadratic problem; leave "
+    "it out");
   if (!pencil->C || modes->damping == DAMPING_PEP) PetscFunctionReturn(0);
   if (window->known.singular) /* undamped vectors orthonormal in M are no basis of unknowns without mass */
     PetscCall(PetscStrncpy(window->route.why, "unknowns have no mass", sizeof(window->route.why)));
   else
     PetscCall(ProjectSolve(modes, pencil, window, &window->route.project));
+  PetscCheck(
+    window->route.project || !pencil->n_laws, modes->comm, PETSC_ERR_NOT_CONVERGED,
+    "modes of materials whose stiffness depends on the frequency are found by projection, which cannot be done: "
+    "%s; narrow -modes_band, or give less damping",
+    window->route.why);
   PetscCheck(window->route.project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "-modes_damping project cannot be done: %s; use auto or pep", window->route.why);
+  PetscFunctionReturn(0);
+}
+
+/* Raises an error where a table of a material does not reach as far as modes are asked for, or were found */
+static PetscErrorCode CheckLaws(Modes modes, PetscBool found)
+{
+  const PetscReal turn     = 2 * PETSC_PI;
+  PetscReal       range[2] = {turn * modes->band[0], turn * modes->band[1]};
+
+  PetscFunctionBeginUser;
+  if (!PencilHasLaws(modes->pencil) || modes->has_band == found) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < modes->n && found; i++) {
+    if (!i) range[0] = range[1] = modes->mode[i].omega;
+    range[0] = PetscMin(range[0], modes->mode[i].omega);
+    range[1] = PetscMax(range[1], modes->mode[i].omega);
+  }
+  if (!found || modes->n) PetscCall(PencilCheckRange(modes->pencil, found ? "-modes_target" : "-modes_band", range));
   PetscFunctionReturn(0);
 }
 
@@ -181,6 +210,7 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   modes->null    = (ShiftInvert){.factored = PETSC_FALSE};
   if (modes->has_route && !pencil.C)
     PetscCall(OptionsRefuse(modes->comm, MODES_DAMPING, "not used without damping; leave it out"));
+  PetscCall(CheckLaws(modes, PETSC_FALSE));
   PetscCall(WindowFind(modes, window));
   PetscCall(WindowCheckCount(modes, window));
   *none = window->known.expected == 0 && pencil.symmetric && !pencil.C ? PETSC_TRUE : PETSC_FALSE;
@@ -194,6 +224,7 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   if (*none) PetscFunctionReturn(0);
   PetscCall(NullDecaysCorrect(modes, &pencil, window));
   PetscCall(QualityMeasure(modes, &pencil));
+  PetscCall(CheckLaws(modes, PETSC_TRUE));
   PetscCall(ShiftInvertDestroy(&modes->counter));
   if (window->known.rigid) PetscCall(TwinsDrop(modes, window));
   if (window->known.rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));

@@ -156,10 +156,11 @@ typedef struct {
 /* How its modes were found */
 typedef struct {
   PetscBool project;                   /* damped: by projection (project.c) */
+  PetscBool laws;                      /* there: of a nonlinear problem, counted by a contour integral */
   PetscBool counted;                   /* there: inertia counts the undamped modes */
   PetscInt  n_basis;                   /* vectors of a projection */
   PetscReal beyond;                    /* measure of damping there, or negative */
-  char      why[64];                   /* why not by projection; empty where it was not tried */
+  char      why[128];                   /* why not by projection; empty where it was not tried */
   PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
   PetscBool proven;                    /* inertia counts what was found */

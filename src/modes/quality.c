@@ -205,6 +205,7 @@ static PetscErrorCode QualityResidual(Quality *q, PetscComplex lambda, ComplexVe
   PetscFunctionBeginUser;
   PetscCall(ComplexVecAXPY(lambda * lambda, q->Mx, q->z));
   if (pencil->C) PetscCall(ComplexVecAXPY(lambda, q->Cx, q->z));
+  PetscCall(ComplexVecAddLaws(pencil, lambda, x, q->z, q->Mx));
   PetscCall(ComplexVecSquare(x, x, &length));
   PetscCall(ComplexVecSquare(q->z, q->z, &residual));
   p->backward = PetscSqrtReal(residual / length) / bound;

@@ -72,7 +72,8 @@ static PetscErrorCode PointOfBodies(Operators operators, PetscInt n, const Opera
 
     PetscCall(OperatorsUnitIsGyration(parameter[i].unit, &gyrates));
     if (apart) PetscCall(ParameterJoins(operators, &parameter[i], &joins));
-    still[i] = ((gyrates || parameter[i].damps) && parameter[i].body) || joins
+    if (parameter[i].law) gyrates = PETSC_FALSE;
+    still[i] = ((gyrates || (parameter[i].damps && !parameter[i].law)) && parameter[i].body) || joins
                  ? 0
                  : p[i]; /* a contact that turns is none of them */
   }
@@ -92,6 +93,7 @@ PetscErrorCode OperatorsLineariseBodies(Operators operators, const PetscReal p[]
   PetscCall(StateCreateOpen(operators->contact, &state));
   PetscCall(OperatorsLinearise(operators, &state, bodies));
   PetscCall(SlidingStateDestroy(&state));
+  PencilDropLoss(*bodies);
   PetscCall(PencilGetParameters(*bodies, &n, &parameter, &scene));
   PetscCall(PetscMalloc1(n, &still));
   PetscCall(PointOfBodies(operators, n, parameter, p ? p : scene, apart, still));

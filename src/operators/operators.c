@@ -109,7 +109,7 @@ PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
   PetscFunctionBeginUser;
   *have = operators->load[OPERATOR_C][0] || operators->n_dense[OPERATOR_C] ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt t = 0; t < operators->n_named; t++)
-    if (operators->named[t].kind == OPERATORS_DAMPING) *have = PETSC_TRUE;
+    if (operators->named[t].kind == OPERATORS_DAMPING || operators->named[t].law.kind) *have = PETSC_TRUE;
   for (PetscInt i = 0; i < operators->n_superelements; i++)
     if (operators->superelements[i].file[SUPERELEMENT_C][0]) *have = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -187,6 +187,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(OperatorsReleaseBodies(o));
   PetscCall(TermsDestroy(&o->terms));
   PetscCall(TermsDestroy(&o->spin));
+  PetscCall(OperatorsDestroyLaws(o));
   PetscCall(PetscFree(o->spin_of_part));
   PetscCall(OperatorsDestroyContactParameters(o));
   PetscCall(PetscFree(o->load_size));

@@ -68,6 +68,8 @@ struct _p_Operators {
   PetscInt             n_local;        /* the first parameters are those of parts, springs and dashpots */
   PetscInt            *spin_of_part;   /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
   Terms                spin;           /* of spinning parts, for pencils; made when the first one asks */
+  PetscInt             n_laws;         /* of materials whose stiffness depends on the eigenvalue */
+  OperatorsLaw       **law;            /* [n_laws] */
   Terms                terms;          /* of the bodies, in all unknowns; with loaded matrices friction too */
   PetscBool            mass_singular;  /* loaded: there is no mass along some directions that are no unknowns */
   PetscBool            symmetric;      /* K, M and C are symmetric without friction; always true for a model */
@@ -130,6 +132,12 @@ PETSC_INTERN PetscErrorCode OperatorsAddBolt(Operators operators, const PetscRea
 /* joint.c - parameters and terms of bushings and points; their forces at displacements [nodes][3] and p, and the
    weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
+
+/* laws.c - adds the values of a law to the parameters, with the rows of their options, and its terms G A, none
+   where A is NULL; frees the laws */
+PETSC_INTERN PetscErrorCode OperatorsAddLaw(Operators operators, const char owner[], const Viscoelastic *values,
+                                            const Quantity *(*row)(const char option[]), PetscInt young, Mat A);
+PETSC_INTERN PetscErrorCode OperatorsDestroyLaws(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[],
                                                     const PetscReal displacement[], PetscReal force[]);
 PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const PetscReal p[], PetscReal force[],

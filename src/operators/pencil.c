@@ -76,6 +76,7 @@ PetscErrorCode PencilSetParameters(Pencil pencil, const PetscReal p[])
   PetscCall(PetscArraycpy(pencil->parameters.p, p, n));
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;
   pencil->has_factors = PETSC_FALSE;
+  pencil->has_laws    = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -106,6 +107,7 @@ PetscErrorCode PencilReleaseTerms(Pencil pencil)
   PetscCall(PencilGetFrictionless(pencil, &m));
   PetscCall(PencilGetParts(pencil, &parts));
   PetscCall(PencilFormCauses(pencil));
+  PetscCall(PencilFormLaws(pencil));
   PetscCall(TermsRelease(&pencil->base));
   PetscCall(TermsRelease(&pencil->projected));
   PetscCall(TermsRelease(&o->terms));
@@ -137,13 +139,16 @@ PetscErrorCode PencilView(Pencil pencil, PetscViewer viewer)
   PetscCall(MatGetInfo(m.K, MAT_GLOBAL_SUM, &info));
   spinning =
     TermsVanish(&pencil->operators->spin, TERMS_ALL, PETSC_FALSE, pencil->parameters.p) ? PETSC_FALSE : PETSC_TRUE;
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n", n_pencil, (double)info.nz_used,
-    pencil->operators->n_named ? (m.symmetric ? "symmetric" : "unsymmetric")
-    : m.symmetric              ? "no friction: symmetric"
-    : spinning                 ? "spin or friction: unsymmetric"
-                               : "friction: unsymmetric",
-    m.C ? "damped: quadratic problem" : "undamped", pencil->operators->lump ? "lumped" : "consistent"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "operators: %" PetscInt_FMT " unknowns, %.0f nonzeros, %s, %s, %s mass\n",
+                                   n_pencil, (double)info.nz_used,
+                                   pencil->operators->n_named ? (m.symmetric ? "symmetric" : "unsymmetric")
+                                   : m.symmetric              ? "no friction: symmetric"
+                                   : spinning                 ? "spin or friction: unsymmetric"
+                                                              : "friction: unsymmetric",
+                                   m.n_laws ? "stiffness of the frequency: nonlinear problem"
+                                   : m.C    ? "damped: quadratic problem"
+                                            : "undamped",
+                                   pencil->operators->lump ? "lumped" : "consistent"));
   if (n_pencil < n)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " unknowns eliminated by constraints\n", n - n_pencil));
   PetscFunctionReturn(0);
@@ -163,6 +168,8 @@ PetscErrorCode PencilDestroy(Pencil *pencil)
   PetscCall(TermsDestroy(&s->base));
   PetscCall(TermsDestroy(&s->causing));
   PetscCall(PetscFree(s->cause));
+  PetscCall(PencilForgetLaws(s));
+  PetscCall(PencilUnfoldLaws(s));
   PetscCall(ParametersDestroy(&s->parameters));
   PetscCall(PetscFree(s->group));
   PetscCall(PetscFree(s->slips));

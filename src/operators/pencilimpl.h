@@ -42,19 +42,34 @@ struct _p_Pencil {
   TermsSum sum[N_PENCIL_SUMS];
   Terms    causing; /* terms that make modes grow or decay, scale the coefficient; [n_causes] what they are */
   PetscInt n_causes;
-  PencilCause *cause;
-  PetscBool    keeps_apart;   /* joining was formed */
-  TermsSum     joining;       /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
-  PetscBool    mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
-  PetscBool    released;      /* the terms are gone */
-  PetscBool    has_factors;   /* left' right was formed at the present point */
-  Mat          factor[2];     /* left and right factor of the unsymmetric stiffness, NULL where it has none */
-  Mat          half; /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
-  PetscReal    half_shift; /* (rad/s)^2 */
+  PencilCause   *cause;
+  PetscReal      reference; /* rad/s, 0 for none */
+  PetscBool      real;      /* laws of materials are what they are there, without loss */
+  PetscInt       n_laws, n_folded;
+  OperatorsLaw **folded;        /* [n_folded] of causing */
+  PencilLaw     *law;           /* [n_laws] at the present point */
+  PetscBool      keeps_apart;   /* joining was formed */
+  TermsSum       joining;       /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
+  PetscBool      mass_singular; /* loaded: there is no mass along some directions that are no unknowns */
+  PetscBool      released;      /* the terms are gone */
+  PetscBool      has_laws;      /* they are those of the present point */
+  PetscBool      has_factors;   /* left' right was formed at the present point */
+  Mat            factor[2];     /* left and right factor of the unsymmetric stiffness, NULL where it has none */
+  Mat            half; /* K without friction - half_shift M, its upper half, of which both K are made again; or NULL */
+  PetscReal      half_shift; /* (rad/s)^2 */
 };
 
 /* pairrows.c - forms both factors of the unsymmetric stiffness at the present point, where they are not there yet */
 PETSC_INTERN PetscErrorCode PencilFormFactors(Pencil pencil);
+
+/* laws.c - of materials whose stiffness depends on the frequency that at the reference alone, without loss */
+PETSC_INTERN void PencilDropLoss(Pencil pencil);
+/* The laws at the present point, where the terms are there; frees them */
+PETSC_INTERN PetscErrorCode PencilFormLaws(Pencil pencil);
+PETSC_INTERN PetscErrorCode PencilForgetLaws(Pencil pencil);
+/* Gives a term its law at the present point, which no other point changes; frees those */
+PETSC_INTERN PetscErrorCode PencilFoldLaw(Pencil pencil, OperatorsTerm *term);
+PETSC_INTERN PetscErrorCode PencilUnfoldLaws(Pencil pencil);
 
 /* causes/causes.c - keeps the terms that make modes grow or decay at the present point, where they are there */
 PETSC_INTERN PetscErrorCode PencilFormCauses(Pencil pencil);

@@ -126,6 +126,9 @@ PetscErrorCode PencilGetMatrices(Pencil pencil, PencilMatrices *m)
   PetscCall(PencilFormSum(pencil, PENCIL_C, &m->C));
   if (m->C && pencil->operators->symmetric) PetscCall(MatSetOption(m->C, MAT_SYMMETRIC, DampingIsSymmetric(terms, p)));
   PetscCall(PencilGetFactors(pencil, m));
+  PetscCall(PencilFormLaws(pencil));
+  m->n_laws = pencil->n_laws;
+  m->law    = pencil->law;
   PetscFunctionReturn(0);
 }
 
@@ -139,6 +142,8 @@ PetscErrorCode PencilGetFrictionless(Pencil pencil, PencilMatrices *m)
   m->singular  = pencil->mass_singular;
   m->K_even = m->left = m->right = NULL;
   m->prefers_even                = PETSC_FALSE;
+  m->n_laws                      = 0;
+  m->law                         = NULL;
   PetscFunctionReturn(0);
 }
 

@@ -85,6 +85,9 @@ static const Quantity term[] = {
    TERM(parameters), .given = offsetof(MatrixTerm, has_parameters)},
   {"-power", "power of each of them, e.g. 2 or -1", NULL, QUANTITY_INTS, TERM(power),
    .count = offsetof(MatrixTerm, n_powers), .text = "1"},
+  {"-loss_factor", "of a stiffness: hysteretic loss factor", NULL, QUANTITY_REAL, TERM(loss), QUANTITY_NOT_NEGATIVE,
+   VISCOELASTIC_VARIES},
+  VISCOELASTIC_ROWS(MatrixTerm, viscous, .room = 0),
 };
 
 const QuantityTable operators_quantities = {"Operators", "operators.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = 0};

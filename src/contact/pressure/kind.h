@@ -23,7 +23,7 @@ typedef struct {
 } PressureOptions;
 
 /* Numbers of a table, which no sweep varies */
-typedef enum { TABLE_THICKNESS, TABLE_SAMPLE, TABLE_MODULUS } TableParameter;
+typedef enum { TABLE_THICKNESS, TABLE_SAMPLE, TABLE_LINING } TableParameter;
 
 /* points.c - the points of a table, from its option in the law, or from the file, of a lining as closings; errors for
    those that are none */

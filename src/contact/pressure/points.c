@@ -118,7 +118,7 @@ static PetscReal StrainsModulus(const PressureLaw *law, PetscReal sample)
 /* Closings of the spring at the back of a lining from its strains: c_i = h (e_i - p_i / E) */
 static PetscErrorCode PointsOfLining(MPI_Comm comm, const char name[], const char option[], PressureLaw *law)
 {
-  const PetscReal h = law->parameter[TABLE_THICKNESS], modulus = law->parameter[TABLE_MODULUS];
+  const PetscReal h = law->parameter[TABLE_THICKNESS], modulus = law->parameter[TABLE_LINING];
   const PetscReal sample   = law->parameter[TABLE_SAMPLE] > 0 ? law->parameter[TABLE_SAMPLE] : 1;
   const PetscReal steepest = StrainsModulus(law, sample);
   const PetscReal largest  = law->point[2 * (law->n_points - 1)] / sample;

@@ -83,7 +83,7 @@ static const Quantity table_rows[] = {
   {"-pressure_sample", "thickness of the sample whose compression in m is given in place of the strain", "m",
    QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_SAMPLE), QUANTITY_OR_NONE, PRESSURE_TABLE, .idle = TableIdleLining},
   {"-pressure_modulus", "of the lining in the mesh through its thickness, whose own strain is taken off the table",
-   "Pa", QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_MODULUS), QUANTITY_OR_NONE, PRESSURE_TABLE, .idle = TableIdleLining},
+   "Pa", QUANTITY_REAL, PRESSURE_PARAMETER(TABLE_LINING), QUANTITY_OR_NONE, PRESSURE_TABLE, .idle = TableIdleLining},
 };
 
 static const PressureKind table_pressure = {.name     = "table",

@@ -99,6 +99,7 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
   const Part       *p = &model->scene.parts[part];
   const PartExtent *e = &model->extent[part];
   const char       *pascal, *dense, *metre, *volume, *kilogram;
+  char              law[256];
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetUnit(model, "Pa", &pascal));
@@ -111,7 +112,9 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
                                    (double)p->alpha, (double)p->beta));
   if (p->anisotropy.n) PetscCall(AnisotropyView(model, &p->anisotropy, viewer));
   if (p->spin.given) PetscCall(SpinView(&p->spin, viewer));
-  if (p->loss > 0)
+  if (p->law.kind) PetscCall(ViscoelasticDescribe(&p->law, sizeof(law), law));
+  if (p->law.kind) PetscCall(PetscViewerASCIIPrintf(viewer, "    %s\n", law));
+  if (p->loss > 0 && model->scene.loss_frequency > 0)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "    loss factor %.6g at %.6g Hz, in beta: %.6g at half that frequency, %.6g at twice it\n",
       (double)p->loss, (double)model->scene.loss_frequency, (double)(p->loss / 2), (double)(2 * p->loss)));

@@ -1,8 +1,9 @@
 /*
    Bodies: names and materials from the options, and the part of each cell from the labels of the mesh.
 
-   A loss factor eta stands for the complex stiffness (1 + i eta) K. In real arithmetic it is C = (eta / omega_ref) K,
-   which is exact at omega_ref and grows with the frequency elsewhere.
+   A loss factor eta stands for the complex stiffness (1 + i eta) K, at the frequency of each mode (viscoelastic.h).
+   With -model_loss_frequency it is C = (eta / omega_ref) K instead, in real arithmetic and in time as well, which is
+   exact at omega_ref and grows with the frequency elsewhere.
 */
 #include "model/modelimpl.h"
 #include "base/process/fault.h"
@@ -32,10 +33,8 @@ PetscErrorCode PartsAddLoss(Model model)
   for (PetscInt i = 0; i < model->scene.n_parts; i++) {
     Part *p = &model->scene.parts[i];
 
-    PetscCheck(p->loss == 0 || omega > 0, model->comm, PETSC_ERR_USER_INPUT,
-               "-%s_loss_factor %.6g needs -model_loss_frequency, Hz: in real arithmetic it is exact at one frequency",
-               p->name, (double)p->loss);
-    if (p->loss > 0) p->beta += p->loss / omega;
+    if (p->loss > 0 && omega > 0) p->beta += p->loss / omega;
+    PetscCall(ViscoelasticSet(model->comm, p->name, &p->viscous, p->young, omega > 0 ? 0 : p->loss, &p->law));
     any = p->loss > 0 || any ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCheck(omega == 0 || any, model->comm, PETSC_ERR_USER_INPUT,

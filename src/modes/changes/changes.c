@@ -59,6 +59,10 @@ PetscErrorCode ModesPlaceChanges(Modes modes, PetscBool *wanted)
 {
   PetscFunctionBeginUser;
   *wanted = modes->n_changes ? PETSC_TRUE : PETSC_FALSE;
+  PetscCheck(
+    !modes->n_changes || !PencilHasLaws(modes->pencil), modes->comm, PETSC_ERR_USER_INPUT,
+    "-modes_changes do not know a part whose stiffness depends on the frequency as yet; leave them out, or give "
+    "its -..._loss_factor with -model_loss_frequency");
   for (PetscInt i = 0; i < modes->n_changes; i++) {
     PetscInt    n;
     ChangeTerm *terms;

@@ -37,6 +37,7 @@ static PetscErrorCode FreeModesSolve(Modes modes, Modes free)
   PetscCall(PencilGetOperators(modes->pencil, &operators));
   PetscCall(PencilGetParameters(modes->pencil, NULL, NULL, &p));
   PetscCall(OperatorsLineariseBodies(operators, p, PETSC_TRUE, &bodies));
+  PetscCall(PencilSetReference(bodies, PencilGetReference(modes->pencil)));
   PetscCall(ModesSetPencil(free, bodies));
   PetscCall(ModesSolve(free));
   PetscCall(ModesSetPencil(free, modes->pencil));

@@ -73,7 +73,9 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
                                .M      = ProjectionMatrix(p, SUBSPACE_M, left),
                                .K_even = p->pencil->K_even,
                                .left   = p->pencil->left,
-                               .right  = p->pencil->right};
+                               .right  = p->pencil->right,
+                               .n_laws = p->pencil->n_laws,
+                               .law    = left ? p->space.turned : p->pencil->law};
   ComplexColumns       columns;
   PetscReal           *norms[2];
   BV                   vectors;

@@ -7,6 +7,9 @@
 #define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
 #define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
 #define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define LAWS_MOVE    1.2   /* times a frequency: by so much laws may move it, from their reference */
+#define LAWS_GROW    2     /* times a growth */
+#define LAWS_MORE    4     /* further modes next to a target, of which one may come nearer */
 #define FOLLOW_EQUAL 1e-9  /* relative distance of eigenvalues that are one */
 
 /* Whether the window claims a mode and the basis can have it: of the modes nearest to a target those within reach, of a
@@ -22,6 +25,22 @@ PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
   if (omega < w->edge[0] || omega > w->edge[1]) return PETSC_FALSE;
   if (PetscAbsReal(creal(lambda)) <= w->growth || p->reach == PETSC_MAX_REAL) return PETSC_TRUE;
   return creal(kappa) >= PetscSqr(w->edge[0]) && creal(kappa) <= PetscSqr(w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The same of eigenvalues of the quadratic part of a nonlinear problem, which laws may move into the window: what
+   oscillates, and rigid modes */
+static PetscBool LambdaMayBe(const Projection *p, PetscComplex lambda)
+{
+  const Window *w = p->window;
+
+  if (!p->pencil->n_laws) return ProjectionHas(p, lambda);
+  if (w->known.rigid && cabs(lambda) <= w->known.scale) return ProjectionHas(p, lambda);
+  if (cimag(lambda) <= w->known.scale) return PETSC_FALSE;
+  if (w->count) return ProjectionHas(p, lambda);
+  return cimag(lambda) >= w->edge[0] / LAWS_MOVE && cimag(lambda) <= LAWS_MOVE * w->edge[1] &&
+             PetscAbsReal(creal(lambda)) <= LAWS_GROW * w->growth
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 /* |kappa(lambda) - s|, (rad/s)^2: how far from the shift the undamped mode of lambda is */
@@ -57,8 +76,9 @@ PetscReal ProjectionEdge(const Projection *p, PetscReal d)
   return largest;
 }
 
-/* Leaves of the chosen eigenvalues, list [n], the count nearest to the target; *d = distance of the farthest */
-static void KeepNearest(const Window *window, const PetscComplex lambda[], PetscInt list[], PetscInt *n, PetscReal *d)
+/* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
+void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscComplex lambda[], PetscInt list[],
+                           PetscInt *n, PetscReal *d)
 {
   const PetscComplex target = CMPLX(0, window->target);
 
@@ -69,7 +89,7 @@ static void KeepNearest(const Window *window, const PetscComplex lambda[], Petsc
       list[j]     = list[j - 1];
       list[j - 1] = swap;
     }
-  *n = PetscMin(*n, window->count);
+  *n = PetscMin(*n, most);
   *d = *n ? cabs(lambda[list[*n - 1]] - target) : 0;
 }
 
@@ -88,7 +108,7 @@ static void VectorTurn(PetscInt k, PetscBool is_real, PetscComplex x[])
 }
 
 /* Room for n modes of the present basis; left vectors that nobody asks for need no digits */
-static PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes)
+PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes)
 {
   PetscFunctionBeginUser;
   *modes = (ProjectionModes){.n = n, .size = p->space.n};
@@ -110,7 +130,7 @@ PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes)
 }
 
 /* Whether two of the modes are one and the same */
-static PetscBool HasTwice(const ProjectionModes *m)
+PetscBool ProjectionHasTwice(const ProjectionModes *m)
 {
   for (PetscInt i = 0; i < m->n; i++)
     for (PetscInt j = 0; j < i; j++) {
@@ -126,7 +146,7 @@ static PetscBool HasTwice(const ProjectionModes *m)
 }
 
 /* The values of rank 0 on all */
-static PetscErrorCode ModesShare(MPI_Comm comm, ProjectionModes *m)
+PetscErrorCode ProjectionModesShare(MPI_Comm comm, ProjectionModes *m)
 {
   PetscMPIInt count;
 
@@ -194,8 +214,9 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   PetscCall(DenseSolveAll(p, &dense, &w));
   PetscCall(PetscMalloc2(w.N, &lambda, w.N, &list));
   for (PetscInt i = 0; i < w.N; i++)
-    if (DenseShiftedLambda(&w, i, &lambda[i]) && ProjectionHas(p, lambda[i])) list[m++] = i;
-  if (p->window->count) KeepNearest(p->window, lambda, list, &m, &d);
+    if (DenseShiftedLambda(&w, i, &lambda[i]) && LambdaMayBe(p, lambda[i])) list[m++] = i;
+  if (p->window->count)
+    ProjectionKeepNearest(p->window, p->window->count + (p->pencil->n_laws ? LAWS_MORE : 0), lambda, list, &m, &d);
   PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
     modes->lambda[i] = lambda[list[i]];
@@ -204,7 +225,7 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
     for (int side = 0; side < 2; side++)
       VectorTurn(k, cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE, &modes->vectors[side][i * k]);
   }
-  PetscCall(ModesShare(p->modes->comm, modes));
+  PetscCall(ProjectionModesShare(p->modes->comm, modes));
   modes->lambda_reach = ProjectionEdge(p, d);
   PetscCall(PetscFree2(lambda, list));
   PetscCall(DenseShiftedDestroy(&w));
@@ -221,9 +242,9 @@ PetscErrorCode ProjectionFollow(const Projection *p, const ProjectionModes *befo
   modes->lambda_reach = before->lambda_reach;
   *followed           = PETSC_TRUE;
   for (PetscInt i = 0; i < before->n && *followed; i++) PetscCall(FollowMode(p, &dense, before, i, modes, followed));
-  if (*followed && HasTwice(modes)) *followed = PETSC_FALSE;
+  if (*followed && ProjectionHasTwice(modes)) *followed = PETSC_FALSE;
   PetscCallMPI(MPI_Bcast(followed, 1, MPIU_BOOL, 0, p->modes->comm));
-  if (*followed) PetscCall(ModesShare(p->modes->comm, modes));
+  if (*followed) PetscCall(ProjectionModesShare(p->modes->comm, modes));
   if (!*followed) PetscCall(ProjectionModesDestroy(modes));
   PetscFunctionReturn(0);
 }

@@ -10,14 +10,16 @@
 
    and beyond the basis K - kappa M is regular. With G = (K - s M)^-1 lambda R / (1 + beta lambda) there and K - kappa M
    about K - s M, I + t G stays regular for t in [0, 1] where the spectral radius of G is below one: as R grows from
-   nothing no eigenvalue comes into the window from beyond.
+   nothing no eigenvalue comes into the window from beyond. With laws of materials alpha = beta = 0 in this measure, and
+   G_j(lambda) A_j counts by its size beyond Re G_j at the reference, A_j being semidefinite.
 */
 #include "projection.h"
 #include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
-#define BEYOND_BLOCK 8
-#define BEYOND_STEPS 3
+#define BEYOND_BLOCK  8
+#define BEYOND_STEPS  3
+#define BEYOND_POINTS 8 /* of the window, where laws of materials are looked at */
 #define BEYOND_CLEAR                                                                                                   \
   0.1 /* an estimate below this, of two steps or more, is far enough from one: a third adds 2 % to 0.01 */
 #define FIT_DISTINCT 1e-6 /* variance of kappa beside its mean square: below it beta cannot be told from alpha */
@@ -70,6 +72,33 @@ PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBl
   PetscFunctionReturn(0);
 }
 
+/* b += sum_j (a_j - c_j) A_j w, c_j what the pencil's C has of a law, a_j the largest |h_j(i omega) + i omega c_j| of
+   the window beside its upper end */
+static PetscErrorCode BeyondAddLaws(const Projection *p, Mat w, Mat b)
+{
+  const PetscReal high = PetscMax(p->window->high, p->window->target), low = p->window->low;
+  Mat             Aw;
+
+  PetscFunctionBeginUser;
+  if (!p->pencil->n_laws) PetscFunctionReturn(0);
+  PetscCall(MatDuplicate(b, MAT_DO_NOT_COPY_VALUES, &Aw));
+  for (PetscInt l = 0; l < p->pencil->n_laws; l++) {
+    const PencilLaw *law = &p->pencil->law[l];
+    const PetscReal  c   = law->scale * cimag(law->at) / law->reference;
+    PetscReal        a   = 0;
+
+    for (int i = 0; i <= BEYOND_POINTS; i++) {
+      const PetscReal omega = low + (high - low) * (i + 0.5) / (BEYOND_POINTS + 1);
+
+      a = PetscMax(a, cabs(PencilLawAt(law, CMPLX(0, omega), NULL) + I * omega * c));
+    }
+    PetscCall(BlockMultiplyEach(1, &law->A, w, &Aw));
+    PetscCall(MatAXPY(b, a / high - c, Aw, SAME_NONZERO_PATTERN));
+  }
+  PetscCall(MatDestroy(&Aw));
+  PetscFunctionReturn(0);
+}
+
 /* Z = P^-1 R W for the active columns of W and Z */
 static PetscErrorCode BeyondApply(const Projection *p, BV W, BV Z)
 {
@@ -82,8 +111,11 @@ static PetscErrorCode BeyondApply(const Projection *p, BV W, BV Z)
   PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Mw));
   PetscCall(MatDuplicate(z, MAT_DO_NOT_COPY_VALUES, &Kw));
   PetscCall(BlockMultiplyEach(3, (Mat[]){p->pencil->C, p->pencil->M, p->pencil->K}, w, (Mat[]){b, Mw, Kw}));
-  PetscCall(MatAXPY(b, -p->alpha, Mw, SAME_NONZERO_PATTERN));
-  PetscCall(MatAXPY(b, -p->beta, Kw, SAME_NONZERO_PATTERN));
+  if (!p->pencil->n_laws) {
+    PetscCall(MatAXPY(b, -p->alpha, Mw, SAME_NONZERO_PATTERN));
+    PetscCall(MatAXPY(b, -p->beta, Kw, SAME_NONZERO_PATTERN));
+  }
+  PetscCall(BeyondAddLaws(p, w, b));
   PetscCall(ShiftInvertApplyBlock(&p->si, PETSC_FALSE, b, z));
   PetscCall(MatDestroy(&Kw));
   PetscCall(MatDestroy(&Mw));
@@ -189,7 +221,7 @@ PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho)
 {
   const Window      *w      = p->window;
   const PetscComplex lambda = CMPLX(0, PetscMax(w->high, w->target));
-  const PetscReal    factor = cabs(lambda / (1 + p->beta * lambda));
+  const PetscReal    factor = cabs(lambda / (1 + (p->pencil->n_laws ? 0 : p->beta) * lambda));
   PetscBool          grows  = PETSC_TRUE;
   BeyondSpace        space;
 

@@ -39,6 +39,8 @@ PetscErrorCode ProjectionIsExact(const Projection *p, const Spectrum *right, Pet
   Vec         z;
 
   PetscFunctionBeginUser;
+  *exact = PETSC_FALSE;
+  if (p->pencil->n_laws) PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(p->pencil->K, &z, NULL));
   PetscCall(PetscRandomCreate(p->modes->comm, &random));
   PetscCall(VecSetRandom(z, random));

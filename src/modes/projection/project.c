@@ -30,9 +30,11 @@
 #define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
 #define PROJECT_LOOSE    1e-3 /* V'MV - I may be as large as this: the dense pencil has it */
 
-static const char why_whole[]  = "all modes of the system are in the window or next to it"; /* small: said nowhere */
-static const char why_guard[]  = "damping moves modes by more than the guard";
-static const char why_differ[] = "undamped right and left modes differ";
+static const char why_whole[]   = "all modes of the system are in the window or next to it"; /* small: said nowhere */
+static const char why_guard[]   = "damping moves modes by more than the guard";
+static const char why_strong[]  = "damping is strong"; /* of laws, which may be weak beyond more modes */
+static const char why_missing[] = "the search on the projected problem misses modes that its contour integral counts";
+static const char why_differ[]  = "undamped right and left modes differ";
 
 /* Removes what lies farther from the shift than the distance */
 static PetscErrorCode SpectrumTrim(PetscReal shift, PetscReal distance, Spectrum *s)
@@ -136,6 +138,7 @@ static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionM
   PetscFunctionBeginUser;
   if (!anew) PetscCall(ProjectionFollow(p, &before, found, &followed));
   if (anew || !followed) PetscCall(ProjectionEigen(p, found));
+  if ((anew || !followed) && p->pencil->n_laws) PetscCall(ProjectionLawsSolve(p, found));
   if (!anew) PetscCall(ProjectionModesDestroy(&before));
   PetscFunctionReturn(0);
 }
@@ -218,6 +221,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   Modes           modes = p->modes;
   ProjectionModes found;
   PetscBool       settled;
+  PetscInt        missing = 0;
 
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
@@ -226,11 +230,15 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(AddModal(p, modal));
   window->route.beyond = 0;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->route.beyond));
-  if (window->route.beyond > (modes->damping == DAMPING_AUTO ? DAMPING_WEAK : 1)) *why = "damping is strong";
+  if (window->route.beyond > (modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1))
+    *why = why_strong;
   if (*why) PetscFunctionReturn(0);
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
   PetscCall(Iterate(p, &found, &settled));
+  window->route.laws = p->pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
+  if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing));
+  if (missing) *why = why_missing;
   if (settled) PetscCall(PutModes(p, &found));
   window->route.n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
@@ -255,7 +263,7 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   PetscCall(ModalBlocksCreate(p, &modes->right, &modes->left_spectrum, modal));
   PetscCall(ProjectionFit(p, &modes->right, modal));
   PetscCall(ProjectionIsExact(p, &modes->right, &exact));
-  if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO)
+  if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO && !p->pencil->n_laws)
     *why = why_whole;
   else {
     if (exact)
@@ -280,26 +288,36 @@ static PetscErrorCode ProjectionCreate(Modes modes, const PencilMatrices *pencil
   PetscFunctionReturn(0);
 }
 
+/* Whether more undamped modes may help */
+static PetscBool MayHelp(const PencilMatrices *pencil, const char why[])
+{
+  if (why == why_strong) return pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
+  return why == why_differ || why == why_guard ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *window, PetscBool *done)
 {
   PencilMatrices undamped = *pencil;
   const char    *why      = why_differ;
   Projection     p;
   PetscBool      complete = PETSC_FALSE;
+  PetscInt       n_found  = 0;
 
   PetscFunctionBeginUser;
-  undamped.C = NULL;
+  undamped.C      = NULL;
+  undamped.n_laws = 0;
   PetscCall(ProjectionCreate(modes, pencil, window, &p));
   PetscCall(ModesFactor(modes, &undamped, UndampedShift(window), RELEASE_MATRIX, &p.si));
   MemoryReturn();
   window->guard = PETSC_TRUE;
-  for (int attempt = 0; attempt < PROJECT_ATTEMPTS && (why == why_differ || why == why_guard); attempt++) {
-    if (attempt) window->extra += 10 + (complete ? 0 : modes->right.n / 2);
+  for (int attempt = 0; attempt < PROJECT_ATTEMPTS && MayHelp(pencil, why); attempt++) {
+    if (attempt) window->extra += 10 + (!complete ? modes->right.n / 2 : why == why_strong ? n_found : 0);
     if (attempt && !complete) CopiesMakeRoom(modes, window, &modes->right);
     PetscCall(SpectraDestroy(modes));
     PetscCall(SubspaceTruncate(&p.space, 0));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
-    why = complete ? NULL : why_differ;
+    n_found = modes->right.n;
+    why     = complete ? NULL : why_differ;
     if (complete) PetscCall(AddDamping(&p, window, &why));
   }
   *done = why ? PETSC_FALSE : PETSC_TRUE;

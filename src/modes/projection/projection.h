@@ -82,9 +82,16 @@ PETSC_INTERN PetscBool ProjectionHas(const Projection *p, PetscComplex lambda);
 /* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away
    from a target */
 PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
-/* Eigenvalues of the dense model in the window */
+/* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
+PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscComplex lambda[],
+                                        PetscInt list[], PetscInt *n, PetscReal *d);
+/* Eigenvalues of the dense model in the window; with laws those of its quadratic part that may come into it */
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
+/* Room for n modes of the present basis; whether two of the modes are one and the same; those of rank 0 on all */
+PETSC_INTERN PetscErrorCode ProjectionModesCreate(const Projection *p, PetscInt n, ProjectionModes *modes);
+PETSC_INTERN PetscBool      ProjectionHasTwice(const ProjectionModes *modes);
+PETSC_INTERN PetscErrorCode ProjectionModesShare(MPI_Comm comm, ProjectionModes *modes);
 
 /* The modes on the basis that has grown since, each followed from what it was but for settled ones; followed = false
    where one is lost or found twice */
@@ -99,6 +106,11 @@ PETSC_INTERN PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], Pet
 /* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the
    limits to the basis: n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
+/* projection/laws.c - the modes of the window of the nonlinear problem in place of those of its quadratic part that may
+   become them */
+PETSC_INTERN PetscErrorCode ProjectionLawsSolve(const Projection *p, ProjectionModes *modes);
+/* How many eigenvalues the window of the dense nonlinear problem holds beside these, by the argument principle */
+PETSC_INTERN PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing);
 /* The vectors V x, or V y, as a spectrum */
 PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
                                            Spectrum *s);

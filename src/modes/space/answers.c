@@ -75,9 +75,10 @@ static PencilMatrices SideOf(const ModesSpace *space, PetscBool left)
   PencilMatrices      side = space->pencil;
 
   if (!left) return side;
-  side.K = term[SUBSPACE_K].transposed; /* K_even where friction is apart, to which ResidualMake() puts the rest */
-  side.C = term[SUBSPACE_C].transposed;
-  side.M = term[SUBSPACE_M].transposed;
+  side.K   = term[SUBSPACE_K].transposed; /* K_even where friction is apart, to which ResidualMake() puts the rest */
+  side.C   = term[SUBSPACE_C].transposed;
+  side.M   = term[SUBSPACE_M].transposed;
+  side.law = space->space.turned;
   return side;
 }
 

@@ -8,8 +8,9 @@ typedef struct {
   Subspace       space; /* orthonormal columns in the unknowns of the pencil, K, C and M on them, and E */
 } ModesSpace;
 
-/* a change of K by as much as it is rounded, diagonal: K_ii times machine epsilon with signs at random */
-#define SPACE_E SUBSPACE_PENCIL
+/* The last term, E: a change of K by as much as it is rounded, diagonal: K_ii times machine epsilon with signs at
+   random */
+#define SPACE_E(space) ((space)->space.n_terms - 1)
 
 PETSC_INTERN PetscErrorCode ModesSpaceCreate(const PencilMatrices *pencil, ModesSpace *space);
 /* Takes in what the columns of the block hold beyond the space; the block stays as it is */

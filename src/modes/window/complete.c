@@ -7,6 +7,11 @@
 */
 #include "modes/modesimpl.h"
 
+/* Of materials whose stiffness depends on the frequency */
+static const char laws_text[] =
+  "; a contour integral counts these eigenvalues of the nonlinear problem on their basis, and no other; what does not "
+  "oscillate is not sought";
+
 #define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
 
 /* Modes that do not oscillate: rows listed, as many of them as the undamped system has modes, and those at zero. A zero
@@ -125,6 +130,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             region, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "not checked, since -modes_left is off%s", frictionless));
+  if (window->route.laws) PetscCall(PetscStrlcat(text, laws_text, size));
   PetscCall(PetscStrlcat(text, route, size));
   PetscCall(PetscStrlcat(text, massless, size));
   PetscFunctionReturn(0);

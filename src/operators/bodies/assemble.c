@@ -90,6 +90,28 @@ static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p
   PetscFunctionReturn(0);
 }
 
+static const Quantity *PartFindRow(const char option[])
+{
+  return ModelFindRow("-parts", option);
+}
+
+/* Parameters and terms of the parts whose stiffness depends on the eigenvalue */
+static PetscErrorCode OperatorsAddLaws(Operators o, PetscInt n, const Part parts[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt young = N_PART_PARAMETERS * i + PART_YOUNG;
+    Mat            A     = NULL;
+
+    if (parts[i].law.kind == VISCOELASTIC_NONE) continue;
+    for (PetscInt t = 0; t < o->terms.n && !A; t++)
+      if (o->terms.term[t].kind == OPERATORS_STIFFNESS && o->terms.term[t].factor[0].parameter == young)
+        A = o->terms.term[t].A;
+    PetscCall(OperatorsAddLaw(o, parts[i].name, &parts[i].law, PartFindRow, young, A));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Diagonal matrix of the shares of the nodes of a set, in the directions of the mask. Nodes of two sets are in two
    terms. */
 static PetscErrorCode ShareDiagonalCreate(Operators o, const void *of, const PetscBool mask[3], Mat *D)
@@ -147,5 +169,6 @@ PetscErrorCode OperatorsAssemble(Operators o)
   for (PetscInt i = 0; i < scene->n_dashpots; i++)
     PetscCall(OperatorsAddGrounded(o, OPERATORS_DAMPING, &scene->dashpots[i]));
   PetscCall(OperatorsAddJoints(o));
+  PetscCall(OperatorsAddLaws(o, scene->n_parts, scene->parts));
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,8 @@
    exactly and for any matrices: growth is a sum over the terms. What is symmetric without damping has no share, and a
    gyroscopic term one of rounding: it has a part in D alone. Where contact is exact, q^H (Zr + sum_i mu_i Zl_i)' (...)
    Zr q = 0: interface i adds w_i = mu_i (Zl_i q)^H (...) u, of which -Im w_i / D is the share, the limit of the
-   penalty's.
+   penalty's. With a law of a material (viscoelastic.h) h(lambda) A stands beside its parts of K and C, and the share of
+   the three is - Im G(lambda) u^H A u / D: what the material dissipates at the mode's own lambda, as K has no part.
 */
 #include "products.h"
 #include <complex.h>
@@ -18,6 +19,7 @@
 static PetscBool TermHasShare(const OperatorsTerm *term, const PetscReal p[])
 {
   if (OperatorsTermCoefficient(term, p) == 0) return PETSC_FALSE;
+  if (term->law) return term->kind == OPERATORS_DAMPING ? PETSC_TRUE : PETSC_FALSE;
   return term->kind == OPERATORS_DAMPING || !term->symmetric ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -47,14 +49,18 @@ static PetscErrorCode CauseTermAdd(Pencil pencil, const OperatorsTerm *term)
   const char             *name    = term->cause;
   const ContactInterface *c;
   PetscInt                n_interfaces;
+  OperatorsTerm           plain; /* without its law */
 
   PetscFunctionBeginUser;
   if (exact) PetscCall(ContactGetInterfaces(pencil->operators->contact, &n_interfaces, &c));
   if (exact) name = c[pencil->left_interface[term->constraint]].name;
   PetscCall(TermsAppend(causing, &one));
   PetscCall(CauseFind(pencil, exact ? "friction" : term->cause_kind, name, &causing->term[n].cause_index));
-  causing->term[n].scale = OperatorsTermCoefficient(term, pencil->parameters.p);
+  plain                  = causing->term[n];
+  plain.law              = NULL;
+  causing->term[n].scale = OperatorsTermCoefficient(&plain, pencil->parameters.p);
   causing->term[n].n     = 0;
+  PetscCall(PencilFoldLaw(pencil, &causing->term[n]));
   PetscFunctionReturn(0);
 }
 
@@ -66,6 +72,7 @@ PetscErrorCode PencilFormCauses(Pencil pencil)
   PetscFunctionBeginUser;
   if (pencil->released) PetscFunctionReturn(0); /* formed before */
   PetscCall(TermsDestroy(&pencil->causing));
+  PetscCall(PencilUnfoldLaws(pencil));
   pencil->n_causes = 0;
   PetscCall(PencilProjectTerms(pencil));
   for (PetscInt t = 0; t < pencil->base.n; t++)
@@ -73,6 +80,7 @@ PetscErrorCode PencilFormCauses(Pencil pencil)
   for (PetscInt t = 0; t < pencil->projected.n; t++) {
     const OperatorsTerm *term = &pencil->projected.term[t];
 
+    if (term->law && term->kind == OPERATORS_STIFFNESS) continue; /* the one of damping stands for both */
     if (term->constraint >= 0 && OperatorsTermCoefficient(term, p) != 0) PetscCall(CauseTermAdd(pencil, term));
   }
   PetscFunctionReturn(0);
@@ -93,7 +101,12 @@ static PetscReal TermShare(const OperatorsTerm *term, PetscReal sigma, PetscReal
                            PetscReal *D)
 {
   const PetscReal re = term->scale * form[0], im = term->scale * form[1], square = sigma * sigma - omega * omega;
+  ViscoelasticAt  at;
 
+  if (term->law) {
+    OperatorsLawAt(term->law, NULL, CMPLX(sigma, omega), &at);
+    return cimag(at.modulus) * re + (term->constraint >= 0 ? creal(at.modulus) * im : 0);
+  }
   if (term->constraint >= 0) { /* Im(lambda^k q) */
     if (term->kind == OPERATORS_STIFFNESS) return im;
     return term->kind == OPERATORS_DAMPING ? sigma * im + omega * re : square * im + 2 * sigma * omega * re;
@@ -191,20 +204,22 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscInt n, const PencilMode m
 static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscInt n, const CauseVector x[],
                                        const CauseVector y[], PencilForms *forms)
 {
+  const PetscReal scale = term->scale * TermLaw(term, NULL);
+
   PetscFunctionBeginUser;
   *forms = (PencilForms){.kind     = term->kind,
                          .exact    = term->constraint >= 0 ? PETSC_TRUE : PETSC_FALSE,
                          .friction = term->constraint >= 0 || !strcmp(term->cause_kind, "friction")};
   PetscCall(VectorForm(&x[0], term->A, forms->form));
-  for (int k = 0; k < 2; k++) forms->form[k] *= term->scale;
+  for (int k = 0; k < 2; k++) forms->form[k] *= scale;
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt b = 0; b < n; b++) {
       PetscCall(VectorProduct(&y[a], term->A, PETSC_FALSE, &x[b], &forms->product[a][b]));
-      forms->product[a][b] *= term->scale;
+      forms->product[a][b] *= scale;
       forms->turned[a][b] = forms->product[a][b];
       if (forms->exact || term->symmetric) continue;
       PetscCall(VectorProduct(&y[a], term->A, PETSC_TRUE, &x[b], &forms->turned[a][b]));
-      forms->turned[a][b] *= term->scale;
+      forms->turned[a][b] *= scale;
     }
   PetscFunctionReturn(0);
 }

@@ -4,10 +4,23 @@
 
       y' (dQ / dp_j) x = sum_t (dc_t / dp_j) lambda^k_t y' A_t x
 
-   so that one product with each term serves all parameters.
+   so that one product with each term serves all parameters; of a law of a material c(p) G(lambda; p) in place of c
+   lambda^k.
 */
 #include "products.h"
 #include <complex.h>
+
+/* d (c G(lambda)) / dp_j */
+static PetscComplex LawDerivative(const OperatorsTerm *term, const PetscReal p[], PetscComplex lambda, PetscInt j)
+{
+  OperatorsTerm  plain = *term;
+  ViscoelasticAt at;
+
+  plain.law = NULL;
+  OperatorsLawAt(term->law, p, lambda, &at);
+  return OperatorsTermDerivative(&plain, p, j) * at.modulus +
+         OperatorsTermCoefficient(&plain, p) * OperatorsLawDerivative(term->law, &at, j);
+}
 
 PetscErrorCode PencilMeasureDerivatives(Pencil pencil, PetscReal sigma, PetscReal omega, const PencilVectors *v,
                                         PetscComplex derivative[])
@@ -30,10 +43,13 @@ PetscErrorCode PencilMeasureDerivatives(Pencil pencil, PetscReal sigma, PetscRea
   for (PetscInt t = 0; t < n; t++) {
     PetscComplex product;
 
-    if (!term[t].n) continue;
+    if (!term[t].n && !term[t].law) continue;
+    if (term[t].law && term[t].kind == OPERATORS_DAMPING) continue; /* the one of stiffness stands for all of G */
     PetscCall(VectorProduct(&y[space], term[t].A, PETSC_FALSE, &x[space], &product));
     for (PetscInt j = 0; j < n_parameters; j++)
-      derivative[j] += OperatorsTermDerivative(&term[t], p, j) * powers[term[t].kind] * product;
+      derivative[j] += (term[t].law ? LawDerivative(&term[t], p, lambda, j)
+                                    : OperatorsTermDerivative(&term[t], p, j) * powers[term[t].kind]) *
+                       product;
   }
   PetscCall(VectorDestroy(&x[1]));
   PetscCall(VectorDestroy(&y[1]));

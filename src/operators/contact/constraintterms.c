@@ -46,6 +46,8 @@ static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const 
     term->scale      = base->scale;
     term->n          = n + (i ? 1 : 0);
     term->constraint = i - 1;
+    term->law        = base->law;
+    term->reference  = base->reference;
     PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
                term->n);
     PetscCall(PetscArraycpy(term->factor, base->factor, n));

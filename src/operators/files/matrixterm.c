@@ -96,6 +96,29 @@ static PetscErrorCode MatrixTermsCheckSystem(Operators o)
   PetscFunctionReturn(0);
 }
 
+static const Quantity *MatrixTermFindRow(const char option[])
+{
+  return QuantityFind(&operators_term, option);
+}
+
+/* One of the terms once more with the law as a factor, which OperatorsAddLaw() adds as the part of K and that of C */
+static PetscErrorCode MatrixTermAddLaw(Operators o, const MatrixTerm *term, PetscInt at)
+{
+  const OperatorsTerm plain = o->terms.term[at];
+
+  PetscFunctionBeginUser;
+  if (!term->law.kind) PetscFunctionReturn(0);
+  PetscCall(OperatorsAddLaw(o, term->name, &term->law, MatrixTermFindRow, -1, plain.A));
+  for (PetscInt t = o->terms.n - 2; t < o->terms.n; t++) {
+    o->terms.term[t].scale      = plain.scale;
+    o->terms.term[t].n          = plain.n;
+    o->terms.term[t].symmetric  = plain.symmetric;
+    o->terms.term[t].frictional = plain.frictional;
+    PetscCall(PetscArraycpy(o->terms.term[t].factor, plain.factor, plain.n));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Adds one term, whose factors are those of the options */
 static PetscErrorCode MatrixTermAdd(Operators o, const MatrixTerm *term)
 {
@@ -114,7 +137,7 @@ static PetscErrorCode MatrixTermAdd(Operators o, const MatrixTerm *term)
 PetscErrorCode MatrixTermsAdd(Operators o)
 {
   const char *first = o->terms.n ? "what -operators_load_k and its like give" : o->named[0].name;
-  PetscInt    n     = -1;
+  PetscInt    n     = -1, at;
   PetscBool   even  = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -131,6 +154,8 @@ PetscErrorCode MatrixTermsAdd(Operators o)
     PetscCall(MatrixTermAdd(o, &o->named[t]));
     PetscCall(MatDestroy(&o->named[t].A));
   }
+  at = o->terms.n - o->n_named;
+  for (PetscInt t = 0; t < o->n_named; t++) PetscCall(MatrixTermAddLaw(o, &o->named[t], at + t));
   PetscCall(MatrixTermsCheckSystem(o));
   PetscFunctionReturn(0);
 }
@@ -151,7 +176,7 @@ PetscErrorCode MatrixTermsAddChecksum(Operators o, Checksum c)
 {
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < o->n_named; t++) {
-    const OperatorsTerm *term = &o->terms.term[o->terms.n - o->n_named + t];
+    const OperatorsTerm *term = &o->terms.term[o->terms.n - 2 * o->n_laws - o->n_named + t];
 
     PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){(PetscInt)term->kind, term->n}));
     PetscCall(ChecksumAddReals(c, 1, &term->scale));
@@ -168,6 +193,7 @@ PetscErrorCode MatrixTermsDestroy(Operators o)
   for (PetscInt t = 0; t < o->n_named; t++) {
     for (PetscInt i = 0; i < o->named[t].n; i++) PetscCall(PetscFree(o->named[t].parameter[i]));
     PetscCall(PetscFree(o->named[t].dense));
+    PetscCall(ViscoelasticFree(&o->named[t].law));
     PetscCall(PetscFree(o->named[t].name));
     PetscCall(MatDestroy(&o->named[t].A));
   }

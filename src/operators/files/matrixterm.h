@@ -22,6 +22,9 @@ typedef struct _p_MatrixTerm {
   PetscInt          n_powers, power[8]; /* given; one of each factor */
   char              parameters[512];    /* as they are given */
   PetscBool         has_parameters;
+  PetscReal         loss; /* hysteretic loss factor */
+  ViscoelasticAsked viscous;
+  Viscoelastic      law; /* of a stiffness, moduli in units of the matrix; E = 1 */
   /* read by MatrixTermsAdd() */
   Mat       A;
   PetscBool even; /* A is symmetric */

@@ -26,6 +26,7 @@ static PetscErrorCode MatrixTermSetFactors(MPI_Comm comm, void *owner, void *rec
 
   PetscFunctionBeginUser;
   (void)owner;
+  PetscCall(ViscoelasticSet(comm, term->name, &term->viscous, 1, term->loss, &term->law));
   PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_parameter", term->name));
   if (term->has_parameters) PetscCall(ValuesSplit(comm, option, term->parameters, ',', &n, &words));
   PetscCheck(n <= OPERATORS_MAX_FACTORS, comm, PETSC_ERR_USER_INPUT, "%s names %d parameters; at most %d", option, n,
@@ -53,6 +54,8 @@ static PetscErrorCode MatrixTermSetFactors(MPI_Comm comm, void *owner, void *rec
 static PetscErrorCode MatrixTermCheck(MPI_Comm comm, const MatrixTerm *term)
 {
   PetscFunctionBeginUser;
+  PetscCheck(!term->law.kind || term->kind == OPERATORS_STIFFNESS, comm, PETSC_ERR_USER_INPUT,
+             "-%s_kind must be stiffness: it has a law of a material over frequency", term->name);
   PetscCheck(term->file[0] || term->n_dense, comm, PETSC_ERR_USER_INPUT,
              "-terms names %s, but -%s_file (or -%s_dense) is missing", term->name, term->name, term->name);
   PetscCheck(!term->file[0] || !term->n_dense, comm, PETSC_ERR_USER_INPUT, "-%s_file and -%s_dense exclude each other",
@@ -120,6 +123,25 @@ static PetscErrorCode MatrixTermAddParameter(Operators o, const MatrixTerm *term
   PetscCheck(q->value > q->lower, o->comm, PETSC_ERR_USER_INPUT,
              "-%s %.6g must exceed 0: -%s_power %" PetscInt_FMT " divides by it", name, (double)q->value, term->name,
              term->power[i]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsNameLaw(Operators o, size_t size, char text[], PetscBool *hysteretic)
+{
+  const char *option;
+  char        name[32];
+
+  PetscFunctionBeginUser;
+  text[0]     = '\0';
+  *hysteretic = PETSC_FALSE;
+  for (PetscInt t = 0; t < o->n_named && !text[0]; t++) {
+    const Viscoelastic *law = &o->named[t].law;
+
+    if (!law->kind) continue;
+    *hysteretic = law->kind == VISCOELASTIC_HYSTERETIC ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(ViscoelasticName(law, 0, &option, name));
+    PetscCall(PetscSNPrintf(text, size, "-%s_%s", o->named[t].name, option));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -32,7 +32,7 @@ PetscErrorCode ParametersAdd(Parameters *parameters, const char owner[], const c
   char               name[sizeof(q.name)];
 
   PetscFunctionBeginUser;
-  PetscCheck(!row || row->varies & VARIES_LINEAR, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+  PetscCheck(!row || like->law || row->varies & VARIES_LINEAR, PETSC_COMM_SELF, PETSC_ERR_PLIB,
              "the row of %s says that nobody varies it", what);
   q.lower  = row && row->bounded ? row->least : -INFINITY;
   q.upper  = row && row->bounded && row->most != 0 ? row->most : INFINITY;

@@ -166,7 +166,7 @@ static void SumCoefficients(const Terms *terms, const TermsSumKind *kind, const 
     c[t] = kind->scale * OperatorsTermCoefficient(term, p);
     if (c[t] != 0) *all_zero = PETSC_FALSE;
   }
-  *constant = n_chosen == 1 && !only->n && only->scale * kind->scale == 1 ? only->A : NULL;
+  *constant = n_chosen == 1 && !only->n && !only->law && only->scale * kind->scale == 1 ? only->A : NULL;
 }
 
 /* Makes the pattern cover all terms that are not zero; A stays when it does already */

@@ -5,7 +5,8 @@
       dc/dp_j = sum over factors i of p_j:  scale power_i p_j^(power_i - 1) prod_{k != i} p_k^power_k
 
    where |p| stands for p if the factor is absolute; d|p|/dp at p = 0 is taken as 0, the mean of both sides. A factor
-   may also be mu or mu' of an interface (frictionfactor.c), a function of several parameters.
+   may also be mu or mu' of an interface (frictionfactor.c), a function of several parameters, as is one more factor of
+   viscoelastic materials (law.c).
 */
 #include "terms.h"
 
@@ -132,29 +133,31 @@ PetscReal OperatorsTermCoefficient(const OperatorsTerm *term, const PetscReal p[
   PetscReal c = term->scale;
 
   for (PetscInt i = 0; i < term->n; i++) c *= FactorValue(term, p, i);
-  return c;
+  return c * TermLaw(term, p);
 }
 
 PetscBool OperatorsTermDepends(const OperatorsTerm *term, PetscInt parameter)
 {
   for (PetscInt i = 0; i < term->n; i++)
     if (FactorDepends(term, i, parameter)) return PETSC_TRUE;
-  return PETSC_FALSE;
+  return TermLawDepends(term, parameter);
 }
 
 PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter)
 {
-  PetscReal sum = 0;
+  PetscReal sum = 0, others = term->scale;
 
   for (PetscInt i = 0; i < term->n; i++) {
-    PetscReal c = term->scale;
+    PetscReal c = term->scale * TermLaw(term, p);
 
     if (!FactorDepends(term, i, parameter)) continue;
     for (PetscInt k = 0; k < term->n; k++)
       c *= k == i ? FactorDerivative(term, p, k, parameter) : FactorValue(term, p, k);
     sum += c;
   }
-  return sum;
+  if (!TermLawDepends(term, parameter)) return sum;
+  for (PetscInt i = 0; i < term->n; i++) others *= FactorValue(term, p, i);
+  return sum + others * TermLawDerivative(term, p, parameter);
 }
 
 PetscBool TermsVanish(const Terms *terms, TermsChoice choice, PetscBool mass_only, const PetscReal p[])

@@ -268,8 +268,7 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
 PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
 {
   PetscFunctionBeginUser;
-  pencil->n      = n;
-  pencil->damped = ReducedIsDamped(reduced, p);
+  *pencil = (DensePencil){.n = n, .damped = ReducedIsDamped(reduced, p)};
   PetscCall(PetscMalloc3(n * n, &pencil->K, n * n, &pencil->C, n * n, &pencil->M));
   PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K));
   PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, pencil->C));

@@ -1,0 +1,124 @@
+/*
+   Laws of viscoelastic materials; see viscoelastic.h. With z = lambda tau and h = z / (1 + z), dh/dz = 1 / (1 + z)^2;
+   of Zener's law z = (lambda tau)^a on the principal branch, dz / d lambda = a z / lambda.
+*/
+#include <squeal/viscoelastic.h>
+
+/* i eta E, which is no function of lambda in the upper half plane */
+static void HystereticEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at)
+{
+  if (cimag(lambda) == 0) return;
+  at->modulus  = CMPLX(0, law->value[0] * law->young);
+  at->young    = CMPLX(0, law->value[0]);
+  at->value[0] = CMPLX(0, law->young);
+}
+
+static void PronyEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at)
+{
+  const PetscInt n = law->n / 2;
+
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscReal    modulus = law->value[j], tau = law->value[n + j];
+    const PetscComplex below = 1 + lambda * tau, share = lambda * tau / below;
+
+    at->value[j]     = share;
+    at->value[n + j] = modulus * lambda / (below * below);
+    at->modulus += modulus * share;
+    at->slope += modulus * tau / (below * below);
+  }
+}
+
+static void ZenerEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at)
+{
+  const PetscReal    modulus = law->value[0], tau = law->value[1], a = law->value[2];
+  const PetscComplex z = lambda == 0 ? 0 : cpow(lambda * tau, a), below = 1 + z, share = z / below;
+
+  if (lambda == 0) return;
+  at->modulus  = modulus * share;
+  at->slope    = modulus * a * z / (lambda * below * below);
+  at->value[0] = share;
+  at->value[1] = modulus * a * z / (tau * below * below);
+  at->value[2] = modulus * clog(lambda * tau) * z / (below * below);
+}
+
+/* The cubic of the segment that holds |lambda|, to first order off the axis; constant beyond the ends */
+static void TableEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at)
+{
+  const ViscoelasticRow *row  = law->row;
+  const PetscInt         last = law->n_rows - 1;
+  const PetscReal        size = cabs(lambda), x = size > 0 ? PetscLogReal(size) : row[0].x;
+  PetscComplex           value, slope;
+  PetscInt               k = 0;
+
+  while (k < last - 1 && x > row[k + 1].x) k++;
+  if (x <= row[0].x || x >= row[last].x) {
+    value = row[x <= row[0].x ? 0 : last].modulus;
+    slope = 0;
+  } else {
+    const PetscReal    h = row[k + 1].x - row[k].x, t = (x - row[k].x) / h;
+    const PetscComplex a = row[k].modulus, b = row[k + 1].modulus, p = h * row[k].slope, q = h * row[k + 1].slope;
+    const PetscComplex c = 3 * (b - a) - 2 * p - q, d = 2 * (a - b) + p + q;
+
+    value = a + t * (p + t * (c + t * d));
+    slope = (p + t * (2 * c + 3 * t * d)) / h;
+  }
+  at->modulus = value + I * (carg(lambda) - PETSC_PI / 2) * slope - law->young;
+  at->slope   = size > 0 ? slope / lambda : 0;
+  at->young   = -1;
+}
+
+void ViscoelasticEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at)
+{
+  *at = (ViscoelasticAt){.modulus = 0};
+  if (law->kind == VISCOELASTIC_HYSTERETIC) HystereticEvaluate(law, lambda, at);
+  if (law->kind == VISCOELASTIC_PRONY) PronyEvaluate(law, lambda, at);
+  if (law->kind == VISCOELASTIC_ZENER) ZenerEvaluate(law, lambda, at);
+  if (law->kind == VISCOELASTIC_TABLE) TableEvaluate(law, lambda, at);
+}
+
+void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2])
+{
+  const PetscBool table = law->kind == VISCOELASTIC_TABLE ? PETSC_TRUE : PETSC_FALSE;
+
+  range[0] = table ? PetscExpReal(law->row[0].x) : 0;
+  range[1] = table ? PetscExpReal(law->row[law->n_rows - 1].x) : INFINITY;
+}
+
+PetscErrorCode ViscoelasticName(const Viscoelastic *law, PetscInt i, const char **option, char name[32])
+{
+  static const char *const zener[] = {"zener_modulus", "zener_time", "zener_order"};
+  const PetscInt           n       = law->n / 2;
+
+  PetscFunctionBeginUser;
+  *option = law->kind == VISCOELASTIC_HYSTERETIC ? "loss_factor" : zener[i % 3];
+  if (law->kind == VISCOELASTIC_TABLE) *option = "table";
+  if (law->kind == VISCOELASTIC_PRONY) *option = i < n ? "prony_modulus" : "prony_time";
+  if (law->kind == VISCOELASTIC_PRONY && n > 1)
+    PetscCall(PetscSNPrintf(name, 32, "%s_%" PetscInt_FMT, *option, i % n + 1));
+  else
+    PetscCall(PetscStrncpy(name, *option, 32));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ViscoelasticDescribe(const Viscoelastic *law, size_t size, char text[])
+{
+  const PetscReal *v   = law->value;
+  PetscReal        sum = law->young;
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < law->n / 2; j++) sum += v[j];
+  if (law->kind == VISCOELASTIC_HYSTERETIC)
+    PetscCall(PetscSNPrintf(text, size, "hysteretic: loss factor %.6g at the frequency of each mode", (double)v[0]));
+  if (law->kind == VISCOELASTIC_PRONY)
+    PetscCall(PetscSNPrintf(text, size, "Prony series of %" PetscInt_FMT " branches: E from %.6g to %.6g", law->n / 2,
+                            (double)law->young, (double)sum));
+  if (law->kind == VISCOELASTIC_TABLE)
+    PetscCall(PetscSNPrintf(text, size, "table of %" PetscInt_FMT " frequencies, %.6g to %.6g Hz: E from %.6g to %.6g",
+                            law->n_rows, (double)(PetscExpReal(law->row[0].x) / (2 * PETSC_PI)),
+                            (double)(PetscExpReal(law->row[law->n_rows - 1].x) / (2 * PETSC_PI)),
+                            (double)creal(law->row[0].modulus), (double)creal(law->row[law->n_rows - 1].modulus)));
+  if (law->kind == VISCOELASTIC_ZENER)
+    PetscCall(PetscSNPrintf(text, size, "fractional Zener: E from %.6g to %.6g, time %.6g s, order %.6g",
+                            (double)law->young, (double)(law->young + v[0]), (double)v[1], (double)v[2]));
+  PetscFunctionReturn(0);
+}
