@@ -265,12 +265,12 @@ def strict(folder):
 
 
 def page():
-    """Every keyword that is read stands in the table of scripts/README.md."""
-    text = (Path(__file__).resolve().parents[1] / "scripts/README.md").read_text().partition("## A brake from Abaqus")[2]
+    """Every keyword that is read stands in the tables of scripts/import.md."""
+    text = (Path(__file__).resolve().parents[1] / "scripts/import.md").read_text()
     known = set(ABAQUS) | nastran.KNOWN
     known |= ansys_model.KNOWN | {f"C3D{n}" for n in (4, 6, 10, 15, 20)} | set(SYSTEMS)
     missing = [word for word in sorted(known) if not re.search(rf"\b{word}\b", text)]
-    check("every keyword stands in scripts/README.md", not missing, missing)
+    check("every keyword stands in scripts/import.md", not missing, missing)
 
 
 def names():

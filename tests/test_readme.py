@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What the READMEs and pages say of the repository is so: every path that they name exists, every test of the table in
-tests/README.md is one, faults of tests/faults.py are in its other table and can be planted in the sources as they are, and
+tests/validation.md is one, faults of tests/faults.py are in that of tests/quality.md and can be planted in the sources as they are, and
 README.md has at most 900 words. Breaks when a file is moved or changed and a README or a fault is forgotten. Exit status: 0, or 1.
 
 A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
@@ -61,7 +61,7 @@ def faults(readme):
 
 def unknown_tests():
     """Names in the last column of the table of accuracy that are neither a case, a unit test nor one of meson.build."""
-    accuracy = (ROOT / "tests/README.md").read_text().split("## How accurate")[1]
+    accuracy = "".join(page.read_text() for page in (ROOT / "tests").glob("validation*.md"))
     table = re.findall(r"^\|.*\|([^|]+)\|$", accuracy, re.MULTILINE)
     known = {path.stem for path in (ROOT / "tests/cases").glob("*.toml")}
     known |= {path.stem.removeprefix("test_") for path in (ROOT / "tests/unit").glob("test_*.c")}
@@ -73,19 +73,19 @@ def unknown_tests():
 
 
 def lost_faults():
-    """Faults whose words are not in the sources any more, or that tests/README.md does not list with their tests."""
-    table = (ROOT / "tests/README.md").read_text().splitlines()
+    """Faults whose words are not in the sources any more, or that tests/quality.md does not list with their tests."""
+    table = (ROOT / "tests/quality.md").read_text().splitlines()
     for what, name, text, _, tests in planted.FAULTS:
         if text not in (ROOT / name).read_text():
             yield f"tests/faults.py: {what}: {name} does not hold {text!r}"
         row = f"| {what} | {', '.join(f'`{test}`' for test in tests.split())} |"
         if row not in table:
-            yield f"tests/README.md: there is no row {row}"
+            yield f"tests/quality.md: there is no row {row}"
 
 
 def main():
     found = [f"{readme.relative_to(ROOT)}: {fault}" for readme in readmes() for fault in faults(readme)]
-    found += [f"tests/README.md: there is no test {name}" for name in unknown_tests()]
+    found += [f"tests/validation*.md: there is no test {name}" for name in unknown_tests()]
     found += lost_faults()
     length = len((ROOT / "README.md").read_text().split())
     if length > MOST_WORDS:

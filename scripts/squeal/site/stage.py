@@ -3,13 +3,17 @@
 import re
 import shutil
 
-GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/README.md", "scripts/python.md")),
+GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/import.md", "scripts/README.md", "scripts/python.md")),
           ("By question", ("options/README.md", "options/guides.md", "options/gallery.md", "options/modes.md", "options/static.md",
                            "options/sweeps.md", "options/time.md", "options/models.md")),
           ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/columns.md", "options/reference.md",
                          "include/theory.md", "include/glossary.md")),
-          ("Checks and speed", ("tests/README.md", "scripts/bench/README.md", "scripts/study/README.md")),
-          ("Developers", ("src/README.md", "include/changelog.md")))
+          ("Checks and speed", ("tests/validation.md", "tests/validation_errors.md", "tests/validation_time.md",
+                                "scripts/bench/README.md", "scripts/bench/modes.md",
+                                "scripts/bench/time.md", "scripts/study/README.md", "scripts/study/speed_error.md",
+                                "scripts/study/contact.md", "scripts/study/mesh.md", "scripts/study/paper.md",
+                                "scripts/study/reduced.md", "scripts/study/samples.md")),
+          ("Developers", ("src/README.md", "tests/README.md", "tests/quality.md", "include/changelog.md")))
 FOLDERS = "include", "options", "scripts", "src", "tests"
 CODE = re.compile(r"(?<!\[)`([\w./]+)`(?!\]\()")
 BLOCK = re.compile(r"(^```.*?^```$|^    .*$)", re.MULTILINE | re.DOTALL)
