@@ -6,9 +6,9 @@ static PetscErrorCode AskedCheck(MPI_Comm comm, const char name[], const Viscoel
 {
   PetscFunctionBeginUser;
   PetscCheck(v->n_modulus == v->n_time, comm, PETSC_ERR_USER_INPUT,
-             "-%s_prony_modulus has %" PetscInt_FMT " values, -%s_prony_time %" PetscInt_FMT
-             ": each branch has a modulus (Pa) and a time (s)",
-             name, v->n_modulus, name, v->n_time);
+             "-%s_prony_modulus and -%s_prony_time must have as many values, a modulus (Pa) and a time (s) for each "
+             "branch, not %" PetscInt_FMT " and %" PetscInt_FMT,
+             name, name, v->n_modulus, v->n_time);
   for (int k = 0; k < 3; k++)
     PetscCheck(v->has_zener[k] == v->has_zener[0], comm, PETSC_ERR_USER_INPUT,
                "-%s_zener_modulus (Pa), -%s_zener_time (s) and -%s_zener_order (0 to 1) make one law: give all three",

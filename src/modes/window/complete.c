@@ -9,8 +9,7 @@
 
 /* Of materials whose stiffness depends on the frequency */
 static const char laws_text[] =
-  "; a contour integral counts these eigenvalues of the nonlinear problem on their basis, and no other; what does not "
-  "oscillate is not sought";
+  "; a contour integral on their basis counts the same; modes that do not oscillate are not sought";
 
 #define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
 
@@ -77,7 +76,8 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
   if (!window->route.counted)
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
                             (double)window->route.worst));
-  PetscCall(PetscSNPrintf(text, size, "%s; damping brings none from beyond them%s: strength %.2g of 1%s", undamped,
+  PetscCall(PetscSNPrintf(text, size,
+                          "%s; damping brings none from beyond them%s, its strength there is %.2g, below 1%s", undamped,
                           region, (double)window->route.beyond, rest));
   PetscFunctionReturn(0);
 }
