@@ -359,4 +359,5 @@ def main():
 
 
 if __name__ == "__main__":
+    sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     sys.exit(main())

@@ -315,4 +315,5 @@ def main():
 
 
 if __name__ == "__main__":
+    sys.argv[1:3] = [str(Path(word).resolve()) for word in sys.argv[1:3]]
     sys.exit(main())

@@ -49,21 +49,14 @@ PetscErrorCode StaticsCreateLoad(Operators operators, const PetscReal p[], const
   PetscFunctionReturn(0);
 }
 
-/* Of a stage that was not solved, bolts under a tension have no shortening */
 PetscErrorCode StaticsSaveLoad(Statics statics, const PetscReal p[], Pencil pencil)
 {
-  const ModelScene *scene;
-  const Stage      *stage;
-  PetscReal         size;
-  Vec               f;
+  PetscReal size;
+  Vec       f;
 
   PetscFunctionBeginUser;
   if (!statics->model) PetscFunctionReturn(0);
-  stage = StagesGet(statics, StagesCount(statics) - 1);
-  PetscCall(ModelGetScene(statics->model, &scene));
-  for (PetscInt i = 0; i < scene->n_loads && !statics->solved; i++)
-    stage->share[i] = scene->loads[i].has_tension ? 0 : stage->load[i];
-  PetscCall(StaticsCreateLoad(statics->operators, p, stage, &f, &size));
+  PetscCall(StaticsCreateLoad(statics->operators, p, StagesGet(statics, StagesCount(statics) - 1), &f, &size));
   if (size > 0) PetscCall(PencilSaveLoad(pencil, f));
   PetscCall(VecDestroy(&f));
   PetscFunctionReturn(0);

@@ -79,17 +79,22 @@ static PetscErrorCode ManyWears(const Many *m, PetscBool *wears)
   PetscFunctionReturn(0);
 }
 
-/* Whether the contact problem is one that the basis has: all laws linear at a status, and nothing that has a history.
-   Motions that nothing resists are no part of the equilibria, nor of the basis. Alike on all ranks */
+/* Whether the contact problem is one that the basis has: all laws linear at a status, nothing that has a history, and
+   no bolt under a tension, whose shortening only its own solution tells. Motions that nothing resists are no part of
+   the equilibria, nor of the basis. Alike on all ranks */
 static PetscErrorCode ManyIsOffered(const Many *m, PetscBool *offered)
 {
-  Statics         s    = m->s;
-  const PairRows *rows = &s->rows;
-  PetscBool       wears;
+  Statics           s    = m->s;
+  const PairRows   *rows = &s->rows;
+  const ModelScene *scene;
+  PetscBool         wears;
 
   PetscFunctionBeginUser;
   PetscCall(ManyWears(m, &wears));
+  PetscCall(ModelGetScene(s->model, &scene));
   *offered = !s->n_stages && !wears && !s->rows_more && !PairRowsCoulomb(rows) ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    if (scene->loads[i].has_tension) *offered = PETSC_FALSE;
   for (PetscInt i = 0; i < rows->n_interfaces; i++)
     if (!PressureIsLinear(&rows->pressure[i]) || PetscIsInfReal(PressureSlope(&rows->pressure[i], 0)))
       *offered = PETSC_FALSE;

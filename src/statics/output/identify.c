@@ -78,15 +78,22 @@ static PetscErrorCode IdentifyPress(Statics s, const Active *whole, PetscInt int
 /* All steps, on rows and a factorisation of their own: without friction nothing holds along the surface */
 static PetscErrorCode IdentifyRamp(Statics s, PetscInt interface, Vec d, IdentifyReading reading[])
 {
-  const Mesh *mesh;
-  PairRows    rows       = {.n = 0};
-  Compliance  compliance = {.kappa = 0};
-  Active      whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PairRows          rows       = {.n = 0};
+  Compliance        compliance = {.kappa = 0};
+  Active            whole      = {.rows = &rows, .compliance = &compliance, .load_steps = 1};
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(s->model, &mesh));
   PetscCheck(!mesh->prescribed, s->comm, PETSC_ERR_USER_INPUT,
              "-contact_kn identify presses with the -loads alone: leave -motions out, and give the stiffness found");
+  PetscCall(ModelGetScene(s->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCheck(
+      !scene->loads[i].has_tension, s->comm, PETSC_ERR_SUP,
+      "-contact_kn identify does not know of bolts under a tension, and there is -loads %s: give the stiffness",
+      scene->loads[i].name);
   PetscCall(StaticsCreateLoad(s->operators, s->p, StagesGet(s, StagesCount(s) - 1), &whole.f, &whole.size));
   PetscCheck(whole.size > 0, s->comm, PETSC_ERR_USER_INPUT, "-contact_kn identify presses with the -loads: give some");
   PetscCall(PairRowsCreate(s->operators, PETSC_TRUE, NULL, &rows));

@@ -108,12 +108,19 @@ static PetscErrorCode StageCreate(const ModelScene *scene, PetscInt n_interfaces
   PetscFunctionReturn(0);
 }
 
+/* Shares of the loads of a stage that is not solved: bolts under a tension have no shortening yet */
+static void StageSetShares(const ModelScene *scene, Stage *stage)
+{
+  for (PetscInt i = 0; i < scene->n_loads; i++) stage->share[i] = scene->loads[i].has_tension ? 0 : stage->load[i];
+}
+
 /* The stage in which all acts */
 static PetscErrorCode StageSetWhole(Statics s, const ModelScene *scene, PetscInt n, const ContactInterface c[])
 {
   PetscFunctionBeginUser;
   PetscCall(StageCreate(scene, n, &s->whole));
   for (PetscInt i = 0; i < scene->n_loads; i++) s->whole.load[i] = 1;
+  StageSetShares(scene, &s->whole);
   for (PetscInt i = 0; i < scene->n_motions; i++) s->whole.motion[i] = 1;
   for (PetscInt i = 0; i < n; i++) s->whole.interference[i] = c[i].interference;
   for (PetscInt i = 0; i < n; i++) s->whole.slides[i] = c[i].slides;
@@ -234,6 +241,7 @@ PetscErrorCode StagesSetUp(Statics s)
       PetscCall(StageCreate(scene, n, &s->stages[k]));
       PetscCall(StageSet(s, k, target, named));
       PetscCall(StageTake(s, k, target, c));
+      StageSetShares(scene, &s->stages[k]);
     }
     PetscCall(StagesCheckContacts(s, n, c, named, told, overlaps));
     for (int i = 0; i < STAGE_LISTS; i++)
