@@ -26,7 +26,11 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
 
   PetscFunctionBeginUser;
   modes->pencil = pencil;
-  if (pencil && PencilHasLaws(pencil) && PencilGetReference(pencil) == 0) PetscCall(PencilSetReference(pencil, middle));
+  if (!pencil || !PencilHasLaws(pencil) || PencilGetReference(pencil) != 0) PetscFunctionReturn(0);
+  PetscCheck(middle > 0, modes->comm, PETSC_ERR_USER_INPUT,
+             "-modes_target 0: the stiffness of a part depends on the frequency, and at 0 Hz nothing oscillates; give "
+             "a target above it, or a -modes_band");
+  PetscCall(PencilSetReference(pencil, middle));
   PetscFunctionReturn(0);
 }
 

@@ -146,6 +146,15 @@ static PetscErrorCode SumCreateUnion(const Terms *terms, const PetscBool has[], 
   PetscFunctionReturn(0);
 }
 
+/* Whether a term is in a sum with this coefficient: a law's of C always, as the problem is not linear without loss
+   at the reference either */
+static PetscBool TermCounts(const OperatorsTerm *term, PetscReal c)
+{
+  if (c != 0) return PETSC_TRUE;
+  return term->law && term->kind == OPERATORS_DAMPING && term->scale != 0 && term->reference > 0 ? PETSC_TRUE
+                                                                                                 : PETSC_FALSE;
+}
+
 /* Coefficients [terms] of the chosen terms, zero for others; all_zero = whether none remains, constant = the only
    chosen term if it never changes and has the factor 1, else NULL: that is handed out itself, without a copy */
 static void SumCoefficients(const Terms *terms, const TermsSumKind *kind, const PetscReal p[], PetscReal c[],
@@ -164,20 +173,23 @@ static void SumCoefficients(const Terms *terms, const TermsSumKind *kind, const 
     only = term;
     n_chosen++;
     c[t] = kind->scale * OperatorsTermCoefficient(term, p);
-    if (c[t] != 0) *all_zero = PETSC_FALSE;
+    if (TermCounts(term, c[t])) *all_zero = PETSC_FALSE;
   }
   *constant = n_chosen == 1 && !only->n && !only->law && only->scale * kind->scale == 1 ? only->A : NULL;
 }
 
-/* Makes the pattern cover all terms that are not zero; A stays when it does already */
-static PetscErrorCode SumCoverPattern(const Terms *terms, const PetscReal c[], TermsSum *sum)
+/* Makes the pattern cover all terms that count, those of a kind, NULL for any; A stays when it does already */
+static PetscErrorCode SumCoverPattern(const Terms *terms, const TermsSumKind *kind, const PetscReal c[], TermsSum *sum)
 {
   PetscBool covered = sum->A ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!sum->has) PetscCall(PetscCalloc1(terms->n, &sum->has));
   for (PetscInt t = 0; t < terms->n; t++) {
-    if (c[t] == 0 || sum->has[t]) continue;
+    const OperatorsTerm *term   = &terms->term[t];
+    const PetscBool      stands = kind && term->kind == kind->kind && TermCounts(term, c[t]) ? PETSC_TRUE : PETSC_FALSE;
+
+    if ((c[t] == 0 && !stands) || sum->has[t]) continue;
     sum->has[t] = PETSC_TRUE;
     covered     = PETSC_FALSE;
   }
@@ -190,16 +202,24 @@ static PetscErrorCode SumCoverPattern(const Terms *terms, const PetscReal c[], T
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TermsSumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum)
+/* TermsSumAdd() of the terms of a kind, NULL for any */
+static PetscErrorCode SumAdd(const Terms *terms, const TermsSumKind *kind, const PetscReal c[], TermsSum *sum)
 {
   PetscFunctionBeginUser;
-  PetscCall(SumCoverPattern(terms, c, sum));
+  PetscCall(SumCoverPattern(terms, kind, c, sum));
   for (PetscInt t = 0; t < terms->n; t++) {
     PetscBool added = PETSC_TRUE;
 
     if (sum->has[t]) PetscCall(MatrixAdd(c[t], terms->term[t].A, sum->A, &added));
     PetscCheck(added, PetscObjectComm((PetscObject)sum->A), PETSC_ERR_PLIB, "a term is not in the pattern of its sum");
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TermsSumAdd(const Terms *terms, const PetscReal c[], TermsSum *sum)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SumAdd(terms, NULL, c, sum));
   PetscFunctionReturn(0);
 }
 
@@ -225,7 +245,7 @@ PetscErrorCode TermsSumForm(const Terms *terms, const TermsSumKind *kind, const 
   } else if (all_zero) {
     PetscCall(TermsSumDestroy(sum));
   } else {
-    PetscCall(TermsSumAdd(terms, c, sum));
+    PetscCall(SumAdd(terms, kind, c, sum));
   }
   sum->current = PETSC_TRUE;
   PetscCall(PetscFree(sum->c));
