@@ -160,7 +160,7 @@ PETSC_INTERN PetscErrorCode LoadsSetUp(Model model);
 /* scene/loads/bolt.c - whether a load is a bolt, and whether all is given; that its part has a cut there; a line */
 PETSC_INTERN PetscErrorCode BoltCheck(MPI_Comm comm, Model model, Load *load);
 PETSC_INTERN PetscErrorCode BoltSetUp(Model model, Load *load);
-PETSC_INTERN PetscErrorCode BoltView(const Load *load, PetscViewer viewer);
+PETSC_INTERN PetscErrorCode BoltView(Model model, const Load *load, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer);
 
 /* spread.c - as ModelCreateShares(); consistent: int N_v dA, as loads are spread */

@@ -101,12 +101,15 @@ PetscErrorCode BoltSetUp(Model model, Load *load)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoltView(const Load *load, PetscViewer viewer)
+PetscErrorCode BoltView(Model model, const Load *load, PetscViewer viewer)
 {
+  const char *metre;
+
   PetscFunctionBeginUser;
+  PetscCall(ModelGetUnit(model, "m", &metre));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "  bolt %s: cut at %s, its side %s drawn by %.6g %s along %.6g,%.6g,%.6g\n", load->name, load->set,
-    load->part, (double)(load->has_tension ? load->tension : load->shortening), load->has_tension ? "N" : "m",
+    load->part, (double)(load->has_tension ? load->tension : load->shortening), load->has_tension ? "N" : metre,
     (double)load->axis[0], (double)load->axis[1], (double)load->axis[2]));
   PetscFunctionReturn(0);
 }

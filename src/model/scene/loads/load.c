@@ -191,7 +191,7 @@ PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer)
 
   PetscFunctionBeginUser;
   if (load->is_bolt) {
-    PetscCall(BoltView(load, viewer));
+    PetscCall(BoltView(model, load, viewer));
     PetscFunctionReturn(0);
   }
   PetscCall(ModelGetUnit(model, "Pa", &pascal));
