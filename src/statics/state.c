@@ -86,9 +86,9 @@ static PetscErrorCode StaticsSetResultants(Statics s)
   PetscFunctionReturn(0);
 }
 
-/* Warns, once, of surfaces that yield by more than a tenth of the contact's size (m), or that yield and carry less
-   than rounding of the forces: bodies go through each other, by a k_n of another unit or next to none */
-static PetscErrorCode StaticsWarnClosing(Statics s)
+/* They yield by more than a tenth of the contact's size (m), or yield and carry less than rounding of the forces:
+   bodies go through each other, by a k_n of another unit or next to none */
+PetscErrorCode StaticsWarnClosing(Statics s)
 {
   const char *metre;
 
@@ -98,7 +98,7 @@ static PetscErrorCode StaticsWarnClosing(Statics s)
     const ContactInterface *c    = &s->rows.interface[i];
     const StaticsResultant *r    = &s->resultant[i];
     const PetscReal         size = PetscSqrtReal(r->area);
-    const PetscBool nothing =
+    const PetscBool         nothing =
       r->closing > 1e-9 * size && r->normal <= PETSC_MACHINE_EPSILON * s->peak ? PETSC_TRUE : PETSC_FALSE;
 
     if (!(r->area > 0) || c->law != CONTACT_PENALTY || (r->closing <= 0.1 * size && !nothing)) continue;
@@ -201,7 +201,6 @@ PetscErrorCode StaticsSetState(Statics s, Vec f, const PetscReal l[])
   PetscCall(PetscFree(w));
   PetscCall(StaticsSetResultants(s));
   PetscCall(StaticsMeasureEquilibrium(s, f, l));
-  PetscCall(StaticsWarnClosing(s));
   if (s->stage == StagesCount(s) - 1) PetscCall(StaticsMeasureKKT(s)); /* in which all slides that is told to */
   PetscFunctionReturn(0);
 }

@@ -207,9 +207,9 @@ struct _p_Statics {
   ContactState     *state;                          /* [n_pairs] gap, forces, status */
   Vec               u;                              /* displacements, m; length: all unknowns */
   ContactKKT        kkt;
-  PetscInt          stage;    /* of the state */
+  PetscInt          stage;       /* of the state */
   PetscInt          n_tightened; /* solutions until bolts had their tension */
-  Reaction         *reaction; /* [n_reactions] of all stages; without -stages when they are written */
+  Reaction         *reaction;    /* [n_reactions] of all stages; without -stages when they are written */
   PetscInt          n_reactions;
   PetscReal         peak;        /* 2-norm of the largest forces up to it, N */
   PetscReal         equilibrium; /* relative residual */
@@ -369,6 +369,8 @@ PETSC_INTERN PetscErrorCode RigidDescribe(Operators operators, Vec r, size_t siz
 
 /* state.c - states, resultants and residuals of a solution */
 PETSC_INTERN PetscErrorCode StaticsSetState(Statics statics, Vec f, const PetscReal l[]);
+/* Warns, once, of surfaces of the last solution that bodies go through. Collective. */
+PETSC_INTERN PetscErrorCode StaticsWarnClosing(Statics statics);
 
 /* state.c - dP/dc times the area of a local pair, N/m: infinite of exact contact, 0 where it is open */
 PETSC_INTERN PetscReal StaticsPairStiffness(Statics statics, PetscInt pair);

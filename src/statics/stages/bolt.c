@@ -127,6 +127,16 @@ static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
+/* The bolt whose tension is farthest from what is asked for */
+static PetscInt BoltsWorst(const Bolts *b)
+{
+  PetscInt worst = 0;
+
+  for (PetscInt j = 1; j < b->n; j++)
+    if (PetscAbsReal(b->off[j]) > PetscAbsReal(b->off[worst])) worst = j;
+  return worst;
+}
+
 static PetscBool BoltIsSlack(const Bolts *b, PetscInt j)
 {
   return b->off[j] + b->asked[j] <= BOLT_SLACK * b->asked[j] ? PETSC_TRUE : PETSC_FALSE;
@@ -220,10 +230,13 @@ PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f
   PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(BoltsGuess(s, &b, &good));
   for (PetscInt it = 0; !good; it++) {
+    const PetscInt worst = BoltsWorst(&b);
+
     PetscCheck(it < BOLT_STEPS, s->comm, PETSC_ERR_NOT_CONVERGED,
-               "-%s_tension: after %d solutions %.6g N are missing of it: does something hold the bolt, or does it "
-               "hold nothing?",
-               scene->loads[b.load[0]].name, BOLT_STEPS, (double)-b.off[0]);
+               "-%s_tension: after %d solutions it is %.6g N, not %.6g N: does something hold the bolt, does it hold "
+               "nothing, or do other loads pull more?",
+               scene->loads[b.load[worst]].name, BOLT_STEPS, (double)(b.off[worst] + b.asked[worst]),
+               (double)b.asked[worst]);
     PetscBool smooth = PETSC_TRUE;
 
     for (PetscInt j = 0; j < b.n; j++)

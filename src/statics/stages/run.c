@@ -17,6 +17,7 @@ PetscErrorCode StagesSolve(Statics s)
   for (PetscInt k = 0; k < StagesCount(s); k++) {
     f0 = f;
     PetscCall(BoltsSolve(s, k, f0, &size, &f));
+    PetscCall(StaticsWarnClosing(s));
     if (s->n_stages) PetscCall(StaticsFindReactions(s));
     PetscCall(VecDestroy(&f0));
   }
