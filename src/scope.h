@@ -6,10 +6,10 @@
 
 /* What of the scene a run uses, as bits */
 typedef enum {
-  USES_LOADS   = 1, /* and gravity, whether it finds an equilibrium or not */
-  USES_PLACES  = 2, /* probes and circles */
-  USES_DAMPING = 4, /* dashpots, and that of the parts */
-  USES_SPIN    = 8, /* of the parts */
+  USES_LOADS   = 1,  /* and gravity, whether it finds an equilibrium or not */
+  USES_PLACES  = 2,  /* probes and circles */
+  USES_DAMPING = 4,  /* dashpots, and that of the parts */
+  USES_SPIN    = 8,  /* of the parts */
   USES_LAWS    = 16, /* of parts whose stiffness depends on the frequency; in statics their static one */
   USES_ALL     = 31,
 } SceneUse;
@@ -29,9 +29,10 @@ typedef struct {
   Results    results;
 } Scope;
 
-/* All that the run does. Collective. */
-/* Raises an error for a material whose stiffness depends on the frequency, where the analysis would leave that out */
+/* Raises an error for a material whose stiffness depends on the frequency, where the analysis would leave that out.
+   Collective. */
 PETSC_INTERN PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *scope);
+/* All that the run does. Collective. */
 PETSC_INTERN PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *scope, QuantityRun *run);
 
 /* Says which things of the model the run does not use. Collective. */

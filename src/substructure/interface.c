@@ -3,6 +3,7 @@
    ranks, by place. What supports hold is none. What lies inside is the rest.
 */
 #include "substructureimpl.h"
+#include <squeal/options.h>
 #include "base/gather.h"
 #include <stdlib.h>
 #include <string.h>
@@ -193,8 +194,8 @@ static PetscErrorCode InterfaceCheckJoined(Substructure s, const PetscBool is_on
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &by, 1, MPIU_INT, MPI_BOR, s->comm));
   for (PetscInt j = 0; j < s->body.n_joints; j++) {
     if (!(by >> j & 1)) continue;
-    PetscCall(PetscStrlcat(names, names[0] ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, s->body.joint[j], sizeof(names)));
+    PetscCall(OptionsTextAppend(names, names[0] ? ", " : "", sizeof(names)));
+    PetscCall(OptionsTextAppend(names, s->body.joint[j], sizeof(names)));
   }
   PetscCheck(!n[0], s->comm, PETSC_ERR_USER_INPUT,
              "-superelement_parts: %s joins them to others at %" PetscInt_FMT
