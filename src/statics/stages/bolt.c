@@ -3,13 +3,16 @@
    is the tension at the end of the stage, found as without them, from where the stage before left the pairs. Status and
    friction make T piecewise smooth: Broyden's method (C. G. Broyden, Math. Comp. 19, 1965) from the slopes T_i / d_i of
    a first solution; on linear pieces it ends after 2 n steps. While gaps below a bolt close it carries nothing, and its
-   shortening grows as a geometric series. All solutions share one factorisation.
+   shortening grows as a geometric series. Where other loads open a joint T is flat, and a slope across the kink leads
+   anywhere: the tension of one bolt grows with its shortening, and steps stay between those that were too little and
+   too much. All solutions share one factorisation.
 */
 #include "statics/staticsimpl.h"
 #include <petscblaslapack.h>
 
 #define BOLT_RTOL  1e-10 /* of the largest tension */
 #define BOLT_STEPS 60
+#define BOLT_REACH 100  /* times the shortening so far is the farthest step of one bolt */
 #define BOLT_SLACK 1e-6 /* of the tension asked for: less than that is none */
 #define BOLT_GROWS                                                                                                     \
   4 /* times the shortening so far is added to that of a bolt without tension; or half the way to
@@ -24,6 +27,9 @@ typedef struct {
   PetscInt       n, *load;
   PetscReal     *d, *off, *J, *step, *asked;
   PetscReal     *last, *had, *high; /* d and T - F when it had tension last, last 0 before; a d of too much, 0 before */
+  PetscReal      bracket[2];        /* of one bolt: the largest d of too little, the least of too much */
+  PetscReal      width;             /* of it before the last step; infinite at first */
+  PetscBool      has_bracket[2];
   PetscBool      rested;
   ContactStatus *status;
   ContactState  *state;
@@ -99,6 +105,35 @@ static PetscErrorCode BoltAsked(Statics s, PetscInt i, PetscReal *tension)
   PetscFunctionReturn(0);
 }
 
+/* What a solution tells of one bolt */
+static void BracketTake(Bolts *b)
+{
+  const int side = b->off[0] > 0 ? 1 : 0;
+
+  if (!b->has_bracket[side] || (side ? b->d[0] < b->bracket[1] : b->d[0] > b->bracket[0])) b->bracket[side] = b->d[0];
+  b->has_bracket[side] = PETSC_TRUE;
+}
+
+/* A shortening d of one bolt; in place of one that is outside the bracket, or where that does not shrink by half, its
+   middle; while it is open no more than BOLT_REACH times what there was is added, or BOLT_GROWS times taken off */
+static PetscReal BracketKeep(Bolts *b, PetscReal d)
+{
+  const PetscReal *e = b->bracket, width = e[1] - e[0];
+
+  if (b->has_bracket[0] && b->has_bracket[1]) {
+    const PetscBool shrinks = width <= b->width / 2 ? PETSC_TRUE : PETSC_FALSE;
+
+    b->width = width;
+    return d > e[0] && d < e[1] && shrinks ? d : (e[0] + e[1]) / 2;
+  }
+  if (b->has_bracket[0]) {
+    const PetscReal size = PetscAbsReal(e[0]);
+
+    return d > e[0] ? PetscMin(d, e[0] + BOLT_REACH * size) : e[0] + BOLT_GROWS * size;
+  }
+  return PetscMax(d, e[1] - BOLT_GROWS * PetscAbsReal(e[1]));
+}
+
 /* The stage with the present shortenings: what is off, and whether that is little */
 static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
 {
@@ -123,6 +158,7 @@ static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
     largest   = PetscMax(largest, PetscAbsReal(b->off[j]));
     most      = PetscMax(most, b->asked[j]);
   }
+  if (b->n == 1) BracketTake(b);
   *good = largest <= BOLT_RTOL * most ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -206,10 +242,12 @@ static PetscErrorCode BoltsStep(Statics s, Bolts *b)
     for (PetscInt i = 0; i < b->n && slack; i++) J[j + b->n * i] = i == j ? 1 : 0;
   }
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, J, &n, pivot, b->step, &n, &info));
+  if (info && b->n == 1 && b->has_bracket[0]) b->step[0] = -b->d[0], info = 0; /* a flat piece, out of the bracket */
   PetscCheck(!info, s->comm, PETSC_ERR_NOT_CONVERGED,
              "bolts of stage %s: their tensions do not depend on their shortenings one by one",
              StagesGet(s, s->stage)->name ? StagesGet(s, s->stage)->name : "1");
   for (PetscInt j = 0; j < b->n; j++) b->d[j] += b->step[j];
+  if (b->n == 1) b->d[0] = BracketKeep(b, b->d[0]);
   PetscCall(PetscFree2(J, pivot));
   PetscFunctionReturn(0);
 }
@@ -218,7 +256,7 @@ PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f
 {
   const ModelScene *scene;
   PetscBool         good;
-  Bolts             b = {.k = k, .f0 = f0, .f = f, .size = size};
+  Bolts             b = {.k = k, .f0 = f0, .f = f, .size = size, .width = INFINITY};
 
   PetscFunctionBeginUser;
   *f = NULL;
