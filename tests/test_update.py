@@ -228,6 +228,8 @@ def check_held(bar):
     worst = next(line for line in said.splitlines() if "not identified:" in line)
     check(all(f"b{k}_young" in worst and f"b{k}_density" in worst for k in range(1, N + 1)) and worst.count("-") < 3,
           "held: that of all of them up by as much")
+    check(all(row["low_95"] == "" for row in rows.values()),
+          "held: no parameter with a part in that has an interval")
 
 
 def check_prior(bar):

@@ -12,6 +12,7 @@ READ = {"parameter": str, "value": float, "deviation_percent": float, "held_perc
 INTERVAL = 1.959963984540054  # standard deviations to each side of a 95 % interval
 BENT = 0.3  # of the standard deviation of an onset, that the curve moves it by
 ONSETS = ("parameter", "critical_value", "low_95", "high_95", "deviation", "second_order", "freq_hz", "kind", "label")
+LEFT = 1.0  # per cent of its own direction that the data do not tell, from which on a parameter is not identified
 FEW = 0.1  # of the largest part of a direction: what is not named
 
 
@@ -23,11 +24,11 @@ def held_share(fit, k):
 def parameter_rows(model, fit, prior):
     """Rows of update.csv."""
     for k, (name, value) in enumerate(model.values(fit.t).items()):
-        deviation = math.sqrt(fit.covariance[k, k])
+        deviation, left = math.sqrt(fit.covariance[k, k]), held_share(fit, k)
         weight = prior.weight[k, k]
-        yield (name, model.units[name], model.start[name], value, value * math.exp(-INTERVAL * deviation),
-               value * math.exp(INTERVAL * deviation),
-               100 * deviation, 100 / math.sqrt(weight) if weight > 0 else "", held_share(fit, k))
+        ends = [value * math.exp(sign * INTERVAL * deviation) for sign in (-1, 1)] if left < LEFT else ("", "")
+        yield (name, model.units[name], model.start[name], value, *ends, 100 * deviation, 100 / math.sqrt(weight) if weight > 0 else "",
+               left)
 
 
 def write_all(model, fit, prior, output):
@@ -54,7 +55,7 @@ def scene_lines(model, fit):
 def write_sample(model, fit, path):
     """Distributions of the parameters, as factors of their values, with their correlations, for -analysis sample."""
     deviation = numpy.sqrt(numpy.diag(fit.covariance))
-    known = [k for k, one in enumerate(deviation) if one > 0 and held_share(fit, k) < 1]
+    known = [k for k, one in enumerate(deviation) if one > 0 and held_share(fit, k) < LEFT]
     names = list(model.start)
     correlation = [f"{names[i]}:{names[k]}:{fit.covariance[i, k] / deviation[i] / deviation[k]:.6f}" for n, i in enumerate(known)
                    for k in known[:n]]
@@ -80,7 +81,7 @@ def print_all(model, fit, prior):
     rows = list(parameter_rows(model, fit, prior))
     print_table("parameters", ("name", "start", "value", "95 % from", "to", "unit", "+- %", "prior +- %"),
                 *((row[0], f"{row[2]:.6g}", f"{row[3]:.6g}", f"{row[4]:.6g}", f"{row[5]:.6g}", row[1] or "-", f"{INTERVAL * row[6]:.3g}",
-                   f"{INTERVAL * row[7]:.3g}" if row[7] else "-") if row[8] < 50 else
+                   f"{INTERVAL * row[7]:.3g}" if row[7] else "-") if row[8] < LEFT else
                   (row[0], f"{row[2]:.6g}", f"{row[3]:.6g}", "not", "identified", row[1] or "-", "-", "-") for row in rows))
     for deviation, vector in fit.held:
         size = f"a change by {100 * deviation:.3g} %" if deviation < 1e3 else "no change"
