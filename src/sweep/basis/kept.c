@@ -144,7 +144,7 @@ static PetscErrorCode FileResume(BasisKept *k, PetscBool *taken)
 {
   JournalItem item[2] = {{"samples", -1, NULL}, {"vectors", -1, NULL}};
   JournalPack pack    = {.good = PETSC_TRUE};
-  BasisHeader h;
+  BasisHeader h       = {0};
   const char *folder;
   char        name[64], then[64];
 
@@ -157,6 +157,7 @@ static PetscErrorCode FileResume(BasisKept *k, PetscBool *taken)
   pack.word = item[0].values;
   pack.n    = item[0].n;
   PetscCall(JournalPackMove(&pack, &h, sizeof(h)));
+  *taken = pack.good;
   PetscCall(HeaderFits(k, &h, item[1].n, taken));
   PetscCall(ResultsGetDirectory(k->journal->results, &folder));
   if (*taken)
