@@ -3,11 +3,12 @@
 import re
 import shutil
 
-GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/import.md", "scripts/README.md", "scripts/python.md")),
+GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/import.md", "scripts/README.md",
+                     "scripts/correlate.md", "scripts/python.md")),
           ("By question", ("options/README.md", "options/guides.md", "options/gallery.md", "options/modes.md", "options/static.md",
                            "options/sweeps.md", "options/time.md", "options/models.md")),
-          ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/columns.md", "options/reference.md",
-                         "include/theory.md", "include/glossary.md")),
+          ("Reference", ("options/language.md", "options/analyses.md", "options/results.md", "options/columns.md",
+                         "options/columns_time.md", "options/reference.md", "include/theory.md", "include/glossary.md")),
           ("Checks and speed", ("tests/validation.md", "tests/validation_errors.md", "tests/validation_time.md",
                                 "scripts/bench/README.md", "scripts/bench/modes.md",
                                 "scripts/bench/time.md", "scripts/study/README.md", "scripts/study/speed_error.md",
