@@ -24,6 +24,7 @@
 */
 #pragma once
 
+#include <squeal/checksum.h>
 #include <squeal/quantity.h>
 #include <complex.h>
 
@@ -167,6 +168,9 @@ PetscErrorCode ViscoelasticSet(MPI_Comm comm, const char name[], const Viscoelas
 
 /*@ ViscoelasticFree - frees the rows that ViscoelasticSet() has read. Not collective. @*/
 PetscErrorCode ViscoelasticFree(Viscoelastic *law);
+
+/*@ ViscoelasticAddChecksum - adds its kind, values and rows; nothing of no law. Collective. @*/
+PetscErrorCode ViscoelasticAddChecksum(const Viscoelastic *law, Checksum checksum);
 
 /*@ ViscoelasticEvaluate - G and its derivatives at lambda, rad/s, Im lambda >= 0. Not collective. @*/
 void ViscoelasticEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at);

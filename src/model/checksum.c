@@ -81,15 +81,7 @@ static PetscErrorCode PartAddChecksum(const Part *p, Checksum c)
     PetscCall(ChecksumAddReals(c, 3, p->spin.axis));
     PetscCall(ChecksumAddReals(c, 3, p->spin.centre));
   }
-  if (p->law.kind) {
-    PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){p->law.kind}));
-    PetscCall(ChecksumAddReals(c, p->law.n, p->law.value));
-    for (PetscInt i = 0; i < p->law.n_rows; i++) {
-      const ViscoelasticRow *row = &p->law.row[i];
-
-      PetscCall(ChecksumAddReals(c, 3, (const PetscReal[]){row->x, creal(row->modulus), cimag(row->modulus)}));
-    }
-  }
+  PetscCall(ViscoelasticAddChecksum(&p->law, c));
   if (!p->anisotropy.n) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));
   PetscCall(ChecksumAddReals(c, 9, p->anisotropy.axis[0]));

@@ -67,6 +67,20 @@ PetscErrorCode ViscoelasticSet(MPI_Comm comm, const char name[], const Viscoelas
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ViscoelasticAddChecksum(const Viscoelastic *law, Checksum c)
+{
+  PetscFunctionBeginUser;
+  if (!law->kind) PetscFunctionReturn(0);
+  PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){law->kind}));
+  PetscCall(ChecksumAddReals(c, law->n, law->value));
+  for (PetscInt i = 0; i < law->n_rows; i++) {
+    const ViscoelasticRow *row = &law->row[i];
+
+    PetscCall(ChecksumAddReals(c, 3, (const PetscReal[]){row->x, creal(row->modulus), cimag(row->modulus)}));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ViscoelasticFree(Viscoelastic *law)
 {
   ViscoelasticRow *row = (ViscoelasticRow *)law->row;

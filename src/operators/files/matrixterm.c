@@ -182,6 +182,7 @@ PetscErrorCode MatrixTermsAddChecksum(Operators o, Checksum c)
     PetscCall(ChecksumAddReals(c, 1, &term->scale));
     for (PetscInt i = 0; i < term->n; i++)
       PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){term->factor[i].parameter, term->factor[i].power}));
+    PetscCall(ViscoelasticAddChecksum(&o->named[t].law, c));
   }
   if (o->n_named) PetscCall(ChecksumAddReals(c, o->parameters.n, o->parameters.p));
   PetscFunctionReturn(0);
