@@ -178,6 +178,10 @@ PetscErrorCode OperatorsCheckMoved(Operators operators, const char option[], Pet
     @*/
 PetscErrorCode OperatorsAddChecksum(Operators operators, Checksum checksum);
 
+/*@ OperatorsAddSceneChecksum - the same behind those of the model, with its partition or without, and of the contact.
+    Collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsAddSceneChecksum(Operators operators, PetscBool with_partition, Checksum checksum);
+
 /*@ OperatorsGetMaterial - the values of a part at p. Not collective. @*/
 PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], PetscInt part,
                                     OperatorsMaterial *material);

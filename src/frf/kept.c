@@ -29,18 +29,13 @@ static PetscErrorCode FrfSumVector(Vec v, Checksum c)
 static PetscErrorCode FrfSumScene(Frf frf, Checksum c)
 {
   const OperatorsParameter *parameters;
-  Model                     model;
-  Contact                   contact;
   PetscReal                *p;
   PetscInt                  n;
   PetscMPIInt               size;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(frf->comm, &size));
-  PetscCall(OperatorsGetModel(frf->operators, &model, &contact));
-  if (model) PetscCall(ModelAddChecksum(model, PETSC_FALSE, c));
-  if (contact) PetscCall(ContactAddChecksum(contact, c));
-  PetscCall(OperatorsAddChecksum(frf->operators, c));
+  PetscCall(OperatorsAddSceneChecksum(frf->operators, PETSC_FALSE, c));
   if (frf->statics) PetscCall(StaticsAddChecksum(frf->statics, c));
   PetscCall(OperatorsGetParameters(frf->operators, &n, &parameters));
   PetscCall(OperatorsCreatePoint(frf->operators, NULL, &p));

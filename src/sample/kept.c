@@ -21,14 +21,9 @@ static PetscErrorCode SampleAddChecksum(Sample s, Checksum c)
 {
   PetscMPIInt size;
   PetscReal  *p;
-  Model       model;
-  Contact     contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(s->operators, &model, &contact));
-  if (model) PetscCall(ModelAddChecksum(model, PETSC_TRUE, c));
-  if (contact) PetscCall(ContactAddChecksum(contact, c));
-  PetscCall(OperatorsAddChecksum(s->operators, c));
+  PetscCall(OperatorsAddSceneChecksum(s->operators, PETSC_TRUE, c));
   if (s->box.statics) PetscCall(StaticsAddChecksum(s->box.statics, c));
   PetscCall(ModesAddChecksum(s->box.modes, c));
   PetscCallMPI(MPI_Comm_size(s->comm, &size));

@@ -32,14 +32,9 @@ static PetscErrorCode SweepAddChecksum(Sweep sweep, Checksum c)
   const OperatorsParameter *parameters;
   PetscInt                  n;
   PetscMPIInt               size;
-  Model                     model;
-  Contact                   contact;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetModel(sweep->operators, &model, &contact));
-  if (model) PetscCall(ModelAddChecksum(model, PETSC_TRUE, c));
-  if (contact) PetscCall(ContactAddChecksum(contact, c));
-  PetscCall(OperatorsAddChecksum(sweep->operators, c));
+  PetscCall(OperatorsAddSceneChecksum(sweep->operators, PETSC_TRUE, c));
   if (sweep->statics) PetscCall(StaticsAddChecksum(sweep->statics, c));
   PetscCall(ModesAddChecksum(sweep->modes, c));
   PetscCall(OperatorsGetParameters(sweep->operators, &n, &parameters));

@@ -34,6 +34,15 @@ PetscErrorCode OperatorsAddChecksum(Operators o, Checksum c)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode OperatorsAddSceneChecksum(Operators o, PetscBool with_partition, Checksum c)
+{
+  PetscFunctionBeginUser;
+  if (o->model) PetscCall(ModelAddChecksum(o->model, with_partition, c));
+  if (o->contact) PetscCall(ContactAddChecksum(o->contact, c));
+  PetscCall(OperatorsAddChecksum(o, c));
+  PetscFunctionReturn(0);
+}
+
 /* Adds the terms and the parameter */
 static PetscErrorCode OperatorsAddMatrices(Operators o, Mat A[N_OPERATORS])
 {
