@@ -1,35 +1,31 @@
 /*
    Bolts that a stage tightens to a tension (model/scene/loads/bolt.c): their shortenings d solve T(d) = F, where T(d)
-   is the tension at the end of the stage, found as without them, from where the stage before left the pairs. Status and
-   friction make T piecewise smooth: Broyden's method (C. G. Broyden, Math. Comp. 19, 1965) from the slopes T_i / d_i of
-   a first solution; on linear pieces it ends after 2 n steps. While gaps below a bolt close it carries nothing, and its
-   shortening grows as a geometric series. Where other loads open a joint T is flat, and a slope across the kink leads
-   anywhere: the tension of one bolt grows with its shortening, and steps stay between those that were too little and
-   too much. All solutions share one factorisation.
+   is the tension at the end of the stage, found as without them, from where the stage before left the pairs. Without
+   friction T is the gradient of a convex energy, and so are its pieces of all statuses: it is flat where gaps below a
+   bolt are open or other loads open the joint, and steps across a kink lead anywhere. So d is the minimum of that
+   energy less F'd, by the BFGS method (J. Nocedal, S. Wright, Numerical Optimization, 2006, ch. 6) on T alone, in the
+   unit x = k d (N), k of the cells at the cut: along each direction p the slope (T - F)'p grows from below 0, and a
+   step is taken where it has fallen by half, by secants between steps that were too short and too long. On one piece
+   this is the secant method for one bolt. All solutions share one factorisation.
 */
 #include "statics/staticsimpl.h"
 #include <petscblaslapack.h>
 
 #define BOLT_RTOL  1e-10 /* of the largest tension */
-#define BOLT_STEPS 60
-#define BOLT_REACH 100  /* times the shortening so far is the farthest step of one bolt */
-#define BOLT_SLACK 1e-6 /* of the tension asked for: less than that is none */
-#define BOLT_GROWS                                                                                                     \
-  4 /* times the shortening so far is added to that of a bolt without tension; or half the way to
-                           what was too much */
+#define BOLT_STEPS 100
+#define BOLT_SLOPE 0.5  /* of the slope along a direction is little enough to learn from the step */
+#define BOLT_FLAT  0.01 /* of it: a smaller change is none */
+#define BOLT_GROWS 5    /* times a step on a flat piece is the next, */
+#define BOLT_REACH 100  /* and at most this where it is not flat */
 
-/* The n bolts that stage k tightens, with d (m), T - F (N), dT/dd (N/m, by columns); the pairs before the stage; its
-   loads: those before (borrowed), its own, their size */
+/* The n bolts that stage k tightens, with x = k d and T - F (N), d(T - F)/dx (n x n), and the direction of a step; the
+   pairs before the stage; its loads: those before (borrowed), its own, their size before and with it */
 typedef struct {
   PetscInt       k;
   Vec            f0, *f;
-  PetscReal     *size;
-  PetscInt       n, *load;
-  PetscReal     *d, *off, *J, *step, *asked;
-  PetscReal     *last, *had, *high; /* d and T - F when it had tension last, last 0 before; a d of too much, 0 before */
-  PetscReal      bracket[2];        /* of one bolt: the largest d of too little, the least of too much */
-  PetscReal      width;             /* of it before the last step; infinite at first */
-  PetscBool      has_bracket[2];
+  PetscReal     *size, before;
+  PetscInt       n, n_tried, *load;
+  PetscReal     *x, *off, *J, *p, *asked, *stiffness;
   PetscBool      rested;
   ContactStatus *status;
   ContactState  *state;
@@ -61,15 +57,15 @@ static PetscErrorCode BoltsBegin(Statics s, Bolts *b)
     if (BoltBegins(s, k, scene, i)) b->n++;
   }
   if (!b->n) PetscFunctionReturn(0);
-  PetscCall(
-    PetscMalloc6(b->n, &b->load, b->n, &b->d, b->n, &b->off, b->n * b->n, &b->J, b->n, &b->step, b->n, &b->asked));
-  PetscCall(PetscCalloc3(b->n, &b->last, b->n, &b->had, b->n, &b->high));
+  PetscCall(PetscCalloc7(b->n, &b->load, b->n, &b->x, b->n, &b->off, b->n * b->n, &b->J, b->n, &b->p, b->n, &b->asked,
+                         b->n, &b->stiffness));
   PetscCall(PetscMalloc2(s->rows.n_pairs, &b->status, s->rows.n_pairs, &b->state));
   PetscCall(PetscArraycpy(b->status, s->status, s->rows.n_pairs));
   PetscCall(PetscArraycpy(b->state, s->state, s->rows.n_pairs));
   PetscCall(VecDuplicate(s->u, &b->u));
   PetscCall(VecCopy(s->u, b->u));
   b->rested = s->rested;
+  b->before = *b->size;
   b->n      = 0;
   for (PetscInt i = 0; i < scene->n_loads; i++)
     if (BoltBegins(s, k, scene, i)) b->load[b->n++] = i;
@@ -80,8 +76,7 @@ static PetscErrorCode BoltsEnd(Bolts *b)
 {
   PetscFunctionBeginUser;
   if (!b->n) PetscFunctionReturn(0);
-  PetscCall(PetscFree6(b->load, b->d, b->off, b->J, b->step, b->asked));
-  PetscCall(PetscFree3(b->last, b->had, b->high));
+  PetscCall(PetscFree7(b->load, b->x, b->off, b->J, b->p, b->asked, b->stiffness));
   PetscCall(PetscFree2(b->status, b->state));
   PetscCall(VecDestroy(&b->u));
   PetscFunctionReturn(0);
@@ -105,35 +100,6 @@ static PetscErrorCode BoltAsked(Statics s, PetscInt i, PetscReal *tension)
   PetscFunctionReturn(0);
 }
 
-/* What a solution tells of one bolt */
-static void BracketTake(Bolts *b)
-{
-  const int side = b->off[0] > 0 ? 1 : 0;
-
-  if (!b->has_bracket[side] || (side ? b->d[0] < b->bracket[1] : b->d[0] > b->bracket[0])) b->bracket[side] = b->d[0];
-  b->has_bracket[side] = PETSC_TRUE;
-}
-
-/* A shortening d of one bolt; in place of one that is outside the bracket, or where that does not shrink by half, its
-   middle; while it is open no more than BOLT_REACH times what there was is added, or BOLT_GROWS times taken off */
-static PetscReal BracketKeep(Bolts *b, PetscReal d)
-{
-  const PetscReal *e = b->bracket, width = e[1] - e[0];
-
-  if (b->has_bracket[0] && b->has_bracket[1]) {
-    const PetscBool shrinks = width <= b->width / 2 ? PETSC_TRUE : PETSC_FALSE;
-
-    b->width = width;
-    return d > e[0] && d < e[1] && shrinks ? d : (e[0] + e[1]) / 2;
-  }
-  if (b->has_bracket[0]) {
-    const PetscReal size = PetscAbsReal(e[0]);
-
-    return d > e[0] ? PetscMin(d, e[0] + BOLT_REACH * size) : e[0] + BOLT_GROWS * size;
-  }
-  return PetscMax(d, e[1] - BOLT_GROWS * PetscAbsReal(e[1]));
-}
-
 /* The stage with the present shortenings: what is off, and whether that is little */
 static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
 {
@@ -146,19 +112,19 @@ static PetscErrorCode BoltsTry(Statics s, Bolts *b, PetscBool *good)
   PetscCall(PetscArraycpy(s->state, b->state, s->rows.n_pairs));
   PetscCall(VecCopy(b->u, s->u));
   s->rested = b->rested;
-  for (PetscInt j = 0; j < b->n; j++) stage->share[b->load[j]] = b->d[j];
+  *b->size  = b->before;
+  for (PetscInt j = 0; j < b->n; j++) stage->share[b->load[j]] = b->x[j] / b->stiffness[j];
   PetscCall(StageSolve(s, b->k, b->f0, b->size, b->f));
   s->n_tightened++;
+  b->n_tried++;
   for (PetscInt j = 0; j < b->n; j++) {
     OperatorsBolt bolt;
 
     PetscCall(BoltGet(s, b->load[j], &bolt));
-    PetscCall(BoltAsked(s, b->load[j], &b->asked[j]));
     b->off[j] = bolt.tension - b->asked[j];
     largest   = PetscMax(largest, PetscAbsReal(b->off[j]));
     most      = PetscMax(most, b->asked[j]);
   }
-  if (b->n == 1) BracketTake(b);
   *good = largest <= BOLT_RTOL * most ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -173,60 +139,41 @@ static PetscInt BoltsWorst(const Bolts *b)
   return worst;
 }
 
-static PetscBool BoltIsSlack(const Bolts *b, PetscInt j)
+/* The error of the last solution that there is, where the tensions are not those asked for */
+static PetscErrorCode BoltsCheckSteps(Statics s, const Bolts *b)
 {
-  return b->off[j] + b->asked[j] <= BOLT_SLACK * b->asked[j] ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* What a solution tells: J += (dT - J step) step' / step'step where all bolts had tension before and after the step,
-   else the slope of each that has, from where it had tension last, or from none */
-static void BoltsLearn(Bolts *b, PetscBool smooth)
-{
-  PetscReal length = 0;
-
-  for (PetscInt j = 0; j < b->n; j++) length += smooth ? PetscSqr(b->d[j] - b->last[j]) : 0;
-  for (PetscInt i = 0; i < b->n; i++) {
-    PetscReal rest = b->off[i] - b->had[i];
-
-    if (BoltIsSlack(b, i)) continue;
-    for (PetscInt j = 0; j < b->n; j++) rest -= b->J[i + b->n * j] * (b->d[j] - b->last[j]);
-    for (PetscInt j = 0; j < b->n && length > 0; j++) b->J[i + b->n * j] += rest * (b->d[j] - b->last[j]) / length;
-    if (length == 0 && b->d[i] != b->last[i])
-      b->J[i + b->n * i] = (b->off[i] - (b->last[i] > 0 ? b->had[i] : -b->asked[i])) / (b->d[i] - b->last[i]);
-  }
-  for (PetscInt i = 0; i < b->n; i++) {
-    if (BoltIsSlack(b, i)) continue;
-    b->last[i] = b->d[i];
-    b->had[i]  = b->off[i];
-    if (b->off[i] > 0) b->high[i] = b->d[i];
-  }
-}
-
-/* Shortenings of the cells at the cuts alone, and slopes from the solution with these */
-static PetscErrorCode BoltsGuess(Statics s, Bolts *b, PetscBool *good)
-{
-  PetscReal *stiffness, asked;
+  const PetscInt    worst = BoltsWorst(b);
+  const ModelScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(b->n, &stiffness));
+  PetscCall(ModelGetScene(s->model, &scene));
+  PetscCheck(b->n_tried < BOLT_STEPS, s->comm, PETSC_ERR_NOT_CONVERGED,
+             "-%s_tension: after %d solutions it is %.6g N, not %.6g N: does something hold the bolt, does it hold "
+             "nothing, or do other loads pull more?",
+             scene->loads[b->load[worst]].name, BOLT_STEPS, (double)(b->off[worst] + b->asked[worst]),
+             (double)b->asked[worst]);
+  PetscFunctionReturn(0);
+}
+
+/* The solution with x = F, and J = T / x of each bolt that carries something */
+static PetscErrorCode BoltsGuess(Statics s, Bolts *b, PetscBool *good)
+{
+  PetscFunctionBeginUser;
   for (PetscInt j = 0; j < b->n; j++) {
     OperatorsBolt bolt;
 
     PetscCall(OperatorsGetBolt(s->operators, s->p, b->load[j], 0, NULL, &bolt));
-    PetscCall(BoltAsked(s, b->load[j], &asked));
-    stiffness[j] = bolt.stiffness;
-    b->d[j]      = asked / stiffness[j];
+    PetscCall(BoltAsked(s, b->load[j], &b->asked[j]));
+    b->stiffness[j] = bolt.stiffness;
+    b->x[j]         = b->asked[j];
   }
   PetscCall(BoltsTry(s, b, good));
-  PetscCall(PetscArrayzero(b->J, b->n * b->n));
-  for (PetscInt j = 0; j < b->n; j++) b->J[j + b->n * j] = stiffness[j];
-  BoltsLearn(b, PETSC_FALSE);
-  PetscCall(PetscFree(stiffness));
+  for (PetscInt j = 0; j < b->n; j++) b->J[j + b->n * j] = PetscMax(BOLT_FLAT, 1 + b->off[j] / b->asked[j]);
   PetscFunctionReturn(0);
 }
 
-/* d -= J^-1 (T - F), but for bolts without tension, whose d grows */
-static PetscErrorCode BoltsStep(Statics s, Bolts *b)
+/* p = -J^-1 (T - F) */
+static PetscErrorCode BoltsDirect(Statics s, Bolts *b)
 {
   PetscBLASInt n, one = 1, info, *pivot;
   PetscScalar *J;
@@ -235,28 +182,79 @@ static PetscErrorCode BoltsStep(Statics s, Bolts *b)
   PetscCall(PetscBLASIntCast(b->n, &n));
   PetscCall(PetscMalloc2(b->n * b->n, &J, b->n, &pivot));
   PetscCall(PetscArraycpy(J, b->J, b->n * b->n));
-  for (PetscInt j = 0; j < b->n; j++) {
-    const PetscBool slack = BoltIsSlack(b, j);
-
-    b->step[j] = !slack ? -b->off[j] : b->high[j] > 0 ? 0.5 * (b->high[j] - b->d[j]) : BOLT_GROWS * b->d[j];
-    for (PetscInt i = 0; i < b->n && slack; i++) J[j + b->n * i] = i == j ? 1 : 0;
-  }
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, J, &n, pivot, b->step, &n, &info));
-  if (info && b->n == 1 && b->has_bracket[0]) b->step[0] = -b->d[0], info = 0; /* a flat piece, out of the bracket */
+  for (PetscInt j = 0; j < b->n; j++) b->p[j] = -b->off[j];
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, J, &n, pivot, b->p, &n, &info));
   PetscCheck(!info, s->comm, PETSC_ERR_NOT_CONVERGED,
              "bolts of stage %s: their tensions do not depend on their shortenings one by one",
              StagesGet(s, s->stage)->name ? StagesGet(s, s->stage)->name : "1");
-  for (PetscInt j = 0; j < b->n; j++) b->d[j] += b->step[j];
-  if (b->n == 1) b->d[0] = BracketKeep(b, b->d[0]);
   PetscCall(PetscFree2(J, pivot));
+  PetscFunctionReturn(0);
+}
+
+/* J += y y' / y't p - J p p' J / p'J p of a step t p, by which T grew by y; J p = -(T - F) before the step */
+static void BoltsLearn(Bolts *b, PetscReal t, const PetscReal before[])
+{
+  PetscReal yp = 0, pjp = 0;
+
+  for (PetscInt i = 0; i < b->n; i++) yp += (b->off[i] - before[i]) * b->p[i];
+  for (PetscInt i = 0; i < b->n; i++) pjp -= before[i] * b->p[i];
+  for (PetscInt i = 0; i < b->n; i++)
+    for (PetscInt j = 0; j < b->n; j++)
+      b->J[i + b->n * j] += (b->off[i] - before[i]) * (b->off[j] - before[j]) / (t * yp) - before[i] * before[j] / pjp;
+}
+
+/* Steps t along p with slopes (T - F)'p that are below and above 0: too short and too long; without the latter end 0 */
+typedef struct {
+  PetscReal end[2], slope[2], width;
+} Bracket;
+
+/* The next step: by the secant, and where that does not halve the bracket its middle; from a piece on which T is flat
+   BOLT_GROWS times farther */
+static PetscReal BracketNext(Bracket *t, PetscReal first)
+{
+  const PetscReal width = t->end[1] - t->end[0], before = t->width, fall = t->slope[0] - first;
+  PetscReal       next;
+
+  if (t->end[1] <= 0)
+    return fall < -BOLT_FLAT * first ? BOLT_GROWS * t->end[0]
+                                     : PetscMin(-t->end[0] * first / fall, BOLT_REACH * t->end[0]);
+  t->width = width;
+  next     = t->end[0] - t->slope[0] * width / (t->slope[1] - t->slope[0]);
+  return width <= before / 2 && next > t->end[0] && next < t->end[1] ? next : t->end[0] + width / 2;
+}
+
+/* A step along p, until the slope along it is BOLT_SLOPE of what it was, and what it tells */
+static PetscErrorCode BoltsStep(Statics s, Bolts *b, PetscBool *good)
+{
+  PetscReal *before, *x, first = 0, t = 1;
+  Bracket    found = {.width = INFINITY};
+
+  PetscFunctionBeginUser;
+  PetscCall(BoltsDirect(s, b));
+  PetscCall(PetscMalloc2(b->n, &x, b->n, &before));
+  PetscCall(PetscArraycpy(x, b->x, b->n));
+  PetscCall(PetscArraycpy(before, b->off, b->n));
+  for (PetscInt j = 0; j < b->n; j++) first += before[j] * b->p[j];
+  for (found.slope[0] = first;; t = BracketNext(&found, first)) {
+    PetscReal slope = 0;
+
+    for (PetscInt j = 0; j < b->n; j++) b->x[j] = x[j] + t * b->p[j];
+    PetscCall(BoltsTry(s, b, good));
+    for (PetscInt j = 0; j < b->n; j++) slope += b->off[j] * b->p[j];
+    if (*good || PetscAbsReal(slope) <= -BOLT_SLOPE * first) break;
+    PetscCall(BoltsCheckSteps(s, b));
+    found.end[slope > 0]   = t;
+    found.slope[slope > 0] = slope;
+  }
+  if (!*good) BoltsLearn(b, t, before);
+  PetscCall(PetscFree2(x, before));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f)
 {
-  const ModelScene *scene;
-  PetscBool         good;
-  Bolts             b = {.k = k, .f0 = f0, .f = f, .size = size, .width = INFINITY};
+  PetscBool good;
+  Bolts     b = {.k = k, .f0 = f0, .f = f, .size = size};
 
   PetscFunctionBeginUser;
   *f = NULL;
@@ -265,25 +263,10 @@ PetscErrorCode BoltsSolve(Statics s, PetscInt k, Vec f0, PetscReal *size, Vec *f
     PetscCall(StageSolve(s, k, f0, size, f));
     PetscFunctionReturn(0);
   }
-  PetscCall(ModelGetScene(s->model, &scene));
   PetscCall(BoltsGuess(s, &b, &good));
-  for (PetscInt it = 0; !good; it++) {
-    const PetscInt worst = BoltsWorst(&b);
-
-    PetscCheck(it < BOLT_STEPS, s->comm, PETSC_ERR_NOT_CONVERGED,
-               "-%s_tension: after %d solutions it is %.6g N, not %.6g N: does something hold the bolt, does it hold "
-               "nothing, or do other loads pull more?",
-               scene->loads[b.load[worst]].name, BOLT_STEPS, (double)(b.off[worst] + b.asked[worst]),
-               (double)b.asked[worst]);
-    PetscBool smooth = PETSC_TRUE;
-
-    for (PetscInt j = 0; j < b.n; j++)
-      if (BoltIsSlack(&b, j)) smooth = PETSC_FALSE;
-    PetscCall(BoltsStep(s, &b));
-    PetscCall(BoltsTry(s, &b, &good));
-    for (PetscInt j = 0; j < b.n; j++)
-      if (BoltIsSlack(&b, j)) smooth = PETSC_FALSE;
-    BoltsLearn(&b, smooth);
+  while (!good) {
+    PetscCall(BoltsCheckSteps(s, &b));
+    PetscCall(BoltsStep(s, &b, &good));
   }
   PetscCall(BoltsEnd(&b));
   PetscFunctionReturn(0);
