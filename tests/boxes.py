@@ -43,18 +43,24 @@ def box(text, shift):
     found = list(elements(kind, cells, None))
     sides = {**faces(found, cells), "inside": inside(found)}
     away = np.array([shift, 0, 0])
-    x = {(p[0] + shift, p[1], p[2]): low + (high - low) * np.array(p) / (2 * cells)
-         for p in itertools.product(*(range(2 * n + 1) for n in cells))}
+    grid = np.array(list(itertools.product(*(range(2 * n + 1) for n in cells))))
     groups = [(3, name, [(k, nodes + away) for k, nodes in found])]
     groups += [(2, f"{name}_{side}", [(len(f), (f + away).astype(int)) for f in members]) for side, members in sides.items()]
-    return groups, x
+    return groups, grid + away, low + (high - low) * grid / (2 * cells)
 
 
-def grade(places, grades, text):
-    """Places with smaller cells towards 0."""
+def grade(x, grades, text):
+    """Coordinates with smaller cells towards 0."""
     corners = np.array([[float(v) for v in corner.split(",")] for corner in text.split(":")[2:4]])
     length, k = np.abs(corners).max(0), np.where(grades > 0, grades, 1)
-    return {p: np.where(grades > 0, length * np.sinh(k * v / np.where(length > 0, length, 1)) / np.sinh(k), v) for p, v in places.items()}
+    return np.where(grades > 0, length * np.sinh(k * x / np.where(length > 0, length, 1)) / np.sinh(k), x)
+
+
+def crown(x, axes, radius, text):
+    """Coordinates of a box whose lower side is round about one axis or two; the upper one stays flat."""
+    low, high = (float(corner.split(",")[2]) for corner in text.split(":")[2:4])
+    height = np.sum(x[:, :axes]**2, axis=1) / (2 * radius) * (high - x[:, 2]) / (high - low)
+    return x + height[:, None] * [0, 0, 1]
 
 
 def main():
@@ -72,15 +78,13 @@ def main():
     groups, x = [], {}
     grades = np.array([float(k) for k in args.grade.split(",")])
     for i, text in enumerate(args.boxes):
-        more, places = box(text, 100000 * i)
+        more, grid, places = box(text, 100000 * i)
         places = grade(places, grades, text)
         for axes, (curved, radius) in ((1, args.crown.split(",")), (2, args.dome.split(","))):
             if text.split(":")[0] == curved:
-                low, high = (float(corner.split(",")[2]) for corner in text.split(":")[2:4])
-                places = {p: v + np.array([0, 0, np.sum(v[:axes]**2) / (2 * float(radius)) * (high - v[2]) / (high - low)])
-                          for p, v in places.items()}
+                places = crown(places, axes, float(radius), text)
         groups += more
-        x.update(places)
+        x.update(zip(map(tuple, grid.tolist()), places))
     for name, sets in (text.split("=") for text in args.join):
         groups.append((2, name, [member for _, other, members in groups if other in sets.split(",") for member in members]))
     length, slope = map(float, args.lean.split(","))

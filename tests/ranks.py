@@ -17,6 +17,8 @@ def fault_of_ranks(case):
         met = [{*case["run"][each].get("ranks", own), *case["run"][each].get("night", [])} for each in runs_of(check, case["run"])]
         if not set.intersection(*met):
             return f"check '{check.get('why', name)}' compares runs that are never made on the same number of ranks"
+        if not set(check.get("ranks", set.union(*met))) & set.intersection(*met):
+            return f"check '{check.get('why', name)}' is on ranks that its runs are never made on"
     return None
 
 

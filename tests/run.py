@@ -6,6 +6,7 @@ A case is a TOML file. Only `run` is required.
     options = "-options_file {source}/options/oscillator.yaml"   # of all runs; {source} is the top of the repository
     ranks = [1, 2]           # all runs and checks are made on each of these; default [1]
     make = ["{source}/tests/mesh.py rig rig.msh"]    # Python scripts, run first in the working folder of all runs
+    night_make = ["..."]     # after these, with --night
     needs = ["vtkmodules", "gmsh"]   # Python modules and programs, without which the case is skipped
 
     [file]
@@ -26,6 +27,7 @@ A case is a TOML file. Only `run` is required.
 
     [[check]]
     run = "NAME"                 # default: the only run
+    ranks = [1]                  # of those of its run; default all
     table = "modes.csv"          # default
     column = "freq_hz"           # or "eigenvalue", the complex growth_rad_s + 2 pi i freq_hz
     where = "freq_hz > 100 and unstable == 1"    # which rows; default all
@@ -190,7 +192,7 @@ class Runner:
         """Whether each check of runs that were made here passed."""
         results = []
         for index, check in enumerate(self.case.get("check", []), 1):
-            if runs_of(check, self.case["run"]) <= set(self.made):
+            if runs_of(check, self.case["run"]) <= set(self.made) and self.ranks in check.get("ranks", [self.ranks]):
                 title = check.get("why", f"check {index}")
                 results.append(attempt(f"{title} on {self.ranks}", checker.make, check))
                 self.write_margin(check, title, results[-1])
@@ -269,11 +271,11 @@ def command_line():
     return parser
 
 
-def make_files(case, folder):
+def make_files(case, folder, night):
     """Files of a case, and those that its scripts make."""
     for name, text in case.get("file", {}).items():
         (folder / name).write_text(text)
-    for command in case.get("make", []):
+    for command in case.get("make", []) + (case.get("night_make", []) if night else []):
         made = run_command(shlex.split(command.format(source=SOURCE)), folder)
         if made.returncode:
             sys.exit(f"{command}: {made.stderr}")
@@ -310,7 +312,7 @@ def main():
         parser.error(fault)
     arguments.served = None if arguments.core == MIXED else served_program(arguments.squeal, arguments.timeout)  # has its kernels already
     with tempfile.TemporaryDirectory(prefix="squeal-") as folder:
-        make_files(case, Path(folder))
+        make_files(case, Path(folder), arguments.night)
         results = results_of(arguments, case, Path(folder))
     if arguments.served:
         arguments.served.end()

@@ -80,6 +80,8 @@ def faces(found, cells):
     for name, nodes in found:
         shape = name.rstrip("0123456789")
         corners = nodes[:FIRST[shape]]
+        if corners.min() > 0 and (corners.max(0) < 2 * cells).all():
+            continue
         for side, (axis, end) in SIDES.items():
             on = corners[corners[:, axis] == 2 * end * cells[axis]]
             if len(on) < 3:

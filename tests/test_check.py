@@ -70,6 +70,8 @@ def empty_pass():
              if bool(fault_of_ranks({"ranks": ranks, "run": {"a": run}, "check": [{"across_ranks": True}]})) != fault]
     apart = {"ranks": [1, 3], "run": {"a": {"ranks": [1]}, "b": {"ranks": [3]}}, "check": [{"command": "same {a} {b}"}]}
     wrong += [] if fault_of_ranks(apart) else [([1, 3], "a on 1 beside b on 3")]
+    nowhere = {"ranks": [1, 2], "run": {"a": {"ranks": [1]}}, "check": [{"max": 1, "ranks": [2]}]}
+    wrong += [] if fault_of_ranks(nowhere) else [([1, 2], "a on 1, checked on 2")]
     for ranks, run in wrong:
         print(f"FAILED ranks {ranks}, run {run}")
     return len(wrong)
