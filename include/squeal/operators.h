@@ -102,8 +102,8 @@ typedef struct {
 /* All superelements as one, alike on all ranks; matrices [n][n] by columns, NULL for none */
 typedef struct {
   PetscInt                   n, n_apart, n_nodes;
-  PetscInt                  *apart; /* [n] number among the unknowns apart, -1 of a node */
-  OperatorsSuperelementNode *node;  /* [n_nodes] */
+  PetscInt                  *apart;     /* [n] number among the unknowns apart, -1 of a node */
+  OperatorsSuperelementNode *node;      /* [n_nodes] */
   PetscReal                 *K, *M, *C; /* N/m, kg, N s/m */
 } OperatorsSuperelements;
 
@@ -247,6 +247,10 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
 PetscErrorCode OperatorsAddLoads(Operators operators, const PetscReal p[], const PetscReal share[], Vec local,
                                  PetscReal *size);
 
+/*@ OperatorsAddLoad - adds load i of the scene times a factor to such a vector, N; a bolt shortened by the factor, m.
+   Collective. @*/
+PetscErrorCode OperatorsAddLoad(Operators operators, const PetscReal p[], PetscInt i, PetscReal factor, Vec local);
+
 /* Of a bolt: by how much it is shortened (m), the tension that passes through its cut (N), and the stiffness that its
    cells at the cut alone have along it (N/m) */
 typedef struct {
@@ -266,9 +270,10 @@ PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Ve
 
 /*@ OperatorsCreateGeometric - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the
    stress
-    sigma of displacements u (m, [nodes][3], local) with the moduli of the point p, symmetric; tension stiffens.
-    Collective. The caller destroys it. @*/
-PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K);
+    sigma of displacements u (m, [nodes][3], local), and of bolts with their shares of OperatorsAddLoads() (NULL for
+    none), with the moduli of the point p, symmetric; tension stiffens. Collective. The caller destroys it. @*/
+PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[],
+                                        const PetscReal share[], Mat *K);
 
 /*@ OperatorsCreateVec - a vector of all unknowns. Collective. @*/
 PetscErrorCode OperatorsCreateVec(Operators operators, Vec *u);

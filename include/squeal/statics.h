@@ -163,6 +163,10 @@ PetscErrorCode StaticsHaveStages(Statics statics, PetscBool *staged);
     none that a run in time may start from. Not collective. @*/
 PetscErrorCode StaticsCheckLasting(Statics statics);
 
+/*@ StaticsGetShortening - of a load that is a bolt under a tension its shortening, m. Not collective; after
+    StaticsSolve(). @*/
+PetscErrorCode StaticsGetShortening(Statics statics, PetscInt load, PetscReal *shortening);
+
 /*@ StaticsGetState - states of the local pairs, and displacements of all unknowns, m (borrowed). Not collective. @*/
 PetscErrorCode StaticsGetState(Statics statics, const ContactState **state, Vec *u);
 

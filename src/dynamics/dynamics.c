@@ -173,6 +173,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCheck(d->model, d->comm, PETSC_ERR_USER_INPUT,
              "-analysis transient needs a mesh: loaded matrices have no contact surfaces");
   PetscCall(DynamicsCheckSuperelements(d));
+  PetscCall(DynamicsCheckBolts(d));
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
   PetscCall(ModelGetMesh(d->model, &d->mesh));
@@ -180,7 +181,7 @@ static PetscErrorCode DynamicsSetUp(Dynamics d, Results results)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &d->n_elements, 1, MPIU_INT, MPI_SUM, d->comm));
   PetscCall(BodiesSetUp(d->bodies, d->operators));
   PetscCall(BodiesGetLayout(d->bodies, &d->layout));
-  PetscCall(ExternalSetUp(d->external, d->bodies));
+  PetscCall(ExternalSetUp(d->external, d->operators, d->bodies));
   if (d->projector) PetscCall(DynamicsSetUpSurface(d));
   PetscCall(DynamicsSetUpPoints(d));
   PetscCall(DynamicsSetFrames(d));

@@ -129,6 +129,11 @@ PETSC_INTERN PetscErrorCode OperatorsAddCellForces(Operators operators, const Pe
 PETSC_INTERN PetscErrorCode OperatorsAddBolt(Operators operators, const PetscReal p[], PetscInt load,
                                              PetscReal shortening, Vec local, PetscReal *size);
 
+/* bolt.c - displacements [nodes][3] as the cells of a part see them, which bolts with their shares draw at their cuts;
+   NULL where none does: u itself. The caller frees them. */
+PETSC_INTERN PetscErrorCode OperatorsGetSeen(Operators operators, const PetscReal p[], PetscInt part,
+                                             const PetscReal share[], const PetscReal u[], PetscReal **seen);
+
 /* joint.c - parameters and terms of bushings and points; their forces at displacements [nodes][3] and p, and the
    weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);

@@ -61,6 +61,7 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
 
   const ReducedParameter press = {.kind = REDUCED_LOAD, .index = i, .value = load->pressure};
   const ReducedParameter push  = {.kind = REDUCED_LOAD, .index = i, .value = force};
+  const ReducedParameter draw  = {.kind = REDUCED_LOAD, .index = i, .value = load->shortening};
   const ReducedParameter turn  = {.kind = REDUCED_LOAD, .index = i, .value = moment};
 
   PetscFunctionBeginUser;
@@ -68,6 +69,8 @@ static PetscErrorCode ParameterOfLoad(const Load *load, PetscInt i, ParameterSea
     PetscCall(ParameterTry(load->name, "pressure", ModelFindRow("-loads", "pressure"), &press, POSITIVE, search));
   if (force > 0 && moment == 0)
     PetscCall(ParameterTry(load->name, "force", ModelFindRow("-loads", "force"), &push, POSITIVE, search));
+  if (load->has_shortening)
+    PetscCall(ParameterTry(load->name, "shortening", ModelFindRow("-loads", "shortening"), &draw, POSITIVE, search));
   if (moment > 0 && force == 0)
     PetscCall(ParameterTry(load->name, "moment", ModelFindRow("-loads", "moment"), &turn, POSITIVE, search));
   PetscFunctionReturn(0);

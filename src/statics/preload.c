@@ -30,7 +30,8 @@
 #include "preload.h"
 #include "operators/terms/terms.h"
 
-PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, Mat *K)
+PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[], Vec u, const PetscReal share[],
+                                        Mat *K)
 {
   const Mesh *mesh;
   PetscReal  *displacement;
@@ -41,7 +42,7 @@ PetscErrorCode GeometricStiffnessCreate(Operators operators, const PetscReal p[]
   PetscCall(ModelGetMesh(model, &mesh));
   PetscCall(PetscMalloc1(3 * mesh->n_nodes, &displacement));
   PetscCall(ModelGetDisplaced(model, u, displacement));
-  PetscCall(OperatorsCreateGeometric(operators, p, displacement, K));
+  PetscCall(OperatorsCreateGeometric(operators, p, displacement, share, K));
   PetscCall(PetscFree(displacement));
   PetscFunctionReturn(0);
 }

@@ -65,7 +65,9 @@ PetscErrorCode StaticsSolveSliding(Statics s, const PetscReal p[], SlidingState 
   state->n_parameters = s->n_parameters;
   PetscCall(PetscMalloc1(state->n_parameters, &state->p));
   PetscCall(PetscArraycpy(state->p, s->p, state->n_parameters));
-  if (s->geometric) PetscCall(GeometricStiffnessCreate(s->operators, s->p, s->u, &state->geometric));
+  if (s->geometric)
+    PetscCall(
+      GeometricStiffnessCreate(s->operators, s->p, s->u, StagesGet(s, StagesCount(s) - 1)->share, &state->geometric));
   if (s->follower) PetscCall(FollowerStiffnessCreate(s->operators, s->state, &state->follower));
   PetscFunctionReturn(0);
 }

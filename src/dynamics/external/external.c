@@ -44,15 +44,17 @@ PetscErrorCode ExternalVisit(External external, const QuantityVisitor *visitor)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ExternalSetUp(External external, Bodies bodies)
+PetscErrorCode ExternalSetUp(External external, Operators operators, Bodies bodies)
 {
   PetscFunctionBeginUser;
+  external->operators = operators;
   PetscCall(BodiesGetLayout(bodies, &external->layout));
   PetscCall(TimedLoadsSetUp(external));
   PetscCall(InertiaSetUp(external));
   PetscCall(MotionsSetUp(external, bodies));
   PetscCall(ImpulsesSetUp(external));
   PetscCall(ExternalLayMemory(external));
+  PetscCall(TimedLoadsDraw(external));
   PetscFunctionReturn(0);
 }
 

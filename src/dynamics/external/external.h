@@ -13,6 +13,7 @@
 #pragma once
 
 #include <squeal/quantity.h>
+#include <squeal/statics.h>
 #include "dynamics/bodies/bodies.h"
 
 typedef struct _p_External *External;
@@ -55,7 +56,11 @@ PETSC_INTERN PetscErrorCode ExternalVisit(External external, const QuantityVisit
    Errors: PETSC_ERR_USER_INPUT for an unknown set; for motions whose directions a swept body cannot express, that
    prescribe the same direction of a node twice or only what supports hold; for an impulse on a node that is held.
 */
-PETSC_INTERN PetscErrorCode ExternalSetUp(External external, Bodies bodies);
+PETSC_INTERN PetscErrorCode ExternalSetUp(External external, Operators operators, Bodies bodies);
+
+/* ExternalDrawBolts - bolts under a tension are drawn as in the sliding state. Not collective; after ExternalSetUp()
+   and StaticsSolve(). */
+PETSC_INTERN PetscErrorCode ExternalDrawBolts(External external, Statics statics);
 
 /* ExternalSetVelocity - adds the initial velocities of the parts to state vector v (the mean of the parts' where they
    share a node); directions that are held or prescribed start with 0. Collective. */

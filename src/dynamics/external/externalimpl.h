@@ -10,12 +10,13 @@
 #include "forcepattern.h"
 #include "quantity/ramp.h"
 
-/* A load of the model: F(t) = r(t) F */
+/* A load of the model: F(t) = r(t) F; of a bolt r(t) d F, with F of a shortening of 1 m */
 typedef struct {
   char        *name;
   Ramp         ramp;
   ForcePattern pattern;
-  PetscReal   *last; /* r(t_{n-1}) */
+  PetscReal   *last;  /* r(t_{n-1}) */
+  PetscReal   *drawn; /* d, m; NULL of what is no bolt */
 } TimedLoad;
 
 /* Displacement of a set, d(t) = r(t) d */
@@ -51,8 +52,9 @@ typedef struct {
 } InertiaFrame;
 
 struct _p_External {
-  MPI_Comm comm;
-  Model    model;
+  MPI_Comm  comm;
+  Model     model;
+  Operators operators;
   /* set by options */
   PetscInt      n_loads, n_motions, n_impulses, n_acting, n_parts, n_frames;
   TimedLoad    *loads;
@@ -88,6 +90,7 @@ PETSC_INTERN PetscErrorCode ExternalFindVertices(External external, const char s
 /* loadforce.c */
 PETSC_INTERN PetscErrorCode TimedLoadsSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode TimedLoadsSetUp(External external);
+PETSC_INTERN PetscErrorCode TimedLoadsDraw(External external); /* bolts of a given length */
 PETSC_INTERN PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, ExternalPower *power);
 PETSC_INTERN PetscErrorCode TimedLoadsView(External external, PetscViewer viewer);
 PETSC_INTERN PetscErrorCode TimedLoadsDestroy(External external);

@@ -33,7 +33,7 @@ static PetscErrorCode TimedLoadGather(External external, PetscInt i, Vec local)
 
   PetscFunctionBeginUser;
   PetscCall(VecSet(local, 0));
-  PetscCall(ModelAddLoad(external->model, i, NULL, local));
+  PetscCall(OperatorsAddLoad(external->operators, NULL, i, 1, local));
   PetscCall(PetscMalloc2(layout->n_vertices, &vertex, 3 * layout->n_vertices, &f));
   PetscCall(VecGetArrayRead(local, &force));
   for (PetscInt v = 0; v < layout->n_vertices; v++) {
@@ -59,12 +59,36 @@ PetscErrorCode TimedLoadsSetUp(External external)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode TimedLoadsDraw(External external)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (PetscInt i = 0; i < external->n_loads; i++)
+    if (external->loads[i].drawn) *external->loads[i].drawn = scene->loads[i].shortening;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalDrawBolts(External external, Statics statics)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(external->model, &scene));
+  for (PetscInt i = 0; i < external->n_loads; i++)
+    if (scene->loads[i].has_tension) PetscCall(StaticsGetShortening(statics, i, external->loads[i].drawn));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, ExternalPower *power)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_loads; i++) {
     TimedLoad      *load   = &external->loads[i];
-    const PetscReal factor = RampValue(&load->ramp, step->time), full = ForcePatternPower(&load->pattern, step->v);
+    const PetscReal drawn  = load->drawn ? *load->drawn : 1;
+    const PetscReal factor = drawn * RampValue(&load->ramp, step->time);
+    const PetscReal full   = ForcePatternPower(&load->pattern, step->v);
 
     power->old += *load->last * full;
     power->now += factor * full;
@@ -91,6 +115,13 @@ PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
     const PetscReal *f    = scene->loads[i].force; /* of a pressure it is known since the mesh is */
 
     PetscCall(RampDescribe(&load->ramp, sizeof(words), words));
+    if (scene->loads[i].is_bolt) {
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  bolt %s: %s %.6g %s, %s\n", load->name,
+                                       scene->loads[i].has_tension ? "tension" : "shortened by",
+                                       (double)PetscMax(scene->loads[i].tension, scene->loads[i].shortening),
+                                       scene->loads[i].has_tension ? "N" : "m", words));
+      continue;
+    }
     PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s: %.6g N, %s\n", load->name, (double)Vec3Length(f), words));
   }
   PetscFunctionReturn(0);

@@ -55,6 +55,7 @@ PetscErrorCode DynamicsGetRun(Dynamics d, Results results, const char by[], Pets
   PetscCall(RunRefuse(d, by));
   d->results = results;
   if (!d->restart) PetscCall(DynamicsCheckEarlier(d));
+  PetscCall(DynamicsCheckBolts(d));
   if (d->start == START_STATIC) PetscCall(DynamicsCheckStatic(d));
   *run = (DynamicsRun){.model               = d->model,
                        .contact             = d->contact,

@@ -36,6 +36,9 @@ typedef struct {
 PETSC_INTERN PetscErrorCode DynamicsGetRun(Dynamics dynamics, Results results, const char by[], PetscReal dt,
                                            DynamicsRun *run);
 
+/* DynamicsCheckBolts - raises the error for bolts under a tension where no sliding state tells their shortening. */
+PETSC_INTERN PetscErrorCode DynamicsCheckBolts(Dynamics dynamics);
+
 /* DynamicsCheckExact - raises the error for contacts with a penalty law, which a start in the sliding state has and
    exact contact has not. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckExact(Dynamics dynamics);

@@ -46,6 +46,21 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DynamicsCheckBolts(Dynamics d)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(d->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCheck(
+      !scene->loads[i].has_tension || d->start == START_STATIC, d->comm, PETSC_ERR_USER_INPUT,
+      "-%s_tension: how far the bolt is drawn is found with the sliding state: take -dynamics_start static, or "
+      "give -%s_shortening (m), which -analysis static prints",
+      scene->loads[i].name, scene->loads[i].name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsCheckExact(Dynamics d)
 {
   PetscFunctionBeginUser;
@@ -232,6 +247,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     PetscCall(StaticsCheckLasting(d->statics));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));
+    PetscCall(ExternalDrawBolts(d->external, d->statics));
     PetscCall(StateVectorFromDisplacements(d->model, d->layout, displacement, u));
   }
   if (d->shape[0]) PetscCall(StartAddShape(d, u, v));

@@ -18,6 +18,12 @@ static PetscErrorCode BoltFind(Operators o, PetscInt i, const Load **load, Petsc
   PetscFunctionReturn(0);
 }
 
+/* += d j */
+static void BoltDraw(const Load *load, PetscReal d, PetscInt n, const PetscInt node[], PetscReal seen[])
+{
+  for (PetscInt k = 0; k < 3 * n; k++) seen[3 * node[k / 3] + k % 3] += d * load->axis[k % 3];
+}
+
 /* K_a (u + d j), complete at every node; u NULL for 0 */
 static PetscErrorCode BoltCreateForces(Operators o, const PetscReal p[], PetscInt i, const PetscReal u[], PetscReal d,
                                        Vec *forces)
@@ -33,7 +39,7 @@ static PetscErrorCode BoltCreateForces(Operators o, const PetscReal p[], PetscIn
   PetscCall(BoltFind(o, i, &load, &n, &node));
   PetscCall(PetscCalloc1(3 * mesh->n_nodes, &seen));
   if (u) PetscCall(PetscArraycpy(seen, u, 3 * mesh->n_nodes));
-  for (PetscInt k = 0; k < 3 * n; k++) seen[3 * node[k / 3] + k % 3] += d * load->axis[k % 3];
+  BoltDraw(load, d, n, node, seen);
   PetscCall(ModelCreateNodal(o->model, forces));
   PetscCall(VecGetArray(*forces, &f));
   PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), load->of_part, seen, f));
@@ -65,6 +71,38 @@ static PetscErrorCode BoltSum(Operators o, PetscInt i, Vec forces, PetscReal *su
   PetscFunctionReturn(0);
 }
 
+/* Of a bolt its shortening, m, with its share */
+static PetscReal BoltShortening(Operators o, const PetscReal p[], const ModelScene *scene, PetscInt i, PetscReal share)
+{
+  return scene->loads[i].has_tension ? share : share * OperatorsPoint(o, p)[o->load_size[i].force];
+}
+
+PetscErrorCode OperatorsGetSeen(Operators o, const PetscReal p[], PetscInt part, const PetscReal share[],
+                                const PetscReal u[], PetscReal **seen)
+{
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscInt          n, *node;
+
+  PetscFunctionBeginUser;
+  *seen = NULL;
+  PetscCall(ModelGetMesh(o->model, &mesh));
+  PetscCall(ModelGetScene(o->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads && share; i++) {
+    const Load *load = &scene->loads[i];
+
+    if (!load->is_bolt || load->of_part != part) continue;
+    if (!*seen) {
+      PetscCall(PetscMalloc1(3 * mesh->n_nodes, seen));
+      PetscCall(PetscArraycpy(*seen, u, 3 * mesh->n_nodes));
+    }
+    PetscCall(BoltFind(o, i, &load, &n, &node));
+    BoltDraw(load, BoltShortening(o, p, scene, i, share[i]), n, node, *seen);
+    PetscCall(PetscFree(node));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsAddBolt(Operators o, const PetscReal p[], PetscInt i, PetscReal d, Vec local, PetscReal *size)
 {
   PetscReal norm;
@@ -89,7 +127,7 @@ PetscErrorCode OperatorsGetBolt(Operators o, const PetscReal p[], PetscInt i, Pe
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(o->model, &scene));
-  bolt->shortening = scene->loads[i].has_tension ? share : share * OperatorsPoint(o, p)[o->load_size[i].force];
+  bolt->shortening = BoltShortening(o, p, scene, i, share);
   PetscCall(BoltCreateForces(o, p, i, u, bolt->shortening, &forces));
   PetscCall(BoltSum(o, i, forces, &bolt->tension));
   PetscCall(VecDestroy(&forces));

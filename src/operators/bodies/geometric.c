@@ -29,25 +29,33 @@ static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity
 
 /* Adds all local cells */
 static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[], Model model, const PetscReal u[],
-                                        Mat K)
+                                        const PetscReal share[], Mat K)
 {
-  const Mesh *mesh;
+  const ModelScene *scene;
+  const Mesh       *mesh;
+  PetscReal       **seen;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
+  PetscCall(ModelGetScene(model, &scene));
+  PetscCall(PetscMalloc1(scene->n_parts, &seen));
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsGetSeen(operators, p, i, share, u, &seen[i]));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     OperatorsMaterial values;
     Elasticity        material;
 
     PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
     PetscCall(ModelGetElasticity(model, c, values.young, values.density, &material));
-    PetscCall(GeometricAddCell(model, c, &material, u, K));
+    PetscCall(GeometricAddCell(model, c, &material, seen[mesh->cell_part[c]] ? seen[mesh->cell_part[c]] : u, K));
   }
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(PetscFree(seen[i]));
+  PetscCall(PetscFree(seen));
   PetscFunctionReturn(0);
 }
 
 /* In the pattern of K of the bodies; u [nodes][3], m, of all local nodes. The caller destroys it. */
-PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[], Mat *K)
+PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[],
+                                        const PetscReal share[], Mat *K)
 {
   Mat bodies;
 
@@ -55,7 +63,7 @@ PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[]
   PetscCall(OperatorsGetBodies(operators, p, &bodies, NULL, NULL)); /* couples the same unknowns */
   PetscCall(MatDuplicate(bodies, MAT_DO_NOT_COPY_VALUES, K));
   PetscCall(MatSetOption(*K, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* which sums of matrices set */
-  PetscCall(GeometricAddCells(operators, p, operators->model, u, *K));
+  PetscCall(GeometricAddCells(operators, p, operators->model, u, share, *K));
   PetscCall(MatAssemblyBegin(*K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*K, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);

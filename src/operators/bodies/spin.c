@@ -227,7 +227,7 @@ static PetscErrorCode SpinAddPart(Operators o, PetscInt part, const char name[],
   PetscCall(SpinSolve(o, name, K, ksp, f, u));
   PetscCall(SpinMarkStressing(o, f, u));
   PetscCall(ModelGetNodal(o->model, u, displacement));
-  PetscCall(OperatorsCreateGeometric(o, NULL, displacement, &S));
+  PetscCall(OperatorsCreateGeometric(o, NULL, displacement, NULL, &S));
   PetscCall(PetscFree(displacement));
   PetscCall(MatAXPY(S, -1, Q, UNKNOWN_NONZERO_PATTERN));
   PetscCall(TermsAdd(&o->spin, OPERATORS_DAMPING, G, PETSC_FALSE, 2, (PetscInt[]){spin, density}));

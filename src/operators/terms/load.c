@@ -53,6 +53,21 @@ static PetscReal SizeFactor(Operators o, const PetscReal p[], PetscInt parameter
   return parameter < 0 ? 1 : OperatorsPoint(o, p)[parameter] / o->parameters.p[parameter];
 }
 
+PetscErrorCode OperatorsAddLoad(Operators o, const PetscReal p[], PetscInt i, PetscReal factor, Vec local)
+{
+  const PetscReal   both[2] = {factor, factor};
+  const ModelScene *scene;
+  PetscReal         size = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  if (scene->loads[i].is_bolt)
+    PetscCall(OperatorsAddBolt(o, p, i, factor, local, &size));
+  else
+    PetscCall(ModelAddLoad(o->model, i, both, local));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], const PetscReal share[], Vec local, PetscReal *size)
 {
   const ModelScene *scene;

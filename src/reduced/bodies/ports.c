@@ -66,6 +66,35 @@ static PetscErrorCode PortSetNodal(ReducedRun r, Vec nodal, PetscInt k, Mat colu
   PetscFunctionReturn(0);
 }
 
+/* Load i of the scene, N; of a bolt with the shortening that it has, or finds in the sliding state */
+static PetscErrorCode PortsAddLoad(ReducedRun r, PetscInt i, Vec nodal)
+{
+  const ModelScene *scene;
+  PetscReal         factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  factor = scene->loads[i].has_shortening ? scene->loads[i].shortening : 1;
+  if (scene->loads[i].has_tension) PetscCall(StaticsGetShortening(r->run.statics, i, &factor));
+  PetscCall(OperatorsAddLoad(r->run.operators, NULL, i, factor, nodal));
+  PetscFunctionReturn(0);
+}
+
+/* The sliding state, where a bolt's shortening comes from it */
+static PetscErrorCode PortsFindBolts(ReducedRun r)
+{
+  const ModelScene *scene;
+  PetscBool         any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    if (scene->loads[i].has_tension) any = PETSC_TRUE;
+  if (any) PetscCall(StaticsSolve(r->run.statics, NULL));
+  if (any && r->run.restart) PetscCall(StaticsRelease(r->run.statics));
+  PetscFunctionReturn(0);
+}
+
 /* Loads, then the weight where there is gravity; N for the factor 1. */
 static PetscErrorCode PortsSetLoads(ReducedRun r)
 {
@@ -75,10 +104,11 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCall(PortsFindBolts(r));
   for (PetscInt i = 0; i < r->reduction.model.n_loads; i++) {
     PetscCall(ModelCreateNodal(r->run.model, &nodal));
     if (i < scene->n_loads)
-      PetscCall(ModelAddLoad(r->run.model, i, NULL, nodal));
+      PetscCall(PortsAddLoad(r, i, nodal));
     else
       PetscCall(OperatorsAddWeight(r->run.operators, r->request.p, nodal, total));
     PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));

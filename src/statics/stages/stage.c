@@ -200,20 +200,6 @@ static PetscErrorCode StagesCheckContacts(Statics s, PetscInt n, const ContactIn
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for bolts where their state is not told whole */
-static PetscErrorCode BoltsCheck(Statics s)
-{
-  const ModelScene *scene;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(s->model, &scene));
-  for (PetscInt i = 0; i < scene->n_loads; i++)
-    PetscCheck(!scene->loads[i].is_bolt || !s->geometric, s->comm, PETSC_ERR_SUP,
-               "-static_geometric does not know of bolts, and there is -loads %s: leave one of them out",
-               scene->loads[i].name);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode StagesSetUp(Statics s)
 {
   const ModelScene       *scene;
@@ -225,7 +211,6 @@ PetscErrorCode StagesSetUp(Statics s)
   PetscCall(ModelGetScene(s->model, &scene));
   if (s->contact) PetscCall(ContactGetInterfaces(s->contact, &n, &c));
   PetscCall(StageSetWhole(s, scene, n, c));
-  PetscCall(BoltsCheck(s));
   if (!s->n_stages) PetscFunctionReturn(0);
   {
     StageTarget target[STAGE_LISTS] = {
@@ -280,6 +265,14 @@ PetscErrorCode StaticsHaveStages(Statics statics, PetscBool *staged)
 {
   PetscFunctionBeginUser;
   *staged = statics->n_stages ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StaticsGetShortening(Statics s, PetscInt load, PetscReal *shortening)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(s->solved, s->comm, PETSC_ERR_ARG_WRONGSTATE, "StaticsSolve() must come first");
+  *shortening = StagesGet(s, StagesCount(s) - 1)->share[load];
   PetscFunctionReturn(0);
 }
 

@@ -216,8 +216,7 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
   PetscCheck(i >= 0 && i < model->scene.n_loads, model->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "load %" PetscInt_FMT " does not exist: there are %" PetscInt_FMT, i, model->scene.n_loads);
   load = model->scene.loads[i];
-  PetscCheck(!load.is_bolt, model->comm, PETSC_ERR_SUP,
-             "bolt %s is tightened in the sliding state alone, not in time: leave it out of -loads there", load.name);
+  PetscCheck(!load.is_bolt, model->comm, PETSC_ERR_PLIB, "bolt %s is no load of the model alone", load.name);
   if (factor) load.pressure *= factor[0];
   for (int d = 0; d < 3 && factor; d++) load.force[d] *= factor[0], load.moment[d] *= factor[1];
   PetscCall(LoadCreateForces(model, &load, &forces, &area));
