@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pre-tensioned bolts of decks (tests/bolted.py) beside CalculiX: displacements of all nodes and shortenings of the bolts, in elements
 that both programs have alike (nodes of faces of second order have other areas there): tightened by forces, by a length, two bolts at
-once, and then loaded with the lengths that they have; a clearance of the joint, in closed form. Breaks when a tension, an axis, the side
+once, and then loaded with the lengths that they have; clearances and interferences of the joint, in closed form. Breaks when a tension, an axis, the side
 of a cut or the lock of a later step is lost. The reference are CalculiX' own equations of *PRE-TENSION SECTION (its printed digits
 are 7).
 
@@ -25,6 +25,7 @@ except ImportError as error:
 from bolted import REFERENCE, deck, forces, mesh
 from squeal.decks.convert import convert
 
+NEAR = 2e-6  # m, farther apart than any two nodes that are no twins
 RTOL = 1e-5  # of the largest displacement, and of a shortening: asked
 FAILED = []
 
@@ -64,22 +65,26 @@ def squeal(program, folder, text):
     return x, u.reshape(len(x), 3), numpy.array(bolts)
 
 
-def beside(program, about, kind, bolts, steps, tensions=None):
-    """One deck in both programs; nodes are told by their places, of twins in one place by what is nearer."""
-    with tempfile.TemporaryDirectory() as name:
-        folder, text = Path(name), deck(kind, bolts, steps)
-        theirs = calculix(folder, text)
-        x, u, found = squeal(program, folder, text)
-    nodes, _ = mesh(kind.startswith("C3D20"), bolts)
+def compare(about, nodes, theirs, x, u):
+    """Displacements of all nodes, which are told by their places, of twins in one place by what is nearer."""
     places = numpy.array([[p * size / 2000 for p, size in zip(place, (2.5, 2.5, 4.0))] for place, _ in nodes])
     values = numpy.array([theirs[number] for number in nodes.values()])
     largest, worst = numpy.abs(values).max(), 0.0
     for place, mine in zip(x, u):
-        near = numpy.abs(places - place).max(axis=1) < 1e-9
+        near = numpy.abs(places - place).max(axis=1) < NEAR
         worst = max(worst, numpy.abs(values[near] - mine).max(axis=1).min() / largest)
+    check(f"{about}: displacements", len(x) == len(nodes) and worst <= RTOL, f"{worst:.1e} of the largest, {RTOL:g} allowed")
+
+
+def beside(program, about, kind, bolts, steps, tensions=None):
+    """One deck in both programs."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, text = Path(name), deck(kind, bolts, steps)
+        theirs = calculix(folder, text)
+        x, u, found = squeal(program, folder, text)
+    compare(about, mesh(kind.startswith("C3D20"), bolts)[0], theirs, x, u)
     lengths = numpy.array([theirs[REFERENCE + b][0] for b in range(bolts)])
     off = numpy.abs(found[:, 1] / lengths - 1).max()
-    check(f"{about}: displacements", len(x) == len(nodes) and worst <= RTOL, f"{worst:.1e} of the largest, {RTOL:g} allowed")
     check(f"{about}: shortenings", off <= RTOL, f"{off:.1e}, {RTOL:g} allowed")
     if tensions is not None:
         off = numpy.abs(found[:, 0] / tensions - 1).max()
@@ -94,8 +99,37 @@ def clearances(program):
         text = text.replace("*CONTACT PAIR", f"*CLEARANCE, MASTER=LOW_TOP, SLAVE=UP_BOTTOM, VALUE={value}\n*CONTACT PAIR", 1)
         with tempfile.TemporaryDirectory() as name:
             lengths.append(squeal(program, Path(name), text)[2][0, 1])
+    text = deck("C3D8I", 1, (forces([0.1]),))
+    table = "\n".join(f"{number}, 2e-7" for (place, body), number in mesh(False, 1)[0].items() if body == "UP" and place[2] == 4)
+    text = text.replace("*CONTACT PAIR", f"*CLEARANCE, MASTER=LOW_TOP, SLAVE=UP_BOTTOM, TABULAR\n{table}\n*CONTACT PAIR", 1)
+    with tempfile.TemporaryDirectory() as name:
+        found = squeal(program, Path(name), text)[2][0, 1]
+    check("*CLEARANCE, TABULAR of the same at all nodes", abs(found / lengths[1] - 1) <= 1e-9, f"{found} for {lengths[1]}")
     off = abs((numpy.array(lengths[1:]) - lengths[0]) / numpy.array([2e-10, -1e-10, 3e-7]) - 1).max()
     check("*CLEARANCE of a joint that a bolt closes: its shortening grows by it", off <= 1e-6, f"{off:.1e}, 1e-6 allowed")
+
+
+def fitted(program):
+    """Surfaces that overlap: as the deck says, in closed form (the bolt is longer by it), or in the mesh, beside CalculiX, where an overlap
+    presses from the beginning without that card."""
+    lengths, place = [], "*CLOAD"
+    for cards in ("", "*CONTACT INTERFERENCE, AMPLITUDE=GROWS\nUP_BOTTOM, LOW_TOP, -2e-4\n", "*CONTACT INTERFERENCE, SHRINK\nUP_BOTTOM, LOW_TOP\n"):
+        text = deck("C3D8I", 1, (forces([0.1]),)).replace("*STEP", "*AMPLITUDE, NAME=GROWS\n0., 0., 1., 1.\n*STEP", 1)
+        with tempfile.TemporaryDirectory() as name:
+            lengths.append(squeal(program, Path(name), text.replace(place, cards + place, 1))[2][0, 1])
+    off = abs((lengths[1] - lengths[0]) / -2e-7 - 1)
+    check("*CONTACT INTERFERENCE of a joint: its bolt is shortened by that less", off <= 1e-6, f"{off:.1e}, 1e-6 allowed")
+    check("SHRINK of surfaces that do not overlap changes nothing", lengths[2] == lengths[0], lengths)
+    nodes, lines = mesh(False, 1)[0], deck("C3D8I", 1, ("",)).splitlines()
+    for (at, body), number in nodes.items():
+        if body == "UP" and at[2] == 4:
+            lines[number] = lines[number].rpartition(",")[0] + ", 7.999"
+    plain = "\n".join(line for line in lines if not line.startswith("*PRE-TENSION")) + "\n"
+    shrink = plain.replace("*NODE PRINT", "*CONTACT INTERFERENCE, SHRINK\nUP_BOTTOM, LOW_TOP\n*NODE PRINT", 1)
+    with tempfile.TemporaryDirectory() as name:
+        theirs = calculix(Path(name), plain)
+        x, u, _ = squeal(program, Path(name), shrink)
+    compare("SHRINK of a mesh that overlaps", nodes, theirs, x, u)
 
 
 def main(program):
@@ -104,6 +138,7 @@ def main(program):
     beside(program, "a length", "C3D8I", 1, (f"*BOUNDARY\n{REFERENCE}, 1, 1, 1e-6",))
     beside(program, "two forces", "C3D8I", 2, (forces([0.1, 0.25]),), [0.1, 0.25])
     clearances(program)
+    fitted(program)
     beside(program, "two forces, then pulled with their lengths", "C3D8I", 2, (forces([0.1, 0.25]), fixed))
 
 

@@ -80,10 +80,11 @@ def spellings():
     yield "a star alone", PLAIN.replace("*STEP", "*\n*STEP"), ("'*': of no keyword",)
     yield "a support of a node that is not there", PLAIN.replace(HELD, HELD + "99, 1, 3\n"), ("node 99 is not in the file",)
     yield "directions held one by one", PLAIN.replace("FIX, 1, 3\n", "FIX, 1\nFIX, 2\nFIX, 3\n"), ()
-    yield "what a contact has of its own", PLAIN.replace("*END STEP", "*CONTACT INTERFERENCE\nA, B, 0.01\n*CLEARANCE, MASTER=A, SLAVE=B, "
-                                                         "TABULAR\n*END STEP"), (
-        "*CONTACT INTERFERENCE: not in the scene; at the end",
-        "*CLEARANCE: only MASTER, SLAVE and VALUE are read: not taken; give the contact a `gap`")
+    yield "what a contact has of its own", PLAIN.replace(HELD, (
+        "*SURFACE, NAME=A\nE, S1\n*SURFACE, NAME=B\nE, S2\n*CLEARANCE, MASTER=A, SLAVE=B, TABULAR\n1, 0.1\n*CLEARANCE, MASTER=A, SLAVE=B, "
+        "TABULAR, BOLT\n1, 0.1\n") + HELD).replace("*END STEP", "*CONTACT INTERFERENCE\nA, B, 0.01\n*END STEP"), (
+            "*CONTACT INTERFERENCE: there is no *CONTACT PAIR of A, B: not taken", "*CLEARANCE: there is no *CONTACT PAIR of B, A: not taken",
+            "*CLEARANCE: only MASTER, SLAVE and VALUE or TABULAR are read: not taken; give the contact a `gap`")
     yield "an element with temperature", PLAIN.replace("C3D8I", "C3D8T"), ("C3D8T: its temperature is no unknown of squeal",)
     yield "a beam beside solids", PLAIN.replace(HELD, (
         "*ELEMENT, TYPE=B31, ELSET=ROD\n101, 9,11\n*BEAM SECTION, ELSET=ROD, MATERIAL=M, SECTION=HEX\n0.5, 0.5\n1., 0., 0.\n"

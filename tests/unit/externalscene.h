@@ -60,7 +60,7 @@ static inline PetscErrorCode SceneCreate(const char options[], Scene *s)
   PetscCall(SceneBegin(options, s));
   PetscCall(ExternalSetFromOptions(s->external));
   PetscCall(SceneEnd(s));
-  PetscCall(ExternalSetUp(s->external, s->bodies));
+  PetscCall(ExternalSetUp(s->external, s->chain.operators, s->bodies));
   PetscFunctionReturn(0);
 }
 

@@ -63,7 +63,7 @@ static PetscErrorCode TestTurned(int *failed)
   PetscCall(ExternalCreate(PETSC_COMM_WORLD, s.chain.model, &s.external));
   PetscCall(ExternalSetFromOptions(s.external));
   PetscCall(SceneEnd(&s));
-  PetscCall(ExternalSetUp(s.external, s.bodies));
+  PetscCall(ExternalSetUp(s.external, s.chain.operators, s.bodies));
   PetscCall(SceneAdvance(&s, 0, 1, &power));
   for (PetscInt i = 0; i < s.layout->n_vertices; i++) {
     PetscReal here[3];
@@ -97,7 +97,7 @@ static PetscErrorCode TestTurnedBad(const char displacement[], PetscBool refuses
   PetscCall(ExternalCreate(PETSC_COMM_WORLD, s.chain.model, &s.external));
   PetscCall(ExternalSetFromOptions(s.external));
   PetscCall(SceneEnd(&s));
-  error = ExternalSetUp(s.external, s.bodies);
+  error = ExternalSetUp(s.external, s.chain.operators, s.bodies);
   *failed += CheckTrue("one direction across the axis alone is refused, others are not",
                        refuses == !!strstr(scratch.message, "splits the radial and circumferential components"), error);
   PetscCall(SceneDestroy(&s));
@@ -120,7 +120,7 @@ static PetscErrorCode TestBad(int *failed)
     PetscCall(SceneBegin(bad[i][0], &s));
     PetscCall(SceneEnd(&s));
     error = ExternalSetFromOptions(s.external);
-    if (!error) error = ExternalSetUp(s.external, s.bodies);
+    if (!error) error = ExternalSetUp(s.external, s.chain.operators, s.bodies);
     *failed += CheckTrue(bad[i][1], error == PETSC_ERR_USER_INPUT && strstr(scratch.message, bad[i][1]), error);
     if (!strstr(scratch.message, bad[i][1])) printf("     says: %s\n", scratch.message);
     PetscCall(SceneDestroy(&s));

@@ -30,7 +30,7 @@ static PetscErrorCode TestGeometric(const Chain *chain, int *failed)
   PetscFunctionBeginUser;
   PetscCall(ModelCreateNodal(chain->model, &local));
   PetscCall(FieldCreate(chain, Wave, NULL, NULL, &u));
-  PetscCall(GeometricStiffnessCreate(chain->operators, NULL, u, &K));
+  PetscCall(GeometricStiffnessCreate(chain->operators, NULL, u, NULL, &K));
   PetscCall(OperatorsInternalForces(chain->operators, NULL, u, local));
   PetscCall(FieldCreate(chain, Rotation, NULL, NULL, &x));
   PetscCall(FieldCreate(chain, Turned, NULL, local, &y));

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy
 
 from .deck import Section
-from .mesh.faces import nodes_by_kind, surface_nodes
+from .mesh.faces import cell_middles, nodes_by_kind, surface_nodes
 
 
 @dataclass
@@ -35,15 +35,6 @@ def normal_of(deck, faces):
     normal *= -numpy.sign((normal * inward).sum(axis=1))[:, None]
     total = normal.sum(axis=0)
     return total / max(numpy.linalg.norm(total), 1e-300)
-
-
-def cell_middles(deck, cells):
-    """Middles of cells."""
-    found = numpy.zeros((len(cells), 3))
-    for low, high, block in zip(deck.firsts(), deck.firsts()[1:], deck.blocks):
-        inside = (cells >= low) & (cells < high)
-        found[inside] = deck.x[block.nodes[cells[inside] - low]].mean(axis=1)
-    return found
 
 
 def side_of(deck, faces, axis):
@@ -88,14 +79,16 @@ def add_bolts(assembly, parts):
 
 
 def add_stages(assembly):
-    """Bolts are tightened before anything else acts."""
+    """First surfaces that overlap are fitted, then bolts tightened, before anything else acts."""
     entries = assembly.result.entries
     bolts = [entry.name for entry in entries if entry.kind == "loads" and any(key == "part" for key, *_ in entry.rows)]
-    if not bolts:
-        return
     rest = {kind: [entry.name for entry in entries if entry.kind == kind and entry.name not in bolts] for kind in ("loads", "motions")}
     rest["sliding"] = [entry.name for entry in entries if entry.kind == "contacts" and any(key == "rotation" for key, *_ in entry.rows)]
     rows = [(key, ",".join(names), "all else") for key, names in rest.items() if names]
-    if rows:
+    fits = [name for name, _ in assembly.result.fits]
+    if fits and (bolts or rows):
+        assembly.add("stages", "fit", [("interferences", ",".join(fits), str(assembly.result.fits[0][1]))])
+    if bolts and (fits or rows):
         assembly.add("stages", "tighten", [("loads", ",".join(bolts), str(assembly.deck.bolts[0][0].place))])
+    if rows and (bolts or fits):
         assembly.add("stages", "act", rows)

@@ -81,8 +81,9 @@ def add_gaps(result, output):
 def write_gaps(result, units, files):
     """The gap at each node of the slave, in SI."""
     for path, surface, value in files:
-        rows = [",".join(f"{v:.17g}" for v in (*result.x[node], value * units.length))
-                for node in surface_nodes(result, result.surfaces[surface]).tolist()]
+        nodes = surface_nodes(result, result.surfaces[surface]).tolist()
+        each = {result.assembly.into[node]: gap for node, gap in value.items()} if isinstance(value, dict) else dict.fromkeys(nodes, value)
+        rows = [",".join(f"{v:.17g}" for v in (*result.x[node], each[node] * units.length)) for node in nodes]
         path.write_text("\n".join(["x_m,y_m,z_m,gap_m", *rows]) + "\n", encoding="utf-8")
 
 

@@ -203,7 +203,8 @@ class Contact:
     centre: tuple = ()
     turning: Place = None  # where the rotation is from
     damping: Place = None  # where friction damping is from
-    gap: tuple = ()  # of the unloaded surfaces at all nodes of the slave, and its Place
+    gap: tuple = ()  # of the unloaded surfaces at all nodes of the slave, or of each by its number, and its Place
+    fit: tuple = ()  # by how much more they overlap than in the mesh, in a stage before all else, and its Place
 
 
 @dataclass

@@ -1,26 +1,29 @@
-"""Gaps of a contact as the deck has it: how far nodes of the slave lie from the master below them."""
+"""Gaps of a contact as the deck has it: how far nodes of the slave lie from the master below them, negative inside of it."""
 
 import numpy
 
-from .mesh.faces import nodes_by_kind, surface_nodes
+from .mesh.faces import cell_middles, nodes_by_kind, surface_nodes
 
 NEAREST = 16  # triangles whose middles are nearest to a node, among which its foot is looked for
 UPRIGHT = 1e-2  # sine of the angle to the normal above which a foot is beyond an edge of the master
 
 
 def triangles(deck, faces):
-    """Places [t][3][3] of flat triangles of faces, those of second order in pieces."""
-    found = [numpy.empty((0, 3, 3))]
-    for _, nodes in nodes_by_kind(deck, faces):
+    """Places [t][3][3] of flat triangles of faces, those of second order in pieces, and the middles [t][3] of their cells."""
+    found, of_cells = [numpy.empty((0, 3, 3))], [numpy.empty((0, 3))]
+    for rows, nodes in nodes_by_kind(deck, faces):
+        middle = cell_middles(deck, faces[rows, 0])
         n = 3 if nodes.shape[1] in (3, 6) else 4
         ring = list(range(n)) if nodes.shape[1] == n else [k for i in range(n) for k in (i, n + i)]
         centre = deck.x[nodes].mean(axis=1) if nodes.shape[1] in (3, 4) else deck.x[nodes[:, n:2 * n]].mean(axis=1)
         if nodes.shape[1] == 3:
             found.append(deck.x[nodes])
+            of_cells.append(middle)
             continue
         for a, b in zip(ring, ring[1:] + ring[:1]):
             found.append(numpy.stack([deck.x[nodes[:, a]], deck.x[nodes[:, b]], centre], axis=1))
-    return numpy.concatenate(found)
+            of_cells.append(middle)
+    return numpy.concatenate(found), numpy.concatenate(of_cells)
 
 
 def nearest(points, corners):
@@ -46,9 +49,9 @@ def nearest(points, corners):
 
 
 def gaps(deck, slave, master):
-    """Distance to the master of each node of the slave that has its foot on it, in the units of the deck."""
+    """Distance to the master of each node of the slave that has its foot on it, in the units of the deck, negative inside."""
     from scipy.spatial import cKDTree
-    points, corners = deck.x[surface_nodes(deck, slave)], triangles(deck, master)
+    points, (corners, middle) = deck.x[surface_nodes(deck, slave)], triangles(deck, master)
     if not len(points) or not len(corners):
         return numpy.empty(0)
     count = min(NEAREST, len(corners))
@@ -56,6 +59,7 @@ def gaps(deck, slave, master):
     near = near.reshape(len(points), count)
     foot, far, normal = nearest(numpy.repeat(points, count, axis=0), corners[near.ravel()])
     row = numpy.arange(len(points)) * count + far.reshape(len(points), count).argmin(axis=1)
-    along = abs(numpy.einsum("ni,ni->n", points - foot[row], normal[row]))
+    along = numpy.einsum("ni,ni->n", points - foot[row], normal[row])
     beyond = numpy.sqrt(numpy.maximum(far[row]**2 - along**2, 0))
-    return far[row][beyond <= UPRIGHT * far[row] + 1e-12 * abs(points).max()]
+    inward = numpy.einsum("ni,ni->n", middle[near.ravel()[row]] - foot[row], normal[row])
+    return (-numpy.sign(along * inward) * far[row])[beyond <= UPRIGHT * far[row] + 1e-12 * abs(points).max()]

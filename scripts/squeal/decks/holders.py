@@ -174,15 +174,28 @@ def set_turning(deck):
 
 
 def gap_rows(deck, contact):
-    """The tolerance that finds the pairs of surfaces that the deck has apart; such a gap is said, since only a state knows it."""
+    """The tolerance that finds the pairs of surfaces that are apart in the deck, or overlap; that is said, since only a state knows it."""
     found = gaps(deck, deck.surfaces[contact.slave][0], deck.surfaces[contact.master][0])
     size = numpy.ptp(deck.x[surface_nodes(deck, deck.surfaces[contact.slave][0])], axis=0).max()
-    if not found.max(initial=0) > TOUCH * size:
+    most = abs(found).max(initial=0)
+    if not most > TOUCH * size:
         return []
     deck.differ(contact.place, f"contact {contact.slave}, {contact.master}: apart by {found.min():.3g} to {found.max():.3g} (units of the "
                                "deck); statics and runs in time have this gap, modes take all pairs as closed but about a static state")
-    tolerance = float(f"{ROOM * found.max():.3g}")
-    return [("tolerance", ("length", (tolerance,)), f"{contact.place} finds pairs that are {found.max():.3g} apart there")]
+    tolerance = float(f"{ROOM * most:.3g}")
+    return [("tolerance", ("length", (tolerance,)), f"{contact.place} finds pairs that are {most:.3g} apart there")]
+
+
+def fit_rows(assembly, contact):
+    """The interference beyond that of the mesh, and whether surfaces that overlap in all are fitted in a stage of their own."""
+    value, place = contact.fit
+    if value > 0:
+        return [("interference", ("length", (value,)), str(place))], True
+    deck = assembly.deck
+    if gaps(deck, deck.surfaces[contact.slave][0], deck.surfaces[contact.master][0]).min(initial=0) < 0:
+        return [], True
+    deck.note(place, f"*CONTACT INTERFERENCE {contact.slave}, {contact.master}: these surfaces do not overlap: nothing to fit")
+    return [], False
 
 
 def add_contacts(assembly):
@@ -207,6 +220,8 @@ def add_contacts(assembly):
         else:
             rows.append(("law", "constraint", f"{comment} no stiffness is given: exact contact"))
         rows += gap_rows(assembly.deck, contact)
+        more, fitted = fit_rows(assembly, contact) if contact.fit else ([], False)
+        rows += more
         hints = []
         if contact.decay:
             rows += [("friction_law", "static_kinetic", comment), ("mu_static", ("", contact.decay[:1]), comment),
@@ -223,6 +238,8 @@ def add_contacts(assembly):
             hints.append('slip: "0,1,0"   the slave\'s sliding direction is not in the file: give it, or rotation: "x,y,z" in rad/s, '
                          'or where it holds by friction kt: its stiffness along the surface')
         assembly.add("contacts", contact.name, rows, hints)
+        if fitted:
+            assembly.result.fits.append((assembly.result.entries[-1].name, contact.fit[1]))
         if contact.gap:
             assembly.result.gaps.append((assembly.result.entries[-1], slave, *contact.gap))
 

@@ -182,6 +182,15 @@ static PetscErrorCode StageTake(Statics s, PetscInt k, const StageTarget target[
   PetscFunctionReturn(0);
 }
 
+/* Whether the first stage names the interference of a contact: that of the meshes acts from the beginning, and it alone
+   in a stage of that name */
+static PetscBool StageFits(const Stage *first, const char name[])
+{
+  for (PetscInt i = 0; i < first->n_interferences; i++)
+    if (!strcmp(first->interferences[i], name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* What the options must say of contacts that stages name: along what they slide, and by how much they overlap */
 static PetscErrorCode StagesCheckContacts(Statics s, PetscInt n, const ContactInterface c[], PetscBool *const named[],
                                           PetscBool told[], PetscBool overlaps[])
@@ -193,9 +202,11 @@ static PetscErrorCode StagesCheckContacts(Statics s, PetscInt n, const ContactIn
     PetscCheck(!named[2][i] || told[i], s->comm, PETSC_ERR_USER_INPUT,
                "a stage lets contact %s slide, and nothing says along what: give -%s_slip x,y,z or -%s_rotation",
                c[i].name, c[i].name, c[i].name);
-    PetscCheck(!named[3][i] || overlaps[i], s->comm, PETSC_ERR_USER_INPUT,
-               "a stage lets the interference of contact %s act, which has none: give -%s_interference (m)", c[i].name,
-               c[i].name);
+    PetscCheck(
+      !named[3][i] || overlaps[i] || StageFits(s->stages, c[i].name), s->comm, PETSC_ERR_USER_INPUT,
+      "a stage lets the interference of contact %s act, which has none: give -%s_interference (m), or name it in "
+      "the first stage, in which meshes that overlap are pressed apart",
+      c[i].name, c[i].name);
   }
   PetscFunctionReturn(0);
 }

@@ -331,7 +331,7 @@ def finish_steps(reader):
             said = "no band tells the frequency; give `loss_factor` with `-model_loss_frequency`"
             deck.note(material.places["LOSS"], f"*DAMPING, STRUCTURAL={material.loss:g}: {said}")
             material.loss = 0.0
-    pressed = deck.loads or deck.bolts or deck.gravity or any(any(support.values.values()) for support in deck.supports)
+    pressed = deck.loads or deck.bolts or deck.gravity or reader.fits or any(any(support.values.values()) for support in deck.supports)
     if not (deck.contacts and pressed):
         deck.preload = None
     if reader.preload and not deck.preload:

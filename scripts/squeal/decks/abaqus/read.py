@@ -25,9 +25,7 @@ ANALYSES = {"DYNAMIC", "BUCKLE", "MODAL DYNAMIC", "STEADY STATE DYNAMICS", "CONT
 GEOMETRY = {"SYSTEM", "NMAP", "NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"}  # without them the mesh is another
 PLAIN = {"HEADING", "END STEP", "ASSEMBLY", "END ASSEMBLY"}  # say nothing of the model
 ADDED = {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "BOUNDARY", "CLOAD", "DLOAD", "DSLOAD", "TIE"}  # may come in several pieces
-INSTEAD = {"CONTACT INTERFERENCE": "at the end of its step the overlap of the mesh acts in whole, as in squeal without it; for another one "
-                                   "give the contact an `interference`",
-           "SHELL GENERAL SECTION": "its shells have no thickness",
+INSTEAD = {"SHELL GENERAL SECTION": "its shells have no thickness",
            "CONTACT": "squeal needs a *CONTACT PAIR of two surfaces"}
 
 # Options that change what a card says; others are listed
@@ -52,7 +50,7 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
          "TIE": {"NAME", "POSITION TOLERANCE", "ADJUST", "TYPE"},
          "CONTACT PAIR": {"INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST", "CPSET", "NO THICKNESS", "MECHANICAL CONSTRAINT",
                           "TIED"},
-         "CLEARANCE": {"MASTER", "SLAVE", "VALUE"},
+         "CLEARANCE": {"MASTER", "SLAVE", "VALUE", "TABULAR"}, "CONTACT INTERFERENCE": {"SHRINK", "OP"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
          "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
          "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
@@ -228,7 +226,7 @@ class Reader:
         self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
-        self.clearances = []  # (slave and master, value, place)
+        self.clearances, self.fits = [], []  # (slave and master, value or those of nodes, place)
         self.of_bolts = []  # forces of all steps, those that ended too
         self.supports = []  # (step, Support) as they come
         self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC

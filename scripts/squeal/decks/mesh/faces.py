@@ -85,3 +85,12 @@ def faces_by_three(deck, three):
     wanted = keys_of(three)
     at = numpy.minimum(numpy.searchsorted(keys[order], wanted), len(keys) - 1)
     return faces[order[at]], keys[order[at]] != wanted
+
+
+def cell_middles(deck, cells):
+    """Middles of cells."""
+    found = numpy.zeros((len(cells), 3))
+    for low, high, block in zip(deck.firsts(), deck.firsts()[1:], deck.blocks):
+        inside = (cells >= low) & (cells < high)
+        found[inside] = deck.x[block.nodes[cells[inside] - low]].mean(axis=1)
+    return found
