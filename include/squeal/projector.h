@@ -10,6 +10,7 @@
                 the slave's slip velocity over the step (slip)
    without regularisation. mu is that of the slip speed (frictionlaw.h), extrapolated from the last two half steps.
    Block Gauss-Seidel on W = G M^-1 G', the cone of each pair solved exactly; residual of the natural map; warm start.
+   One rank solves few pairs; many are solved by all ranks, in turn where they move the same nodes (-projector_ranks).
    Each node has Cartesian components of its body's frame.
 
    Kinematics per interface, -contact_kinematics:

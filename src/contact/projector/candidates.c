@@ -77,7 +77,7 @@ PetscErrorCode ProjectorSearch(ContactProjector p, PetscReal t, PetscReal reach,
   p->candidates.n = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) PetscCall(CandidatesFind(p, k, reach, u));
   for (PetscInt i = 0; i < p->n_interfaces; i++)
-    if (p->mortar[i]) PetscCall(MortarActivate(p, i, reach * p->margin[i], u));
+    if (MortarIsHere(p, i)) PetscCall(MortarActivate(p, i, reach * p->margin[i], u));
   p->first_candidate[p->n_pairs] = p->candidates.n;
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     MasterActivate(&p->master[i], &p->nodes, SlidingStays(&p->sliding[i]), p->is_active);

@@ -224,7 +224,7 @@ PetscErrorCode ProjectorMortarStart(ContactProjector p, PetscReal t, const Petsc
   if (p->u_knot)
     for (int k = 0; k < 2; k++) PetscCall(PetscArraycpy(&p->u_knot[3 * k * p->share.n_nodes], u, 3 * p->share.n_nodes));
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    if (!p->mortar[i]) continue;
+    if (!MortarIsHere(p, i)) continue;
     p->mortar[i]->has[1] = PETSC_FALSE;
     PetscCall(KnotMake(p, i, 0, t, u));
     PetscCall(SidesJoin(p->mortar[i]));
@@ -303,7 +303,7 @@ PetscErrorCode MortarActivate(ContactProjector p, PetscInt i, PetscReal reach, c
 
 PetscInt MortarMemoryLength(const ContactProjector p)
 {
-  return AnyTravels(p) ? 3 + 6 * p->share.n_nodes : 0;
+  return p->u_knot ? 3 + 6 * p->share.n_nodes : 0;
 }
 
 void MortarGetMemory(const ContactProjector p, PetscReal values[])

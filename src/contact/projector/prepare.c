@@ -20,11 +20,10 @@
 void NodesPredict(ContactProjector p, PetscReal dt)
 {
   const ProjectorNodes *nodes = &p->nodes;
-  const PetscInt        n     = ShareCountSent(&p->share);
 
-  for (PetscInt i = 0; i < n; i++)
+  for (PetscInt i = 0; i < p->share.n_need; i++)
     for (int d = 0; d < 3; d++) {
-      const PetscInt at = 3 * p->share.send_node[i] + d;
+      const PetscInt at = 3 * p->share.need[i] + d;
 
       nodes->predicted[at] = nodes->u[at] + dt * nodes->v[at];
     }

@@ -7,10 +7,11 @@
    It begins with a guess from the forces of the steps before. Pairs that are open and that the motion without contact
    leaves open are not visited; when the others have converged, all are looked at, and those that need force join.
    Bodies that touch and move together without force leave impulses that are rounding: the tolerance is never below
-   that.
+   that. Where pairs of other ranks move the same nodes, each sweep is one over the pairs of all of them (border.c).
 */
 #include "base/algebra/versions.h"
 #include "projectorimpl.h"
+#include "rows.h"
 
 /* roundings of a relative velocity, by its terms: five products and sums in three directions, and what the velocities
    carry of the sweeps before */
@@ -79,84 +80,6 @@ static PetscReal PairSolve(ProjectorPair *pair, const PetscReal minv[], PetscRea
   return change;
 }
 
-/*
-   The same for a pair whose directions are not coupled: Cartesian, without turning to n, t, b and back. With the
-   relative velocity q, offset included, the impulse that solves the pair alone is the projection of z = p - q / w on
-   the cone.
-*/
-INTO_VERSIONS void RowVelocity(const ProjectorRow *row, const PetscReal v[], PetscReal q[3])
-{
-  const PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]],
-                  *d = &v[3 * row->node[3]], *s = &v[3 * row->node[4]], *w = row->weight, *D = row->D;
-
-  for (int i = 0; i < 3; i++)
-    q[i] = (s[i] - ((w[0] * a[i] + w[1] * b[i]) + (w[2] * c[i] + w[3] * d[i]))) + row->offset[i];
-  if (!D) return;
-  for (int i = 0; i < 3; i++) q[i] += D[3 * i] * s[0] + D[3 * i + 1] * s[1] + D[3 * i + 2] * s[2];
-}
-
-/* Velocities of the nodes after an impulse */
-INTO_VERSIONS void RowPush(const ProjectorRow *row, const PetscReal p[3], PetscReal v[])
-{
-  PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]], *d = &v[3 * row->node[3]];
-  PetscReal *s       = &v[3 * row->node[4]];
-  const PetscReal *h = row->push, *D = row->D;
-
-  for (int i = 0; i < 3; i++) {
-    s[i] += h[4] * p[i];
-    a[i] -= h[0] * p[i];
-    b[i] -= h[1] * p[i];
-    c[i] -= h[2] * p[i];
-    d[i] -= h[3] * p[i];
-  }
-  if (!D) return;
-  for (int i = 0; i < 3; i++) s[i] += h[4] * (D[i] * p[0] + D[3 + i] * p[1] + D[6 + i] * p[2]);
-}
-
-/* Projects z on the cone |z_T| <= mu z_n: along the tangent plane, not the nearest point. z_n stays, since Coulomb's
-   law is not associated; a z that pulls becomes 0 */
-INTO_VERSIONS ContactStatus RowProject(const ProjectorRow *row, PetscReal z[3])
-{
-  const PetscReal normal = row->n[0] * z[0] + row->n[1] * z[1] + row->n[2] * z[2], cone = row->mu * normal;
-  PetscReal       square = 0, factor;
-
-  if (!(normal > 0)) {
-    z[0] = z[1] = z[2] = 0;
-    return CONTACT_OPEN;
-  }
-  for (int i = 0; i < 3; i++) {
-    z[i] -= normal * row->n[i];
-    square += z[i] * z[i];
-  }
-  factor = FrictionShorten(square, cone);
-  for (int i = 0; i < 3; i++) z[i] = normal * row->n[i] + factor * z[i];
-  return row->mu > 0 && factor == 1 ? CONTACT_STICK : CONTACT_SLIP;
-}
-
-/* What the impulse would have to change by, the residual of the natural map, N s; z is the impulse then */
-INTO_VERSIONS ContactStatus RowChange(const ProjectorRow *row, const PetscReal q[3], PetscReal z[3],
-                                      PetscReal change[3])
-{
-  ContactStatus status;
-
-  for (int i = 0; i < 3; i++) z[i] = row->p[i] - row->mass * q[i];
-  status = RowProject(row, z);
-  for (int i = 0; i < 3; i++) change[i] = z[i] - row->p[i];
-  return status;
-}
-
-/* Returns the square of the change */
-INTO_VERSIONS PetscReal RowSolve(ProjectorRow *row, PetscReal v[])
-{
-  PetscReal q[3], z[3], change[3];
-
-  RowVelocity(row, v, q);
-  row->status = RowChange(row, q, z, change);
-  for (int i = 0; i < 3; i++) row->p[i] = z[i];
-  RowPush(row, change, v);
-  return change[0] * change[0] + change[1] * change[1] + change[2] * change[2];
-}
-
 PetscReal PairMass(const ProjectorPair *pair)
 {
   if (pair->w > 0) return 1 / pair->w;
@@ -175,20 +98,6 @@ INTO_VERSIONS PetscReal NormalVelocity(const ContactProjector p, PetscInt k)
   }
   PairSlip(&p->pair[k], p->nodes.v, q);
   return q[0];
-}
-
-/* Sum of the sizes of the terms of a relative velocity, m/s */
-INTO_VERSIONS PetscReal RowSize(const ProjectorRow *row, const PetscReal v[])
-{
-  const PetscReal *a = &v[3 * row->node[0]], *b = &v[3 * row->node[1]], *c = &v[3 * row->node[2]],
-                  *d = &v[3 * row->node[3]], *s = &v[3 * row->node[4]], *w = row->weight;
-  PetscReal sum = 0;
-
-  for (int i = 0; i < 3; i++)
-    sum +=
-      (PetscAbsReal(s[i]) + PetscAbsReal(row->offset[i])) + ((PetscAbsReal(w[0] * a[i]) + PetscAbsReal(w[1] * b[i])) +
-                                                             (PetscAbsReal(w[2] * c[i]) + PetscAbsReal(w[3] * d[i])));
-  return sum;
 }
 
 /* Rounding of the relative velocity of a pair as an impulse, N s: NOISE eps mass times the sum of the terms' sizes
@@ -210,10 +119,20 @@ INTO_VERSIONS PetscReal PairNoise(ContactProjector p, PetscInt k)
   return NOISE * PETSC_MACHINE_EPSILON * PairMass(pair) * sum;
 }
 
-/* The guesses act; the pairs that have one, or that the motion closes, are to be visited. All pairs are looked at
-   before any guess acts, so that which ones are visited does not depend on their order. scale: the largest guess,
-   noise: of any pair, N s. */
-static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscReal *noise)
+/* Whether a pair moves a node that pairs of other ranks move too */
+static PetscBool PairIsAtBorder(const ProjectorPair *pair, const PetscBool shared[])
+{
+  for (int k = 0; k < pair->n_own; k++)
+    if (shared[pair->own[k]]) return PETSC_TRUE;
+  for (int k = 0; k < pair->n; k++)
+    if (shared[pair->node[k]] && PetscAbsReal(pair->weight[k]) > BORDER_WEIGHT) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Finds the pairs that have a guess or that the motion closes, which are to be visited; scale: the largest guess,
+   noise: of any pair, N s. All pairs are looked at before any guess acts, so that which ones are visited does not
+   depend on their order. */
+static VERSIONS PetscInt PairsLook(ContactProjector p, PetscReal *scale, PetscReal *noise)
 {
   PetscInt n = 0;
 
@@ -227,16 +146,31 @@ static VERSIONS PetscInt PairsBegin(ContactProjector p, PetscReal *scale, PetscR
     *noise        = PetscMax(*noise, PairNoise(p, k));
     p->visited[k] = pair->p[0] > 0 || NormalVelocity(p, k) < 0 ? PETSC_TRUE : PETSC_FALSE;
     if (p->visited[k]) p->visit[n++] = k;
+    if (p->border.n) p->at_border[k] = PairIsAtBorder(pair, p->border.shared);
   }
+  return n;
+}
+
+/* Which of the visited pairs: all, those at shared nodes, the others */
+typedef enum { PASS_ALL, PASS_BORDER, PASS_INSIDE } Pass;
+
+static inline PetscBool PassTakes(const ContactProjector p, Pass pass, PetscInt k)
+{
+  return pass == PASS_ALL || p->at_border[k] == (pass == PASS_BORDER) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The guesses act */
+static VERSIONS void PairsPush(ContactProjector p, PetscInt n, Pass pass)
+{
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt k = p->visit[i];
 
+    if (!PassTakes(p, pass, k)) continue;
     if (p->row[k].mass > 0)
       RowPush(&p->row[k], p->row[k].p, p->nodes.v);
     else
       PairPush(&p->pair[k], p->pair[k].p, p->nodes.minv, p->nodes.v);
   }
-  return n;
 }
 
 /* A vector along n, t, b */
@@ -305,41 +239,97 @@ INTO_VERSIONS void PairVisit(ContactProjector p, PetscInt k, PetscReal *change, 
   *scale  = normal > *scale ? normal : *scale;
 }
 
-/* Sweeps until the next one would change impulses by less than the tolerance, going by how fast the changes (squared)
-   decrease, in the step before where this one has not shown it yet, or max_it are done; scale is the largest impulse,
-   of the step before or now */
-static VERSIONS void PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale,
-                                ProjectorConvergence *c)
+/* One sweep: the squared change of an impulse, at most, and the largest of them, if above scale */
+static VERSIONS void PairsVisit(ContactProjector p, PetscInt n, Pass pass, PetscReal *change, PetscReal *scale)
 {
-  while (c->sweeps < p->max_it) {
-    const PetscReal last = c->change;
-
-    c->change = 0;
-    *scale    = before;
-    for (PetscInt i = 0; i < n; i++) PairVisit(p, p->visit[i], &c->change, scale);
-    c->sweeps++;
-    if (last > 0) p->rate = PetscMin(1, c->change / last);
-    if (!(c->change * p->rate > PetscSqr(0.5 * (PROJECTOR_RTOL * *scale + c->noise)))) break;
-  }
+  for (PetscInt i = 0; i < n; i++)
+    if (PassTakes(p, pass, p->visit[i])) PairVisit(p, p->visit[i], change, scale);
 }
 
-/* Converged where the residual of all pairs is at most PROJECTOR_RTOL times the largest impulse plus noise. Sweeps
-   alone do not tell that: each sees a pair before the later ones have moved its nodes. The loop ends, since sweeps
-   only grow; without any pair to visit PairsCheck() finds residuals of 0 or adds one. */
-void PairsSolve(ContactProjector p, ProjectorConvergence *c)
+/* The guesses act, or where size is given, [2] of PairsVisit(), a sweep; in turn with the neighbours. */
+static PetscErrorCode PairsPass(ContactProjector p, PetscInt n, PetscReal size[2])
 {
-  PetscReal before, scale, residual;
-  PetscInt  n;
+  PetscFunctionBeginUser;
+  for (int inside = 0; inside < 2; inside++) {
+    const Pass pass = !p->border.n ? PASS_ALL : inside ? PASS_INSIDE : PASS_BORDER;
 
-  *c    = (ProjectorConvergence){.worst = -1};
-  n     = PairsBegin(p, &before, &c->noise);
-  scale = before;
+    if (p->border.n && !inside) PetscCall(BorderBegin(p));
+    if (size)
+      PairsVisit(p, n, pass, &size[0], &size[1]);
+    else
+      PairsPush(p, n, pass);
+    if (!p->border.n) PetscFunctionReturn(0);
+    if (!inside) PetscCall(BorderSend(p));
+  }
+  PetscCall(BorderEnd(p));
+  if (size) PetscCall(BorderLargest(p, 2, size));
+  PetscFunctionReturn(0);
+}
+
+/* Whether a sweep whose change (squared) comes after `last`, or after none, 0, is the last one: the next would change
+   impulses by less than the tolerance, going by how fast changes decrease, in the step before where this one has not
+   shown it yet. Where the order of pairs hangs on the ranks, sweeps go on until changes are rounding: those of one
+   term, or no longer decreasing. */
+static PetscBool SweepIsLast(const ContactProjector p, const ProjectorConvergence *c, PetscReal last, PetscReal scale)
+{
+  const PetscReal next = c->change * p->rate;
+
+  if (next > PetscSqr(0.5 * (ProjectorTolerance(p) * scale + c->noise))) return PETSC_FALSE;
+  if (!p->spread || next <= PetscSqr(0.5 * c->noise / NOISE)) return PETSC_TRUE;
+  return last > 0 && c->change > 0.25 * last ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Sweeps until the last one or max_it are done; scale is the largest impulse, of the step before or now */
+static PetscErrorCode PairsSweep(ContactProjector p, PetscInt n, PetscReal before, PetscReal *scale,
+                                 ProjectorConvergence *c)
+{
+  PetscFunctionBeginUser;
+  while (c->sweeps < p->max_it) {
+    const PetscReal last    = c->change;
+    PetscReal       size[2] = {0, before};
+
+    PetscCall(PairsPass(p, n, size));
+    c->change = size[0];
+    *scale    = size[1];
+    c->sweeps++;
+    if (last > 0) p->rate = PetscMin(1, c->change / last);
+    if (SweepIsLast(p, c, last, *scale)) break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Converged where the residual of all pairs is at most the tolerance times the largest impulse plus noise. Sweeps
+   alone do not tell that: each sees a pair before the later ones have moved its nodes. The loop ends, since sweeps
+   only grow; without any pair to visit PairsCheck() finds residuals of 0 or adds one. All ranks that hang together
+   go through it alike. */
+PetscErrorCode PairsSolve(ContactProjector p, ProjectorConvergence *c)
+{
+  const PetscReal rtol    = ProjectorTolerance(p);
+  PetscReal       most[3] = {0}, scale, residual; /* largest impulse before, noise, pairs to be visited */
+  PetscInt        n;
+
+  PetscFunctionBeginUser;
+  *c      = (ProjectorConvergence){.worst = -1};
+  n       = PairsLook(p, &most[0], &most[1]);
+  most[2] = (PetscReal)n;
+  PetscCall(BorderLargest(p, 3, most));
+  PetscCall(PairsPass(p, n, NULL));
+  c->noise = most[1];
+  scale    = most[0];
   do {
-    if (n > 0) PairsSweep(p, n, before, &scale, c);
-    residual = PairsCheck(p, &n, &c->worst);
+    PetscReal all[2];
+
+    if (most[2] > 0) PetscCall(PairsSweep(p, n, most[0], &scale, c));
+    all[0] = c->own = PairsCheck(p, &n, &c->worst);
+    all[1]          = (PetscReal)n;
+    PetscCall(BorderLargest(p, 2, all));
+    residual = all[0];
+    most[2]  = all[1];
     c->checks++;
-    c->residual = residual == 0 ? 0 : residual / (scale + c->noise / PROJECTOR_RTOL);
+    c->residual = residual == 0 ? 0 : residual / (scale + c->noise / rtol);
+    c->own      = c->own == 0 ? 0 : c->own / (scale + c->noise / rtol);
     /* not where it is no number */
-    c->converged = residual <= PROJECTOR_RTOL * scale + c->noise ? PETSC_TRUE : PETSC_FALSE;
-  } while (!c->converged && c->sweeps < p->max_it && !PetscIsNanReal(residual));
+    c->converged = residual <= rtol * scale + c->noise ? PETSC_TRUE : PETSC_FALSE;
+  } while (!c->converged && c->sweeps < p->max_it && !PetscIsInfOrNanReal(residual));
+  PetscFunctionReturn(0);
 }

@@ -1,16 +1,18 @@
 /*
-   ContactProjector: life cycle, start, and the step as all ranks see it: values of the active nodes go to the root,
-   which solves all pairs (project.c), and the forces come back. Whether the next step begins with a search comes with
+   ContactProjector: life cycle, and the step as all ranks see it: values of the active nodes go to the ranks that have
+   pairs, which solve them (project.c), and the forces come back. Whether the next step begins with a search comes with
    them, so that all ranks know it; for that step all nodes are active.
 
-   One rank solves since Gauss-Seidel is sequential, and its order of pairs must not hang on the ranks. The others go on
-   meanwhile: a rank without active nodes needs no forces, and begins the next step. All ranks look at what the root
-   says in `head` when they ask for the active nodes of the next step, or for sums: errors are raised there, by all.
+   Few pairs are solved by one rank: Gauss-Seidel is sequential, and messages would cost more. The others go on
+   meanwhile: a rank without active nodes needs no forces, and begins the next step. All ranks look at what those that
+   solve say in `head` when they ask for the active nodes of the next step, or for sums: errors are raised there, by
+   all.
 */
 #include "projectorimpl.h"
 
-/* What the root says with the forces */
-enum { HEAD_SEARCH, HEAD_FAILED, HEAD_RESIDUAL, HEAD_SWEEPS, HEAD_X, HEAD_DISTORTED = HEAD_X + 3 };
+/* Numbers of which all ranks get the sums with the forces: ranks that need a search, whose forces did not converge, are
+   no numbers, whose mortar faces are distorted; then pairs of each status of each interface */
+enum { HEAD_SEARCH, HEAD_FAILED, HEAD_NAN, HEAD_DISTORTED, HEAD_PAIRS };
 
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
 {
@@ -87,20 +89,50 @@ PetscErrorCode ContactProjectorGetNodes(ContactProjector p, PetscInt *n, const P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ProjectorGatherAll(ContactProjector p, const PetscReal local[], PetscReal root[])
+PetscErrorCode ProjectorGatherAll(ContactProjector p, const PetscReal local[], PetscReal all[])
 {
   PetscFunctionBeginUser;
   PetscCall(ProjectorFinish(p)); /* the answer of the last step lies where messages go */
   PetscCall(ShareSetActive(&p->share, NULL));
-  PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){root}));
+  PetscCall(ShareGather(&p->share, 1, (const PetscReal *const[]){local}, (PetscReal *const[]){all}));
   PetscFunctionReturn(0);
+}
+
+/* Nodes that this rank's pairs may move until the next search: those of a pair whose place is fixed, or of all facets
+   that its slaves may come to */
+static void NodesTouched(ContactProjector p, PetscBool touched[])
+{
+  for (PetscInt k = 0; k < p->n_pairs; k++) {
+    ProjectorPair *pair = &p->pair[k];
+
+    touched[pair->slave] = PETSC_TRUE;
+    if (!SlidingStays(&p->sliding[pair->interface])) continue;
+    if (!PairPlace(p, k, p->nodes.rest, p->nodes.rest, PETSC_MAX_REAL)) continue;
+    for (int i = 0; i < pair->n; i++)
+      if (PetscAbsReal(pair->weight[i]) > BORDER_WEIGHT) touched[pair->node[i]] = PETSC_TRUE;
+    for (int i = 0; i < pair->n_own; i++) touched[pair->own[i]] = PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < p->n_interfaces && p->share.solves; i++) {
+    const ContactSurface *s = p->master[i].surface;
+
+    if (SlidingStays(&p->sliding[i])) continue;
+    for (PetscInt f = 0; f < s->n_facets; f++)
+      for (int j = 0; j < s->facet[f].n && p->master[i].live[f]; j++)
+        touched[p->master[i].node[s->facet[f].node[j]]] = PETSC_TRUE;
+  }
 }
 
 PetscErrorCode ProjectorActivate(ContactProjector p)
 {
+  PetscBool *touched;
+
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(p->is_active, (PetscMPIInt)p->share.n_nodes, MPIU_BOOL, p->share.root, p->share.comm));
   PetscCall(ShareSetActive(&p->share, p->is_active));
+  if (!p->spread || p->share.size == 1) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(p->share.n_nodes, &touched));
+  NodesTouched(p, touched);
+  PetscCall(BorderFind(p, touched));
+  PetscCall(PetscFree(touched));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +151,7 @@ PetscErrorCode ContactProjectorSetMass(ContactProjector p, const PetscReal minv[
 {
   PetscFunctionBeginUser;
   PetscCall(ProjectorGatherAll(p, minv, p->nodes.minv));
-  for (PetscInt i = 0; i < p->share.n_nodes && p->share.rank == p->share.root; i++)
+  for (PetscInt i = 0; i < p->share.n_nodes && p->share.solves; i++)
     p->nodes.even[i] = MassIsEven(&p->nodes.minv[3 * i]);
   p->has_mass = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -133,27 +165,27 @@ static PetscBool ProjectorTravels(const ContactProjector p)
   return PETSC_FALSE;
 }
 
-/* The step on the root, from the values of the nodes to their forces */
-static PetscErrorCode RootProject(ContactProjector p, const ContactStep *step, PetscReal head[SHARE_HEAD])
+/* The step of this rank's pairs, from the values of the nodes to their forces */
+static PetscErrorCode PairsProject(ContactProjector p, const ContactStep *step, PetscReal head[])
 {
   ProjectorConvergence convergence;
 
   PetscFunctionBeginUser;
-  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  if (!p->share.solves) PetscFunctionReturn(0);
   PetscCall(PairsPrepare(p, step));
-  PairsSolve(p, &convergence);
-  PairsRecord(p, step, &convergence);
+  PetscCall(PairsSolve(p, &convergence));
+  PairsRecord(p, step, &convergence, &head[HEAD_PAIRS]);
   if (ProjectorTravels(p)) {
     NodesPredict(p, step->dt);
     head[HEAD_SEARCH] = ProjectorNeedsSearch(p, p->nodes.predicted) ? 1 : 0;
   }
-  p->noise            = convergence.noise / step->kick;
-  head[HEAD_RESIDUAL] = convergence.residual;
-  head[HEAD_SWEEPS]   = (PetscReal)convergence.sweeps;
-  head[HEAD_FAILED]   = convergence.converged ? 0 : 1;
+  head[HEAD_FAILED] = convergence.converged ? 0 : 1;
+  head[HEAD_NAN]    = PetscIsInfOrNanReal(convergence.residual) ? 1 : 0;
   for (PetscInt i = 0; i < p->n_interfaces; i++)
-    if (p->mortar[i] && p->mortar[i]->moved.n_failed) head[HEAD_DISTORTED] = (PetscReal)(i + 1);
-  for (int d = 0; d < 3 && convergence.worst >= 0; d++) head[HEAD_X + d] = p->slave_x[3 * convergence.worst + d];
+    if (p->mortar[i] && p->mortar[i]->moved.n_failed) head[HEAD_DISTORTED] = 1;
+  if (convergence.converged) PetscFunctionReturn(0);
+  p->worst[0] = convergence.own;
+  for (int d = 0; d < 3 && convergence.worst >= 0; d++) p->worst[1 + d] = p->slave_x[3 * convergence.worst + d];
   PetscFunctionReturn(0);
 }
 
@@ -169,26 +201,42 @@ static PetscErrorCode ProjectorAdvance(ContactProjector p, PetscBool search_next
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for forces that did not converge, or are no numbers; of the ranks that say so. Collective. */
+static PetscErrorCode ProjectorComplain(ContactProjector p, const PetscReal head[])
+{
+  const double time     = (double)p->last.time;
+  PetscReal    sweeps[] = {p->n_interfaces ? p->sums[0].sweeps - p->sweeps_before : 0};
+
+  PetscFunctionBeginUser;
+  PetscCheck(head[HEAD_NAN] == 0, p->share.comm, PETSC_ERR_FP,
+             "velocities at the contact surfaces are no numbers at %.6g s", time);
+  if (head[HEAD_FAILED] == 0) PetscFunctionReturn(0);
+  PetscCall(ShareWorst(&p->share, 4, p->worst));
+  PetscCall(ShareWorst(&p->share, 1, sweeps));
+  SETERRQ(p->share.comm, PETSC_ERR_NOT_CONVERGED,
+          "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, "
+          "%.6g, %.6g m; "
+          "raise -projector_max_it %" PetscInt_FMT,
+          time, (double)p->worst[0], (double)ProjectorTolerance(p), (double)sweeps[0], (double)p->worst[1],
+          (double)p->worst[2], (double)p->worst[3], p->max_it);
+}
+
 PetscErrorCode ProjectorFinish(ContactProjector p)
 {
-  const double time = (double)p->last.time;
-  PetscReal    head[SHARE_HEAD];
+  const PetscReal *head;
 
   PetscFunctionBeginUser;
   if (!p->under_way) PetscFunctionReturn(0);
   p->under_way = PETSC_FALSE;
-  PetscCall(ShareReturnEnd(&p->share, head));
-  PetscCheck(!PetscIsNanReal(head[HEAD_RESIDUAL]), p->share.comm, PETSC_ERR_FP,
-             "velocities at the contact surfaces are no numbers at %.6g s", time);
-  PetscCheck(head[HEAD_FAILED] == 0, p->share.comm, PETSC_ERR_NOT_CONVERGED,
-             "contact forces at %.6g s: residual %.6g, must be %g, after %.0f sweeps, worst at the slave node at %.6g, "
-             "%.6g, %.6g m; "
-             "raise -projector_max_it %" PetscInt_FMT,
-             time, (double)head[HEAD_RESIDUAL], (double)PROJECTOR_RTOL, (double)head[HEAD_SWEEPS], (double)head[HEAD_X],
-             (double)head[HEAD_X + 1], (double)head[HEAD_X + 2], p->max_it);
-  if (head[HEAD_DISTORTED] > 0)
-    PetscCall(ContactMovedCheck(p->share.comm, &p->mortar[(PetscInt)head[HEAD_DISTORTED] - 1]->moved));
-  PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] != 0 ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(ShareHeadEnd(&p->share, &head));
+  PetscCall(ProjectorComplain(p, head));
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    if (p->mortar[i] && head[HEAD_DISTORTED] > 0) PetscCall(ContactMovedCheck(p->share.comm, &p->mortar[i]->moved));
+    for (int k = 0; k < CONTACT_N_STATUS; k++) p->sums[i].n[k] = head[HEAD_PAIRS + CONTACT_N_STATUS * i + k];
+    p->sums[i].steps++;
+    ContactSumsCompare(&p->sums[i]);
+  }
+  PetscCall(ProjectorAdvance(p, head[HEAD_SEARCH] > 0 ? PETSC_TRUE : PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 
@@ -199,13 +247,14 @@ PetscErrorCode ContactProject(ContactProjector p, const ContactStep *step, const
 
   PetscFunctionBeginUser;
   PetscCall(ProjectorFinish(p));
-  p->last = *step;
+  p->last          = *step;
+  p->sweeps_before = p->n_interfaces ? p->sums[0].sweeps : 0;
   PetscCall(ShareGather(&p->share, 3, (const PetscReal *const[]){u, before, v},
                         (PetscReal *const[]){p->nodes.u, p->nodes.before, p->nodes.v}));
-  PetscCall(RootProject(p, step, head));
-  PetscCall(ShareReturnBegin(&p->share, p->nodes.force, head));
+  PetscCall(PairsProject(p, step, head));
+  PetscCall(ShareHeadBegin(&p->share, HEAD_PAIRS + CONTACT_N_STATUS * p->n_interfaces, head));
   p->under_way = PETSC_TRUE;
-  PetscCall(ShareGetForces(&p->share, force));
+  PetscCall(ShareReturn(&p->share, p->nodes.force, force));
   PetscFunctionReturn(0);
 }
 
@@ -240,23 +289,50 @@ PetscErrorCode ContactProjectorMark(ContactProjector p)
 
 PetscErrorCode ContactProjectorGetSums(ContactProjector p, PetscInt interface, ContactSums *sums)
 {
+  const ContactSums *s = &p->sums[interface];
+  ContactSlips       slips;
+  PetscReal          added[13], most[3];
+
   PetscFunctionBeginUser;
   PetscCall(ProjectorFinish(p));
   PetscCheck(interface >= 0 && interface < p->n_interfaces, p->share.comm, PETSC_ERR_ARG_OUTOFRANGE,
              "interface %" PetscInt_FMT " must lie between 0 and %" PetscInt_FMT, interface, p->n_interfaces - 1);
-  *sums = p->sums[interface];
-  if (p->share.size > 1) PetscCallMPI(MPI_Bcast(sums, sizeof(*sums), MPI_BYTE, p->share.root, p->share.comm));
+  *sums = *s;
+  slips = p->slips[interface];
+  if (p->share.size > 1) {
+    const PetscReal parts[13] = {s->normal,         s->contact_work,   s->friction_work, s->heat,        s->force[0],
+                                 s->force[1],       s->force[2],       slips.along[0],   slips.along[1], slips.along[2],
+                                 slips.friction[0], slips.friction[1], slips.friction[2]};
+    const PetscReal mine[3]   = {s->residual, s->sweeps, s->checks};
+
+    PetscCallMPI(MPI_Allreduce(parts, added, 13, MPIU_REAL, MPIU_SUM, p->share.comm));
+    PetscCallMPI(MPI_Allreduce(mine, most, 3, MPIU_REAL, MPIU_MAX, p->share.comm));
+    sums->normal        = added[0];
+    sums->contact_work  = added[1];
+    sums->friction_work = added[2];
+    sums->heat          = added[3];
+    for (int d = 0; d < 3; d++) {
+      sums->force[d]    = added[4 + d];
+      slips.along[d]    = added[7 + d];
+      slips.friction[d] = added[10 + d];
+    }
+    sums->residual = most[0];
+    sums->sweeps   = most[1];
+    sums->checks   = most[2];
+  }
+  sums->friction = FrictionAlong(&slips);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
 {
-  PetscInt    n[CONTACT_MAX] = {0};
-  ContactSums sums           = {.steps = 0};
+  PetscInt    n[CONTACT_MAX] = {0}, most = p->n_pairs, joined;
+  ContactSums sums = {.steps = 0};
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->n_pairs; k++) n[p->pair[k].interface]++;
-  PetscCallMPI(MPI_Bcast(n, CONTACT_MAX, MPIU_INT, p->share.root, p->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, CONTACT_MAX, MPIU_INT, MPI_SUM, p->share.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_INT, MPI_MAX, p->share.comm));
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
     const ContactInterface *c = &p->contact->interfaces[i];
 
@@ -270,6 +346,11 @@ PetscErrorCode ContactProjectorView(ContactProjector p, PetscViewer viewer)
                                                                        : ", node to node, since meshes match"));
     PetscCall(SlidingView(c, &p->sliding[i], viewer));
   }
+  PetscCallMPI(MPI_Allreduce(&p->border.n, &joined, 1, MPIU_INT, MPI_MAX, p->share.comm));
+  if (p->spread && p->share.size > 1)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  each rank solves its pairs, %" PetscInt_FMT " at most, %s\n", most,
+                             joined ? "in turn where they move the same nodes" : "which move nodes of their own"));
   if (p->n_interfaces) PetscCall(ContactProjectorGetSums(p, 0, &sums));
   if (sums.steps > 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %.4g sweeps and %.4g looks at all pairs per step\n",
@@ -281,7 +362,7 @@ PetscErrorCode ContactProjectorDestroy(ContactProjector *projector)
 {
   PetscFunctionBeginUser;
   if (!*projector) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Wait(&(*projector)->share.request, MPI_STATUS_IGNORE));
+  PetscCall(BorderDestroy(&(*projector)->border));
   PetscCall(ProjectorDestroySurfaces(*projector));
   PetscCall(PetscFree(*projector));
   PetscFunctionReturn(0);

@@ -2,7 +2,9 @@
    Private to the projector: what its files share.
 
    Nodes of all contact surfaces are numbered from 0 by their global node number; every rank knows which of them its
-   local nodes are. One rank, the root, which owns most slave nodes, knows the surfaces and solves for all pairs.
+   local nodes are. Few pairs are solved by one rank, the root, which owns most slave nodes; many by all ranks, each
+   those of its slaves (surface.c). What a rank needs for its pairs it has of all nodes, but values of active ones
+   alone.
    Values of nodes are Cartesian, masters that turn in their own frame (Frame), with which all of a pair is described.
 */
 #pragma once
@@ -11,6 +13,7 @@
 #include "contact/contactimpl.h"
 #include "kernels/contact/cone.h"
 #include "quantity/ramp.h"
+#include <petscsf.h>
 
 /* Sliding of the master of one interface */
 typedef struct {
@@ -31,7 +34,7 @@ typedef struct {
   PetscReal D[3][3], centre[3], shift[3];
 } ContactFrame;
 
-/* Master surface of one interface, on the root */
+/* Master surface of one interface, on the ranks that have pairs */
 typedef struct {
   const ContactSurface *surface;
   PetscInt             *node;          /* [n_nodes] numbers of its nodes */
@@ -51,8 +54,14 @@ typedef struct {
   PetscInt         *first;            /* [places][2] where sides of slave and master begin; [places] the end */
 } ProjectorMortar;
 
-/* natural map residual, relative to the largest impulse of the step before and of this one */
-#define PROJECTOR_RTOL 1e-10
+/* natural map residual, relative to the largest impulse of the step before and of this one; and where all ranks solve,
+   since sweeps then go in another order on other ranks */
+#define PROJECTOR_RTOL        1e-10
+#define PROJECTOR_RTOL_SPREAD 1e-13
+
+#define PROJECTOR_SPREAD 1000 /* pairs from which on all ranks solve: their messages cost less than the pairs */
+typedef enum { PROJECTOR_AUTO, PROJECTOR_ONE, PROJECTOR_ALL } ProjectorRanks;
+
 #define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
 
 /* A slave node and the point of the master that it faces, or means of both sides */
@@ -95,29 +104,59 @@ typedef struct {
   const PetscReal *D;        /* of the frame, [3][3]; NULL where it stands still */
 } ProjectorRow;
 
-#define SHARE_FIELDS 3 /* sent at once, at most */
+/* Sums over pairs of one step that are vectors: directions of slip, and friction on the master, on the ground, N */
+typedef struct {
+  PetscReal along[3], friction[3];
+} ContactSlips;
 
-/* Who has which node, and the exchange with the root */
+#define SHARE_FIELDS 3                                    /* sent at once, at most */
+#define SHARE_HEAD   (4 + CONTACT_N_STATUS * CONTACT_MAX) /* numbers of which all ranks get the sums, at most */
+
+/* Who has which node, and the exchange between owners and the ranks that have pairs */
 typedef struct {
   MPI_Comm     comm;
   MPI_Datatype record[SHARE_FIELDS]; /* of a node: 1 to SHARE_FIELDS fields of three values */
   PetscMPIInt  rank, size, root;
-  PetscInt     n_nodes;           /* of all ranks */
-  PetscInt     n, *vertex;        /* of this rank: local nodes from 0, ascending */
-  PetscInt     n_active, *active; /* of these n; it is one of */
-  PetscInt    *list[2];           /* of which the other is that of the step before */
-  PetscInt *first, *holder; /* [size + 1] and all ranks' numbers one after the other; ~ number where another owns it */
-  PetscMPIInt *n_send, *send, *n_back, *back; /* counts and places of the messages, numbers */
-  PetscInt    *send_node, *back_node;         /* nodes in the order of the messages */
-  PetscReal   *buffer[2];                     /* of this rank, and of the root */
-  MPI_Request  request;                       /* of the message back */
+  PetscBool    solves;              /* this rank has pairs, or is the root */
+  PetscInt     n_nodes;             /* of all ranks */
+  PetscInt     n, *vertex;          /* of this rank: local nodes from 0, ascending */
+  PetscInt     n_active, *active;   /* of these n, those that any rank needs; it is one of */
+  PetscInt    *list[2];             /* of which the other is that of the step before */
+  PetscInt    *first, *holder;      /* [size + 1] and all ranks' numbers one after the other; ~ number of a copy */
+  PetscSFNode *owner;               /* [n_nodes] */
+  PetscInt     n_need, *need;       /* nodes that this rank's pairs need, the first n_own */
+  PetscInt     n_own, *own;         /* of its own ones, local */
+  PetscInt     n_sent, *sent;       /* local nodes whose values others need */
+  PetscInt    *copied;              /* local copies that are active */
+  PetscSFNode *from, *copy_from;    /* of what is needed and not owned; of the copies */
+  PetscSF      values, copies;      /* from local nodes to those needed; and to the copies */
+  PetscReal   *buffer[2];           /* of local nodes, and of those needed */
+  PetscBool   *any;                 /* [n_nodes] active */
+  PetscReal    head[2][SHARE_HEAD]; /* of this rank; sums of all */
+  MPI_Request  request;             /* of these */
 } ProjectorShare;
+
+/* Another rank whose pairs may move nodes that this rank's pairs may move too: these, and their velocities as sent */
+typedef struct {
+  PetscMPIInt rank;
+  PetscInt    n, *node;
+  PetscReal  *out, *in;
+  MPI_Request request; /* of what was sent last */
+} ProjectorNeighbour;
+
+#define BORDER_WEIGHT 1e-13 /* of a node in a pair: a smaller one is rounding, and joins no pairs */
+
+/* Neighbours of this rank, in the order in which they sweep (border.c) */
+typedef struct {
+  PetscInt            n, n_before; /* before this rank */
+  ProjectorNeighbour *neighbour;
+  PetscBool          *shared; /* [n_nodes] */
+  MPI_Comm            comm;   /* of all ranks that hang together; where there are neighbours */
+} ProjectorBorder;
 
 #define PROJECTOR_DEEPEST 1e-3 /* sizes of a facet: a slave deeper below is not taken up */
 
-#define SHARE_HEAD 8 /* numbers that the root sends with the forces */
-
-/* Step at hand, as the root sees it; [n_nodes][3] each */
+/* Step at hand, on the ranks that have pairs; [n_nodes][3] each */
 typedef struct {
   PetscReal *x, *minv, *u, *before, *v, *force;
   PetscReal *predicted; /* displacement at t_{n+1} without contact, m */
@@ -129,6 +168,7 @@ typedef struct {
 typedef struct {
   PetscInt  sweeps, checks, worst; /* pair of the largest residual */
   PetscReal residual;              /* natural map, relative to the largest impulse now or before, or rounding */
+  PetscReal own;                   /* that of this rank's pairs alone */
   PetscReal change;                /* of the impulses in the last sweep, squared, N^2 s^2 */
   PetscReal noise;                 /* rounding of the impulses that stop and drag the nodes, N s */
   PetscBool converged;
@@ -138,10 +178,13 @@ struct _p_ContactProjector {
   Contact        contact;
   PetscInt       n_interfaces;
   PetscInt       max_it;
+  ProjectorRanks ranks;  /* that solve */
+  PetscBool      spread; /* all do */
   ContactSliding sliding[CONTACT_MAX];
   ProjectorShare share;
   PetscBool      has_mass;
-  /* on the root only */
+  /* on the ranks that have pairs, of theirs */
+  ProjectorBorder  border;
   ProjectorNodes   nodes;
   ProjectorMaster  master[CONTACT_MAX];
   ContactFrame     frame[CONTACT_MAX], frame_old[CONTACT_MAX]; /* at t_{n+1} and t_n */
@@ -150,7 +193,7 @@ struct _p_ContactProjector {
   ProjectorRow    *row;                 /* [n_pairs] */
   PetscInt        *node;                /* [n_pairs][CONTACT_MAX_MASTER] of the facets that slaves face, and */
   PetscReal       *weight;              /* of these */
-  ProjectorMortar *mortar[CONTACT_MAX]; /* on all ranks; NULL: slave nodes and points of the master */
+  ProjectorMortar *mortar[CONTACT_MAX]; /* pairs on the root; NULL: slave nodes and points of the master */
   PetscReal        knot[2], between;    /* times of the mortar knots, s; how far t_{n+1} is from one to the other */
   PetscReal       *u_knot;              /* [2][n_nodes][3] displacements there, m; NULL where all pairs stay */
   PetscInt        *first_candidate;
@@ -163,16 +206,19 @@ struct _p_ContactProjector {
   PetscBool       *is_active; /* [n_nodes] */
   PetscReal        margin[CONTACT_MAX]; /* candidates lie within, m */
   PetscBool       *visited;             /* [n_pairs] by Gauss-Seidel */
-  PetscInt        *visit;               /* these, in order */
+  PetscBool       *at_border;           /* [n_pairs] at a shared node */
+  PetscInt        *visit;               /* those visited, in order */
   ContactState    *state;
   PetscInt        *interface, *number; /* [n_pairs] of the slaves, and */
   PetscReal       *slave_x;            /* [n_pairs][3] their places */
-  ContactSums      sums[CONTACT_MAX];
+  ContactSums      sums[CONTACT_MAX];  /* of this rank's pairs; their numbers and those of steps of all ranks */
+  ContactSlips     slips[CONTACT_MAX]; /* of the last step */
+  PetscReal        worst[4];           /* residual of the last step, and the place of its slave */
   /* on all ranks */
-  PetscReal   noise;       /* rounding of its forces, N; on the root */
-  ContactStep last;        /* the step made */
-  PetscBool   under_way;   /* its head has not been looked at */
-  PetscBool   search_next; /* all nodes are active, and the next step begins with a search */
+  PetscReal   sweeps_before; /* the step made */
+  ContactStep last;          /* that */
+  PetscBool   under_way;     /* its head has not been looked at */
+  PetscBool   search_next;   /* all nodes are active, and the next step begins with a search */
 };
 
 /* sliding.c - options of the sliding of interface i, after its own ones */
@@ -208,6 +254,18 @@ static inline const PetscReal *PairSlave(const ProjectorPair *pair, const PetscR
   return mean;
 }
 
+/* Whether this rank has the mortar pairs of interface i */
+static inline PetscBool MortarIsHere(const ContactProjector p, PetscInt i)
+{
+  return p->mortar[i] && p->mortar[i]->x ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Largest residual of the natural map, relative to the largest impulse */
+static inline PetscReal ProjectorTolerance(const ContactProjector p)
+{
+  return p->spread ? PROJECTOR_RTOL_SPREAD : PROJECTOR_RTOL;
+}
+
 /* Number of the node at place i of holder[] */
 static inline PetscInt ShareNode(const ProjectorShare *share, PetscInt i)
 {
@@ -222,24 +280,34 @@ PETSC_INTERN PetscErrorCode ProjectorDestroySurfaces(ContactProjector projector)
    one. Collective. */
 PETSC_INTERN PetscErrorCode ProjectorFinish(ContactProjector projector);
 
-/* share.c - the exchange between the root and all ranks; is_active [n_nodes] is read on the root, NULL on all ranks for
-   all */
+/* share.c - the exchange between owners of nodes and ranks that have pairs; before it is used, the number of all nodes;
+   needed [n_nodes] are those that this rank's pairs need, NULL on all ranks for all. Collective. */
 PETSC_INTERN PetscErrorCode ShareSetUp(MPI_Comm comm, PetscInt n, const PetscInt number[], ProjectorShare *share);
-PETSC_INTERN PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool is_active[]);
-/* share.c - n <= SHARE_FIELDS fields of three values per local node to the root */
+PETSC_INTERN PetscErrorCode ShareSetNodes(ProjectorShare *share, PetscInt n_nodes);
+PETSC_INTERN PetscErrorCode ShareSetActive(ProjectorShare *share, const PetscBool needed[]);
+/* share.c - n <= SHARE_FIELDS fields of three values per local node to the ranks that need them */
 PETSC_INTERN PetscErrorCode ShareGather(ProjectorShare *share, PetscInt n, const PetscReal *const local[],
-                                        PetscReal *const root[]);
-/* share.c - forces [n_nodes][3] and head of the root set out to all ranks; the forces of the active nodes, for which a
-   rank without any does not wait; the head, the same on all ranks: what is decided by it is decided alike */
-PETSC_INTERN PetscErrorCode ShareReturnBegin(ProjectorShare *share, const PetscReal root[],
-                                             const PetscReal head[SHARE_HEAD]);
-PETSC_INTERN PetscErrorCode ShareGetForces(ProjectorShare *share, PetscReal local[]);
-PETSC_INTERN PetscErrorCode ShareReturnEnd(ProjectorShare *share, PetscReal head[SHARE_HEAD]);
-static inline PetscInt      ShareCountSent(const ProjectorShare *share)
-{
-  return share->send[share->size - 1] + share->n_send[share->size - 1];
-}
+                                        PetscReal *const all[]);
+/* share.c - forces [n_nodes][3] of this rank's pairs; those of all pairs at the active local nodes. A rank without such
+   nodes does not wait */
+PETSC_INTERN PetscErrorCode ShareReturn(ProjectorShare *share, const PetscReal all[], PetscReal local[]);
+/* share.c - n numbers set out to all ranks; their sums, the same on all: what is decided by them is decided alike */
+PETSC_INTERN PetscErrorCode ShareHeadBegin(ProjectorShare *share, PetscInt n, const PetscReal head[]);
+PETSC_INTERN PetscErrorCode ShareHeadEnd(ProjectorShare *share, const PetscReal **head);
+/* share.c - of the records of all ranks that whose first number is the largest. Collective. */
+PETSC_INTERN PetscErrorCode ShareWorst(const ProjectorShare *share, PetscInt n, PetscReal record[]);
 PETSC_INTERN PetscErrorCode ShareDestroy(ProjectorShare *share);
+
+/* border.c - after a search: neighbours of this rank and the nodes shared with them; touched [n_nodes] its pairs may
+   move. Collective. */
+PETSC_INTERN PetscErrorCode BorderFind(ContactProjector projector, const PetscBool touched[]);
+PETSC_INTERN PetscErrorCode BorderDestroy(ProjectorBorder *border);
+/* border.c - of a sweep, in this order: takes what neighbours before this rank have changed; sends what it has; takes
+   what those after it have. The largest values of all ranks that hang together, infinity for what is no number. */
+PETSC_INTERN PetscErrorCode BorderBegin(ContactProjector projector);
+PETSC_INTERN PetscErrorCode BorderSend(ContactProjector projector);
+PETSC_INTERN PetscErrorCode BorderEnd(ContactProjector projector);
+PETSC_INTERN PetscErrorCode BorderLargest(const ContactProjector projector, PetscInt n, PetscReal values[]);
 
 /* candidates.c - candidates of all slaves within `reach` margins, at displacements u of all nodes and the present
    frames, of time t */
@@ -252,7 +320,7 @@ PETSC_INTERN PetscBool ProjectorNeedsSearch(ContactProjector projector, const Pe
    coefficients, and the impulses of the step before */
 PETSC_INTERN PetscErrorCode PairsPrepare(ContactProjector projector, const ContactStep *step);
 /* project.c - impulses, and velocities of the nodes with them */
-PETSC_INTERN void PairsSolve(ContactProjector projector, ProjectorConvergence *convergence);
+PETSC_INTERN PetscErrorCode PairsSolve(ContactProjector projector, ProjectorConvergence *convergence);
 /* prepare.c - facet, frame and compliance of one pair at the predicted displacements; false where the slave faces no
    facet. One that has faced none is taken up where it is at displacements u not deeper below the master than `deepest`
    sizes of the facet. */
@@ -286,11 +354,13 @@ PETSC_INTERN void NodesPredict(ContactProjector projector, PetscReal dt);
 /* project.c - velocity of the slave relative to the master along n, t, b, m/s, of velocities v of the nodes */
 PETSC_INTERN void PairVelocity(const ProjectorPair *pair, const PetscReal v[], PetscReal q[3]);
 
+/* record.c - component of friction along the mean direction of slip, or its size where nothing says one, N */
+PETSC_INTERN PetscReal FrictionAlong(const ContactSlips *slips);
 /* record.c - forces on the nodes, states and sums of a step */
 PETSC_INTERN void PairsRecord(ContactProjector projector, const ContactStep *step,
-                              const ProjectorConvergence *convergence);
+                              const ProjectorConvergence *convergence, PetscReal counted[]);
 
-/* projector.c - one field of all nodes to the root; all nodes are active after it */
+/* projector.c - one field of all nodes to the ranks that have pairs; all nodes are active after it */
 PETSC_INTERN PetscErrorCode ProjectorGatherAll(ContactProjector projector, const PetscReal local[], PetscReal root[]);
-/* projector.c - the nodes that the root's last search has found are active on all ranks */
+/* projector.c - the nodes that the last search has found are active on all ranks; the borders between them */
 PETSC_INTERN PetscErrorCode ProjectorActivate(ContactProjector projector);

@@ -79,15 +79,10 @@ INTO_VERSIONS void StateSet(const ProjectorPair *pair, const PetscReal force[3],
   }
 }
 
-/* Sums of one step that are vectors: directions of slip, and friction on the master, on the ground */
-typedef struct {
-  PetscReal along[3], friction[3];
-} Directions;
-
 /* Adds one closed pair to the sums of its interface: V = (v_{n-1/2} + v_{n+1/2}) / 2 without the offset that q has,
    works dt lambda . V (J). */
 INTO_VERSIONS void InterfaceSumsAdd(const ContactProjector p, const ProjectorPair *pair, const ContactState *state,
-                                    PetscReal dt, ContactSums *sums, Directions *directions)
+                                    PetscReal dt, ContactSums *sums, ContactSlips *slips)
 {
   PetscReal old[3], velocity[3];
 
@@ -102,7 +97,7 @@ INTO_VERSIONS void InterfaceSumsAdd(const ContactProjector p, const ProjectorPai
   for (int d = 0; d < 3; d++) {
     const PetscReal tangential = state->lambda_t[0] * pair->turned[1][d] + state->lambda_t[1] * pair->turned[2][d];
 
-    directions->friction[d] += tangential;
+    slips->friction[d] += tangential;
     sums->force[d] += tangential - state->lambda_n * pair->turned[0][d];
   }
 }
@@ -110,13 +105,11 @@ INTO_VERSIONS void InterfaceSumsAdd(const ContactProjector p, const ProjectorPai
 /* What belongs to the last step alone begins anew */
 static void SumsBegin(ContactSums *sums, const ProjectorConvergence *convergence)
 {
-  for (int i = 0; i < CONTACT_N_STATUS; i++) sums->n[i] = 0;
   for (int d = 0; d < 3; d++) sums->force[d] = 0;
-  sums->normal = sums->friction = 0;
-  sums->residual                = PetscMax(sums->residual, convergence->residual);
+  sums->normal   = 0;
+  sums->residual = PetscMax(sums->residual, convergence->residual);
   sums->sweeps += (PetscReal)convergence->sweeps;
   sums->checks += (PetscReal)convergence->checks;
-  sums->steps++;
 }
 
 void ContactSumsMark(ContactSums *sums)
@@ -138,24 +131,23 @@ void ContactSumsCompare(ContactSums *sums)
   sums->most = PetscMax(sums->most, most);
 }
 
-/* Component of friction along the mean direction of slip, or its size where nothing says one */
-static PetscReal FrictionAlong(const Directions *d)
+PetscReal FrictionAlong(const ContactSlips *slips)
 {
-  const PetscReal length = Vec3Length(d->along);
+  const PetscReal length = Vec3Length(slips->along);
 
-  return length > 0 ? Vec3Dot(d->friction, d->along) / length : Vec3Length(d->friction);
+  return length > 0 ? Vec3Dot(slips->friction, slips->along) / length : Vec3Length(slips->friction);
 }
 
-/* Forces are added to the nodes in the order of the pairs, by the root */
-VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const ProjectorConvergence *convergence)
+/* Forces are added to the nodes in the order of the pairs; counted [interfaces][CONTACT_N_STATUS] are pairs */
+VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const ProjectorConvergence *convergence,
+                          PetscReal counted[])
 {
-  Directions     directions[CONTACT_MAX] = {0};
-  const PetscInt n                       = ShareCountSent(&p->share);
-  PetscReal      miss[PROJECTOR_PAST]    = {0};
+  PetscReal miss[PROJECTOR_PAST] = {0};
 
-  for (PetscInt i = 0; i < n; i++)
-    for (int d = 0; d < 3; d++) p->nodes.force[3 * p->share.send_node[i] + d] = 0;
+  for (PetscInt i = 0; i < p->share.n_need; i++)
+    for (int d = 0; d < 3; d++) p->nodes.force[3 * p->share.need[i] + d] = 0;
   for (PetscInt i = 0; i < p->n_interfaces; i++) SumsBegin(&p->sums[i], convergence);
+  for (PetscInt i = 0; i < p->n_interfaces; i++) p->slips[i] = (ContactSlips){.along = {0}};
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     ProjectorPair  *pair     = &p->pair[k];
     const PetscInt  i        = pair->interface;
@@ -164,18 +156,14 @@ VERSIONS void PairsRecord(ContactProjector p, const ContactStep *step, const Pro
 
     PairSetForce(pair, force, miss);
     StateSet(pair, force, step->dt, convergence->noise, state);
-    p->sums[i].n[state->status]++;
+    counted[CONTACT_N_STATUS * i + state->status]++;
     if (pair->facet < 0) continue;
-    for (int d = 0; d < 3 && p->sliding[i].slides; d++) directions[i].along[d] += pair->turned[1][d];
+    for (int d = 0; d < 3 && p->sliding[i].slides; d++) p->slips[i].along[d] += pair->turned[1][d];
     if (state->lambda_n == 0) continue;
     PairPressNodes(pair, force, p->nodes.force);
-    InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &directions[i]);
+    InterfaceSumsAdd(p, pair, state, step->dt, &p->sums[i], &p->slips[i]);
   }
   p->order = OrderBest(miss);
-  for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    p->sums[i].friction = FrictionAlong(&directions[i]);
-    ContactSumsCompare(&p->sums[i]);
-  }
 }
 
 PetscErrorCode ContactProjectorGetKKT(ContactProjector p, ContactKKT *kkt)

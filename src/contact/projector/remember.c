@@ -1,17 +1,16 @@
 /*
    What the contact forces must keep so that a run goes on bitwise: of each slave its facet, place on it and last
-   forces, the displacements and time of the last search, which is repeated, and the sums. All is of the root but
-   whether a search is due, which each rank knows.
+   forces, the displacements and time of the last search, which is repeated, and the sums. A rank has its own pairs;
+   whether a search is due each one knows.
 */
 #include "projectorimpl.h"
 
 #define PER_PAIR (4 + 3 * PROJECTOR_PAST) /* facet, natural coordinates, slip speed, forces */
 #define PER_SUMS ((PetscInt)(sizeof(ContactSums) / sizeof(PetscReal)))
 
-/* Numbers of the root after the first */
 static PetscInt MemoryLength(const ContactProjector p)
 {
-  if (p->share.rank != p->share.root) return 1;
+  if (!p->share.solves) return 1 + PER_SUMS * p->n_interfaces;
   return 4 + PER_SUMS * p->n_interfaces + PER_PAIR * p->n_pairs + 3 * p->share.n_nodes + MortarMemoryLength(p);
 }
 
@@ -25,12 +24,12 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   PetscCall(PetscMalloc1(*n, values));
   v    = *values;
   *v++ = (PetscReal)p->search_next;
-  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  PetscCall(PetscMemcpy(v, p->sums, sizeof(ContactSums) * (size_t)p->n_interfaces));
+  v += PER_SUMS * p->n_interfaces;
+  if (!p->share.solves) PetscFunctionReturn(0);
   *v++ = p->t_search;
   *v++ = (PetscReal)p->order;
   *v++ = p->rate;
-  PetscCall(PetscMemcpy(v, p->sums, sizeof(ContactSums) * (size_t)p->n_interfaces));
-  v += PER_SUMS * p->n_interfaces;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     const ProjectorPair *pair = &p->pair[k];
 
@@ -44,16 +43,14 @@ PetscErrorCode ContactProjectorGetMemory(ContactProjector p, PetscInt *n, PetscR
   PetscFunctionReturn(0);
 }
 
-/* The root's part; repeats the last search */
-static PetscErrorCode RootSetMemory(ContactProjector p, const PetscReal v[])
+/* What pairs need; repeats the last search */
+static PetscErrorCode PairsSetMemory(ContactProjector p, const PetscReal v[])
 {
   const PetscReal t = *v++;
 
   PetscFunctionBeginUser;
   p->order = (PetscInt)*v++;
   p->rate  = *v++;
-  PetscCall(PetscMemcpy(p->sums, v, sizeof(ContactSums) * (size_t)p->n_interfaces));
-  v += PER_SUMS * p->n_interfaces;
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
   for (PetscInt k = 0; k < p->n_pairs; k++) {
@@ -77,7 +74,8 @@ PetscErrorCode ContactProjectorSetMemory(ContactProjector p, PetscInt n, const P
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPIU_INT, MPI_MAX, p->share.comm));
   PetscCheck(!wrong, p->share.comm, PETSC_ERR_ARG_SIZ, "memory of the contact forces is of other surfaces or ranks");
-  if (p->share.rank == p->share.root) PetscCall(RootSetMemory(p, &values[1]));
+  PetscCall(PetscMemcpy(p->sums, &values[1], sizeof(ContactSums) * (size_t)p->n_interfaces));
+  if (p->share.solves) PetscCall(PairsSetMemory(p, &values[1 + PER_SUMS * p->n_interfaces]));
   PetscCall(ProjectorActivate(p));
   p->search_next = values[0] != 0 ? PETSC_TRUE : PETSC_FALSE;
   if (p->search_next) PetscCall(ShareSetActive(&p->share, NULL));

@@ -11,16 +11,21 @@
 
 /* What is wrong at the start: the deepest pair, one that nothing can move along its normal, and one across which the
    given sliding velocity has no part in the surface */
+enum { FAULT_DEPTH, FAULT_STIFF, FAULT_NO_SLIP, N_FAULTS };
+
 typedef struct {
-  PetscReal depth, x[3];
-  PetscReal interface, stiff, stiff_x[3], stiff_interface;
-  PetscReal no_slip, no_slip_x[3], no_slip_interface;
+  PetscReal size, interface, x[3]; /* depth, m, or 1; 0 for none */
 } StartFault;
 
-/* Finds the facets of all slaves, on the root */
-static void PairsFind(ContactProjector p, StartFault *fault)
+static void FaultSet(StartFault *fault, PetscReal size, const ProjectorPair *pair, const PetscReal x[3])
 {
-  fault->no_slip = 0;
+  *fault = (StartFault){size, (PetscReal)pair->interface, {x[0], x[1], x[2]}};
+}
+
+/* Finds the facets of all slaves of this rank */
+static void PairsFind(ContactProjector p, StartFault fault[N_FAULTS])
+{
+  fault[FAULT_NO_SLIP].size = 0;
   for (PetscInt k = 0; k < p->n_pairs; k++) {
     ProjectorPair   *pair = &p->pair[k];
     const PetscReal *x;
@@ -34,28 +39,17 @@ static void PairsFind(ContactProjector p, StartFault *fault)
     x = PairSlave(pair, p->nodes.x, mean_x);
     FrameDisplacement(&p->frame[pair->interface], x, PairSlave(pair, p->nodes.u, mean_u), d);
     gap = p->state[k].gap = PairGap(p, pair, d, p->nodes.u);
-    if (-gap > fault->depth) {
-      fault->depth     = -gap;
-      fault->interface = (PetscReal)pair->interface;
-      for (int i = 0; i < 3; i++) fault->x[i] = x[i];
-    }
-    if (pair->no_slip) {
-      fault->no_slip           = 1;
-      fault->no_slip_interface = (PetscReal)pair->interface;
-      for (int i = 0; i < 3; i++) fault->no_slip_x[i] = x[i];
-    }
-    if (PairMass(pair) > 0) continue;
-    fault->stiff           = 1;
-    fault->stiff_interface = (PetscReal)pair->interface;
-    for (int i = 0; i < 3; i++) fault->stiff_x[i] = x[i];
+    if (-gap > fault[FAULT_DEPTH].size) FaultSet(&fault[FAULT_DEPTH], -gap, pair, x);
+    if (pair->no_slip) FaultSet(&fault[FAULT_NO_SLIP], 1, pair, x);
+    if (!(PairMass(pair) > 0)) FaultSet(&fault[FAULT_STIFF], 1, pair, x);
   }
 }
 
 /* Search in two steps: far, for bodies that interpenetrate, and near, for the candidates */
-static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault *fault)
+static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault fault[N_FAULTS])
 {
   PetscFunctionBeginUser;
-  if (p->share.rank != p->share.root) PetscFunctionReturn(0);
+  if (!p->share.solves) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     SlidingFrame(&p->contact->interfaces[i], &p->sliding[i], t, &p->frame[i]);
   PetscCall(ProjectorSearch(p, t, START_REACH, p->nodes.u));
@@ -66,33 +60,34 @@ static PetscErrorCode StartSearch(ContactProjector p, PetscReal t, StartFault *f
   PetscFunctionReturn(0);
 }
 
-/* Faults are those that the root found, sent to all: all ranks raise the same error. */
-static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault *fault)
+/* The worst fault of all ranks of each kind: all raise the same error. */
+static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault fault[N_FAULTS])
 {
-  const ContactInterface *c;
+  const ContactInterface *c[N_FAULTS];
+  const StartFault       *deep = &fault[FAULT_DEPTH], *stiff = &fault[FAULT_STIFF], *still = &fault[FAULT_NO_SLIP];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(
-    MPI_Bcast(fault, (PetscMPIInt)(sizeof(*fault) / sizeof(PetscReal)), MPIU_REAL, p->share.root, p->share.comm));
-  c = &p->contact->interfaces[(PetscInt)fault->interface];
+  for (int k = 0; k < N_FAULTS; k++) {
+    PetscCall(ShareWorst(&p->share, sizeof(*fault) / sizeof(PetscReal), &fault[k].size));
+    c[k] = &p->contact->interfaces[(PetscInt)fault[k].interface];
+  }
   PetscCheck(
-    fault->depth <= slack, p->share.comm, PETSC_ERR_USER_INPUT,
+    deep->size <= slack, p->share.comm, PETSC_ERR_USER_INPUT,
     "bodies interpenetrate at the start: %.6g m at %.6g, %.6g, %.6g m (contact %s: the node of %s is below %s; at most "
     "%.6g m is allowed)",
-    (double)fault->depth, (double)fault->x[0], (double)fault->x[1], (double)fault->x[2], c->name, c->slave, c->master,
-    (double)slack);
-  c = &p->contact->interfaces[(PetscInt)fault->stiff_interface];
+    (double)deep->size, (double)deep->x[0], (double)deep->x[1], (double)deep->x[2], c[FAULT_DEPTH]->name,
+    c[FAULT_DEPTH]->slave, c[FAULT_DEPTH]->master, (double)slack);
   PetscCheck(
-    fault->stiff == 0, p->share.comm, PETSC_ERR_USER_INPUT,
+    stiff->size == 0, p->share.comm, PETSC_ERR_USER_INPUT,
     "contact %s: at %.6g, %.6g, %.6g m both %s and %s are held along the normal, so that no force can keep them "
     "apart; free one of them, or take it out of the surface",
-    c->name, (double)fault->stiff_x[0], (double)fault->stiff_x[1], (double)fault->stiff_x[2], c->slave, c->master);
-  c = &p->contact->interfaces[(PetscInt)fault->no_slip_interface];
+    c[FAULT_STIFF]->name, (double)stiff->x[0], (double)stiff->x[1], (double)stiff->x[2], c[FAULT_STIFF]->slave,
+    c[FAULT_STIFF]->master);
   PetscCheck(
-    fault->no_slip == 0, p->share.comm, PETSC_ERR_USER_INPUT,
+    still->size == 0, p->share.comm, PETSC_ERR_USER_INPUT,
     "contact %s: the sliding velocity vanishes in the surface at %.6g, %.6g, %.6g m; give -%s_slip x,y,z along "
     "the surface",
-    c->name, (double)fault->no_slip_x[0], (double)fault->no_slip_x[1], (double)fault->no_slip_x[2], c->name);
+    c[FAULT_NO_SLIP]->name, (double)still->x[0], (double)still->x[1], (double)still->x[2], c[FAULT_NO_SLIP]->name);
   PetscFunctionReturn(0);
 }
 
@@ -143,11 +138,11 @@ static PetscErrorCode BorderCheck(ContactProjector p, PetscInt lost)
   PetscReal x[4] = {-1, 0, 0, 0};
 
   PetscFunctionBeginUser;
-  if (p->share.rank == p->share.root && lost >= 0) {
+  if (lost >= 0) {
     x[0] = (PetscReal)p->interface[lost];
     for (int d = 0; d < 3; d++) x[1 + d] = p->slave_x[3 * lost + d];
   }
-  PetscCallMPI(MPI_Bcast(x, 4, MPIU_REAL, p->share.root, p->share.comm));
+  PetscCall(ShareWorst(&p->share, 4, x));
   if (x[0] >= 0) {
     const ContactInterface *c = &p->contact->interfaces[(PetscInt)x[0]];
 
@@ -193,16 +188,16 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
 PetscErrorCode ContactProjectorStart(ContactProjector p, PetscReal t, const PetscReal u[], PetscReal slack,
                                      const ContactState states[])
 {
-  StartFault fault = {.depth = 0};
+  StartFault fault[N_FAULTS] = {{0}};
 
   PetscFunctionBeginUser;
   PetscCheck(p->has_mass, p->share.comm, PETSC_ERR_ARG_WRONGSTATE,
              "ContactProjectorSetMass() must be called before ContactProjectorStart()");
   PetscCall(ProjectorGatherAll(p, u, p->nodes.u));
-  PetscCall(StartSearch(p, t, &fault));
+  PetscCall(StartSearch(p, t, fault));
   for (PetscInt i = 0; i < p->n_interfaces; i++)
     if (p->mortar[i]) PetscCall(ContactMovedCheck(p->share.comm, &p->mortar[i]->moved));
-  PetscCall(StartCheck(p, slack, &fault));
+  PetscCall(StartCheck(p, slack, fault));
   PetscCall(StartForces(p, states));
   PetscCall(ProjectorActivate(p));
   PetscCall(PetscArrayzero(p->sums, p->n_interfaces));

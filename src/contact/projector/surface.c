@@ -1,7 +1,8 @@
 /*
    Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters
-   (contact/surface/surface.h), and the slaves. All is made once from the mesh as it is; every rank sees the lists, the
-   root keeps what it needs.
+   (contact/surface/surface.h), and the slaves. All is made once from the mesh as it is; every rank sees the lists, and
+   keeps the slaves whose pairs it solves. Where all ranks solve, that are those whose nodes it owns, up to its share;
+   the rest goes to ranks that have less, in the order of the places. Mortar pairs are the root's, as are few.
 */
 #include "projectorimpl.h"
 #include "base/gather.h"
@@ -10,6 +11,7 @@
 /* A slave node as its owner knows it */
 typedef struct {
   PetscInt  interface, number, place; /* place: ProjectorPair */
+  PetscInt  rank;                     /* owner of the node, then the one that solves its pair */
   PetscReal x[3];
 } Slave;
 
@@ -74,8 +76,8 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
     PetscCall(PetscFindInt(ShareNode(share, i), *n_unique, *unique, &node));
     share->holder[i] = owned ? node : ~node;
   }
-  share->n_nodes = *n_unique;
-  share->vertex  = vertex;
+  share->vertex = vertex;
+  PetscCall(ShareSetNodes(share, *n_unique));
   PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
@@ -84,16 +86,18 @@ static PetscErrorCode NodesFind(ContactProjector p, PetscInt *n_unique, PetscInt
 static PetscErrorCode SlavesAppend(Contact contact, PetscInt interface, PetscInt *n_slaves, Slave **slave)
 {
   const Mesh *mesh;
+  PetscMPIInt rank;
   PetscInt    n, *v;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(contact->comm, &rank));
   PetscCall(ModelGetMesh(contact->model, &mesh));
   PetscCall(ModelGetOwnedNodes(contact->model, contact->interfaces[interface].slave, &n, &v));
   PetscCall(PetscRealloc(sizeof(Slave) * (size_t)(*n_slaves + n), slave));
   for (PetscInt i = 0; i < n; i++) {
     Slave *s = &(*slave)[(*n_slaves)++];
 
-    *s = (Slave){.interface = interface, .number = mesh->number[v[i]]};
+    *s = (Slave){.interface = interface, .number = mesh->number[v[i]], .rank = rank};
     PetscCall(PetscArraycpy(s->x, &mesh->x[3 * v[i]], 3));
   }
   PetscCall(PetscFree(v));
@@ -159,6 +163,7 @@ static PetscErrorCode PairsCreate(ContactProjector p, PetscInt n, const Slave sl
   PetscCall(PetscCalloc2(CONTACT_MAX_MASTER * n, &p->node, CONTACT_MAX_MASTER * n, &p->weight));
   PetscCall(PetscCalloc3(n, &p->pair, n, &p->row, n, &p->state));
   PetscCall(PetscMalloc5(n, &p->interface, n, &p->number, 3 * n, &p->slave_x, n, &p->visited, n, &p->visit));
+  PetscCall(PetscCalloc1(n, &p->at_border));
   PetscCall(PetscCalloc2(n + 1, &p->first_candidate, 3 * n, &p->place));
   for (PetscInt i = 0; i < n; i++) {
     p->pair[i].interface = p->interface[i] = slave[i].interface;
@@ -176,7 +181,36 @@ static PetscErrorCode PairsCreate(ContactProjector p, PetscInt n, const Slave sl
   PetscFunctionReturn(0);
 }
 
-/* Slaves of all ranks to the root, and the root itself */
+/* Which rank solves each pair, and of these the ones of this rank, in their order */
+static PetscErrorCode SlavesDeal(ContactProjector p, PetscInt *n, Slave slave[])
+{
+  const PetscMPIInt size = p->share.size, root = p->share.root;
+  const PetscInt    most = (*n + size - 1) / size;
+  PetscInt         *has, turn = 0, mine = 0;
+
+  PetscFunctionBeginUser;
+  p->spread = p->ranks == PROJECTOR_ALL || (p->ranks == PROJECTOR_AUTO && *n >= PROJECTOR_SPREAD);
+  PetscCall(PetscCalloc1(size, &has));
+  for (PetscInt i = 0; i < *n; i++) {
+    if (!p->spread || p->mortar[slave[i].interface])
+      slave[i].rank = ~root;
+    else if (++has[slave[i].rank] > most)
+      slave[i].rank = size; /* one too many */
+  }
+  for (PetscInt i = 0; i < *n; i++) {
+    while (slave[i].rank == size && has[turn] >= most) turn++;
+    if (slave[i].rank == size) has[turn]++;
+    if (slave[i].rank == size) slave[i].rank = turn;
+    slave[i].rank = PetscMax(slave[i].rank, ~slave[i].rank);
+    if (slave[i].rank == p->share.rank) slave[mine++] = slave[i];
+  }
+  *n              = mine;
+  p->share.solves = mine || p->share.rank == root ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(0);
+}
+
+/* Slaves of all ranks, the root, and the pairs of this rank */
 static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
 {
   PetscInt n_local = 0, n;
@@ -188,17 +222,18 @@ static PetscErrorCode SlavesFind(ContactProjector p, const PetscInt unique[])
   PetscCall(GatherRecords(p->contact->comm, n_local, sizeof(Slave), local, &n, &all));
   PetscCall(SlavesPlace(p, &n, &all));
   if (n) qsort(all, (size_t)n, sizeof(Slave), SlaveCompare);
-  PetscCall(PairsCreate(p, p->share.rank == p->share.root ? n : 0, all, unique));
+  PetscCall(SlavesDeal(p, &n, all));
+  PetscCall(PairsCreate(p, n, all, unique));
   PetscCall(PetscFree(local));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 
-/* Arrays of the nodes on the root, with their places */
+/* Arrays of the nodes on the ranks that have pairs, with their places */
 static PetscErrorCode NodesCreate(ContactProjector p)
 {
   ProjectorNodes *nodes = &p->nodes;
-  const PetscInt  n     = p->share.rank == p->share.root ? p->share.n_nodes : 0;
+  const PetscInt  n     = p->share.solves ? p->share.n_nodes : 0;
   const Mesh     *mesh;
   PetscReal      *local;
 
@@ -252,6 +287,7 @@ PetscErrorCode ProjectorDestroySurfaces(ContactProjector p)
   PetscCall(ProjectorMortarDestroy(p));
   PetscCall(PetscFree2(p->node, p->weight));
   PetscCall(PetscFree3(p->pair, p->row, p->state));
+  PetscCall(PetscFree(p->at_border));
   PetscCall(PetscFree5(p->interface, p->number, p->slave_x, p->visited, p->visit));
   PetscCall(PetscFree2(p->first_candidate, p->place));
   PetscCall(PetscFree(p->candidates.facet));

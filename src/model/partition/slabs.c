@@ -23,6 +23,9 @@ enum { COST_TURNED = 2, COST_ALONG = 3, COST_GENERAL = 8 };
    while the others go on (contact/projector/projector.c) */
 #define COST_CONTACT 28
 
+/* Cells at the contact from which on all ranks share the pairs evenly, wherever the cells are */
+#define MOST_CELLS 1000
+
 /* Bodies of the undistributed mesh */
 typedef struct {
   PetscInt     n, *of_vertex, *of_cell;
@@ -43,11 +46,13 @@ static PetscErrorCode BodyListDestroy(BodyList *bodies)
 static PetscErrorCode ContactAddCost(Model model, const BodyList *bodies, Clusters *clusters)
 {
   PetscBool *at_contact;
+  PetscInt   n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(clusters->n_cells, &at_contact));
   PetscCall(TogetherFlag(model, at_contact));
-  for (PetscInt c = 0; c < clusters->n_cells; c++)
+  for (PetscInt c = 0; c < clusters->n_cells; c++) n += at_contact[c] && bodies->whole[bodies->of_cell[c]] ? 1 : 0;
+  for (PetscInt c = 0; c < clusters->n_cells && n < MOST_CELLS; c++)
     if (at_contact[c] && bodies->whole[bodies->of_cell[c]]) clusters->cost[c] += COST_CONTACT;
   PetscCall(PetscFree(at_contact));
   PetscFunctionReturn(0);
