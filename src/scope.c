@@ -1,6 +1,7 @@
 /* What a run does, as rows ask; what of the scene it does not use */
 #include "scope.h"
 #include "base/algebra/vec3.h"
+#include "base/text.h"
 
 /* What the contacts add: they may have to be pressed for their stiffness, and what is not told where to slide, or
    slides in a later stage, can stick */
@@ -154,9 +155,9 @@ PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *s)
 static PetscErrorCode IdleAdd(const char kind[], const char name[], size_t size, char text[])
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscStrlcat(text, text[0] ? ", " : "", size));
-  PetscCall(PetscStrlcat(text, kind, size));
-  PetscCall(PetscStrlcat(text, name, size));
+  PetscCall(WordsAdd(text, text[0] ? ", " : "", size));
+  PetscCall(WordsAdd(text, kind, size));
+  PetscCall(WordsAdd(text, name, size));
   PetscFunctionReturn(0);
 }
 

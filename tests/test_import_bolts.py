@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Pre-tensioned bolts of decks (tests/bolted.py) beside CalculiX: displacements of all nodes and shortenings of the bolts, in elements
 that both programs have alike (nodes of faces of second order have other areas there): tightened by forces, by a length, two bolts at
-once, and then loaded with the lengths that they have; clearances and interferences of the joint, in closed form. Breaks when a tension, an axis, the side
-of a cut or the lock of a later step is lost. The reference are CalculiX' own equations of *PRE-TENSION SECTION (its printed digits
-are 7).
+once, and then loaded with the lengths that they have; clearances and interferences of the joint, in closed form. Breaks when a tension,
+an axis, the side of a cut or the lock of a later step is lost. The reference are CalculiX' own equations of *PRE-TENSION SECTION (its
+printed digits are 7).
 
     test_import_bolts.py SQUEAL"""
 
@@ -113,7 +113,8 @@ def fitted(program):
     """Surfaces that overlap: as the deck says, in closed form (the bolt is longer by it), or in the mesh, beside CalculiX, where an overlap
     presses from the beginning without that card."""
     lengths, place = [], "*CLOAD"
-    for cards in ("", "*CONTACT INTERFERENCE, AMPLITUDE=GROWS\nUP_BOTTOM, LOW_TOP, -2e-4\n", "*CONTACT INTERFERENCE, SHRINK\nUP_BOTTOM, LOW_TOP\n"):
+    for cards in ("", "*CONTACT INTERFERENCE, AMPLITUDE=GROWS\nUP_BOTTOM, LOW_TOP, -2e-4\n",
+                  "*CONTACT INTERFERENCE, SHRINK\nUP_BOTTOM, LOW_TOP\n"):
         text = deck("C3D8I", 1, (forces([0.1]),)).replace("*STEP", "*AMPLITUDE, NAME=GROWS\n0., 0., 1., 1.\n*STEP", 1)
         with tempfile.TemporaryDirectory() as name:
             lengths.append(squeal(program, Path(name), text.replace(place, cards + place, 1))[2][0, 1])

@@ -83,7 +83,8 @@ def spellings():
     yield "what a contact has of its own", PLAIN.replace(HELD, (
         "*SURFACE, NAME=A\nE, S1\n*SURFACE, NAME=B\nE, S2\n*CLEARANCE, MASTER=A, SLAVE=B, TABULAR\n1, 0.1\n*CLEARANCE, MASTER=A, SLAVE=B, "
         "TABULAR, BOLT\n1, 0.1\n") + HELD).replace("*END STEP", "*CONTACT INTERFERENCE\nA, B, 0.01\n*END STEP"), (
-            "*CONTACT INTERFERENCE: there is no *CONTACT PAIR of A, B: not taken", "*CLEARANCE: there is no *CONTACT PAIR of B, A: not taken",
+            "*CONTACT INTERFERENCE: there is no *CONTACT PAIR of A, B: not taken",
+            "*CLEARANCE: there is no *CONTACT PAIR of B, A: not taken",
             "*CLEARANCE: only MASTER, SLAVE and VALUE or TABULAR are read: not taken; give the contact a `gap`")
     yield "an element with temperature", PLAIN.replace("C3D8I", "C3D8T"), ("C3D8T: its temperature is no unknown of squeal",)
     yield "a beam beside solids", PLAIN.replace(HELD, (

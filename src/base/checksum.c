@@ -3,6 +3,7 @@
 */
 #include <squeal/checksum.h>
 #include <stdarg.h>
+#include "base/text.h"
 
 struct _p_Checksum {
   MPI_Comm      comm;
@@ -140,8 +141,8 @@ PetscErrorCode ChecksumCompare(Checksum c, PetscInt n, const ChecksumPart kept[]
 
     if (i < c->n ? other >= 0 && kept[other].sum == part->sum : ChecksumFindPart(c->n, c->part, part->name) >= 0)
       continue;
-    PetscCall(PetscStrlcat(names, names[0] ? ", " : "", size));
-    PetscCall(PetscStrlcat(names, part->name, size));
+    PetscCall(WordsAdd(names, names[0] ? ", " : "", size));
+    PetscCall(WordsAdd(names, part->name, size));
   }
   PetscFunctionReturn(0);
 }

@@ -16,6 +16,7 @@
 #include "base/process/memory.h"
 #include "base/process/progress.h"
 #include "base/process/watch.h"
+#include "base/text.h"
 #include <slepcsys.h>
 #include <hdf5.h>
 #include <petsctime.h>
@@ -149,7 +150,7 @@ PetscErrorCode SquealSayEnvironment(MPI_Comm comm)
   }
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-skip_petscrc", &skip, NULL));
   PetscCall(PetscGetHomeDirectory(file[0], sizeof(file[0]) - 16));
-  PetscCall(PetscStrlcat(file[0], "/.petscrc", sizeof(file[0])));
+  PetscCall(TextAdd(file[0], "/.petscrc", sizeof(file[0])));
   for (int i = 0; i < 3 && !skip; i++) {
     PetscCall(PetscTestFile(file[i], 'r', &there));
     if (there)

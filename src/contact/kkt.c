@@ -12,6 +12,7 @@
    L is at least 1e-9 of the width of a pair: what is shorter is rounding of the coordinates.
 */
 #include "contactimpl.h"
+#include "base/text.h"
 #include <math.h>
 
 /* Force (N) and length (m) that the residuals are relative to */
@@ -170,7 +171,7 @@ PetscErrorCode ContactPrintKKT(const ContactKKT *kkt, size_t size, char text[])
   text[0] = 0;
   for (int i = 0; i < N_LAWS; i++) {
     PetscCall(PetscSNPrintf(piece, sizeof(piece), "%s%s %.1e", i ? ", " : "", law[i].name, (double)law[i].value));
-    PetscCall(PetscStrlcat(text, piece, size));
+    PetscCall(WordsAdd(text, piece, size));
   }
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
 */
 #include "designimpl.h"
 #include "sample/draw/sequence.h"
+#include "base/text.h"
 #include <petsctime.h>
 
 #define DESIGN_TRAIN 60 /* points of both boxes together for the basis */
@@ -25,8 +26,8 @@ PetscErrorCode DesignSetFromOptions(Design d)
   PetscCall(QuantitiesRead(d->comm, &design_quantities, d));
   PetscCall(CubeVaried(&d->options, sizeof(d->varied), d->varied));
   PetscCall(CubeVaried(&d->uncertain_options, sizeof(more), more));
-  if (more[0]) PetscCall(PetscStrlcat(d->varied, ",", sizeof(d->varied)));
-  PetscCall(PetscStrlcat(d->varied, more, sizeof(d->varied)));
+  if (more[0]) PetscCall(TextAdd(d->varied, ",", sizeof(d->varied)));
+  PetscCall(TextAdd(d->varied, more, sizeof(d->varied)));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +92,7 @@ static PetscErrorCode DesignRead(Design d)
 /* Points for the basis: all scenarios of the scene's own design, then both boxes together */
 static PetscErrorCode DesignTrain(Design d)
 {
-  const PetscInt n = d->cube.n + d->uncertain.n;
+  const PetscInt n        = d->cube.n + d->uncertain.n;
   Sequence       sequence = {SEQUENCE_SOBOL, 2, DESIGN_TRAIN, n, NULL};
 
   PetscFunctionBeginUser;

@@ -1,5 +1,6 @@
 /* The tables of designs, and what a person wants to know first */
 #include "designimpl.h"
+#include "base/text.h"
 
 /* The designs: their parameters, and how many modes of all scenarios are unstable */
 static PetscErrorCode PointsWrite(Design d, Results results)
@@ -14,8 +15,8 @@ static PetscErrorCode PointsWrite(Design d, Results results)
                          "solved,full_excess_rad_s,found,statuses,other_statuses",
                          sizeof(line)));
   for (PetscInt k = 0; k < d->cube.n; k++) {
-    PetscCall(PetscStrlcat(line, ",", sizeof(line)));
-    PetscCall(PetscStrlcat(line, d->cube.name[k], sizeof(line)));
+    PetscCall(TextAdd(line, ",", sizeof(line)));
+    PetscCall(TextAdd(line, d->cube.name[k], sizeof(line)));
   }
   PetscCall(ResultsTableOpen(results, "design", line, &table));
   for (PetscInt i = 0; i < d->n_points; i++) {
@@ -28,9 +29,9 @@ static PetscErrorCode PointsWrite(Design d, Results results)
                                  p->omega / (2 * PETSC_PI),
                                  p->change,
                                  p->mass,
-                                 p->solved ? 1 : 0,
-                                 p->solved ? p->full_excess : NAN,
-                                 d->found && i == d->best ? 1 : 0,
+                              p->solved ? 1 : 0,
+                              p->solved ? p->full_excess : NAN,
+                              d->found && i == d->best ? 1 : 0,
                                  (PetscReal)p->n_classes,
                                  (PetscReal)p->n_apart};
 
@@ -51,18 +52,22 @@ static PetscErrorCode CornersWrite(Design d, Results results)
 
   PetscFunctionBeginUser;
   if (!d->corner) PetscFunctionReturn(0);
-  PetscCall(PetscStrncpy(line, "modes,unstable,excess_rad_s,freq_hz,growth_rad_s,error_rad_s,closed_pairs",
-                         sizeof(line)));
+  PetscCall(
+    PetscStrncpy(line, "modes,unstable,excess_rad_s,freq_hz,growth_rad_s,error_rad_s,closed_pairs", sizeof(line)));
   for (PetscInt k = 0; k < d->uncertain.n; k++) {
-    PetscCall(PetscStrlcat(line, ",", sizeof(line)));
-    PetscCall(PetscStrlcat(line, d->uncertain.name[k], sizeof(line)));
+    PetscCall(TextAdd(line, ",", sizeof(line)));
+    PetscCall(TextAdd(line, d->uncertain.name[k], sizeof(line)));
   }
   PetscCall(ResultsTableOpen(results, "design_corners", line, &table));
   for (PetscInt i = 0; i < d->n_corners; i++) {
     const DesignCorner *c      = &d->corner[i];
-    const PetscReal     head[] = {
-      (PetscReal)c->n_modes, (PetscReal)c->n_unstable, c->excess, c->omega / (2 * PETSC_PI), c->sigma, c->error,
-      c->n_closed < 0 ? NAN : (PetscReal)c->n_closed};
+    const PetscReal     head[] = {(PetscReal)c->n_modes,
+                                  (PetscReal)c->n_unstable,
+                                  c->excess,
+                                  c->omega / (2 * PETSC_PI),
+                                  c->sigma,
+                                  c->error,
+                              c->n_closed < 0 ? NAN : (PetscReal)c->n_closed};
 
     PetscCall(PetscArraycpy(row, head, 7));
     for (PetscInt k = 0; k < d->uncertain.n; k++) row[7 + k] = CubeValue(&d->uncertain, k, c->t[k]);
@@ -127,17 +132,17 @@ static PetscErrorCode DesignStateView(Design d, const DesignPoint *last, PetscVi
     least = PetscMin(least, list->n_closed[i]);
     most  = PetscMax(most, list->n_closed[i]);
   }
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer,
-    "sliding state of each design at each scenario: %" PetscInt_FMT " statuses in both boxes, %" PetscInt_FMT
-    " to %" PetscInt_FMT " of %" PetscInt_FMT " pairs closed",
-    d->box.n_classes, least, most, list->n_pairs));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "sliding state of each design at each scenario: %" PetscInt_FMT
+                                   " statuses in both boxes, %" PetscInt_FMT " to %" PetscInt_FMT " of %" PetscInt_FMT
+                                   " pairs closed",
+                                   d->box.n_classes, least, most, list->n_pairs));
   if (last->n_apart)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer,
-      "; at %" PetscInt_FMT " scenarios of this one it is another: the nearest, %" PetscInt_FMT
-      " pairs apart at most, but for full solutions",
-      last->n_apart, last->apart));
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "; at %" PetscInt_FMT
+                                     " scenarios of this one it is another: the nearest, %" PetscInt_FMT
+                                     " pairs apart at most, but for full solutions",
+                                     last->n_apart, last->apart));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(0);
 }

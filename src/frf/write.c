@@ -2,6 +2,7 @@
    The response for people and for files.
 */
 #include "frfimpl.h"
+#include "base/text.h"
 #include <string.h>
 
 #define COLUMN_ROOM 160 /* characters of a column's name and comma */
@@ -108,14 +109,14 @@ static PetscErrorCode FrfWriteResponse(Frf frf, Results results)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1((size_t)width * 2 * COLUMN_ROOM, &header));
   PetscCall(PetscMalloc1(width, &row));
-  PetscCall(PetscStrlcat(header, "freq_hz", (size_t)width * 2 * COLUMN_ROOM));
+  PetscCall(TextAdd(header, "freq_hz", (size_t)width * 2 * COLUMN_ROOM));
   for (PetscInt p = 0; p < n; p++) {
     PetscCall(PetscSNPrintf(column, sizeof(column), ",%s_re_m_n", frf->output[p].name));
-    PetscCall(PetscStrlcat(header, column, (size_t)width * 2 * COLUMN_ROOM));
+    PetscCall(TextAdd(header, column, (size_t)width * 2 * COLUMN_ROOM));
     PetscCall(PetscSNPrintf(column, sizeof(column), ",%s_im_m_n", frf->output[p].name));
-    PetscCall(PetscStrlcat(header, column, (size_t)width * 2 * COLUMN_ROOM));
+    PetscCall(TextAdd(header, column, (size_t)width * 2 * COLUMN_ROOM));
   }
-  PetscCall(PetscStrlcat(header, ",error_m_n,error_relative", (size_t)width * 2 * COLUMN_ROOM));
+  PetscCall(TextAdd(header, ",error_m_n,error_relative", (size_t)width * 2 * COLUMN_ROOM));
   PetscCall(ResultsTableOpen(results, "frf", header, &table));
   for (PetscInt i = 0; i < frf->n; i++) {
     row[0] = frf->freq[i];
@@ -142,10 +143,10 @@ static PetscErrorCode FrfWriteImpulse(Frf frf, Results results)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(length, &header));
   PetscCall(PetscMalloc1(n + 1, &row));
-  PetscCall(PetscStrlcat(header, "time_s", length));
+  PetscCall(TextAdd(header, "time_s", length));
   for (PetscInt p = 0; p < n; p++) {
     PetscCall(PetscSNPrintf(column, sizeof(column), ",%s_m_ns", frf->output[p].name));
-    PetscCall(PetscStrlcat(header, column, length));
+    PetscCall(TextAdd(header, column, length));
   }
   PetscCall(ResultsTableOpen(results, "impulse", header, &table));
   for (PetscInt i = 0; i < frf->n_times; i++) {

@@ -2,6 +2,7 @@
    map.csv: a row for each point and direction.
 */
 #include "mapimpl.h"
+#include "base/text.h"
 
 static const char *const regimes[MAP_N_REGIMES] = {
   [MAP_STABLE] = "stable", [MAP_GROWTH] = "growth",     [MAP_STICKING] = "sticking",
@@ -49,8 +50,8 @@ static PetscErrorCode MapListRegimes(const MapPoint *row, size_t length, char li
   list[0] = '\0';
   for (int k = 0; k < MAP_N_REGIMES; k++) {
     if (!(row->regimes >> k & 1)) continue;
-    if (list[0]) PetscCall(PetscStrlcat(list, "+", length));
-    PetscCall(PetscStrlcat(list, regimes[k], length));
+    if (list[0]) PetscCall(TextAdd(list, "+", length));
+    PetscCall(TextAdd(list, regimes[k], length));
   }
   PetscFunctionReturn(0);
 }

@@ -3,6 +3,7 @@
 */
 #include "modesimpl.h"
 #include "base/events.h"
+#include "base/text.h"
 
 static PetscReal ModeFrequency(const Mode *mode)
 {
@@ -103,10 +104,10 @@ static PetscErrorCode ModesOpenTable(Operators operators, PetscInt n_parts, cons
   for (PetscInt part = 0; part < n_parts; part++) {
     PetscCall(OperatorsGetPartName(operators, part, &name));
     PetscCall(PetscSNPrintf(column, sizeof(column), ",part_%s_percent", name));
-    PetscCall(PetscStrlcat(header, column, sizeof(header)));
+    PetscCall(TextAdd(header, column, sizeof(header)));
   }
-  if (mesh) PetscCall(PetscStrlcat(header, ",label_percent", sizeof(header)));
-  PetscCall(PetscStrlcat(header, ",state,mechanism,partner", sizeof(header)));
+  if (mesh) PetscCall(TextAdd(header, ",label_percent", sizeof(header)));
+  PetscCall(TextAdd(header, ",state,mechanism,partner", sizeof(header)));
   PetscCall(ResultsTableOpen(results, "modes", header, table));
   PetscFunctionReturn(0);
 }
@@ -128,11 +129,11 @@ static PetscErrorCode ModesWriteTable(Modes modes, Operators operators, const Me
 
     for (PetscInt part = 0; part < n_parts; part++) {
       PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->part_percent[i * n_parts + part]));
-      PetscCall(PetscStrlcat(percent, number, sizeof(percent)));
+      PetscCall(TextAdd(percent, number, sizeof(percent)));
     }
     if (mesh) {
       PetscCall(PetscSNPrintf(number, sizeof(number), ",%.15g", modes->label_percent[i]));
-      PetscCall(PetscStrlcat(percent, modes->label_percent[i] >= 0 ? number : ",", sizeof(percent)));
+      PetscCall(TextAdd(percent, modes->label_percent[i] >= 0 ? number : ",", sizeof(percent)));
     }
     if (mechanism[i].partner >= 0)
       PetscCall(PetscSNPrintf(number, sizeof(number), "%d", (int)mechanism[i].partner + 1));

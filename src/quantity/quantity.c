@@ -1,6 +1,7 @@
 /* Rows of options: checked and summed; row.c reads them, visit.c refuses them */
 #include "row.h"
 #include "base/options/help.h"
+#include "base/text.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,11 +21,11 @@ static PetscErrorCode LimitsDescribe(const Quantity *row, PetscReal x, size_t si
     PetscCall(PetscSNPrintf(text, size, "must be at least %.6g", least));
   else
     PetscCall(PetscStrncpy(text, row->open && !row->none ? "must be positive" : "must not be negative", size));
-  if (row->unit) PetscCall(PetscStrlcat(text, " (", size));
-  if (row->unit) PetscCall(PetscStrlcat(text, row->unit, size));
-  if (row->unit) PetscCall(PetscStrlcat(text, ")", size));
-  if (row->why) PetscCall(PetscStrlcat(text, ": ", size));
-  if (row->why) PetscCall(PetscStrlcat(text, row->why, size));
+  if (row->unit) PetscCall(WordsAdd(text, " (", size));
+  if (row->unit) PetscCall(WordsAdd(text, row->unit, size));
+  if (row->unit) PetscCall(WordsAdd(text, ")", size));
+  if (row->why) PetscCall(WordsAdd(text, ": ", size));
+  if (row->why) PetscCall(WordsAdd(text, row->why, size));
   PetscFunctionReturn(0);
 }
 

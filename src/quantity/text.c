@@ -2,6 +2,7 @@
    Rows in words: the value in force, the default, the sentence of -help. scene.yaml and -help show the same.
 */
 #include "row.h"
+#include "base/text.h"
 #include <string.h>
 
 PetscErrorCode QuantityGetInitial(const Quantity *row, size_t size, char text[])
@@ -18,7 +19,7 @@ PetscErrorCode QuantityGetInitial(const Quantity *row, size_t size, char text[])
   for (n_words = 0; row->words && row->words[n_words]; n_words++)
     if (row->initial == n_words) PetscCall(PetscStrncpy(text, row->words[n_words], size));
   if (row->kind == QUANTITY_REALS || row->kind == QUANTITY_INTS)
-    for (PetscInt i = 0; i < n; i++) PetscCall(PetscStrlcat(text, i ? ",0" : "0", size));
+    for (PetscInt i = 0; i < n; i++) PetscCall(TextAdd(text, i ? ",0" : "0", size));
   PetscFunctionReturn(0);
 }
 
@@ -47,10 +48,10 @@ PetscErrorCode QuantityGetHelp(const Quantity *row, size_t size, char help[])
   PetscCall(PetscSNPrintf(help, size, "%.*s%s%s%s%s", (int)first, row->help, row->unit ? ", " : "",
                           row->unit ? row->unit : "", row->required ? " (required)" : "", row->help + first));
   for (PetscInt i = 0; row->words && row->words[i]; i++) {
-    PetscCall(PetscStrlcat(help, i ? " " : " (one of ", size));
-    PetscCall(PetscStrlcat(help, row->words[i], size));
+    PetscCall(TextAdd(help, i ? " " : " (one of ", size));
+    PetscCall(TextAdd(help, row->words[i], size));
   }
-  if (row->words) PetscCall(PetscStrlcat(help, ")", size));
+  if (row->words) PetscCall(TextAdd(help, ")", size));
   PetscFunctionReturn(0);
 }
 

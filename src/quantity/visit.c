@@ -2,6 +2,7 @@
    Tables of all rooms, one after another, for a visitor; what the command line gives and a run does not read.
 */
 #include "row.h"
+#include "base/text.h"
 #include <string.h>
 
 /* What a run does within an analysis */
@@ -48,14 +49,14 @@ static PetscErrorCode ReadersDescribe(unsigned in, size_t size, char text[])
   for (unsigned i = 0, rest = in % (1U << N_ANALYSES); rest; i++) {
     if (!(rest & 1U << i)) continue;
     rest &= ~(1U << i);
-    PetscCall(PetscStrlcat(text, text[0] && !rest ? " and " : before, size));
-    PetscCall(PetscStrlcat(text, AnalysisNames[i], size));
+    PetscCall(WordsAdd(text, text[0] && !rest ? " and " : before, size));
+    PetscCall(WordsAdd(text, AnalysisNames[i], size));
     before = ", ";
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(within); i++) {
     if (!(in & within[i].bit)) continue;
-    if (text[0]) PetscCall(PetscStrlcat(text, ", and ", size));
-    PetscCall(PetscStrlcat(text, within[i].words, size));
+    if (text[0]) PetscCall(WordsAdd(text, ", and ", size));
+    PetscCall(WordsAdd(text, within[i].words, size));
   }
   PetscFunctionReturn(0);
 }
@@ -69,9 +70,9 @@ static PetscErrorCode WhyName(const char why[], const char name[], size_t size, 
     char part[QUANTITY_HELP];
 
     PetscCall(PetscSNPrintf(part, sizeof(part), "%.*s%s_", (int)(at - why), why, name ? name : ""));
-    PetscCall(PetscStrlcat(text, part, size));
+    PetscCall(WordsAdd(text, part, size));
   }
-  PetscCall(PetscStrlcat(text, why, size));
+  PetscCall(WordsAdd(text, why, size));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 /* The tables of quiet boxes, and what a person wants to know first */
 #include "quietimpl.h"
+#include "base/text.h"
 
 /* Growth, frequency and the like, empty where there is none */
 typedef struct {
@@ -62,8 +63,9 @@ static PetscErrorCode StatementWrite(Quiet q, Results results)
                      "closed_pairs,status_points,other_status,other_pairs,other_distance",
                      &table));
   PetscCall(ResultsTableRow(
-    table, "%s,%.15g,%.15g,%.15g,%.15g,%s,%.15g,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%d,%d,%d,%s,%d,%d,%.15g,%d,%d,"
-           "%s,%d,%d,%d,%s",
+    table,
+    "%s,%.15g,%.15g,%.15g,%.15g,%s,%.15g,%s,\"%s\",%s,%s,%s,%s,%s,%s,%s,%d,%d,%d,%s,%d,%d,%.15g,%d,%d,"
+    "%s,%d,%d,%d,%s",
     goals[q->goal], (double)q->size, (double)q->share[CELL_QUIET], (double)q->share[CELL_DANGEROUS],
     (double)q->share[CELL_OPEN], TextOf(q->margin).text, (double)PetscMax(q->error, c->error),
     TextOf(d->found ? d->distance : NAN).text, d->label, TextOf(d->found ? d->omega / (2 * PETSC_PI) : NAN).text,
@@ -90,10 +92,10 @@ static PetscErrorCode CellsWrite(Quiet q, Results results)
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(line, "state,margin_rad_s,growth_rad_s", sizeof(line)));
   for (PetscInt k = 0; k < q->cube.n; k++) {
-    PetscCall(PetscStrlcat(line, ",lower_", sizeof(line)));
-    PetscCall(PetscStrlcat(line, q->cube.name[k], sizeof(line)));
-    PetscCall(PetscStrlcat(line, ",upper_", sizeof(line)));
-    PetscCall(PetscStrlcat(line, q->cube.name[k], sizeof(line)));
+    PetscCall(TextAdd(line, ",lower_", sizeof(line)));
+    PetscCall(TextAdd(line, q->cube.name[k], sizeof(line)));
+    PetscCall(TextAdd(line, ",upper_", sizeof(line)));
+    PetscCall(TextAdd(line, q->cube.name[k], sizeof(line)));
   }
   PetscCall(ResultsTableOpen(results, "quiet_cells", line, &table));
   for (PetscInt i = 0; i < q->n_cells; i++) {

@@ -2,6 +2,7 @@
    outside comes first. */
 #include "parameter.h"
 #include "base/algebra/vec3.h"
+#include "base/text.h"
 
 /* A name that is looked for */
 typedef struct {
@@ -28,8 +29,8 @@ static PetscErrorCode ParameterTry(const char owner[], const char what[], const 
   if (limit != AS_ITS_ROW) p.least = PetscMax(0, p.least);
   if (!p.unit) p.unit = row->unit ? row->unit : "-";
   PetscCall(PetscSNPrintf(p.name, sizeof(p.name), "%s%s%s", owner, what[0] ? "_" : "", what));
-  PetscCall(PetscStrlcat(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
-  PetscCall(PetscStrlcat(search->valid, p.name, sizeof(search->valid)));
+  PetscCall(WordsAdd(search->valid, search->valid[0] ? ", " : "", sizeof(search->valid)));
+  PetscCall(WordsAdd(search->valid, p.name, sizeof(search->valid)));
   PetscCall(PetscStrcmp(p.name, search->name, &same));
   if (same && !search->found) *search->p = p;
   if (same) search->found = PETSC_TRUE;

@@ -3,6 +3,7 @@
    they tell.
 */
 #include "sampleimpl.h"
+#include "base/text.h"
 #include <petsctime.h>
 
 PetscErrorCode SampleCreate(MPI_Comm comm, Sample *sample)
@@ -27,8 +28,8 @@ static PetscErrorCode VariablesName(Sample s)
       v->n_names = 1;
     }
     for (PetscInt i = 0; i < v->n_names; i++) {
-      PetscCall(PetscStrlcat(s->varied, s->varied[0] ? "," : "", sizeof(s->varied)));
-      PetscCall(PetscStrlcat(s->varied, v->names[i], sizeof(s->varied)));
+      PetscCall(TextAdd(s->varied, s->varied[0] ? "," : "", sizeof(s->varied)));
+      PetscCall(TextAdd(s->varied, v->names[i], sizeof(s->varied)));
     }
   }
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 /* The tables of samples */
 #include "sampleimpl.h"
+#include "base/text.h"
 
 #define VERIFY_COLUMNS                                                                                                 \
   "modes_full,modes_reduced,unstable_full,unstable_reduced,true_error,error_estimate,freq_hz,full_error,"              \
@@ -11,8 +12,8 @@ static PetscErrorCode VariableColumns(Sample s, const char first[], size_t size,
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(columns, first, size));
   for (PetscInt k = 0; k < s->n_variables; k++) {
-    PetscCall(PetscStrlcat(columns, ",", size));
-    PetscCall(PetscStrlcat(columns, s->variable[k].name, size));
+    PetscCall(TextAdd(columns, ",", size));
+    PetscCall(TextAdd(columns, s->variable[k].name, size));
   }
   PetscFunctionReturn(0);
 }

@@ -8,6 +8,7 @@
    steps matter for Coulomb's law only, where slip counts from the step before.
 */
 #include "staticsimpl.h"
+#include "base/text.h"
 
 #define EQUILIBRIUM_REFINE 2
 
@@ -40,7 +41,7 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
     PetscCall(
       PetscSNPrintf(dense, sizeof(dense), ", or raise -static_dense to %" PetscInt_FMT " rows", a->rows->n_all));
   PetscCall(PetscSNPrintf(text, size, how[outcome], a->max_it));
-  PetscCall(PetscStrlcat(text, dense, size));
+  PetscCall(WordsAdd(text, dense, size));
   PetscFunctionReturn(0);
 }
 

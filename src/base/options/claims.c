@@ -1,6 +1,7 @@
 /* What stands on the command line: see arguments.c */
 #include <squeal/options.h>
 #include <strings.h>
+#include "base/text.h"
 
 /* Names and values of the command line, by PETSc's rule; the caller frees both arrays */
 static PetscErrorCode ArgumentsGet(PetscInt *n, const char ***name, const char ***value)
@@ -92,7 +93,7 @@ PetscErrorCode OptionsDropBeside(MPI_Comm comm, const char owner[], const char n
   PetscFunctionBeginUser;
   for (const char *word = names; *word; word += strcspn(word, " "), word += strspn(word, " ")) {
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_%.*s ", owner, (int)strcspn(word, " "), word));
-    PetscCall(PetscStrlcat(options, option, sizeof(options)));
+    PetscCall(TextAdd(options, option, sizeof(options)));
   }
   PetscCall(PetscSNPrintf(why, sizeof(why), "-%s_%s is %s", owner, choice, chosen));
   PetscCall(OptionsDrop(comm, options, why));

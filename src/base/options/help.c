@@ -4,6 +4,7 @@
 */
 #include "help.h"
 #include "base/algebra/blas.h"
+#include "base/text.h"
 #include <squeal/sys.h>
 #include <slepcsys.h>
 #include <stdio.h>
@@ -139,7 +140,7 @@ static PetscErrorCode HelpPrintOnce(FILE *file, const char format[], va_list lis
   begins = text[0] == ' ' && text[blanks] == '-' ? PETSC_TRUE : PETSC_FALSE;
   if (!once.inside && !begins) {
     if (text[0] == '-') once.title[0] = '\0';
-    PetscCall(PetscStrlcat(once.title, text, sizeof(once.title)));
+    PetscCall(WordsAdd(once.title, text, sizeof(once.title)));
     PetscFunctionReturn(0);
   }
   if (begins) {

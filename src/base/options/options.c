@@ -2,6 +2,7 @@
    Lists of names, and values that are no numbers.
 */
 #include "help.h"
+#include "base/text.h"
 #include <squeal/options.h>
 #include <ctype.h>
 #include <stdlib.h>
@@ -178,8 +179,8 @@ PetscErrorCode OptionsDropOf(MPI_Comm comm, const char name[], const char why[])
   PetscCall(UnreadFind(name, option));
   while (option[0]) {
     PetscCall(OptionsRefuse(comm, option, why));
-    if (text[0]) PetscCall(PetscStrlcat(text, ", ", sizeof(text)));
-    PetscCall(PetscStrlcat(text, option, sizeof(text)));
+    if (text[0]) PetscCall(WordsAdd(text, ", ", sizeof(text)));
+    PetscCall(WordsAdd(text, option, sizeof(text)));
     PetscCall(PetscOptionsClearValue(NULL, option));
     PetscCall(UnreadFind(name, option));
   }
@@ -317,8 +318,8 @@ PetscErrorCode OptionsWithValue(const char value[], const char *const endings[],
   PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &given, &more));
   while (more) {
     if (given && given[0] && NameEnds(name, endings) && ListHolds(given, value)) {
-      PetscCall(PetscStrlcat(text, text[0] ? " or -" : "-", size));
-      PetscCall(PetscStrlcat(text, name, size));
+      PetscCall(WordsAdd(text, text[0] ? " or -" : "-", size));
+      PetscCall(WordsAdd(text, name, size));
     }
     PetscCall(OptionsNextGiven(&rest, sizeof(name), name, &given, &more));
   }

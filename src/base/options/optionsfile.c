@@ -7,6 +7,7 @@
    alias brings may be overridden, as YAML has it, and is not looked at.
 */
 #include "yamlanchors.h"
+#include "base/text.h"
 #include <squeal/options.h>
 #include <errno.h>
 #include <stdio.h>
@@ -47,7 +48,7 @@ static PetscErrorCode YamlAddKey(YamlFile *f)
   char      option[MAX_KEY + 1] = "-";
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrlcat(option, f->key, sizeof(option)));
+  PetscCall(TextAdd(option, f->key, sizeof(option)));
   PetscCall(OptionsNamesFile(option, &is_file, &is_yaml));
   PetscCheck(!is_file, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s:%zu: %s within an options file; give each file by -options_file on the command line", f->file, f->line,

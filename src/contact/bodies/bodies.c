@@ -10,6 +10,7 @@
    errors: a free body is meant in a scene of impact or of free modes.
 */
 #include "bodiesimpl.h"
+#include "base/text.h"
 
 /* of a kind: a mesh of a thousand loose pieces is one fault, not a thousand lines */
 #define MAX_LINES 4
@@ -217,8 +218,8 @@ static PetscErrorCode PieceName(const BodyGraph *b, PetscInt first, size_t size,
 
     if (RootOf(b->parent, i) != RootOf(b->parent, first)) continue;
     PetscCall(ModelNameBody(b->contact->model, b->body, i, sizeof(name), name));
-    PetscCall(PetscStrlcat(text, *n ? ", " : "", size));
-    PetscCall(PetscStrlcat(text, name, size));
+    PetscCall(WordsAdd(text, *n ? ", " : "", size));
+    PetscCall(WordsAdd(text, name, size));
     ++*n;
   }
   PetscFunctionReturn(0);
@@ -240,8 +241,8 @@ static PetscErrorCode PieceNameTouched(const BodyGraph *b, PetscInt first, Petsc
 
     if (in_a == in_b) continue;
     PetscCall(ModelNameBody(b->contact->model, b->body, in_a ? t->b : t->a, sizeof(name), name));
-    PetscCall(PetscStrlcat(names, n ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, name, sizeof(names)));
+    PetscCall(WordsAdd(names, n ? ", " : "", sizeof(names)));
+    PetscCall(WordsAdd(names, name, sizeof(names)));
     n += t->n;
   }
   if (n)

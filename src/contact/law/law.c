@@ -7,6 +7,7 @@
 #include "coulombs.h"
 #include "statickinetic.h"
 #include "stribeck.h"
+#include "base/text.h"
 #include <string.h>
 
 static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law, &stribeck_law};
@@ -176,8 +177,8 @@ static PetscErrorCode KindsDrop(MPI_Comm comm, const char name[], const Friction
       const char *const own = kinds[k]->parameter[j].row.name;
 
       if (KindHas(KindOf(chosen), own)) continue;
-      PetscCall(PetscStrlcat(names, own + 1, sizeof(names)));
-      PetscCall(PetscStrlcat(names, " ", sizeof(names)));
+      PetscCall(TextAdd(names, own + 1, sizeof(names)));
+      PetscCall(TextAdd(names, " ", sizeof(names)));
     }
   PetscCall(OptionsDropBeside(comm, name, names, "friction_law", KindOf(chosen)->name));
   PetscFunctionReturn(0);

@@ -7,6 +7,7 @@
 #include "linear.h"
 #include "power.h"
 #include "table.h"
+#include "base/text.h"
 
 static const PressureKind *const pressures[] = {&linear_pressure, &exponential_pressure, &power_pressure,
                                                 &table_pressure};
@@ -116,8 +117,8 @@ static PetscErrorCode PressuresDrop(MPI_Comm comm, const char name[], const Pres
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_PRESSURES; k++)
     for (PetscInt j = 0; j < pressures[k]->n_rows && k != chosen->kind; j++) {
-      PetscCall(PetscStrlcat(names, pressures[k]->row[j].name + 1, sizeof(names)));
-      PetscCall(PetscStrlcat(names, " ", sizeof(names)));
+      PetscCall(TextAdd(names, pressures[k]->row[j].name + 1, sizeof(names)));
+      PetscCall(TextAdd(names, " ", sizeof(names)));
     }
   PetscCall(OptionsDropBeside(comm, name, names, "pressure_law", PressureKindOf(chosen)->name));
   PetscFunctionReturn(0);

@@ -15,6 +15,7 @@ typedef struct {
   char        *name;
   Ramp         ramp;
   ForcePattern pattern;
+  PetscBool    is_bolt;
   PetscReal   *last;  /* r(t_{n-1}) */
   PetscReal   *drawn; /* d, m; NULL of what is no bolt */
 } TimedLoad;

@@ -40,14 +40,12 @@ static PetscReal *ExternalTakeMemory(PetscReal **next, PetscInt n)
    the end, and 0. */
 PetscErrorCode ExternalLayMemory(External external)
 {
-  const PetscInt    n_before = external->n_memory;
-  PetscInt          n        = 2 + external->n_loads + 2 * external->n_acting;
-  const ModelScene *scene;
-  PetscReal        *next;
+  const PetscInt n_before = external->n_memory;
+  PetscInt       n        = 2 + external->n_loads + 2 * external->n_acting;
+  PetscReal     *next;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(external->model, &scene));
-  for (PetscInt i = 0; i < external->n_loads; i++) n += scene->loads[i].is_bolt ? 1 : 0;
+  for (PetscInt i = 0; i < external->n_loads; i++) n += external->loads[i].is_bolt ? 1 : 0;
   for (PetscInt i = 0; i < external->n_frames; i++) n += 3 * external->frames[i].n;
   PetscCall(PetscRealloc((size_t)n * sizeof(PetscReal), &external->memory));
   if (n > n_before) PetscCall(PetscArrayzero(&external->memory[n_before], n - n_before));
@@ -57,7 +55,7 @@ PetscErrorCode ExternalLayMemory(External external)
   external->drives   = ExternalTakeMemory(&next, 1);
   for (PetscInt i = 0; i < external->n_loads; i++) external->loads[i].last = ExternalTakeMemory(&next, 1);
   for (PetscInt i = 0; i < external->n_loads; i++)
-    if (scene->loads[i].is_bolt) external->loads[i].drawn = ExternalTakeMemory(&next, 1);
+    if (external->loads[i].is_bolt) external->loads[i].drawn = ExternalTakeMemory(&next, 1);
   for (PetscInt i = 0; i < external->n_acting; i++) external->impulses[i].last = ExternalTakeMemory(&next, 2);
   for (PetscInt i = 0; i < external->n_frames; i++)
     external->frames[i].last = ExternalTakeMemory(&next, 3 * external->frames[i].n);

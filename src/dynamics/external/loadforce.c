@@ -18,6 +18,7 @@ PetscErrorCode TimedLoadsSetFromOptions(External external)
     TimedLoad *load = &external->loads[i];
 
     PetscCall(PetscStrallocpy(scene->loads[i].name, &load->name));
+    load->is_bolt = scene->loads[i].is_bolt;
     PetscCall(RampSetFromOptions(external->comm, "Ramp of load", load->name, &load->ramp));
   }
   PetscFunctionReturn(0);

@@ -2,6 +2,7 @@
    amplitudes.csv: complex amplitudes of modes in time by their modal filters, c = a^T (u_n - u_0) + b^T v_n, m.
 */
 #include "historyimpl.h"
+#include "base/text.h"
 
 #define AMPLITUDE_ROOM 32
 
@@ -16,7 +17,7 @@ PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **head
   for (PetscInt i = 0; i < 2 * filters->n; i++) {
     PetscCall(
       PetscSNPrintf(column, sizeof(column), ",mode_%" PetscInt_FMT "_%s_m", filters->mode[i / 2], i % 2 ? "im" : "re"));
-    PetscCall(PetscStrlcat(*header, column, room));
+    PetscCall(TextAdd(*header, column, room));
   }
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
    the slaves' nodes, unless that lies on the axis itself.
 */
 #include "historyimpl.h"
+#include "base/text.h"
 
 #define CIRCLE_ROOM 288
 /* of a circle's radius: nearer to the axis a contact has no angle */
@@ -30,7 +31,7 @@ PetscErrorCode CirclesCreateHeader(History history, char **header)
 
     for (PetscInt k = 0; k < c->n; k++) {
       PetscCall(PetscSNPrintf(column, sizeof(column), ",%s_%c_m", c->probe[k].name, "xyz"[c->axis]));
-      PetscCall(PetscStrlcat(*header, column, room));
+      PetscCall(TextAdd(*header, column, room));
     }
   }
   PetscFunctionReturn(0);

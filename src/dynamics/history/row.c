@@ -3,6 +3,7 @@
    before t_n; motions of probes are those at t_n.
 */
 #include "historyimpl.h"
+#include "base/text.h"
 
 #define N_PER_FACE  2
 #define N_PER_PROBE 9
@@ -55,10 +56,10 @@ static PetscErrorCode HistoryAddColumns(char header[], size_t room, const char n
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscStrlcat(header, ",", room));
-    PetscCall(PetscStrlcat(header, name, room));
-    PetscCall(PetscStrlcat(header, "_", room));
-    PetscCall(PetscStrlcat(header, columns[i], room));
+    PetscCall(TextAdd(header, ",", room));
+    PetscCall(TextAdd(header, name, room));
+    PetscCall(TextAdd(header, "_", room));
+    PetscCall(TextAdd(header, columns[i], room));
   }
   PetscFunctionReturn(0);
 }

@@ -4,6 +4,7 @@
    stiff.
 */
 #include "model/modelimpl.h"
+#include "base/text.h"
 
 #define FLAT      1e-8 /* smallest admissible Jacobian relative to that of the bounding box */
 #define FAR       1e-9 /* relative rounding of the length of an edge above which digits of the results are lost, */
@@ -116,7 +117,7 @@ PetscErrorCode MeshDescribe(Model model, size_t size, char words[])
     if (n_used == 1) PetscCall(PetscStrncpy(words, found[i]->description, size));
     PetscCall(
       PetscSNPrintf(one, sizeof(one), "%s%" PetscInt_FMT " %s", words[0] ? ", " : "", count[i], found[i]->name));
-    if (n_used > 1) PetscCall(PetscStrlcat(words, one, size));
+    if (n_used > 1) PetscCall(WordsAdd(words, one, size));
   }
   PetscFunctionReturn(0);
 }

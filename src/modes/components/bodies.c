@@ -5,6 +5,7 @@
 */
 #include "components.h"
 #include "solver/block/orthonormal.h"
+#include "base/text.h"
 
 /* Random numbers from 1 to 2 that are the same on any ranks: multiples of the golden ratio */
 static PetscReal Scatter(PetscInt unknown)
@@ -227,8 +228,8 @@ static PetscErrorCode FreeBodiesName(Operators operators, PetscInt n_parts, cons
     for (PetscInt p = 0; p < n_parts; p++) {
       if (body[p] != b) continue;
       PetscCall(OperatorsGetPartName(operators, p, &part));
-      PetscCall(PetscStrlcat(name, name[0] ? "+" : "", sizeof(name)));
-      PetscCall(PetscStrlcat(name, part, sizeof(name)));
+      PetscCall(TextAdd(name, name[0] ? "+" : "", sizeof(name)));
+      PetscCall(TextAdd(name, part, sizeof(name)));
     }
     PetscCall(PetscStrallocpy(name[0] ? name : "no part", &bodies->name[b]));
   }

@@ -6,6 +6,7 @@
    damping keeps it from oscillating. A rigid mode, a double zero, becomes 0 and -alpha with C x = alpha M x.
 */
 #include "modes/modesimpl.h"
+#include "base/text.h"
 
 /* Of materials whose stiffness depends on the frequency */
 static const char laws_text[] =
@@ -130,9 +131,9 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             region, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "not checked, since -modes_left is off%s", frictionless));
-  if (window->route.laws) PetscCall(PetscStrlcat(text, laws_text, size));
-  PetscCall(PetscStrlcat(text, route, size));
-  PetscCall(PetscStrlcat(text, massless, size));
+  if (window->route.laws) PetscCall(WordsAdd(text, laws_text, size));
+  PetscCall(WordsAdd(text, route, size));
+  PetscCall(WordsAdd(text, massless, size));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,6 @@
 /* The tables of conditions: all their modes, and how many of them squeal in each frequency band */
 #include "sample/sampleimpl.h"
+#include "base/text.h"
 
 /* Heads of the columns of the file behind the fixed ones */
 static PetscErrorCode ConditionsHead(Sample s, size_t size, char columns[])
@@ -10,8 +11,8 @@ static PetscErrorCode ConditionsHead(Sample s, size_t size, char columns[])
                          "direction",
                          size));
   for (PetscInt c = 0; c < s->conditions.n_columns; c++) {
-    PetscCall(PetscStrlcat(columns, ",", size));
-    PetscCall(PetscStrlcat(columns, s->conditions.head[c], size));
+    PetscCall(TextAdd(columns, ",", size));
+    PetscCall(TextAdd(columns, s->conditions.head[c], size));
   }
   PetscFunctionReturn(0);
 }

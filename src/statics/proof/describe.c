@@ -5,6 +5,7 @@
 */
 #include "statics/staticsimpl.h"
 #include "base/algebra/dense.h"
+#include "base/text.h"
 #include <math.h>
 
 #define NO_TURN   1e-3  /* way of the turn beside that of the middle */
@@ -118,7 +119,7 @@ static PetscErrorCode BodyPrint(const char name[], const BodyMotion *m, size_t s
 
     PetscCall(PetscSNPrintf(place, sizeof(place), " through %.4g, %.4g, %.4g m", Readable(x[0], m->size),
                             Readable(x[1], m->size), Readable(x[2], m->size)));
-    PetscCall(PetscStrlcat(text, place, size));
+    PetscCall(WordsAdd(text, place, size));
   }
   PetscFunctionReturn(0);
 }

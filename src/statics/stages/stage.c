@@ -10,6 +10,7 @@
 */
 #include "statics/staticsimpl.h"
 #include "base/algebra/vec3.h"
+#include "base/text.h"
 
 #define STAGE(member) QUANTITY_AT(Stage, member)
 #define COUNT(member) .count = offsetof(Stage, member)
@@ -73,8 +74,8 @@ static PetscErrorCode StageChange(MPI_Comm comm, const Stage *s, const char opti
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) {
     if (!strcmp(TargetName(t, i), name)) at = i;
-    PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, TargetName(t, i), sizeof(valid)));
+    PetscCall(WordsAdd(valid, i ? ", " : "", sizeof(valid)));
+    PetscCall(WordsAdd(valid, TargetName(t, i), sizeof(valid)));
   }
   PetscCheck(at >= 0, comm, PETSC_ERR_USER_INPUT, "-%s_%s '%s' is none of the %s: %s", s->name, option, name, t->list,
              valid[0] ? valid : "there are none");

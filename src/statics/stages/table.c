@@ -3,6 +3,7 @@
    pairs are open, stick and slip.
 */
 #include "statics/staticsimpl.h"
+#include "base/text.h"
 
 PetscErrorCode StagesWrite(Statics s, Results results)
 {
@@ -45,9 +46,9 @@ static PetscErrorCode NamesAdd(const char what[], PetscInt n, char *const names[
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(PetscStrlcat(words, i ? ", " : words[0] ? "; " : "", size));
-    if (!i) PetscCall(PetscStrlcat(words, what, size));
-    PetscCall(PetscStrlcat(words, names[i], size));
+    PetscCall(WordsAdd(words, i ? ", " : words[0] ? "; " : "", size));
+    if (!i) PetscCall(WordsAdd(words, what, size));
+    PetscCall(WordsAdd(words, names[i], size));
   }
   PetscFunctionReturn(0);
 }

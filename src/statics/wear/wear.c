@@ -18,6 +18,7 @@
    the first order of the error in dt; wear that gives pressure away makes the true one smaller with time. With
    -stages contacts wear in the last one, and the state is that of all stages once more with the worn gaps. */
 #include "statics/staticsimpl.h"
+#include "base/text.h"
 
 #define DEPTH_STEPS 100 /* trials of the last step, to end at -wear_depth to DEPTH_RTOL of it */
 #define DEPTH_RTOL  1e-10
@@ -208,7 +209,7 @@ static PetscErrorCode WearRun(Wearing *g, PetscReal time)
     PetscCall(PetscSNPrintf(after, sizeof(after), " in step %" PetscInt_FMT " of the wear, after %.6g s", step,
                             (double)g->time));
     PetscCall(StaticsPlace(g->s, g->active->place, sizeof(g->active->place)));
-    PetscCall(PetscStrlcat(g->active->place, after, sizeof(g->active->place)));
+    PetscCall(WordsAdd(g->active->place, after, sizeof(g->active->place)));
     PetscCall(WearStep(g, &taken, &ends));
     PetscCall(WearTake(g, step, taken, &change));
     if (g->options->settled > 0 && change <= g->options->settled) ends = PETSC_TRUE;

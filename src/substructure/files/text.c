@@ -1,5 +1,6 @@
 /* Text of a file in memory, whole before it is written under its final name; entries of matrices */
 #include "text.h"
+#include "base/text.h"
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -91,8 +92,8 @@ PetscErrorCode TextParts(const Substructure s, size_t size, char parts[])
   PetscFunctionBeginUser;
   parts[0] = '\0';
   for (PetscInt i = 0; i < s->n_parts; i++) {
-    PetscCall(PetscStrlcat(parts, i ? ", " : "", size));
-    PetscCall(PetscStrlcat(parts, s->parts[i], size));
+    PetscCall(WordsAdd(parts, i ? ", " : "", size));
+    PetscCall(WordsAdd(parts, s->parts[i], size));
   }
   PetscFunctionReturn(0);
 }

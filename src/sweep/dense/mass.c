@@ -4,6 +4,7 @@
    holds of it.
 */
 #include "reduced.h"
+#include "base/text.h"
 #include <petscblaslapack.h>
 
 /* Of sum_t |c_t| |v' A_t v|: less than that is rounding of the sum of the terms, n eps of some hundred vectors with
@@ -43,7 +44,7 @@ static PetscErrorCode MassRefuse(const Reduced *reduced, const PetscReal p[])
     if (!MassDepends(reduced, k)) continue;
     PetscCall(
       PetscSNPrintf(one, sizeof(one), "%s%s %.6g", text[0] ? ", " : " at ", reduced->parameter[k].name, (double)p[k]));
-    PetscCall(PetscStrlcat(text, one, sizeof(text)));
+    PetscCall(WordsAdd(text, one, sizeof(text)));
   }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
           "the mass matrix has eigenvalues that are negative or zero%s: it must be positive definite at all points",

@@ -6,6 +6,7 @@
 */
 #include "grid.h"
 #include "sweep/basis/points.h"
+#include "base/text.h"
 #include <squeal/options.h>
 #include <string.h>
 
@@ -35,8 +36,8 @@ PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char 
   *index = -1;
   for (PetscInt i = 0; i < n; i++) {
     if (!strcmp(parameters[i].name, name)) *index = i;
-    PetscCall(PetscStrlcat(valid, i ? ", " : "", sizeof(valid)));
-    PetscCall(PetscStrlcat(valid, parameters[i].name, sizeof(valid)));
+    PetscCall(WordsAdd(valid, i ? ", " : "", sizeof(valid)));
+    PetscCall(WordsAdd(valid, parameters[i].name, sizeof(valid)));
   }
   PetscCheck(*index >= 0, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that can be varied; valid are %s",
              option, name, valid);

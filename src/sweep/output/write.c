@@ -3,6 +3,7 @@
 */
 #include "sweep/sweepimpl.h"
 #include "sweep/box/box.h"
+#include "base/text.h"
 
 static const char *const event_kinds[] = {"lock_in", "lock_out", "divergence", "restabilisation", "jump"};
 static const char *const by_damping[]  = {"negative_damping", "positive_damping"}; /* in place of the first two */
@@ -141,8 +142,8 @@ static PetscErrorCode LinkName(const SweepGrid *grid, PetscInt axis, const Opera
   PetscFunctionBeginUser;
   name[0] = '\0';
   for (PetscInt i = 0; i < grid->n_moved[axis]; i++) {
-    PetscCall(PetscStrlcat(name, i ? "+" : "", size));
-    PetscCall(PetscStrlcat(name, parameters[grid->parameter[axis][i]].name, size));
+    PetscCall(TextAdd(name, i ? "+" : "", size));
+    PetscCall(TextAdd(name, parameters[grid->parameter[axis][i]].name, size));
   }
   PetscFunctionReturn(0);
 }
@@ -285,7 +286,7 @@ static PetscErrorCode SweepWriteModel(Sweep sweep, Results results)
                                 .groups_of    = {.n_groups = grid->n_groups}};
   BoxVaried        varied    = {0, NULL, NULL, NULL};
   PetscInt        *parameter = NULL, n = 0;
-  PetscReal       *ends      = NULL;
+  PetscReal       *ends = NULL;
 
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < grid->n_axes; a++) {

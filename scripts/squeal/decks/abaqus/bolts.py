@@ -147,7 +147,8 @@ def give_fit(reader, contact, value, place):
     elif contact.gap and not isinstance(contact.gap[0], dict):
         contact.gap = contact.gap[0] + value, place
     else:
-        reader.deck.note(place, f"*CONTACT INTERFERENCE: an overlap of {value:g} stays allowed at the end: not taken; give the contact a `gap`")
+        reader.deck.note(place, f"*CONTACT INTERFERENCE: an overlap of {value:g} stays allowed at the end: not taken; give the contact a "
+                                "`gap`")
 
 
 CARDS = {"PRE-TENSION SECTION": do_section, "CLEARANCE": do_clearance, "CONTACT INTERFERENCE": do_interference}
