@@ -5,7 +5,7 @@
 /* Modes with all pairs closed need no equilibrium */
 #define LOADS .in = RUN_IN_TIME | RUN_EQUILIBRIUM, .unread = " with all pairs closed; give -modes_contact static"
 #define MOVING                                                                                                         \
-  .in = RUN_MOVES, .unread = ", where nothing moves and nothing is damped" /* inertia but for weight, and damping */
+  .in = RUN_MOVES | RUN_SUPERELEMENT, .unread = ", where nothing moves and nothing is damped" /* inertia but for weight, and damping */
 #define WEIGHS   .in = RUN_MOVES | RUN_WEIGHT, .unread = " without -model_gravity"
 #define RECORDED RUN_TRANSIENT | RUN_CYCLE | RUN_FRF
 #define SET      "named surface, curve, point or volume of the mesh"

@@ -110,7 +110,7 @@ PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have)
   *have = operators->load[OPERATOR_C][0] || operators->n_dense[OPERATOR_C] ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt t = 0; t < operators->n_named; t++)
     if (operators->named[t].kind == OPERATORS_DAMPING || operators->named[t].law.kind) *have = PETSC_TRUE;
-  for (PetscInt i = 0; i < operators->n_superelements; i++)
+  for (PetscInt i = 0; i < operators->n_superelements + operators->n_pieces; i++)
     if (operators->superelements[i].file[SUPERELEMENT_C][0]) *have = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -54,7 +54,7 @@ struct _p_Operators {
   PetscReal               loaded_mu; /* -contact_mu of loaded or dense matrices */
   PetscInt                n_named;   /* matrices of -terms */
   struct _p_MatrixTerm   *named;
-  PetscInt                n_superelements;
+  PetscInt                n_superelements, n_pieces; /* pieces stand behind those of which they are */
   struct _p_Superelement *superelements;
   char                    nodes[PETSC_MAX_PATH_LEN]; /* -operators_nodes */
   struct _p_Cloud        *cloud;                     /* their points, NULL without */

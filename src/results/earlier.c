@@ -59,6 +59,7 @@ static const struct {
   {"superelement_c.bin", NULL},
   {"superelement_term_#.bin", NULL},
   {"superelement_terms.yaml", NULL},
+  {"superelement_pieces.yaml", NULL},
   {"superelement_k.mtx", NULL},
   {"superelement_m.mtx", NULL},
   {"superelement_c.mtx", NULL},

@@ -32,13 +32,18 @@ PetscErrorCode OperatorsGetPartName(Operators o, PetscInt part, const char **nam
 
 PetscErrorCode OperatorsMultiplySuperelementMass(Operators o, const PetscReal p[], PetscInt k, Vec u, Vec f)
 {
-  const Superelement *s = &o->superelements[k];
+  Superelement *piece = NULL;
+  Vec           part;
 
   PetscFunctionBeginUser;
   PetscCall(VecSet(f, 0));
-  if (!s->mass) PetscFunctionReturn(0);
-  PetscCall(MatMult(s->mass, u, f));
-  PetscCall(VecScale(f, OperatorsPoint(o, p)[s->index[SUPERELEMENT_M]]));
+  PetscCall(VecDuplicate(f, &part));
+  while (SuperelementNext(o, &o->superelements[k], &piece)) {
+    if (!piece->mass) continue;
+    PetscCall(MatMult(piece->mass, u, part));
+    PetscCall(VecAXPY(f, OperatorsPoint(o, p)[piece->index[SUPERELEMENT_M]], part));
+  }
+  PetscCall(VecDestroy(&part));
   PetscFunctionReturn(0);
 }
 
@@ -68,14 +73,15 @@ PetscErrorCode OperatorsMarkSuperelement(Operators o, PetscInt k, PetscBool apar
 PetscErrorCode OperatorsGetSuperelementForce(Operators o, const PetscReal p[], PetscInt k, Vec u,
                                              const PetscReal displacement[], PetscReal force[3])
 {
-  const Superelement *s = &o->superelements[k];
-  const Mesh         *mesh;
-  PetscReal          *f;
+  Superelement *piece = NULL;
+  const Mesh   *mesh;
+  PetscReal    *f;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCall(PetscCalloc1(3 * mesh->n_nodes, &f));
-  PetscCall(SuperelementAddForce(o, OperatorsPoint(o, p), s, u, displacement, f));
+  while (SuperelementNext(o, &o->superelements[k], &piece))
+    PetscCall(SuperelementAddForce(o, OperatorsPoint(o, p), piece, u, displacement, f));
   for (int d = 0; d < 3; d++) force[d] = 0;
   for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) force[i % 3] -= f[i];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, o->comm));

@@ -78,11 +78,12 @@ PetscErrorCode OperatorsGetSuperelements(Operators o, const PetscReal p[], Opera
     for (PetscInt i = 0; i < s->n; i++)
       all->apart[first + i] = s->row[i].direction == SUPERELEMENT_APART ? all->n_apart++ : -1;
     PetscCall(SharesGather(o, s, first, all));
-    for (int i = 0; i < N_SUPERELEMENT; i++) {
-      if (!s->A[i]) continue;
-      if (!*block[i]) PetscCall(PetscCalloc1(all->n * all->n, block[i]));
-      PetscCall(DenseAdd(s->A[i], OperatorsPoint(o, p)[s->index[i]], first, all->n, *block[i]));
-    }
+    for (Superelement *piece = NULL; SuperelementNext(o, s, &piece);)
+      for (int i = 0; i < N_SUPERELEMENT; i++) {
+        if (!piece->A[i]) continue;
+        if (!*block[i]) PetscCall(PetscCalloc1(all->n * all->n, block[i]));
+        PetscCall(DenseAdd(piece->A[i], OperatorsPoint(o, p)[piece->index[i]], first, all->n, *block[i]));
+      }
   }
   for (int i = 0; i < N_SUPERELEMENT; i++)
     if (*block[i]) PetscCall(DenseSum(o->comm, all->n, *block[i]));

@@ -71,7 +71,7 @@ PetscErrorCode SuperelementsAddForces(Operators o, const PetscReal p[], Vec u, c
                                       PetscReal force[])
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n_superelements; i++)
+  for (PetscInt i = 0; i < o->n_superelements + o->n_pieces; i++)
     PetscCall(SuperelementAddForce(o, p, &o->superelements[i], u, displacement, force));
   PetscFunctionReturn(0);
 }

@@ -28,8 +28,9 @@ static const Quantity rows[] = {
   SUPERELEMENT_FILE("m", "mass, kg", SUPERELEMENT_M),
   SUPERELEMENT_FILE("c", "damping, N s/m", SUPERELEMENT_C),
   {"-table", "table unknown,node,direction,x,y,z of its unknowns", NULL, QUANTITY_PATH, SUPER(table), .path = "file",
-   .given = offsetof(Superelement, has_table), .required = PETSC_TRUE,
-   .why = "the file that says where the unknowns are"},
+   .given = offsetof(Superelement, has_table)},
+  {"-of", "in place of a table: another superelement, to whose unknowns its matrices are added", NULL, QUANTITY_NAME,
+   SUPER(of)},
   {"-sets", "sets whose nodes, or surfaces, its unknowns are on; default any node", NULL, QUANTITY_NAMES, SUPER(sets),
    .count = offsetof(Superelement, n_sets)},
   {"-distance", "how far they may be off; default 1e-5 of the mesh from a node or point, 5 % of a facet from a surface",
@@ -50,9 +51,12 @@ static PetscErrorCode SuperelementCheck(MPI_Comm comm, void *owner, void *record
   (void)owner;
   PetscCall(HelpIsAsked(&help));
   if (help != HELP_NONE) PetscFunctionReturn(0);
-  PetscCheck(s->file[SUPERELEMENT_K][0] || s->file[SUPERELEMENT_M][0] || s->file[SUPERELEMENT_C][0], comm,
-             PETSC_ERR_USER_INPUT, "superelement %s has no matrix: give -%s_k and -%s_m", s->name, s->name, s->name);
-  PetscCall(SuperelementReadTable(comm, s));
+  PetscCheck(s->of[0] || s->has_table, comm, PETSC_ERR_USER_INPUT,
+             "-%s_table must be given: the file that says where the unknowns are", s->name);
+  PetscCheck(!s->of[0] || (!s->has_table && !s->n_sets && !s->has_distance), comm, PETSC_ERR_USER_INPUT,
+             "-%s_of %s: its unknowns are those of %s: leave -%s_table, -%s_sets and -%s_distance out", s->name, s->of,
+             s->of, s->name, s->name, s->name);
+  if (!s->of[0]) PetscCall(SuperelementReadTable(comm, s));
   PetscFunctionReturn(0);
 }
 
@@ -63,15 +67,18 @@ static const QuantityList superelements_list = {
 
 PetscErrorCode SuperelementsSetFromOptions(Operators o)
 {
+  PetscInt n;
+
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesReadList(o->comm, &superelements_list, o, &o->n_superelements, &o->superelements));
+  PetscCall(QuantitiesReadList(o->comm, &superelements_list, o, &n, &o->superelements));
+  PetscCall(SuperelementsSort(o, n));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SuperelementsVisit(Operators o, const QuantityVisitor *visitor)
 {
   PetscFunctionBeginUser;
-  PetscCall(QuantitiesVisitList(visitor, &superelements_list, o->n_superelements, o->superelements));
+  PetscCall(QuantitiesVisitList(visitor, &superelements_list, o->n_superelements + o->n_pieces, o->superelements));
   PetscFunctionReturn(0);
 }
 
@@ -103,9 +110,9 @@ static PetscErrorCode MatrixMakeEven(MPI_Comm comm, const char option[], const c
 }
 
 /* Whether the mass of the unknowns apart, the others held, is positive definite: that of the mesh is not theirs */
-static PetscErrorCode SuperelementHasMassApart(Operators o, const Superelement *s, const char who[], PetscBool *has)
+static PetscErrorCode SuperelementHasMassApart(Operators o, const Superelement *s, Mat M, const char who[],
+                                               PetscBool *has)
 {
-  const Mat M = s->A[SUPERELEMENT_M];
   PetscInt  first, last, n = 0, *row;
   PetscReal least;
   PetscBool singular;
@@ -134,14 +141,20 @@ static PetscErrorCode SuperelementHasMassApart(Operators o, const Superelement *
 /* Raises an error for a mass that is indefinite, or none of unknowns apart */
 static PetscErrorCode SuperelementCheckMass(Operators o, const Superelement *s)
 {
-  PetscBool singular, has = PETSC_FALSE;
-  char      who[256];
+  PetscBool     singular, has = PETSC_FALSE;
+  char          who[256];
+  Superelement *piece = NULL;
+  Mat           M;
 
   PetscFunctionBeginUser;
+  while (SuperelementNext(o, s, &piece)) {
+    PetscCall(PetscSNPrintf(who, sizeof(who), "superelement %s: ", piece->name));
+    if (piece->A[SUPERELEMENT_M]) PetscCall(MassCheck(piece->A[SUPERELEMENT_M], who, &singular));
+  }
   PetscCall(PetscSNPrintf(who, sizeof(who), "superelement %s: ", s->name));
-  if (s->A[SUPERELEMENT_M]) PetscCall(MassCheck(s->A[SUPERELEMENT_M], who, &singular));
-  if (s->A[SUPERELEMENT_M] && s->n_apart && s->scale[SUPERELEMENT_M] > 0)
-    PetscCall(SuperelementHasMassApart(o, s, who, &has));
+  PetscCall(SuperelementSum(o, s, SUPERELEMENT_M, &M));
+  if (M && s->n_apart) PetscCall(SuperelementHasMassApart(o, s, M, who, &has));
+  PetscCall(MatDestroy(&M));
   PetscCheck(has || !s->n_apart, o->comm, PETSC_ERR_USER_INPUT,
              "superelement %s: internal unknowns have no mass of their own along some direction: eliminate these where "
              "the matrices are made, or give them a mass by -%s_m and a positive -%s_m_scale",
@@ -152,14 +165,24 @@ static PetscErrorCode SuperelementCheckMass(Operators o, const Superelement *s)
 /* Raises an error where unknowns apart have no stiffness at all: they would float at any place */
 static PetscErrorCode SuperelementCheckStiffness(Operators o, const Superelement *s)
 {
+  Superelement       *piece = NULL;
+  const Superelement *slack = NULL;
+  PetscBool           has = PETSC_FALSE, counts = PETSC_FALSE;
+
   PetscFunctionBeginUser;
-  PetscCheck(!s->n_apart || s->file[SUPERELEMENT_K][0], o->comm, PETSC_ERR_USER_INPUT,
+  while (SuperelementNext(o, s, &piece)) {
+    if (!piece->file[SUPERELEMENT_K][0]) continue;
+    has = PETSC_TRUE;
+    if (piece->scale[SUPERELEMENT_K] > 0) counts = PETSC_TRUE;
+    if (!slack) slack = piece;
+  }
+  PetscCheck(!s->n_apart || has, o->comm, PETSC_ERR_USER_INPUT,
              "superelement %s: its %" PetscInt_FMT " internal unknowns have no stiffness: give -%s_k", s->name,
              s->n_apart, s->name);
-  PetscCheck(!s->n_apart || s->scale[SUPERELEMENT_K] > 0, o->comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!s->n_apart || counts, o->comm, PETSC_ERR_USER_INPUT,
              "superelement %s: -%s_k_scale %.6g leaves its %" PetscInt_FMT
              " internal unknowns without stiffness: it must be positive",
-             s->name, s->name, (double)s->scale[SUPERELEMENT_K], s->n_apart);
+             s->name, slack->name, (double)slack->scale[SUPERELEMENT_K], s->n_apart);
   PetscFunctionReturn(0);
 }
 
@@ -256,20 +279,24 @@ PetscErrorCode SuperelementsSetUp(Operators o)
   PetscCall(ModelGetMesh(o->model, &mesh));
   apart = mesh->n_unknowns - mesh->n_apart;
   for (PetscInt k = 0; k < o->n_superelements; k++) {
-    Superelement *s = &o->superelements[k];
+    Superelement *s = &o->superelements[k], *piece = NULL;
     Mat           B = NULL, like = NULL;
 
     s->first_apart = apart;
     apart += s->n_apart;
     PetscCall(SuperelementPlace(o, s));
-    for (int i = 0; i < N_SUPERELEMENT; i++) {
-      PetscCall(SuperelementLoad(o, s, i));
-      if (s->A[i]) like = s->A[i];
-    }
+    while (SuperelementNext(o, s, &piece))
+      for (int i = 0; i < N_SUPERELEMENT; i++) {
+        PetscCall(SuperelementLoad(o, piece, i));
+        if (piece->A[i]) like = piece->A[i];
+      }
     PetscCall(SuperelementCheckStiffness(o, s));
     PetscCall(SuperelementCheckMass(o, s));
     if (like && !o->omit) PetscCall(SuperelementCreateB(o, s, like, &B));
-    for (int i = 0; i < N_SUPERELEMENT; i++) PetscCall(SuperelementAddTerm(o, s, i, B));
+    while (SuperelementNext(o, s, &piece)) {
+      if (piece->whole) SuperelementPlacePiece(piece);
+      for (int i = 0; i < N_SUPERELEMENT; i++) PetscCall(SuperelementAddTerm(o, piece, i, B));
+    }
     PetscCall(MatDestroy(&B));
   }
   PetscFunctionReturn(0);
@@ -278,7 +305,7 @@ PetscErrorCode SuperelementsSetUp(Operators o)
 PetscErrorCode SuperelementsCheckWeight(Operators o)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < o->n_superelements; i++)
+  for (PetscInt i = 0; i < o->n_superelements + o->n_pieces; i++)
     PetscCheck(
       !o->superelements[i].file[SUPERELEMENT_M][0], o->comm, PETSC_ERR_SUP,
       "-model_gravity is not supported with the mass of superelement %s: its internal unknowns do not tell how "
@@ -304,7 +331,7 @@ PetscErrorCode OperatorsViewSuperelements(Operators o, PetscViewer viewer)
 
 PetscBool OperatorsIsOfSuperelement(Operators o, PetscInt parameter)
 {
-  for (PetscInt k = 0; k < o->n_superelements; k++)
+  for (PetscInt k = 0; k < o->n_superelements + o->n_pieces; k++)
     for (int i = 0; i < N_SUPERELEMENT; i++)
       if (o->superelements[k].index[i] == parameter) return PETSC_TRUE;
   return PETSC_FALSE;
@@ -313,7 +340,7 @@ PetscBool OperatorsIsOfSuperelement(Operators o, PetscInt parameter)
 PetscErrorCode SuperelementsAddChecksum(Operators o, Checksum c)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < o->n_superelements; k++) {
+  for (PetscInt k = 0; k < o->n_superelements + o->n_pieces; k++) {
     const Superelement *s = &o->superelements[k];
 
     PetscCall(ChecksumSetPart(c, "superelement %s", s->name));
@@ -331,16 +358,17 @@ PetscErrorCode SuperelementsAddChecksum(Operators o, Checksum c)
 PetscErrorCode SuperelementsDestroy(Operators o)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < o->n_superelements; k++) {
+  for (PetscInt k = 0; k < o->n_superelements + o->n_pieces; k++) {
     Superelement *s = &o->superelements[k];
 
     for (PetscInt i = 0; i < s->n_sets; i++) PetscCall(PetscFree(s->sets[i]));
     PetscCall(PetscFree(s->sets));
     for (int i = 0; i < N_SUPERELEMENT; i++) PetscCall(MatDestroy(&s->A[i]));
     PetscCall(MatDestroy(&s->mass));
-    PetscCall(PetscFree(s->row));
-    PetscCall(PetscFree(s->share));
+    if (!s->whole) PetscCall(PetscFree(s->row));
+    if (!s->whole) PetscCall(PetscFree(s->share));
     PetscCall(PetscFree(s->name));
+    PetscCall(PetscFree(s->of));
   }
   PetscCall(PetscFree(o->superelements));
   PetscFunctionReturn(0);

@@ -3,6 +3,9 @@
    mesh or of a point, u_s = B u, or is apart: an unknown of its own. With K_s (N/m), M_s (kg) and C_s (N s/m)
 
       K += k B' K_s B,   M += m B' M_s B,   C += c B' C_s B,   k, m, c = 1 in the scene.
+
+   A piece has matrices and scales of its own on the unknowns of another one (-..._of): what its parts add, so that
+   their moduli may vary one by one.
 */
 #pragma once
 
@@ -25,13 +28,15 @@ typedef struct {
 } SuperelementShare;
 
 typedef struct _p_Superelement {
-  char     *name;
+  char     *name, *of; /* whose unknowns it shares; empty for its own */
   char      file[N_SUPERELEMENT][PETSC_MAX_PATH_LEN], table[PETSC_MAX_PATH_LEN];
   PetscReal scale[N_SUPERELEMENT];
   PetscInt  n_sets;
   char    **sets;
   PetscReal distance; /* m; 0: not given */
   PetscBool has_table, has_distance;
+  /* the one whose unknowns, rows, places and shares it borrows; NULL for its own */
+  struct _p_Superelement *whole;
   /* read before the model is set up */
   PetscInt         n, n_apart; /* unknowns; of these apart */
   SuperelementRow *row;        /* [n] */
@@ -45,6 +50,15 @@ typedef struct _p_Superelement {
   PetscInt           n_shares;
   SuperelementShare *share;
 } Superelement;
+
+/* pieces.c - sorts what is read, finds what pieces are of, raises errors; a piece takes the places of its whole. Not
+   collective. */
+PETSC_INTERN PetscErrorCode SuperelementsSort(Operators operators, PetscInt n);
+PETSC_INTERN void           SuperelementPlacePiece(Superelement *piece);
+/* Goes from NULL through a superelement and its pieces; false, and NULL, behind the last */
+PETSC_INTERN PetscBool SuperelementNext(Operators operators, const Superelement *whole, Superelement **piece);
+/* Sum of one kind of their matrices times the scales of the scene, NULL without. Collective. */
+PETSC_INTERN PetscErrorCode SuperelementSum(Operators operators, const Superelement *whole, int kind, Mat *sum);
 
 /* superelement.c - reads the list and its tables; then tells the model how many unknowns are apart. Collective. */
 PETSC_INTERN PetscErrorCode SuperelementsSetFromOptions(Operators operators);
