@@ -143,11 +143,7 @@ PetscErrorCode SubstructureMeasure(Substructure s)
   PetscFunctionBeginUser;
   PetscCall(MeasureAdd(s, PETSC_FALSE, s->K, s->M));
   none = s->n_modes ? PETSC_FALSE : PETSC_TRUE;
-  PetscCheck(
-    !none, s->comm, PETSC_ERR_USER_INPUT,
-    "-superelement_band %.6g,%.6g: the superelement by itself has no mode there, so that nothing tells how right it "
-    "is; take a wider band",
-    (double)s->band[0], (double)s->band[1]);
+  PetscCheck(!none, s->comm, PETSC_ERR_USER_INPUT, SUBSTRUCTURE_NO_MODE, (double)s->band[0], (double)s->band[1]);
   if (!s->n_modal) PetscFunctionReturn(0);
   PetscCall(MatGetOwnershipRange(s->K, &begin, &end));
   begin = PetscMax(begin, s->interface.n);

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#define SUBSTRUCTURE_BEYOND 3 /* times the end of the band: the cut-off where none is given */
+#define SUBSTRUCTURE_EDGE   1e-6 /* of an end of the band: modes that are nearer count */
+#define SUBSTRUCTURE_BEYOND 3    /* times the end of the band: the cut-off where none is given */
 
 PetscErrorCode SubstructureCreate(MPI_Comm comm, Substructure *s)
 {
@@ -77,6 +78,23 @@ static PetscErrorCode SubstructureCheck(Substructure s)
   PetscFunctionReturn(0);
 }
 
+/* Raises the error where the parts by themselves, whose frequencies lie below those of the superelement, have no mode
+   in the band: by the negative pivots of K - omega^2 M at its ends, before shapes are sought */
+static PetscErrorCode SubstructureCheckModes(Substructure s)
+{
+  PencilMatrices pencil  = {.K = s->body.K, .M = s->body.M, .symmetric = PETSC_TRUE};
+  ShiftInvert    counter = {.comm = s->comm};
+  PetscReal      low = 2 * PETSC_PI * s->band[0] * (1 - SUBSTRUCTURE_EDGE), high = 2 * PETSC_PI * s->band[1];
+  PetscInt       below, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertCountBelow(&pencil, -SUBSTRUCTURE_EDGE, &counter, &low, &below));
+  PetscCall(ShiftInvertCountBelow(&pencil, SUBSTRUCTURE_EDGE, &counter, &high, &n));
+  PetscCall(ShiftInvertDestroy(&counter));
+  PetscCheck(n > below, s->comm, PETSC_ERR_USER_INPUT, SUBSTRUCTURE_NO_MODE, (double)s->band[0], (double)s->band[1]);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SubstructureSolve(Substructure s)
 {
   PetscInt n_inside;
@@ -84,6 +102,7 @@ PetscErrorCode SubstructureSolve(Substructure s)
   PetscFunctionBeginUser;
   PetscCall(SubstructureCheck(s));
   PetscCall(BodyCreate(s));
+  PetscCall(SubstructureCheckModes(s));
   PetscCall(InterfaceCreate(s, s->method == SUBSTRUCTURE_NONE ? PETSC_TRUE : PETSC_FALSE));
   s->n = s->interface.n + s->interface.n_kept;
   PetscCallMPI(MPI_Allreduce(&s->interface.n_inside, &n_inside, 1, MPIU_INT, MPI_SUM, s->comm));

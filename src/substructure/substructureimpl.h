@@ -9,6 +9,9 @@
 typedef enum { SUBSTRUCTURE_FIXED, SUBSTRUCTURE_FREE, SUBSTRUCTURE_NONE, N_SUBSTRUCTURE_METHODS } SubstructureMethod;
 
 #define SUBSTRUCTURE_JOINTS 16
+#define SUBSTRUCTURE_NO_MODE                                                                                           \
+  "-superelement_band %.6g,%.6g: the superelement by itself has no mode there, so that nothing tells how right it "    \
+  "is; take a wider band"
 
 /* The parts by themselves. Their unknowns are those of their nodes that neither a support holds nor a tie or a rigid
    point inside moves: the rows of all matrices here, spread over the ranks as their nodes are. */
