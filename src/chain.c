@@ -76,6 +76,8 @@ static PetscErrorCode ChainCreateScene(MPI_Comm comm, Chain *chain)
     PetscCall(ContactSetFromOptions(chain->contact));
     PetscCall(OperatorsSetModel(chain->operators, chain->model, chain->contact));
   }
+  PetscCall(SoundCreate(comm, chain->model, chain->contact, &chain->sound));
+  PetscCall(SoundSetFromOptions(chain->sound));
   PetscCall(ResultsCreate(comm, &chain->results));
   PetscCall(ResultsSetFromOptions(chain->results));
   PetscFunctionReturn(0);
@@ -130,6 +132,7 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscFunctionBeginUser;
   PetscCall(DynamicsCreate(comm, &chain->dynamics));
   if (chain->model) PetscCall(DynamicsSetModel(chain->dynamics, chain->model, chain->contact));
+  PetscCall(DynamicsSetSound(chain->dynamics, chain->sound));
   PetscCall(DynamicsSetFromOptions(chain->dynamics));
   PetscCall(ReducedCreate(comm, &chain->reduced));
   PetscCall(ReducedSetFromOptions(chain->reduced));
@@ -140,6 +143,7 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
   PetscCall(ModesCreate(comm, &chain->modes));
+  PetscCall(ModesSetSound(chain->modes, chain->sound));
   PetscCall(ModesSetFromOptions(chain->modes));
   PetscCall(ChainChooseContact(comm, chain));
   PetscCall(SolverReadEigenOptions(comm));
@@ -188,6 +192,7 @@ PetscErrorCode ChainDestroy(Chain *chain)
   PetscCall(StaticsDestroy(&chain->statics));
   PetscCall(PetscFree(chain->p));
   PetscCall(OperatorsDestroy(&chain->operators));
+  PetscCall(SoundDestroy(&chain->sound));
   PetscCall(ContactDestroy(&chain->contact));
   PetscCall(ModelDestroy(&chain->model));
   PetscFunctionReturn(0);
@@ -224,6 +229,7 @@ PetscErrorCode ChainVisit(void *ctx, const QuantityVisitor *visitor)
   PetscCall(OperatorsVisit(chain->operators, visitor));
   if (chain->model) PetscCall(ModelVisit(chain->model, visitor));
   if (chain->contact) PetscCall(ContactVisit(chain->contact, visitor));
+  PetscCall(SoundVisit(chain->sound, visitor));
   PetscCall(ResultsVisit(chain->results, visitor));
   PetscCall(DynamicsVisit(chain->dynamics, visitor));
   PetscCall(ReducedVisit(chain->reduced, visitor));
@@ -309,6 +315,7 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     else
       PetscCall(ContactSetUpTies(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
+    if (1U << chain->analysis & (RUN_MODES | RUN_TRANSIENT | RUN_CYCLE)) PetscCall(SoundSetUp(chain->sound));
     PetscCall(ChainNeedsMatrices(chain, pairs, &matrices));
     if (!matrices) PetscCall(OperatorsOmitMatrices(chain->operators));
   }

@@ -27,6 +27,7 @@ typedef enum {
 typedef struct {
   Model        model; /* NULL for matrices without a mesh */
   Contact      contact;
+  Sound        sound;
   Operators    operators;
   PetscReal   *p; /* values of the parameters: those of the scene, and what statics identify */
   Statics      statics;

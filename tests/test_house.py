@@ -38,13 +38,13 @@ from house_planted import PLANTED
 MOST_FILE, MOST_MAIN, MOST_BODY, MOST_ARGUMENTS, MOST_README, MOST_COLUMNS, MOST_FILES, MOST_CIRCLES = \
     400, 80, 80, 6, 25, 140, 15, 6
 
-CHAIN = ("base", "quantity", "kernels", "model", "contact", "operators", "solver", "basis", "statics", "modes", "sweep")
+CHAIN = ("base", "quantity", "kernels", "model", "contact", "sound", "operators", "solver", "basis", "statics", "modes", "sweep")
 BELOW = {room: {*CHAIN[:k + 1], *(("results",) if k > 1 else ())} for k, room in enumerate(CHAIN)}
 BELOW |= {room: BELOW["sweep"] | set(("sample", "quiet", "design")[:k + 1]) for k, room in enumerate(("sample", "quiet", "design"))}
 BELOW |= {room: BELOW["modes"] | {room} | ({"dynamics"} if room == "reduced" else set()) for room in ("frf", "substructure", "reduced")}
 BELOW["map"] = BELOW["reduced"] | {"map"}
 BELOW |= {"results": {"base", "quantity", "kernels", "results"},
-          "dynamics": {"base", "quantity", "kernels", "model", "contact", "operators", "statics", "results", "dynamics"}}
+          "dynamics": {"base", "quantity", "kernels", "model", "contact", "sound", "operators", "statics", "results", "dynamics"}}
 LAYERS = {"dense": {"dense"}, "basis": {"dense", "basis"}, "track": {"dense", "track"}}
 # Public headers of which the name is not their room's
 ROOM_OF_HEADER = {"checksum": "base", "cycle": "reduced", "contactstatus": "kernels", "elasticity": "kernels", "element": "kernels",

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <squeal/quantity.h>
+#include <squeal/sound.h>
 #include <squeal/statics.h>
 
 typedef struct _p_Dynamics *Dynamics;
@@ -26,6 +27,9 @@ PetscErrorCode DynamicsCreate(MPI_Comm comm, Dynamics *dynamics);
 /*@ DynamicsSetModel - the scene, whose loads and parts have options for dynamics; before DynamicsSetFromOptions().
  * Collective. @*/
 PetscErrorCode DynamicsSetModel(Dynamics dynamics, Model model, Contact contact);
+
+/*@ DynamicsSetSound - what microphones there are (referenced until DynamicsDestroy()). Not collective. @*/
+PetscErrorCode DynamicsSetSound(Dynamics dynamics, Sound sound);
 
 /*@
    DynamicsSetFromOptions - reads how to integrate. Collective.

@@ -255,6 +255,10 @@ void ModelAddMeanForce(const ModelMean *mean, const PetscReal force[6], PetscRea
 /*@ ModelGetSetFaces - the faces of a surface set on this rank; each face is on exactly one rank. Collective. The caller
     frees them with ModelFacesDestroy(). Errors: PETSC_ERR_USER_INPUT for a set without faces. @*/
 PetscErrorCode ModelGetSetFaces(Model model, const char set[], ModelFaces *faces);
+
+/*@ ModelGetOuterFaces - the faces of a part on this rank that have a cell on one side alone and are in none of n sets;
+    each face is on exactly one rank. Collective. The caller frees them with ModelFacesDestroy(). @*/
+PetscErrorCode ModelGetOuterFaces(Model model, PetscInt part, PetscInt n, const char *const set[], ModelFaces *faces);
 PetscErrorCode ModelFacesDestroy(ModelFaces *faces);
 
 /*@ ModelGetSetNormals - for each local node, shape [nodes][3], the outward normal of a surface set times the node's

@@ -16,6 +16,7 @@
 #include <squeal/quantity.h>
 #include <squeal/pencil.h>
 #include <squeal/results.h>
+#include <squeal/sound.h>
 
 typedef struct _p_Modes *Modes;
 struct ShiftInvert; /* factors, private to the solvers */
@@ -176,6 +177,9 @@ PetscErrorCode ModesAddChecksum(Modes modes, Checksum checksum);
 
 /*@ ModesView - the table of modes for people. Collective. @*/
 PetscErrorCode ModesView(Modes modes, PetscViewer viewer);
+
+/*@ ModesSetSound - what microphones there are (referenced until ModesWrite()). Not collective. @*/
+PetscErrorCode ModesSetSound(Modes modes, Sound sound);
 
 /*@ ModesWrite - modes.csv, modes_causes.csv, modes_effects.csv, modes_components.csv, modes_changed.csv and the
     shapes. Collective. @*/

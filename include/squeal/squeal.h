@@ -6,6 +6,7 @@
 #include <squeal/sys.h>
 #include <squeal/model.h>
 #include <squeal/contact.h>
+#include <squeal/sound.h>
 #include <squeal/operators.h>
 #include <squeal/pencil.h>
 #include <squeal/statics.h>

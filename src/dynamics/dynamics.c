@@ -263,6 +263,13 @@ PetscErrorCode DynamicsSolve(Dynamics d, Results results)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DynamicsSetSound(Dynamics d, Sound sound)
+{
+  PetscFunctionBeginUser;
+  PetscCall(HistorySetSound(d->history, sound));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsDestroy(Dynamics *dynamics)
 {
   Dynamics d = *dynamics;

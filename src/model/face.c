@@ -3,6 +3,7 @@
 */
 #include "modelimpl.h"
 #include "base/algebra/vec3.h"
+#include <petscsf.h>
 
 #define FACE_MAX_NODES 9 /* of a biquadratic quadrilateral */
 
@@ -125,6 +126,70 @@ PetscErrorCode PartGetFaces(Model model, PetscInt part, ModelFaces *faces)
     PetscCall(FaceGetNodes(model, face, &n, &faces->node[begin]));
     faces->first[++faces->n] = begin + n;
   }
+  PetscFunctionReturn(0);
+}
+
+/* Whether a face is in one of n sets */
+static PetscErrorCode FaceIsIn(Model model, PetscInt face, PetscInt n, const char *const set[], PetscBool *in)
+{
+  DMLabel  label;
+  PetscInt value = -1;
+
+  PetscFunctionBeginUser;
+  *in = PETSC_FALSE;
+  for (PetscInt i = 0; i < n && !*in; i++) {
+    PetscCall(DMGetLabel(model->dm, set[i], &label));
+    if (label) PetscCall(DMLabelGetValue(label, face, &value));
+    if (label && value == SET_CLOSED) *in = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* How many other ranks have each point that this rank owns, from the first point on; the caller frees it */
+static PetscErrorCode PointsCountSharers(Model model, PetscInt **sharers)
+{
+  const PetscInt *degree;
+  PetscInt        start, end, n_roots;
+  PetscSF         sf;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetChart(model->dm, &start, &end));
+  PetscCall(PetscCalloc1(end - start, sharers));
+  PetscCall(DMGetPointSF(model->dm, &sf));
+  PetscCall(PetscSFGetGraph(sf, &n_roots, NULL, NULL, NULL));
+  if (n_roots < 0) PetscFunctionReturn(0);
+  PetscCall(PetscSFComputeDegreeBegin(sf, &degree));
+  PetscCall(PetscSFComputeDegreeEnd(sf, &degree));
+  PetscCall(PetscArraycpy(*sharers, degree, PetscMin(n_roots, end - start)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetOuterFaces(Model model, PetscInt part, PetscInt n, const char *const set[], ModelFaces *faces)
+{
+  PetscInt cStart, fStart, fEnd, *sharers;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetHeightStratum(model->dm, 0, &cStart, NULL));
+  PetscCall(DMPlexGetHeightStratum(model->dm, 1, &fStart, &fEnd));
+  PetscCall(PointsCountSharers(model, &sharers));
+  faces->n = 0;
+  PetscCall(PetscMalloc2(fEnd - fStart + 1, &faces->first, FACE_MAX_NODES * (fEnd - fStart), &faces->node));
+  faces->first[0] = 0;
+  for (PetscInt face = fStart; face < fEnd; face++) {
+    const PetscInt *cells, begin = faces->first[faces->n];
+    PetscInt        n_cells, size;
+    PetscBool       elsewhere, in;
+
+    PetscCall(DMPlexGetSupportSize(model->dm, face, &n_cells));
+    PetscCall(DMPlexGetSupport(model->dm, face, &cells));
+    if (n_cells != 1 || sharers[face] || model->mesh.cell_part[cells[0] - cStart] != part) continue;
+    PetscCall(PointIsElsewhere(model, face, &elsewhere));
+    PetscCall(FaceIsIn(model, face, n, set, &in));
+    if (elsewhere || in) continue;
+    PetscCall(FaceGetNodes(model, face, &size, &faces->node[begin]));
+    faces->first[++faces->n] = begin + size;
+  }
+  PetscCall(PetscFree(sharers));
   PetscFunctionReturn(0);
 }
 

@@ -83,6 +83,7 @@ typedef struct _p_ModesChanged *ModesChanged;
 struct _p_Modes {
   MPI_Comm comm;
   Pencil   pencil;
+  Sound    sound; /* NULL: nobody listens */
   /* set by options */
   PetscReal band[2], target; /* Hz */
   PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
@@ -202,6 +203,9 @@ PETSC_INTERN PetscErrorCode ModeViewTwin(const Modes modes, PetscInt i, PetscVie
 
 /* Relative error of the vector of mode i, an estimate of first order, at most 1; nan without left vectors */
 PETSC_INTERN PetscReal ModeVectorError(const Modes modes, PetscInt i);
+
+/* output/sound.c - sound.csv, where there are microphones. Collective */
+PETSC_INTERN PetscErrorCode ModesWriteSound(Modes modes, const Mesh *mesh, Results results);
 
 /* growth/feedin.c - modes_feed_in.csv; the power per area, W/m^2, that friction gives to mode i, at the slave nodes of
    the contacts, density [local nodes], NULL where friction has no share; the caller frees it. Collective */
@@ -341,7 +345,7 @@ PETSC_INTERN PetscErrorCode QualityMeasure(Modes modes, const PencilMatrices *pe
 PETSC_INTERN PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *const **mass);
 PETSC_INTERN PetscErrorCode LabelsForgetWeights(Modes modes);
 
-/* filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
+/* output/filter.c - filters.h5 and filters.xmf: modal filters of all modes but rigid ones */
 PETSC_INTERN PetscErrorCode ModesWriteFilters(Modes modes, Model model, Results results);
 
 /* relative: of what differs less the first one names a mode, for rounding tells which is larger */

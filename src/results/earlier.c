@@ -86,6 +86,8 @@ static const struct {
   {"transient.xmf", "transient.csv.part"},
   {"amplitudes.csv", "transient.csv.part"},
   {"circles.csv", "transient.csv.part"},
+  {"sound_time.csv", "transient.csv.part"},
+  {"sound.csv", NULL},
   {"circle_nodes.csv", "transient.csv.part"},
   {"impulses.csv", "transient.csv.part"},
   {"contact_pairs.csv", "transient.csv.part"},

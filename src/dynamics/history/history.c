@@ -5,15 +5,15 @@
 #include <squeal/options.h>
 #include "historyimpl.h"
 
-#define N_TABLES 4 /* rows, pairs, amplitudes, circles */
+#define N_TABLES 5 /* rows, pairs, amplitudes, circles, sound */
 
-/* What a restart needs, before the times of the snapshots: reals alone */
+/* What a restart needs, before the times of the snapshots and what is heard: reals alone */
 typedef struct {
   Schedule  rows, pairs, frames;
   Growth    growth;
   PetscReal sweeps, steps;
   PetscReal mark[N_TABLES][3]; /* of the tables: length, halves of the checksum */
-  PetscReal n_frames;
+  PetscReal n_frames, n_sound; /* times of the snapshots, and numbers of the sound behind them */
 } HistoryKept;
 
 #define N_KEPT (PetscInt)(sizeof(HistoryKept) / sizeof(PetscReal))
@@ -66,6 +66,13 @@ PetscErrorCode HistorySetFilters(History history, const HistoryFilters *filters)
 {
   PetscFunctionBeginUser;
   history->filters = filters;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HistorySetSound(History history, Sound sound)
+{
+  PetscFunctionBeginUser;
+  history->sound = sound;
   PetscFunctionReturn(0);
 }
 
@@ -134,6 +141,11 @@ static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark
     PetscCall(HistoryBeginTable(results, "circles", header, mark[3], &history->circle_table));
     PetscCall(PetscFree(header));
   }
+  if (HistoryHears(history) && !history->sound_table) {
+    PetscCall(SoundCreateHeader(history, &header));
+    PetscCall(HistoryBeginTable(results, "sound_time", header, mark[4], &history->sound_table));
+    PetscCall(PetscFree(header));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -161,6 +173,7 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
     PetscCall(HistoryWriteRow(history, state));
     if (history->filters) PetscCall(HistoryWriteAmplitudes(history, state));
     if (history->n_circles) PetscCall(HistoryWriteCircles(history, state));
+    if (HistoryHears(history)) PetscCall(HistoryWriteSound(history, state));
     PetscCall(LiveShow(history, state));
   }
   if (ScheduleMeet(&history->pairs, state->time, state->dt)) PetscCall(HistoryRecordPairs(history, state));
@@ -173,8 +186,9 @@ PetscErrorCode HistoryRecord(History history, const HistoryState *state)
 PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 {
   ResultsMark      mark[N_TABLES] = {{0}};
-  PetscInt         n_frames       = 0;
-  const PetscReal *times          = NULL;
+  PetscInt         n_frames = 0, n_sound = 0;
+  const PetscReal *times = NULL;
+  PetscReal       *sound = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(HistoryBeginTables(h, mark));
@@ -182,20 +196,25 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
   if (h->pair_table) PetscCall(ResultsTableFlush(h->pair_table, &mark[1]));
   if (h->amplitude_table) PetscCall(ResultsTableFlush(h->amplitude_table, &mark[2]));
   if (h->circle_table) PetscCall(ResultsTableFlush(h->circle_table, &mark[3]));
+  if (h->sound_table) PetscCall(ResultsTableFlush(h->sound_table, &mark[4]));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
+  if (h->listener) PetscCall(SoundListenerGetMemory(h->listener, &n_sound, &sound));
   HistoryKept kept = {.rows     = h->rows,
                       .pairs    = h->pairs,
                       .frames   = h->frames,
                       .growth   = h->growth,
                       .sweeps   = h->sweeps,
                       .steps    = h->steps,
-                      .n_frames = (PetscReal)n_frames};
+                      .n_frames = (PetscReal)n_frames,
+                      .n_sound  = (PetscReal)n_sound};
 
   for (int i = 0; i < N_TABLES; i++) MarkKeep(&mark[i], kept.mark[i]);
-  *n = N_KEPT + n_frames;
+  *n = N_KEPT + n_frames + n_sound;
   PetscCall(PetscMalloc1(*n, values));
   PetscCall(PetscMemcpy(*values, &kept, sizeof(kept)));
   PetscCall(PetscArraycpy(*values + N_KEPT, times, n_frames));
+  PetscCall(PetscArraycpy(*values + N_KEPT + n_frames, sound, n_sound));
+  PetscCall(PetscFree(sound));
   PetscFunctionReturn(0);
 }
 
@@ -203,13 +222,16 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
 PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
 {
   HistoryKept kept;
+  PetscInt    n_frames, n_sound;
 
   PetscFunctionBeginUser;
   PetscCheck(n >= N_KEPT, h->comm, PETSC_ERR_ARG_SIZ, "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n,
              N_KEPT);
   PetscCall(PetscMemcpy(&kept, values, sizeof(kept)));
-  PetscCheck(n == N_KEPT + (PetscInt)kept.n_frames, h->comm, PETSC_ERR_ARG_SIZ,
-             "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n, N_KEPT + (PetscInt)kept.n_frames);
+  n_frames = (PetscInt)kept.n_frames;
+  n_sound  = (PetscInt)kept.n_sound;
+  PetscCheck(n == N_KEPT + n_frames + n_sound, h->comm, PETSC_ERR_ARG_SIZ,
+             "memory of %" PetscInt_FMT " numbers, must be %" PetscInt_FMT, n, N_KEPT + n_frames + n_sound);
   kept.growth.window = h->growth.window;
   h->growth          = kept.growth;
   h->sweeps          = kept.sweeps;
@@ -217,9 +239,16 @@ PetscErrorCode HistorySetMemory(History h, PetscInt n, const PetscReal values[])
   ScheduleRestore(&h->rows, &kept.rows);
   ScheduleRestore(&h->pairs, &kept.pairs);
   ScheduleRestore(&h->frames, &kept.frames);
-  if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n - N_KEPT, &values[N_KEPT]));
+  if (h->film) PetscCall(ResultsFilmSetTimes(h->film, n_frames, &values[N_KEPT]));
+  if (HistoryHears(h) && n_sound) {
+    PetscCall(PetscFree(h->heard));
+    h->n_heard = n_sound;
+    PetscCall(PetscMalloc1(n_sound, &h->heard));
+    PetscCall(PetscArraycpy(h->heard, &values[N_KEPT + n_frames], n_sound));
+  }
   PetscCall(HistoryBeginTables(h, (ResultsMark[N_TABLES]){MarkTake(kept.mark[0]), MarkTake(kept.mark[1]),
-                                                          MarkTake(kept.mark[2]), MarkTake(kept.mark[3])}));
+                                                          MarkTake(kept.mark[2]), MarkTake(kept.mark[3]),
+                                                          MarkTake(kept.mark[4])}));
   PetscFunctionReturn(0);
 }
 
@@ -240,6 +269,7 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
   }
   PetscCall(ChecksumSetPart(c, "-dynamics_filters"));
   if (h->filters) PetscCall(ChecksumAddInts(c, h->filters->n, h->filters->mode));
+  PetscCall(SoundAddChecksum(h->sound, c));
   PetscFunctionReturn(0);
 }
 
@@ -251,6 +281,7 @@ PetscErrorCode HistoryClose(History history)
   PetscCall(ResultsTableClose(&history->pair_table));
   PetscCall(ResultsTableClose(&history->amplitude_table));
   PetscCall(ResultsTableClose(&history->circle_table));
+  PetscCall(ResultsTableClose(&history->sound_table));
   PetscCall(CirclesWriteNodes(history));
   PetscFunctionReturn(0);
 }
@@ -263,6 +294,9 @@ PetscErrorCode HistoryDestroy(History *history)
   PetscCall(ResultsTableSuspend(&(*history)->pair_table));
   PetscCall(ResultsTableSuspend(&(*history)->amplitude_table));
   PetscCall(ResultsTableSuspend(&(*history)->circle_table));
+  PetscCall(ResultsTableSuspend(&(*history)->sound_table));
+  PetscCall(SoundListenerDestroy(&(*history)->listener));
+  PetscCall(PetscFree((*history)->heard));
   PetscCall(ResultsFilmDestroy(&(*history)->film));
   PetscCall(PetscFree(*history));
   PetscFunctionReturn(0);

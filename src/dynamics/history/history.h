@@ -1,12 +1,13 @@
 /*
-   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, circles.csv, the live line, and
-   snapshots with transient.xmf.
+   History (private to dynamics/) - transient.csv, contact_pairs.csv, amplitudes.csv, circles.csv, sound_time.csv, the
+   live line, and snapshots with transient.xmf.
 */
 #pragma once
 
 #include <squeal/quantity.h>
 #include <squeal/projector.h>
 #include <squeal/results.h>
+#include <squeal/sound.h>
 #include "ledger.h"
 
 typedef struct _p_History *History;
@@ -26,6 +27,8 @@ typedef struct {
   void *ctx;
   void (*at)(void *ctx, PetscInt node, PetscReal u[3], PetscReal v[3], PetscReal a[3]);
   PetscErrorCode (*lift)(void *ctx, PetscReal u[], PetscReal v[]);
+  const SoundShapes *shapes; /* of which the sound is made */
+  const PetscReal   *rate;   /* [shapes] */
 } HistoryMotions;
 
 /* State at t_n, when the forces are complete: velocity v_n = before + dt minv ((1/2 - b) f_old + b f), acceleration a
@@ -74,6 +77,10 @@ PETSC_INTERN PetscErrorCode HistorySetUp(History history, const HistorySource *s
 
 /* Takes filters (borrowed), for amplitudes.csv beside every row. Not collective. */
 PETSC_INTERN PetscErrorCode HistorySetFilters(History history, const HistoryFilters *filters);
+
+/* Takes what microphones hear into sound_time.csv beside every row (referenced until HistoryDestroy()); before
+   HistorySetUp(). Not collective. */
+PETSC_INTERN PetscErrorCode HistorySetSound(History history, Sound sound);
 
 /* Whether a row (or a snapshot) is due at step n, time t: the same answer on every rank, and cheap; multiples k of
    the interval are met at the first t >= k interval - dt / 2 */

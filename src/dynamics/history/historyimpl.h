@@ -46,8 +46,12 @@ struct _p_History {
   PetscInt              n_circles;
   const Circle         *circles;
   const HistoryFilters *filters; /* NULL for none */
+  Sound                 sound;
+  SoundListener         listener; /* NULL without microphones, or before the first row */
+  PetscInt              n_heard;  /* numbers that a restart brings, for the listener */
+  PetscReal            *heard;    /* [n_heard] */
   /* where */
-  ResultsTable table, pair_table, amplitude_table, circle_table;
+  ResultsTable table, pair_table, amplitude_table, circle_table, sound_table;
   ResultsFilm  film; /* NULL for none */
 };
 
@@ -69,22 +73,28 @@ PETSC_INTERN void      ScheduleRestore(Schedule *schedule, const Schedule *kept)
    Collective. */
 PETSC_INTERN PetscErrorCode HistoryFit(History history, PetscReal end, PetscReal dt);
 
-/* history/row.c - header of transient.csv, which the caller frees, and a row */
+/* tables/row.c - header of transient.csv, which the caller frees, and a row */
 PETSC_INTERN PetscErrorCode HistoryCreateHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteRow(History history, const HistoryState *state);
 
-/* history/pairs.c - rows of the states of all ranks, by interface and number of the slave */
+/* tables/pairs.c - rows of the states of all ranks, by interface and number of the slave */
 PETSC_INTERN PetscErrorCode HistoryWritePairs(ResultsTable table, MPI_Comm comm, const ContactInterface interfaces[],
                                               PetscReal time, const HistoryPairs *pairs);
 
-/* amplitudes.c - header of amplitudes.csv, which the caller frees, and a row. Collective. */
+/* tables/amplitudes.c - header of amplitudes.csv, which the caller frees, and a row. Collective. */
 PETSC_INTERN PetscErrorCode AmplitudesCreateHeader(const HistoryFilters *filters, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteAmplitudes(History history, const HistoryState *state);
 
-/* circles.c - header of circles.csv, which the caller frees, a row, and the table of the nodes. Collective. */
+/* tables/circles.c - header of circles.csv, which the caller frees, a row, and the table of the nodes. Collective. */
 PETSC_INTERN PetscErrorCode CirclesCreateHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteCircles(History history, const HistoryState *state);
 PETSC_INTERN PetscErrorCode CirclesWriteNodes(History history);
+
+/* tables/sound.c - whether there are microphones; header of sound_time.csv, which the caller frees, and a row.
+   Collective. */
+PETSC_INTERN PetscBool      HistoryHears(History history);
+PETSC_INTERN PetscErrorCode SoundCreateHeader(History history, char **header);
+PETSC_INTERN PetscErrorCode HistoryWriteSound(History history, const HistoryState *state);
 
 /* live.c */
 PETSC_INTERN void           GrowthAdd(Growth *growth, PetscReal t, PetscReal kinetic);

@@ -1,8 +1,8 @@
 /*
-   Modal filters of a run of modes about the sliding state (modes/filter.c), laid on the state vectors of this run: the
-   amplitude of mode k is c_k = a_k^T (u - u_0) + b_k^T v, m, with u_0 the displacements of the sliding state under the
-   whole loads. They are those of this run only where the matrices of both are the same: lumped mass, exact contact, the
-   status of the sliding state.
+   Modal filters of a run of modes about the sliding state (modes/output/filter.c), laid on the state vectors of this
+   run: the amplitude of mode k is c_k = a_k^T (u - u_0) + b_k^T v, m, with u_0 the displacements of the sliding state
+   under the whole loads. They are those of this run only where the matrices of both are the same: lumped mass, exact
+   contact, the status of the sliding state.
 */
 #include "dynamics/dynamicsimpl.h"
 #include "shape.h"

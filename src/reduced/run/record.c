@@ -104,6 +104,18 @@ static PetscErrorCode RecordLift(void *ctx, PetscReal u[], PetscReal v[])
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode RecordShape(void *ctx, PetscInt k, PetscReal v[])
+{
+  const ReducedRun r = ctx;
+  Vec              shape;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDenseGetColumnVecRead(r->reduction.Phi, k, &shape));
+  PetscCall(ModelGetNodal(r->run.model, shape, v));
+  PetscCall(MatDenseRestoreColumnVecRead(r->reduction.Phi, k, &shape));
+  PetscFunctionReturn(0);
+}
+
 /* The ledger at t_n; rank 0 has all of it, since every rank holds the same numbers and LedgerClose() sums over the
    ranks. */
 static PetscErrorCode RecordBalance(ReducedRun r, PetscBool first)
@@ -145,7 +157,8 @@ static PetscErrorCode RecordPairs(ReducedRun r, HistoryPairs *pairs, PetscInt **
 
 PetscErrorCode ReducedRecord(ReducedRun r, PetscBool first)
 {
-  const HistoryMotions motions = {r, RecordNode, RecordLift};
+  const SoundShapes    shapes  = {r->reduction.model.m, RecordShape, r}; /* the residual is left out */
+  const HistoryMotions motions = {r, RecordNode, RecordLift, &shapes, r->motion.state.rate};
   PetscInt            *interface;
   PetscReal           *x;
   HistoryPairs         pairs;

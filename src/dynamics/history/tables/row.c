@@ -2,7 +2,7 @@
    Rows of transient.csv. Forces are the sums over all pairs of the step from t_n, energies those of the half step
    before t_n; motions of probes are those at t_n.
 */
-#include "historyimpl.h"
+#include "dynamics/history/historyimpl.h"
 #include "base/text.h"
 
 #define N_PER_FACE  2

@@ -3,7 +3,7 @@
    circle_nodes.csv: where these nodes are. Angles are measured about the circle's axis from the contact, the mean of
    the slaves' nodes, unless that lies on the axis itself.
 */
-#include "historyimpl.h"
+#include "dynamics/history/historyimpl.h"
 #include "base/text.h"
 
 #define CIRCLE_ROOM 288

@@ -11,7 +11,7 @@
    f = 2 where omega > 0 (half of Re(c x) is the conjugate's), else 1. With x_j scaled to |x_j| = 1 at its largest
    component |c_j| is the amplitude there, m; a (-), b (s). In free linear motion c_j' = lambda_j c_j.
 */
-#include "complexvec.h"
+#include "modes/complexvec.h"
 
 /* Matrices of all unknowns, and work */
 typedef struct {

@@ -1,7 +1,7 @@
 /*
    The table of modes for people and for files, and the shapes.
 */
-#include "modesimpl.h"
+#include "modes/modesimpl.h"
 #include "base/events.h"
 #include "base/text.h"
 
@@ -200,6 +200,7 @@ PetscErrorCode ModesWrite(Modes modes, Results results)
   PetscCall(EventEnd(EVENT_EFFECTS));
   PetscCall(ComponentsWrite(modes, results));
   PetscCall(ChangesWrite(modes, results));
+  if (mesh) PetscCall(ModesWriteSound(modes, mesh, results));
   PetscCall(ResultsNote(results, "completeness", "%s", modes->completeness));
   PetscCall(ResultsWantFields(results, &wanted));
   if (mesh && wanted) PetscCall(ModesWriteShapes(modes, operators, mesh, results));

@@ -1,7 +1,7 @@
 /*
    amplitudes.csv: complex amplitudes of modes in time by their modal filters, c = a^T (u_n - u_0) + b^T v_n, m.
 */
-#include "historyimpl.h"
+#include "dynamics/history/historyimpl.h"
 #include "base/text.h"
 
 #define AMPLITUDE_ROOM 32

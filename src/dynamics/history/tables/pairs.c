@@ -3,7 +3,7 @@
    and place of the slave at rest, in the order of static.csv, so that a pair keeps its number during the run and on any
    number of ranks.
 */
-#include "historyimpl.h"
+#include "dynamics/history/historyimpl.h"
 #include "base/gather.h"
 #include "base/algebra/vec3.h"
 #include <stdlib.h>

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""scripts/sound on tones of known levels, beside the table of IEC 61672-1, and what it refuses."""
+
+import csv
+import subprocess
+import sys
+import tempfile
+import wave
+from pathlib import Path
+
+import numpy as np
+
+# IEC 61672-1:2013, table 3: A-weighting, dB, at 1000 * 10^(n / 10) Hz
+TABLE = {-16: -44.7, -15: -39.4, -12: -26.2, -9: -16.1, -6: -8.6, -3: -3.2, 0: 0.0, 1: 0.6, 2: 1.0, 3: 1.2, 4: 1.3, 5: 1.2, 6: 1.0, 7: 0.5,
+         8: -0.1, 9: -1.1, 10: -2.5, 11: -4.3, 12: -6.6, 13: -9.3}
+STEP = 5e-6
+FAILED = []
+
+
+def check(good, what):
+    """Prints and keeps what failed."""
+    print(f"{'ok    ' if good else 'FAILED'} {what}")
+    if not good:
+        FAILED.append(what)
+
+
+def write(folder, columns):
+    """sound_time.csv of the columns."""
+    folder.mkdir(exist_ok=True)
+    with (folder / "sound_time.csv").open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(columns)
+        table.writerows(zip(*[map(repr, map(float, values)) for values in columns.values()]))
+
+
+def read(path):
+    """Rows of a table."""
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def sound(root, *words):
+    """scripts/sound with words."""
+    return subprocess.run([sys.executable, root / "scripts/sound", *map(str, words)], capture_output=True, text=True, check=False)
+
+
+def near(value, expected, allowed, what):
+    """A number of a table."""
+    check(abs(float(value) - expected) <= allowed, f"{what}: {float(value):.6g} for {expected:.6g}, allowed {allowed:g}")
+
+
+def tones(root, folder):
+    """1 Pa at 4 kHz, from 0.1 s on with 0.5 Pa at 250 Hz; silence before 0.05 s at the other microphone."""
+    t = np.arange(0, 0.2, STEP)
+    first = np.sin(2 * np.pi * 4000 * t) + 0.5 * np.sin(2 * np.pi * 250 * t) * (t >= 0.1) + 7
+    second = np.where(t >= 0.05, np.sin(2 * np.pi * 2000 * t), 0)
+    write(folder, {"time_s": t, "front_pa": first, "side_pa": second})
+    done = sound(root, folder, "--window", "0.1,0.2")
+    check(done.returncode == 0 and not done.stderr, f"it runs: {done.stderr}")
+    levels, thirds, noises = (read(folder / f"sound_{name}.csv") for name in ("levels", "thirds", "events"))
+    full, quarter = 10 * np.log10(0.5 / 4e-10), 10 * np.log10(0.125 / 4e-10)
+    near(levels[0]["level_db"], 10 * np.log10(0.625 / 4e-10), 2e-3, "level of both tones")
+    near(levels[0]["level_dba"], 10 * np.log10(10**((full + 0.96) / 10) + 10**((quarter - 8.67) / 10)), 0.03, "A-weighted")
+    near(levels[0]["main_hz"], 4000, 0.1, "main line")
+    near(levels[0]["main_dba"], full + 0.96, 0.05, "level of the main line")
+    near(levels[1]["halves_differ_db"], 0, 1e-6, "halves of a steady tone")
+    bands = {round(float(row["middle_hz"])): float(row["level_db"]) for row in thirds if row["microphone"] == "front"}
+    near(bands[3981], full, 2e-3, "third octave of 4 kHz")
+    near(bands[251], quarter, 2e-3, "third octave of 250 Hz")
+    check([row["microphone"] for row in noises] == ["front", "side"], "an event at each microphone")
+    near(noises[1]["begin_s"], 0.05, 1e-9, "begin of the event")
+    near(noises[1]["freq_hz"], 2000, 1, "its frequency")
+    with wave.open(str(folder / "front.wav")) as file:
+        heard = np.frombuffer(file.readframes(file.getnframes()), "<i2") / 32767
+        check(file.getframerate() == 48000 and abs(len(heard) - 9600) <= 1, "0.2 s at 48 kHz")
+    inside = (first - first.mean())[::1]
+    near(np.sqrt((heard**2).mean()) * np.abs(inside).max(), np.sqrt((inside**2).mean()), 0.01, "effective value of the file")
+    check((folder / "front.png").stat().st_size > 10000, "a picture")
+
+
+def weights(root):
+    """The formula beside the table."""
+    sys.path.insert(0, str(root / "scripts"))
+    from squeal.sound.levels import weighting
+
+    worst = max(abs(20 * np.log10(weighting(1000 * 10**(n / 10))) - db) for n, db in TABLE.items())
+    check(worst <= 0.05, f"A-weighting within {worst:.3f} dB of the table, which has one digit")
+
+
+def refused(root, folder):
+    """One line each."""
+    t = np.arange(0, 0.01, STEP)
+    write(folder / "uneven", {"time_s": t**1.01, "front_pa": t})
+    write(folder / "short", {"time_s": t[:10], "front_pa": t[:10]})
+    write(folder / "nan", {"time_s": t, "front_pa": t * np.nan})
+    write(folder / "none", {"time_s": t})
+    (folder / "cut").mkdir()
+    (folder / "cut/sound_time.csv").write_text("time_s,front_pa\n0,0\n1e-6,\n")
+    for words in (["nowhere"], ["uneven"], ["short"], ["nan"], ["none"], ["cut"]):
+        done = sound(root, folder / words[0])
+        check(done.returncode == 1 and done.stderr.count("\n") == 1 and "not foreseen" not in done.stderr,
+              f"{words[0]}: {done.stderr.strip()}")
+    write(folder / "good", {"time_s": t, "front_pa": t})
+    done = sound(root, folder / "good", "--window", "3,4")
+    check(done.returncode == 1 and "holds 0 times" in done.stderr, f"window outside: {done.stderr.strip()}")
+    check(sound(root, folder / "good", "--frame", "-1").returncode == 2, "a negative frame")
+
+
+def main():
+    root = Path(__file__).resolve().parents[2]
+    weights(root)
+    with tempfile.TemporaryDirectory() as folder:
+        tones(root, Path(folder) / "tones")
+        refused(root, Path(folder))
+    sys.exit(1 if FAILED else 0)
+
+
+if __name__ == "__main__":
+    main()
