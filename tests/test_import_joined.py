@@ -136,6 +136,15 @@ def ansys(folder, program, solid):
     region = [*component, *real, "CERIG,9001,RIGHT,ALL"]
     same(folder, program, "MASS21 on CERIG", ("cdb", decks_joined.ansys(solid, [heavy], region, types)), rigid)
     beams = [[1, 13, 1, 1, 0, 0, 0, 0, 2, 0, 90100 + k, 9001, node] for k, node in enumerate(right)]
+    arrays = [f"*DIM,SL,ARRAY,{len(right)}", f"*DIM,WT,ARRAY,{len(right)},1,1", "*SET,SL(1,1,1)," + ",".join(map(str, right[:3])),
+              *(f"SL({k})={node}" for k, node in enumerate(right[3:], 4)), *(f"*SET,WT({k}),2." for k in range(1, len(right) + 1))]
+    spread = decks_joined.deck(solid, ref + lump + coupled + "*DISTRIBUTING\n")
+    whole = decks_joined.ansys(solid, [heavy], [*real, *arrays, "RBE3,9001,ALL,SL(1),WT(1)"], types)
+    same(folder, program, "MASS21 on RBE3", ("cdb", whole), spread)
+    lines, _ = brought(folder, decks_joined.ansys(solid, [heavy], [*real, *arrays[:-1], "RBE3,9001,ALL,SL(1),WT(1)"], types), "cdb")
+    check("RBE3: a weight of 0 is listed", sum("positive weights are needed" in line for line in lines) == 1, lines)
+    lines, _ = brought(folder, decks_joined.ansys(solid, [heavy], [*real, "RBE3,9001,ALL,SL(1)"], types), "cdb")
+    check("RBE3: an array that is not there is listed", sum("an array that is not there" in line for line in lines) == 1, lines)
     same(folder, program, "MASS21 on MPC184", ("cdb", decks_joined.ansys(solid, [heavy, *beams], real, types)), rigid)
     rows = []
     for node in right:

@@ -157,10 +157,10 @@ def couple(deck, mesh, command):
 
 
 def read_regions(deck, commands, mesh):
-    """CERIG, master, slave or ALL or a component; RBE3 by arrays is listed."""
+    """CERIG, master, slave or ALL or a component; RBE3."""
     for command in commands:
         if command.words[0] == "RBE3":
-            deck.note(command.place, "RBE3: by arrays of nodes and weights, which are not read: not in the scene")
+            spread(deck, mesh, command)
         if command.words[0] != "CERIG":
             continue
         slave = command.word(2).upper()
@@ -178,6 +178,30 @@ def read_regions(deck, commands, mesh):
             deck.note(command.place, f"CERIG {slave[:20]}: of nodes that are not known: not in the scene")
             continue
         deck.joins.append(Join("cerig", node, nodes[nodes != node], True, command.place, "CERIG"))
+
+
+def spread(deck, mesh, command):
+    """RBE3, master, freedoms, an array of nodes or ALL, an array of weights: the master is their mean."""
+    place, arrays = command.place, command.lines
+    if command.word(2) not in ("ALL", "UXYZ") or not command.word(1).isdigit():
+        deck.note(place, f"RBE3 {command.word(1)[:20]}, {command.word(2)[:10]}: only of a number, and of all freedoms: not in the scene")
+        return
+    node = int(mesh.nodes.need(numpy.array([command.whole(1)]), "node", place)[0])
+    if command.word(3) == "ALL" and isinstance(mesh.selected, numpy.ndarray):
+        nodes, weights = mesh.selected, arrays[0] if arrays else []
+    else:
+        nodes, weights = [whole(word, place) for word in (arrays + [[]])[0]], (arrays + [[], []])[1]
+        if not nodes or min(nodes) < 1:
+            deck.note(place, f"RBE3 {command.word(3)[:20]}: an array that is not there, or has rows that are not read: not in the scene")
+            return
+        nodes = mesh.nodes.need(numpy.array(nodes), "node", place)
+    shares = numpy.array([real(word, place) for word in weights[:len(nodes)]] or [1.0] * len(nodes))
+    if len(shares) < len(nodes) or min(shares) <= 0:
+        deck.note(place, f"RBE3 {command.word(4)[:20]}: {len(nodes)} positive weights are needed: not in the scene")
+        return
+    other = nodes != node
+    equal = len(set(shares[other])) == 1
+    deck.joins.append(Join("rbe3", node, nodes[other], False, place, "RBE3", shares=None if equal else shares[other]))
 
 
 def pilot(deck, mesh, number):

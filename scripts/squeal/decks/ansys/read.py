@@ -18,12 +18,13 @@ PLAIN = {"*IF", "*ENDIF", "*ELSE", "*ELSEIF", "*MSG", "*GET", "DOF", "NUMOFF", "
 NOTHING = {"OMEGA", "DOMEGA", "CGLOC", "CGOMEGA", "DCGOMG", "ALPHAD", "BETAD", "DMPRAT", "DMPSTR"}  # where all values are 0
 REPLACED = {"ET", "KEYOPT", "MP", "MPDATA"}  # whose words may be parameters
 SET = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*,|(\w+)\s*=)\s*([-+.\deE]+)\s*$", re.IGNORECASE)
+ROWS = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*,|(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*=)\s*([-+.\deE,\s]+)$", re.IGNORECASE)
 ASSIGNED = re.compile(r"\w+\s*(?:\([^)]*\))?\s*=")
 
 
 def commands_of(path, text, first, parameters):
     """Commands of lines outside of blocks, and of parts of a line between $; numbers alone on a line belong to the command before.
-    `parameters` keeps those that are numbers."""
+    `parameters` keeps those that are numbers, and of arrays their rows of one column."""
     found, before = [], ""
     for number, line in enumerate(text.decode("latin-1").lstrip("\xef\xbb\xbf").split("\n"), first):
         line = line.partition("!")[0].strip()
@@ -32,6 +33,8 @@ def commands_of(path, text, first, parameters):
         value = SET.match(line)
         if value:
             parameters[(value[1] or value[2]).upper()] = value[3]
+            continue
+        if keep_rows(line, parameters):
             continue
         if ASSIGNED.match(line):
             line = "*SET"
@@ -52,7 +55,31 @@ def commands_of(path, text, first, parameters):
                 words[1:] = [parameters.get(word.upper(), word) for word in words[1:]]
             if words[0]:
                 found.append(Command(words, Place(str(path), number)))
+            if words[0] == "RBE3":
+                found[-1].words, found[-1].lines = rows_of(line, parameters)
     return found
+
+
+def keep_rows(line, parameters):
+    """Keeps rows of an array of one column: *DIM,NAME,ARRAY,n and *SET,NAME(i),value,... or NAME(i)=value,..."""
+    words, rows = [word.strip().upper() for word in line.split(",")], ROWS.match(line)
+    if words[0] == "*DIM" and len(words) > 3 and words[2] in ("", "ARRAY") and set(words[4:]) <= {"", "1"} and words[3].isdigit():
+        parameters[f"{words[1]}("] = {row: "0" for row in range(1, int(words[3]) + 1)}
+        return True
+    array = parameters.get(f"{(rows[1] or rows[3]).upper()}(") if rows else None
+    if array is None:
+        return False
+    array |= {int(rows[2] or rows[4]) + k: word.strip() for k, word in enumerate(rows[5].split(",")) if word.strip()}
+    return True
+
+
+def rows_of(line, parameters):
+    """Words of RBE3, master, freedoms, NAME(i), NAME(i), and of both arrays the rows from i on."""
+    found = []
+    for name, first in re.findall(r"(\w+)\s*\(\s*(\d+)[\s,1]*\)", line):
+        rows = parameters.get(f"{name.upper()}(", {})
+        found.append([rows[row] for row in sorted(rows) if row >= int(first)])
+    return [word.strip() for word in re.sub(r"\([^)]*\)", "", line).upper().split(",")], found
 
 
 def is_idle(command):
