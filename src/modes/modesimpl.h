@@ -161,6 +161,8 @@ typedef struct {
   PetscBool counted;                   /* there: inertia counts the undamped modes */
   PetscInt  n_basis;                   /* vectors of a projection */
   PetscReal beyond;                    /* measure of damping there, or negative */
+  PetscInt  n_enlarged;                /* further vectors there, since damping is strong */
+  PetscReal pole;                      /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
   char      why[128];                   /* why not by projection; empty where it was not tried */
   PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */

@@ -71,7 +71,9 @@ static const Quantity rows[] = {
    "-..._force (auto)",
    NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE, .idle = ModesIdleContact},
   {MODES_DAMPING,
-   "route of a damped solution: projection on undamped modes where damping is weak (auto), always (project), or PEP",
+   "route of a damped solution: projection on undamped modes and vectors for strong damping, or PEP where these are "
+   "too "
+   "many (auto); always projection (project), or PEP",
    NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),
    .restart = PETSC_TRUE},
 };

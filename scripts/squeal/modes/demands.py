@@ -14,10 +14,14 @@ LU = "MatLUFactorNum"
 MOST_WHOLE = 7  # units, of one analysis
 BEFORE_MB, MOST_MEMORY = 560, 0.6  # peak of one analysis before this was demanded, and the part of it
 ALL = "-disc_{0} {1} -pad_{0} {1} -beam_{0} {1}"
+DASHPOTS = "-dashpots damper -damper_set beam_top -damper_viscosity_total {0},{0},{0}"
 SAME_BOTH = f"{ALL.format('alpha', 100)} {ALL.format('beta', '1e-7')}"
 DAMPINGS = (("disc beta 5e-7 s, pad beta 1e-7 s", "-disc_beta 5e-7 -pad_beta 1e-7", 1.4),
             ("alpha 100 1/s, beta 1e-7 s on all parts", SAME_BOTH, 1.1),
-            ("beta 1e-5 s on all parts", ALL.format("beta", "1e-5"), 3))  # most times of the undamped run
+            ("beta 1e-5 s on all parts", ALL.format("beta", "1e-5"), 3),  # most times of the undamped run
+            ("beta 1e-4 s on all parts", ALL.format("beta", "1e-4"), 5),
+            *((f"dashpots of {viscosity} N s/m in all", DASHPOTS.format(viscosity), 5) for viscosity in ("1e2", "1e4", "1e6")),
+            ("friction damping at 1e-3 m/s", "-contact_speed 1e-3 -contact_force 100 -contact_friction_damping", 5))
 BUSY = 1.2  # wall over processor time of the runs of the unit, from which on the unit is too long to judge by
 LONGEST = "-modes_max_time 600"  # s, of a damped run
 MOST_SWEEP, SWEEP_ERROR, N_HELD_OUT = 35, 1e-6, 10  # units; true error

@@ -7,14 +7,31 @@
 #define FOLLOW_FAR   1e-3  /* relative change of lambda that is another mode's */
 #define FOLLOW_ONE   0.999 /* cosine of the angle of two vectors that are one */
 #define EDGE_POINTS  64    /* on each side of the window's edge, where kappa(lambda) is looked at */
+#define EDGE_POLE    0.5   /* beside 1 / beta, radius about the pole -1 / beta within which nothing is claimed */
 #define LAWS_MOVE    1.2   /* times a frequency: by so much laws may move it, from their reference */
 #define LAWS_GROW    2     /* times a growth */
 #define LAWS_MORE    4     /* further modes next to a target, of which one may come nearer */
 #define FOLLOW_EQUAL 1e-9  /* relative distance of eigenvalues that are one */
 
+/* Whether lambda is next to the pole of kappa, where modes gather that damping keeps from oscillating */
+static PetscBool AtPole(const Projection *p, PetscComplex lambda)
+{
+  return cabs(1 + p->beta * lambda) < EDGE_POLE * (1 - 1e-9) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Overdamped modes gather about -1 / beta: 1 / beta where that is within the window, else 0 */
+PetscReal ProjectionPole(const Projection *p)
+{
+  const Window *w = p->window;
+
+  if (w->count || p->beta * w->growth <= 1 - EDGE_POLE || p->beta * w->low >= EDGE_POLE) return 0;
+  return 1 / p->beta;
+}
+
 /* Whether the window claims a mode and the basis can have it: of the modes nearest to a target those within reach, of a
-   band those between its edges with no more growth or decay than is asked for, or else with an undamped frequency
-   root(kappa) in the band, which V holds */
+   band those between its edges, away from the pole, with no more growth or decay than is asked for, or else, where they
+   oscillate within the window or C = alpha M + beta K, with an undamped frequency root(kappa) in the band, which V
+   holds */
 PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 {
   const Window      *w     = p->window;
@@ -23,7 +40,8 @@ PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
 
   if (w->count) return cabs(kappa - p->si.shift) <= p->reach ? PETSC_TRUE : PETSC_FALSE;
   if (omega < w->edge[0] || omega > w->edge[1]) return PETSC_FALSE;
-  if (PetscAbsReal(creal(lambda)) <= w->growth || p->reach == PETSC_MAX_REAL) return PETSC_TRUE;
+  if ((PetscAbsReal(creal(lambda)) <= w->growth && !AtPole(p, lambda)) || p->reach == PETSC_MAX_REAL) return PETSC_TRUE;
+  if (!p->exact && (AtPole(p, lambda) || omega == 0 || PetscAbsReal(creal(lambda)) > w->edge[1])) return PETSC_FALSE;
   return creal(kappa) >= PetscSqr(w->edge[0]) && creal(kappa) <= PetscSqr(w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -49,31 +67,60 @@ static PetscReal LambdaFar(const Projection *p, PetscComplex lambda)
   return cabs(ProjectionKappa(p, lambda) - p->si.shift);
 }
 
-/* kappa(lambda) is analytic but for its pole, so that |kappa - s| is largest on the edge of a region without the pole:
-   of a circle of radius d about the target, or of the rectangle |sigma| <= growth, low <= omega <= high */
+/* |lambda / (1 + beta lambda)|, s^-1: how much R weighs */
+static PetscReal LambdaRatio(const Projection *p, PetscComplex lambda)
+{
+  return cabs(lambda / (1 + p->beta * lambda));
+}
+
+/* The largest value of an analytic function on the edge of what a band claims: of the rectangle |sigma| <= growth, low
+   <= omega <= high without the circle about the pole -1 / beta */
+static PetscReal EdgeLargest(const Projection *p, PetscReal (*size)(const Projection *, PetscComplex))
+{
+  const Window *w       = p->window;
+  PetscReal     largest = 0;
+
+  for (int i = 0; i <= EDGE_POINTS; i++) {
+    const PetscReal    t = (PetscReal)i / EDGE_POINTS, sigma = (2 * t - 1) * w->growth;
+    const PetscReal    omega = w->low + t * (w->high - w->low);
+    const PetscComplex pole =
+      p->beta > 0 ? CMPLX(EDGE_POLE * cos(PETSC_PI * t) - 1, EDGE_POLE * sin(PETSC_PI * t)) / p->beta : 0;
+    const PetscComplex at[] = {CMPLX(sigma, w->low), CMPLX(sigma, w->high), CMPLX(-w->growth, omega),
+                               CMPLX(w->growth, omega), pole};
+
+    for (int k = 0; k < 5; k++)
+      if (!AtPole(p, at[k]) && PetscAbsReal(creal(at[k])) <= w->growth && cimag(at[k]) >= w->low &&
+          cimag(at[k]) <= w->high)
+        largest = PetscMax(largest, size(p, at[k]));
+  }
+  return largest;
+}
+
+/* |kappa - s| is largest on the edge of a region without the pole: of a circle of radius d about the target, or of what
+   a band claims */
 PetscReal ProjectionEdge(const Projection *p, PetscReal d)
 {
   const Window *w       = p->window;
   PetscReal     largest = 0;
 
-  /* at the pole -1 / beta overdamped modes gather; above the real axis kappa is largest on the edge */
-  if (!w->count && w->low <= 0 && p->beta * w->growth >= 1) return PETSC_MAX_REAL;
-  if (w->count && p->beta * d >= 1) return PETSC_MAX_REAL;
+  if (!w->count) return EdgeLargest(p, LambdaFar);
+  if (p->beta * d >= 1) return PETSC_MAX_REAL;
   for (int i = 0; i <= EDGE_POINTS; i++) {
-    const PetscReal t = (PetscReal)i / EDGE_POINTS, sigma = (2 * t - 1) * w->growth;
-    const PetscReal omega = w->low + t * (w->high - w->low);
+    const PetscReal angle = 2 * PETSC_PI * i / EDGE_POINTS;
 
-    if (w->count) {
-      const PetscComplex at = CMPLX(d * cos(2 * PETSC_PI * t), w->target + d * sin(2 * PETSC_PI * t));
-
-      largest = PetscMax(largest, LambdaFar(p, at));
-      continue;
-    }
-    largest = PetscMax(largest, PetscMax(LambdaFar(p, CMPLX(sigma, w->low)), LambdaFar(p, CMPLX(sigma, w->high))));
-    largest =
-      PetscMax(largest, PetscMax(LambdaFar(p, CMPLX(-w->growth, omega)), LambdaFar(p, CMPLX(w->growth, omega))));
+    largest = PetscMax(largest, LambdaFar(p, CMPLX(d * cos(angle), w->target + d * sin(angle))));
   }
   return largest;
+}
+
+/* At the upper end of the window, or, where the pole is near, anywhere */
+PetscReal ProjectionLargestRatio(const Projection *p)
+{
+  const PetscReal high = PetscMax(p->window->high, p->window->target);
+
+  if (p->pencil->n_laws) return high;
+  if (ProjectionPole(p) == 0) return LambdaRatio(p, CMPLX(0, high));
+  return EdgeLargest(p, LambdaRatio);
 }
 
 /* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */

@@ -11,7 +11,7 @@
    about the window, N eigenvalues of T inside it and N_nu of the nu_i: those of T that were found, in place of the
    eigenvalues of the quadratic part next to them, and all others of that. The quotient's phase is smooth. h is analytic
    in the upper half plane (viscoelastic.h); what does not oscillate is beyond, and not listed but for rigid modes. What
-   the projection itself leaves out is the concern of projection/fit.c.
+   the projection itself leaves out is the concern of projection/beyond.c.
 */
 #include "projection.h"
 

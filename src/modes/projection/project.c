@@ -13,8 +13,8 @@
    PROJECT_ROUNDING.
 
    No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings
-   none from beyond them where its measure is below one (projection/fit.c). Where it is above DAMPING_WEAK the route is
-   that of damped.c.
+   none from beyond them where its measure is below one. Where it is above DAMPING_WEAK the basis takes in what makes it
+   so (projection/beyond.c); where that does not do the route is that of damped.c.
 */
 #include "projection.h"
 #include "base/process/memory.h"
@@ -219,9 +219,10 @@ static PetscErrorCode AddModal(Projection *p, ModalBlock modal[2])
 static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window, const char **why)
 {
   Modes           modes = p->modes;
+  const PetscReal most  = modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1;
   ProjectionModes found;
   PetscBool       settled;
-  PetscInt        missing = 0;
+  PetscInt        missing = 0, n_modal;
 
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
@@ -230,8 +231,10 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(AddModal(p, modal));
   window->route.beyond = 0;
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionMeasureBeyond(p, &window->route.beyond));
-  if (window->route.beyond > (modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1))
-    *why = why_strong;
+  n_modal = p->space.n;
+  if (window->route.beyond > most) PetscCall(ProjectionEnlarge(p, &window->route.beyond));
+  window->route.n_enlarged = p->space.n - n_modal;
+  if (window->route.beyond > most) *why = why_strong;
   if (*why) PetscFunctionReturn(0);
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
@@ -251,7 +254,7 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
 {
   Modes      modes = p->modes;
   ModalBlock modal[2];
-  PetscBool  exact, zero;
+  PetscBool  zero;
 
   PetscFunctionBeginUser;
   window->known.rigid  = 0;
@@ -262,15 +265,16 @@ static PetscErrorCode AddDamping(Projection *p, Window *window, const char **why
   }
   PetscCall(ModalBlocksCreate(p, &modes->right, &modes->left_spectrum, modal));
   PetscCall(ProjectionFit(p, &modes->right, modal));
-  PetscCall(ProjectionIsExact(p, &modes->right, &exact));
-  if (!exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO && !p->pencil->n_laws)
+  PetscCall(ProjectionIsExact(p, &modes->right, &p->exact));
+  if (!p->exact && p->reach == PETSC_MAX_REAL && modes->damping == DAMPING_AUTO && !p->pencil->n_laws)
     *why = why_whole;
   else {
-    if (exact)
+    if (p->exact)
       PetscCall(MapModes(p, window, why));
     else
       PetscCall(Project(p, modal, window, why));
   }
+  window->route.pole = ProjectionPole(p);
   PetscCall(ModalBlocksDestroy(modal));
   PetscFunctionReturn(0);
 }

@@ -21,6 +21,8 @@ typedef struct {
   const Window         *window;
   ShiftInvert           si;          /* of P = K - s M */
   PetscReal             alpha, beta; /* of the fit C = alpha M + beta K + R on the modes of the window */
+  PetscReal             misfit;      /* root mean square of what it leaves of y'Cx / y'Mx, beside that of these */
+  PetscBool             exact;       /* R = 0 */
   PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
@@ -64,11 +66,13 @@ PETSC_INTERN PetscErrorCode ModalBlocksReduce(const Projection *p, const Spectru
 /* Adds P^-1 r and P^-T s of them to the basis; they are overwritten */
 PETSC_INTERN PetscErrorCode ProjectionStart(Projection *p, ModalBlock modal[2]);
 
-/* projection/fit.c - alpha and beta; exact where R x vanishes for all vectors of the window */
+/* projection/fit.c - alpha and beta */
 PETSC_INTERN PetscErrorCode ProjectionFit(Projection *p, const Spectrum *right, const ModalBlock modal[2]);
-/* The measure of damping: the spectral radius of (K - s M)^-1 lambda R / (1 + beta lambda) on the complement of V,
-   |lambda| at the top of the window, estimated from a random block */
+/* projection/beyond.c - the measure of damping: the spectral radius of (K - s M)^-1 lambda R / (1 + beta lambda) on the
+   complement of V, lambda in the window, estimated from a random block */
 PETSC_INTERN PetscErrorCode ProjectionMeasureBeyond(const Projection *p, PetscReal *rho);
+/* Adds to the basis what makes it large; the measure then */
+PETSC_INTERN PetscErrorCode ProjectionEnlarge(Projection *p, PetscReal *rho);
 
 /* projection/map.c - whether C = alpha M + beta K; the spectrum of the damped problem then, right or left */
 PETSC_INTERN PetscErrorCode ProjectionIsExact(const Projection *p, const Spectrum *right, PetscBool *exact);
@@ -82,6 +86,9 @@ PETSC_INTERN PetscBool ProjectionHas(const Projection *p, PetscComplex lambda);
 /* Largest |kappa(lambda) - s| on the edge of the window's claim: |sigma| <= growth, low <= omega <= high; or, d away
    from a target */
 PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
+PETSC_INTERN PetscReal ProjectionPole(const Projection *p);
+/* The largest |lambda / (1 + beta lambda)| of the window, 1/s */
+PETSC_INTERN PetscReal ProjectionLargestRatio(const Projection *p);
 /* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
 PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscComplex lambda[],
                                         PetscInt list[], PetscInt *n, PetscReal *d);

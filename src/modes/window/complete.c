@@ -71,15 +71,22 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
 static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
                                          size_t size)
 {
-  char undamped[192] = "the inertia count of the undamped modes is that of those found";
+  char undamped[192] = "the inertia count of the undamped modes is that of those found", more[64] = "", pole[160] = "";
 
   PetscFunctionBeginUser;
   if (!window->route.counted)
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
                             (double)window->route.worst));
+  if (window->route.n_enlarged)
+    PetscCall(
+      PetscSNPrintf(more, sizeof(more), " and %" PetscInt_FMT " vectors of strong damping", window->route.n_enlarged));
+  if (window->route.pole > 0)
+    PetscCall(PetscSNPrintf(pole, sizeof(pole),
+                            "; modes within %.4g of %.4g 1/s, where overdamped ones gather, are not sought",
+                            (double)(window->route.pole / 2), (double)-window->route.pole));
   PetscCall(PetscSNPrintf(text, size,
-                          "%s; damping brings none from beyond them%s, its strength there is %.2g, below 1%s", undamped,
-                          region, (double)window->route.beyond, rest));
+                          "%s; damping brings none from beyond them%s%s, its strength there is %.2g, below 1%s%s",
+                          undamped, more, region, (double)window->route.beyond, rest, pole));
   PetscFunctionReturn(0);
 }
 
