@@ -132,6 +132,7 @@ static PetscErrorCode DesignFit(Design d)
   PetscReal *points;
 
   PetscFunctionBeginUser;
+  d->box.many = PETSC_TRUE; /* all scenarios of each design */
   PetscCall(BoxSetUp(&d->box, d->n_train, TrainGet, d));
   d->cube.nominal = d->uncertain.nominal = d->box.nominal;
   d->cube.n_parameters = d->uncertain.n_parameters = d->box.n_parameters;
@@ -145,6 +146,28 @@ static PetscErrorCode DesignFit(Design d)
   PetscCall(BoxFit(&d->box, d->n_train, points));
   PetscCall(BoxCompress(&d->box, d->n_train, points));
   PetscCall(PetscFree(points));
+  PetscFunctionReturn(0);
+}
+
+/* Designs until one is stable at all corners in full */
+static PetscErrorCode DesignSearchConfirmed(Design d)
+{
+  PetscLogDouble begun, between, ended;
+  DesignCorner   unstable = {.n_unstable = 0};
+
+  PetscFunctionBeginUser;
+  do {
+    PetscCall(PetscTime(&begun));
+    PetscCall(DesignSearch(d));
+    PetscCall(PetscTime(&between));
+    unstable.n_unstable = 0;
+    if (d->found) PetscCall(DesignCorners(d, &unstable));
+    if (unstable.n_unstable) PetscCall(DesignReject(d, &unstable));
+    PetscCall(PetscTime(&ended));
+    d->seconds[1] += between - begun;
+    d->seconds[2] += ended - between;
+  } while (unstable.n_unstable && d->n_points < d->max_designs);
+  if (!d->found) DesignChooseBest(d);
   PetscFunctionReturn(0);
 }
 
@@ -162,12 +185,7 @@ PetscErrorCode DesignSolve(Design d, Results results)
   PetscCall(DesignMass(d));
   PetscCall(PetscTime(&ended));
   d->seconds[0] = ended - begun;
-  PetscCall(DesignSearch(d));
-  PetscCall(PetscTime(&begun));
-  d->seconds[1] = begun - ended;
-  if (d->found) PetscCall(DesignCorners(d));
-  PetscCall(PetscTime(&ended));
-  d->seconds[2] = ended - begun;
+  PetscCall(DesignSearchConfirmed(d));
   PetscFunctionReturn(0);
 }
 

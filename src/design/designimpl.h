@@ -43,9 +43,9 @@ struct _p_Design {
   /* results */
   Cube           cube, uncertain;
   PetscInt       n_scenarios;
-  PetscReal     *scenario;                       /* [n_scenarios][uncertain.n] t */
-  PetscInt      *status, *apart;                 /* [n_scenarios] classes of the design looked at (box.h) */
-  PetscReal     *train;                          /* [n_train][cube.n + uncertain.n] t of the points of the basis */
+  PetscReal     *scenario;       /* [n_scenarios][uncertain.n] t */
+  PetscInt      *status, *apart; /* [n_scenarios] classes of the design looked at (box.h) */
+  PetscReal     *train;          /* [n_train][cube.n + uncertain.n] t of the points of the basis */
   PetscInt       n_train;
   PetscReal      mass_slope[CUBE_MAX_VARIABLES]; /* d (m / m(0)) / d z */
   PetscReal      mass;                           /* kg of the moving unknowns, of the scene */
@@ -53,26 +53,36 @@ struct _p_Design {
   DesignCut     *cut;
   DesignPoint   *point; /* [max_designs] */
   DesignCorner  *corner;
-  PetscBool      found;
-  PetscLogDouble seconds[3]; /* basis, designs, corners */
+  PetscBool      found, again; /* again: the last one that was found goes on with one more scenario */
+  PetscInt       n_rejected;   /* designs that a corner in full was unstable of */
+  PetscLogDouble seconds[3];   /* basis, designs, corners */
 };
 
 extern const QuantityTable design_quantities;
 
-/* search.c - the designs */
+/* search.c - the designs; called again it goes on behind one that was rejected */
 PETSC_INTERN PetscErrorCode DesignSearch(Design design);
+/* The design that was found is none: the corner that says so becomes a scenario, or where it is one already the next
+   designs aim farther beyond the limit */
+PETSC_INTERN PetscErrorCode DesignReject(Design design, const DesignCorner *corner);
+/* The least bad design, where none is good */
+PETSC_INTERN void DesignChooseBest(Design design);
 /* cuts that a good design does not keep are dropped */
 PETSC_INTERN void DesignForget(Design design, const PetscReal good[]);
 /* scenario.c - the scenarios; a design at all of them, its cuts are kept; all parameters p of a design at a scenario t.
    Collective */
 PETSC_INTERN PetscErrorCode DesignScenarios(Design design);
+/* A point t of the uncertain box as a further scenario, at most -design_max of them; added = it was none yet. It has
+   the contact status of the worst one until statuses are found */
+PETSC_INTERN PetscErrorCode DesignAddScenario(Design design, const PetscReal t[], PetscBool *added);
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
 /* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */
 PETSC_INTERN PetscErrorCode DesignFindStatuses(Design design, const PetscReal z[], PetscBool *changed);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);
-/* full.c - the full solution of a design at a scenario t; at the corners of the uncertain box. Collective */
+/* full.c - the full solution of a design at a scenario t; at the corners of the uncertain box, where all must be stable
+   up to the first one that is not: n_unstable of `unstable` is 0 where there is none. Collective */
 PETSC_INTERN PetscErrorCode DesignFull(Design design, const PetscReal z[], const PetscReal t[], DesignCorner *corner);
-PETSC_INTERN PetscErrorCode DesignCorners(Design design);
+PETSC_INTERN PetscErrorCode DesignCorners(Design design, DesignCorner *unstable);
 /* Mass of the scene, and how it changes. Collective */
 PETSC_INTERN PetscErrorCode DesignMass(Design design);
 /* step.c - the next design from the cuts, within radius of `from` */

@@ -32,7 +32,7 @@ PetscErrorCode DesignFull(Design d, const PetscReal z[], const PetscReal t[], De
 }
 
 /* Corners of the uncertain box, spread evenly over all of them; where there are fewer, points inside behind them */
-PetscErrorCode DesignCorners(Design d)
+PetscErrorCode DesignCorners(Design d, DesignCorner *unstable)
 {
   const DesignPoint *best = &d->point[d->best];
   const PetscInt     n = d->uncertain.n, n_all = n ? 1 << n : 0;
@@ -40,15 +40,17 @@ PetscErrorCode DesignCorners(Design d)
   PetscReal          t[CUBE_MAX_VARIABLES];
 
   PetscFunctionBeginUser;
+  unstable->n_unstable = 0;
   if (!n) d->n_corners = 0;
   PetscCall(PetscCalloc1(d->n_corners, &d->corner));
   PetscCall(SequenceSetUp(&sequence));
-  for (PetscInt i = 0; i < d->n_corners; i++) {
+  for (PetscInt i = 0; i < d->n_corners && !unstable->n_unstable; i++) {
     const PetscInt which = d->n_corners >= n_all ? i : (PetscInt)(((int64_t)i * n_all) / d->n_corners);
 
     SequencePoint(&sequence, i, t);
     for (PetscInt k = 0; k < n; k++) t[k] = i >= n_all ? 2 * t[k] - 1 : which >> k & 1 ? 1 : -1;
     PetscCall(DesignFull(d, best->z, t, &d->corner[i]));
+    if (d->probability == 0 && d->corner[i].n_unstable) *unstable = d->corner[i];
   }
   PetscCall(SequenceDestroy(&sequence));
   PetscFunctionReturn(0);

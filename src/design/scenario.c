@@ -11,11 +11,12 @@ PetscErrorCode DesignScenarios(Design d)
 {
   const PetscInt n = d->uncertain.n, n_corners = n ? PetscMin(1 << n, MOST_CORNERS) : 0, n_inside = n ? d->n_inside : 0;
   Sequence       sequence = {SEQUENCE_SOBOL, 1, PetscMax(1, n_inside), PetscMax(1, n), NULL};
+  PetscInt       room;
 
   PetscFunctionBeginUser;
   d->n_scenarios = 1 + n_corners + n_inside;
-  PetscCall(PetscCalloc3(d->n_scenarios * PetscMax(1, n), &d->scenario, d->n_scenarios, &d->status, d->n_scenarios,
-                         &d->apart));
+  room           = d->n_scenarios + d->max_designs; /* corners in full that reject a design become scenarios */
+  PetscCall(PetscCalloc3(room * PetscMax(1, n), &d->scenario, room, &d->status, room, &d->apart));
   PetscCall(SequenceSetUp(&sequence));
   for (PetscInt k = 0; k < n; k++) d->scenario[k] = d->uncertain.own[k];
   for (PetscInt i = 1; i < d->n_scenarios; i++) {
@@ -26,6 +27,24 @@ PetscErrorCode DesignScenarios(Design d)
       t[k] = i > n_corners ? 2 * t[k] - 1 : (i - 1) >> (k % 6) & 1 ? 1 : -1; /* beyond six some move alike */
   }
   PetscCall(SequenceDestroy(&sequence));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DesignAddScenario(Design d, const PetscReal t[], PetscBool *added)
+{
+  const PetscInt n = d->uncertain.n;
+
+  PetscFunctionBeginUser;
+  *added = PETSC_TRUE;
+  for (PetscInt i = 0; i < d->n_scenarios && *added; i++) {
+    PetscBool same;
+
+    PetscCall(PetscArraycmp(t, &d->scenario[i * n], n, &same));
+    if (same) *added = PETSC_FALSE;
+  }
+  if (!*added) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(&d->scenario[d->n_scenarios * n], t, n));
+  d->status[d->n_scenarios++] = d->status[d->point[d->best].worst];
   PetscFunctionReturn(0);
 }
 

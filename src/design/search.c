@@ -80,19 +80,22 @@ static PetscBool StepMoves(const Design d, const PetscReal z[])
 static PetscErrorCode SearchGood(Design d)
 {
   PetscReal radius = RADIUS, z[CUBE_MAX_VARIABLES];
-  PetscBool moves  = PETSC_TRUE;
+  PetscBool moves = PETSC_TRUE, first = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(z, d->cube.own, d->cube.n));
+  PetscCall(PetscArraycpy(z, d->n_points ? d->point[d->best].z : d->cube.own, d->cube.n));
+  if (d->n_points && !d->again) PetscCall(DesignStep(d, d->point[d->best].z, radius, z));
+  PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
   while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS && moves) {
     DesignPoint *point;
 
     PetscCall(DesignTry(d, z, &point));
     d->found = point->good;
-    if (d->n_points > 1 && !d->found && point->excess >= d->point[d->best].excess)
+    if (!first && !d->found && point->excess >= d->point[d->best].excess)
       radius /= 2;
     else
       d->best = d->n_points - 1;
+    first = PETSC_FALSE;
     if (!d->found) PetscCall(DesignStep(d, d->point[d->best].z, radius, z));
     PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
     moves = StepMoves(d, z);
@@ -148,12 +151,39 @@ static PetscErrorCode SearchBetter(Design d)
   PetscFunctionReturn(0);
 }
 
+/* The rejected design is from now on what it is at that corner in full */
+PetscErrorCode DesignReject(Design d, const DesignCorner *corner)
+{
+  DesignPoint *point = &d->point[d->best];
+
+  PetscFunctionBeginUser;
+  PetscCall(DesignAddScenario(d, corner->t, &d->again));
+  if (!d->again) d->margin *= 2;
+  point->good = d->found = PETSC_FALSE;
+  point->n_scenarios     = 1;
+  point->n_unstable      = corner->n_unstable;
+  point->excess = point->full_excess = corner->excess;
+  point->omega                       = corner->omega;
+  d->n_rejected++;
+  PetscCall(PetscFree(d->corner));
+  PetscFunctionReturn(0);
+}
+
+void DesignChooseBest(Design d)
+{
+  for (PetscInt i = 0; i < d->n_points; i++) {
+    const DesignPoint *a = &d->point[i], *b = &d->point[d->best];
+
+    if (PetscMax(a->excess, a->full_excess) < PetscMax(b->excess, b->full_excess)) d->best = i;
+  }
+}
+
 PetscErrorCode DesignSearch(Design d)
 {
   Progress progress;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(d->max_designs, &d->point));
+  if (!d->point) PetscCall(PetscCalloc1(d->max_designs, &d->point));
   PetscCall(ProgressBegin(&progress, "designs", 2));
   PetscCall(SearchGood(d));
   PetscCall(ProgressStep(&progress));

@@ -99,7 +99,7 @@ PetscErrorCode DesignWrite(Design d, Results results)
   PetscFunctionReturn(0);
 }
 
-/* The design that was found, beside the scene */
+/* The design that was found, or the best one, beside the scene */
 static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer viewer)
 {
   PetscInt n_unstable = 0;
@@ -112,12 +112,17 @@ static PetscErrorCode FoundView(Design d, const DesignPoint *last, PetscViewer v
     if (own != 0) PetscCall(PetscViewerASCIIPrintf(viewer, ", %+.3g %%", (double)(100 * (value / own - 1))));
     PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   }
-  for (PetscInt i = 0; i < d->n_corners; i++) n_unstable += d->corner[i].n_unstable ? 1 : 0;
-  if (d->n_corners)
-    PetscCall(PetscViewerASCIIPrintf(
-      viewer, "in full at %" PetscInt_FMT " corners of the box%s: %" PetscInt_FMT " unstable%s\n", d->n_corners,
-      d->n_corners > 1 << d->uncertain.n ? " and points inside" : "", n_unstable,
-      n_unstable ? ": the design is not confirmed; raise -design_margin" : ""));
+  for (PetscInt i = 0; d->corner && i < d->n_corners; i++) n_unstable += d->corner[i].n_unstable ? 1 : 0;
+  if (d->found && d->n_corners)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "in full at %" PetscInt_FMT " corners of the box%s: %" PetscInt_FMT " unstable\n",
+                             d->n_corners, d->n_corners > 1 << d->uncertain.n ? " and points inside" : "", n_unstable));
+  if (d->n_rejected)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "%" PetscInt_FMT
+                                     " of the designs, stable at all scenarios, had an unstable corner "
+                                     "in full, which then was one more scenario, or called for more margin\n",
+                                     d->n_rejected));
   PetscFunctionReturn(0);
 }
 
@@ -149,7 +154,7 @@ static PetscErrorCode DesignStateView(Design d, const DesignPoint *last, PetscVi
 
 PetscErrorCode DesignView(Design d, PetscViewer viewer)
 {
-  const DesignPoint *first = &d->point[0], *last = &d->point[d->found ? d->best : d->n_points - 1];
+  const DesignPoint *first = &d->point[0], *best = &d->point[d->best];
 
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer,
@@ -162,14 +167,17 @@ PetscErrorCode DesignView(Design d, PetscViewer viewer)
                              "a design with %s%.4g %% unstable, by %" PetscInt_FMT
                              " designs; mass %+.3g %%, changes of %.3g of the half widths (root of the mean square)\n",
                              d->probability > 0 ? "at most " : "", (double)(100 * d->probability), d->n_points,
-                             (double)(100 * (last->mass - 1)), (double)last->change));
+                             (double)(100 * (best->mass - 1)), (double)best->change));
   else
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "no design was found in %" PetscInt_FMT " tries: the last one has %" PetscInt_FMT
-                                     " unstable scenarios; widen -design_percent, or raise -design_max\n",
-                                     d->n_points, last->n_scenarios));
-  if (d->found) PetscCall(FoundView(d, last, viewer));
-  if (d->box.statics) PetscCall(DesignStateView(d, last, viewer));
+                                     "no design was found in %" PetscInt_FMT
+                                     " tries: the best one, number %" PetscInt_FMT ", has %" PetscInt_FMT
+                                     " unstable scenarios, largest growth beyond the limit %.4g "
+                                     "1/s%s; widen -design_percent, or raise -design_max\n",
+                                     d->n_points, d->best + 1, best->n_scenarios, (double)best->excess,
+                                     best->n_scenarios ? "" : ", but in full it has one"));
+  PetscCall(FoundView(d, best, viewer));
+  if (d->box.statics) PetscCall(DesignStateView(d, best, viewer));
   if (d->box.whole)
     PetscCall(PetscViewerASCIIPrintf(viewer, "basis of all %" PetscInt_FMT " unknowns\n", d->box.basis.reduced.n_used));
   else

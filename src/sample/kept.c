@@ -133,10 +133,15 @@ static PetscErrorCode PassTake(Sample s, JournalPack *pack, PetscBool *good)
   PetscCall(JournalPackMove(pack, &h, sizeof(h)));
   *good =
     pack->good && h.n >= 0 && h.n <= s->n_points && h.first >= -1 && h.first <= s->n_points ? PETSC_TRUE : PETSC_FALSE;
+  list  = NULL;
+  if (*good) PetscCall(PetscCalloc1(h.n, &list));
+  if (*good) PetscCall(JournalPackMove(pack, list, (size_t)h.n * sizeof(*list)));
+  if (!pack->good) *good = PETSC_FALSE;
+  for (PetscInt k = 0; k < h.n && *good; k++)
+    if (list[k] < 0 || list[k] >= s->n_points) *good = PETSC_FALSE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, good, 1, MPIU_BOOL, MPI_LAND, s->comm));
+  if (!*good) PetscCall(PetscFree(list));
   if (!*good) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(h.n, &list));
-  PetscCall(JournalPackMove(pack, list, (size_t)h.n * sizeof(*list)));
   s->pass.round    = h.round;
   s->pass.n_before = h.n_before;
   s->n_large       = h.n_large;

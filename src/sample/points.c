@@ -13,8 +13,6 @@
 #define SAMPLE_ROUNDS 6
 /* Points of each rank that are solved before their modes are sent */
 #define BATCH 50
-/* Points from which on a model of fewer vectors is worth its making */
-#define SAMPLE_MANY 300
 /* Halvings of the way from the nominal point, where branches are in doubt */
 #define FOLLOW_DEPTH 3
 
@@ -29,7 +27,7 @@ static PetscErrorCode BasisGrow(Sample s, PetscInt n, const PetscInt list[])
   PetscCall(PetscArraycpy(points, s->box.nominal, n_parameters));
   for (PetscInt i = 0; i < n_train; i++) PetscCall(SampleParameters(s, list[i], &points[(i + 1) * n_parameters]));
   PetscCall(BoxFit(&s->box, n_train + 1, points));
-  if (s->n_points >= SAMPLE_MANY) PetscCall(BoxCompress(&s->box, n_train + 1, points));
+  if (s->box.many) PetscCall(BoxCompress(&s->box, n_train + 1, points));
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }

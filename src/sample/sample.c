@@ -154,6 +154,7 @@ PetscErrorCode SampleSolve(Sample s, Results results)
   PetscCall(SamplesCheckValues(s));
   PetscCall(PetscTime(&begun));
   PetscCall(SampleJournalOpen(s, results));
+  s->box.many = s->n_points >= SAMPLE_MANY ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(BoxSetUp(&s->box, s->n_points, SampleGet, s));
   PetscCall(SamplePoints(s));
   PetscCall(PetscTime(&ended));

@@ -11,6 +11,7 @@
 #include "sweep/full/compare.h"
 
 #define SAMPLE_MAX_VARIABLES (SOBOL_DIMENSIONS / 2) /* the design of the indices takes two dimensions for each */
+#define SAMPLE_MANY          300 /* points from which on a model of fewer vectors is worth its making */
 #define SAMPLE_MAX_TEXT      4096
 
 /* What is drawn, and which parameters take its value */

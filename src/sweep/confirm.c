@@ -125,7 +125,7 @@ static PetscErrorCode OnsetsCorrect(Sweep sweep, PetscInt n, OnsetWork *some[])
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) PetscCall(OnsetCollect(sweep, some[i], &block));
-  PetscCall(CorrectionApply(correction, ONSET_DROP, &sweep->basis, &block, &n_added));
+  PetscCall(CorrectionApply(correction, (CorrectionDrop){.length = ONSET_DROP}, &sweep->basis, &block, &n_added));
   PetscCall(BasisUse(&sweep->basis, sweep->basis.reduced.n));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal spread = some[i]->alone ? 1 : CorrectionSpread(correction, &sweep->basis.reduced, some[i]->p);

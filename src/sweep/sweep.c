@@ -136,6 +136,8 @@ static PetscErrorCode ModelMake(Sweep sweep)
   sweep->greedy.window       = sweep->window;
   sweep->greedy.groups       = &sweep->groups;
   sweep->greedy.rtol         = sweep->rtol;
+  sweep->greedy.safe         = GREEDY_SAFE;
+  sweep->greedy.goal         = 1;
   sweep->greedy.option       = "-sweep_rtol";
   sweep->greedy.advice       = "raise -sweep_max_samples, narrow the range, or give -sweep_method full";
   if (!sweep->max_given && sweep->grid.n_groups)

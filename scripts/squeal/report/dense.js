@@ -4,6 +4,8 @@
 //   A = S H S^-1,   S of scaling by powers of two and elimination (EISPACK balanc, elmhes),   H upper Hessenberg, kept by rows
 "use strict";
 
+const NOT_FINITE = "a matrix is not finite at these values";
+
 // Factors of A [n * n] (column-major) in place; the rows' order
 function factorReal(n, A) {
   const order = new Int32Array(n);
@@ -62,6 +64,7 @@ function balance(N, a, d) {
     for (let i = 0; i < N; i++) {
       let column = 0, row = 0;
       for (let j = 0; j < N; j++) if (j !== i) { column += Math.abs(a[j * N + i]); row += Math.abs(a[i * N + j]); }
+      if (!(column + row < Infinity)) throw new Error(NOT_FINITE);
       if (column === 0 || row === 0) continue;
       let f = 1;
       const sum = column + row;
@@ -217,6 +220,9 @@ class Hessenberg {
   // Of what stands in h. The scales of the first matrix serve for all that come after it, which are much like it
   reduce() {
     const {N, h, d} = this;
+    let sum = 0;
+    for (let i = 0; i < N * N; i++) sum += h[i] - h[i];  // of numbers that are finite zero
+    if (sum !== 0) throw new Error(NOT_FINITE);
     if (d[0] === 0) balance(N, h, d);
     else for (let i = 0; i < N; i++) for (let j = 0, f = 1 / d[i]; j < N; j++) h[i * N + j] *= f * d[j];
     eliminate(this.N, this.h, this.order);

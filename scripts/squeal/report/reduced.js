@@ -23,7 +23,7 @@ function pencilAt(model, p) {
   for (const kind of ["K", "C", "M"]) pencil[kind].fill(0);
   model.terms.forEach((term, t) => {
     const c = coefficient(term, p), sum = pencil[term.kind], A = model.matrices[t];
-    if (!Number.isFinite(c)) throw new Error("a matrix is not finite at these values");
+    if (!Number.isFinite(c)) throw new Error(NOT_FINITE);
     if (c === 0) return;
     if (term.kind === "C") pencil.damped = true;
     for (let i = 0; i < n * n; i++) sum[i] += c * A[i];
@@ -110,21 +110,28 @@ function candidates(model, {form, damped}) {
 const PARTS = ["re", "im"], partsIn = x => x.im ? PARTS : PARTS.slice(0, 1);
 const vector = (n, complex) => ({re: new Float64Array(n), im: complex ? new Float64Array(n) : null});
 
+// Its length before
 function normalise(x) {
   let square = 0;
-  for (const part of partsIn(x)) for (const value of x[part]) square += value * value;
+  for (const part of partsIn(x)) for (let i = 0, v = x[part]; i < v.length; i++) square += v[i] * v[i];
   const f = 1 / Math.sqrt(square);
-  for (const part of partsIn(x)) for (let i = 0; i < x[part].length; i++) x[part][i] *= f;
+  for (const part of partsIn(x)) for (let i = 0, v = x[part]; i < v.length; i++) v[i] *= f;
+  return 1 / f;
 }
+
+const ENOUGH = 1e-8;  // of what rounding lets a vector grow by in a step of inverse iteration: less calls for another one
 
 // x and y of s by inverse iteration, of M^-1 Q; y is that of Q
 function vectorsOf({form, mass, n, damped}, [a, b]) {
   const {N} = form, x = vector(N, b !== 0), y = vector(N, b !== 0);
   for (let i = 0; i < N; i++) { x.re[i] = Math.cos(1 + i * i); y.re[i] = Math.sin(2 + i); }
+  normalise(x);
+  normalise(y);
   form.shift(a, b);
-  for (let turn = 0; turn < 2; turn++) {
-    form.solve(x.re, x.im); normalise(x);
-    form.solveTransposed(y.re, y.im); normalise(y);
+  for (let turn = 0, grown = 0; turn < 2 && grown < ENOUGH; turn++) {
+    form.solve(x.re, x.im);
+    form.solveTransposed(y.re, y.im);
+    grown = 2.2e-16 * Math.hypot(a, b) * Math.min(normalise(x), normalise(y));
   }
   for (const part of partsIn(x)) {
     form.back(x[part]);

@@ -1,6 +1,5 @@
 "use strict";
-// Sliders of a reduced model: its modes at any values of the parameters, computed in a worker of the page (dense.js,
-// reduced.js), and the moving shape of the mode that is chosen, where the page has the vectors of the basis.
+// Sliders of a reduced model: its modes at any values of the parameters, computed in a worker of the page (dense.js, reduced.js).
 
 // The bytes of a text that is base64 of deflated bytes
 async function inflated(text) {

@@ -153,7 +153,7 @@ static PetscErrorCode ForcesCompress(const ChangeForces *known, PetscReal drop, 
   PetscCall(ForcesLess(known, F));
   PetscCall(PetscMalloc2(m, &tolerance, m, &sigma));
   for (PetscInt j = 0; j < m; j++) tolerance[j] = drop * longest;
-  PetscCall(BlockCompress(tolerance, F, sigma));
+  PetscCall(BlockCompress(NULL, tolerance, F, sigma));
   PetscCall(PetscFree2(tolerance, sigma));
   PetscFunctionReturn(0);
 }

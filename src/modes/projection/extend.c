@@ -80,7 +80,7 @@ static PetscErrorCode SideRemain(const Projection *p, const SideOfExtension *sid
   PetscCall(PetscMalloc1(2 * n, &tolerance));
   PetscCall(PetscMalloc1(2 * n, &next->sigma));
   for (PetscInt j = 0; j < 2 * n; j++) tolerance[j] = EXTEND_LATER / (side->sigma[j % n] * (j < n ? far : high));
-  PetscCall(BlockCompress(tolerance, next->B, next->sigma));
+  PetscCall(BlockCompress(NULL, tolerance, next->B, next->sigma));
   PetscCall(BVGetActiveColumns(next->B, NULL, &next->n));
   PetscCall(PetscFree(tolerance));
   PetscFunctionReturn(0);
@@ -114,7 +114,7 @@ static PetscErrorCode SideBegin(BV residuals, const PetscReal tolerance[], SideO
   if (residuals) PetscCall(BVGetActiveColumns(residuals, NULL, &side->n));
   if (!side->n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(side->n, &side->sigma));
-  PetscCall(BlockCompress(tolerance, residuals, side->sigma));
+  PetscCall(BlockCompress(NULL, tolerance, residuals, side->sigma));
   PetscCall(BVGetActiveColumns(residuals, NULL, &side->n));
   side->B = residuals;
   PetscCall(PetscObjectReference((PetscObject)residuals));

@@ -105,7 +105,7 @@ static PetscErrorCode AnswersLeave(const ModesAnswers *a, int side, const Comple
     if (!(length[2 * k] > 0)) length[2 * k] = 1; /* nothing is left */
     length[2 * k + 1] = length[2 * k];
   }
-  PetscCall(BlockCompress(length, R, sigma));
+  PetscCall(BlockCompress(NULL, length, R, sigma));
   PetscCall(PetscFree2(length, sigma));
   PetscFunctionReturn(0);
 }

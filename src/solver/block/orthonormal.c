@@ -33,8 +33,7 @@ PetscErrorCode BlockProducts(BV X, Mat A, BV Y, Mat *H)
   PetscFunctionReturn(0);
 }
 
-/* W -= V V' M W */
-static PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
+PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W)
 {
   Mat coefficients;
 
@@ -111,7 +110,7 @@ PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block)
 
 /* Principal components of B with each column in units of its tolerance: B diag(1 / tolerance) = U sigma V', of
    which B becomes the columns of U with sigma > 1, ascending, orthonormal; sigma [kept]. */
-PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[])
+PetscErrorCode BlockCompress(Mat A, const PetscReal tolerance[], BV B, PetscReal sigma[])
 {
   PetscInt     m, kept = 0;
   PetscScalar *G;
@@ -121,7 +120,7 @@ PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[
   PetscFunctionBeginUser;
   PetscCall(BVGetActiveColumns(B, NULL, &m));
   if (!m) PetscFunctionReturn(0);
-  PetscCall(BlockProducts(B, NULL, B, &gram));
+  PetscCall(BlockProducts(B, A, B, &gram));
   PetscCall(PetscMalloc1(m, &square));
   PetscCall(MatDenseGetArray(gram, &G));
   for (PetscInt j = 0; j < m; j++)

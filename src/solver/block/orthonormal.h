@@ -18,10 +18,12 @@ PETSC_INTERN PetscErrorCode BlockOrthonormalise(BV V, PetscInt n, Mat M, PetscRe
 PETSC_INTERN PetscErrorCode BlockGrow(PetscInt first, PetscInt n, PetscReal **A);
 /* A block of n active columns like those of another. Collective. */
 PETSC_INTERN PetscErrorCode BlockCreate(BV like, PetscInt n, BV *block);
-/* Replaces the active columns of B by fewer ones of length one that span column j within about tolerance[j] in the sum
-   of squares: left singular vectors of B diag(1 / tolerance), whose singular values, ascending, are in sigma[columns of
-   B]; those below one are left out. Collective; alike on all ranks. */
-PETSC_INTERN PetscErrorCode BlockCompress(const PetscReal tolerance[], BV B, PetscReal sigma[]);
+/* W -= V V' M W for the active columns of W and the first n columns of V, orthonormal in M (the identity where NULL) */
+PETSC_INTERN PetscErrorCode BlockProject(BV V, PetscInt n, Mat M, BV W);
+/* Replaces the active columns of B by fewer ones of length one in A (the identity where NULL) that span column j within
+   tolerance[j] in that length: left singular vectors of B diag(1 / tolerance), whose singular values, ascending, are in
+   sigma[columns of B]; those below one are left out. Collective; alike on all ranks. */
+PETSC_INTERN PetscErrorCode BlockCompress(Mat A, const PetscReal tolerance[], BV B, PetscReal sigma[]);
 /* block = V coordinates, coordinates [m][size] of the first columns of V, which become its active ones */
 PETSC_INTERN PetscErrorCode BlockLift(BV V, PetscInt size, PetscInt m, const PetscReal coordinates[], BV block);
 

@@ -14,10 +14,12 @@
 #include "correct.h"
 #include "base/events.h"
 #include "basis/residual.h"
+#include "solver/block/orthonormal.h"
 
 /* Relative move of the end of a band that an eigenvalue lies on, outwards at both ends, where K - s M would be
    singular; the basis is asked for the moved band. */
-#define COUNT_AWAY 1e-7
+#define COUNT_AWAY   1e-7
+#define ENERGY_LEAST 1e-4 /* modes below a hundredth of the window's end count as if they were there */
 
 /* P = K - s M at p with s = high^2, (rad/s)^2. Damping is left out: P is then real, and symmetric without friction;
    the corrections differ by the factor P^-1 Q alone. Inertia is asked for, as the same factors count the modes
@@ -90,6 +92,16 @@ static PetscBool ModeCounts(const ReducedModes *modes, PetscInt i, PetscBool dam
   return cabs(modes->lambda[i] + conj(modes->lambda[i - 1])) > close ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Frequencies of the modes of new columns, behind those of n columns that there are */
+static PetscErrorCode OmegaAppend(const ComplexColumns *c, PetscInt n, PetscReal **omega)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)(n + c->n_columns), omega));
+  for (PetscInt i = 0; i < c->m; i++)
+    for (PetscInt j = c->column[i]; j < c->column[i + 1]; j++) (*omega)[n + j] = cabs(c->lambda[i]);
+  PetscFunctionReturn(0);
+}
+
 /* The vectors as real columns */
 static PetscErrorCode ColumnsCollect(const ReducedModes *modes, PetscBool damped, const PetscComplex vectors[],
                                      ComplexColumns *c)
@@ -127,6 +139,7 @@ static PetscErrorCode CollectSide(const Correction *c, const ReducedModes *modes
 
   PetscFunctionBeginUser;
   PetscCall(ColumnsCollect(modes, c->matrices.C ? PETSC_TRUE : PETSC_FALSE, left ? modes->y : modes->x, &columns));
+  PetscCall(OmegaAppend(&columns, block->n[left], &block->omega[left]));
   PetscCall(BlockAppend(basis, columns.n_columns, &block->side[left], &block->n[left]));
   PetscCall(ResidualMake(&c->matrices, left, &columns, basis->space.V, &vectors, block->side[left]));
   PetscCall(BVDestroy(&vectors));
@@ -146,12 +159,59 @@ PetscErrorCode CorrectionCollect(const Correction *c, const ReducedModes *modes,
   PetscFunctionReturn(0);
 }
 
+/* W = K + h^2 M without friction at the point of the pencil, h the shift of the factors */
+static PetscErrorCode EnergyMatrix(const Correction *c, const Basis *basis, Mat *W)
+{
+  PencilMatrices frictionless;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetFrictionless(basis->pencil, &frictionless));
+  PetscCall(MatDuplicate(frictionless.K, MAT_COPY_VALUES, W));
+  PetscCall(MatAXPY(*W, c->factor.shift, frictionless.M, UNKNOWN_NONZERO_PATTERN));
+  PetscFunctionReturn(0);
+}
+
+/* Makes few columns of the corrections Z of modes of frequencies omega [columns], rad/s, or zero: the directions beyond
+   the basis in the order of their energy, by a singular value decomposition in W */
+static PetscErrorCode CorrectionCompress(const Correction *c, PetscReal energy, const Basis *basis,
+                                         const PetscReal omega[], BV Z)
+{
+  PetscReal *tolerance, *sigma;
+  PetscInt   n;
+  Mat        W;
+
+  PetscFunctionBeginUser;
+  PetscCall(BVGetActiveColumns(Z, NULL, &n));
+  PetscCall(PetscMalloc2(n, &tolerance, n, &sigma));
+  for (PetscInt j = 0; j < n; j++)
+    tolerance[j] = PetscSqrtReal(energy * PetscMax(PetscSqr(omega[j]), ENERGY_LEAST * c->factor.shift));
+  PetscCall(BlockProject(basis->space.V, basis->space.n, basis->M, Z));
+  PetscCall(EnergyMatrix(c, basis, &W));
+  PetscCall(BlockCompress(W, tolerance, Z, sigma));
+  PetscCall(MatDestroy(&W));
+  PetscCall(PetscFree2(tolerance, sigma));
+  PetscFunctionReturn(0);
+}
+
+/* Frequencies of all columns of both sides */
+static PetscErrorCode OmegaUnite(CorrectionBlock *block, PetscReal omega[])
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++) {
+    if (block->n[i]) PetscCall(PetscArraycpy(omega + (i ? block->n[0] : 0), block->omega[i], block->n[i]));
+    PetscCall(PetscFree(block->omega[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Collective. One solve for all columns of both sides, then one orthogonalisation; the blocks of residuals are
    freed before the vectors of the basis grow, which is the largest memory of a sweep. */
-PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis, CorrectionBlock *block,
+PetscErrorCode CorrectionApply(const Correction *c, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
                                PetscInt *n_added)
 {
   const PetscInt n = block->n[0] + block->n[1];
+  PetscInt       n_left;
+  PetscReal     *omega;
   BV             Z;
 
   PetscFunctionBeginUser;
@@ -163,8 +223,13 @@ PetscErrorCode CorrectionApply(const Correction *c, PetscReal drop, Basis *basis
     if (block->side[i]) PetscCall(BVSetActiveColumns(block->side[i], 0, block->n[i]));
   PetscCall(ResidualsSolve(&c->factor, block->side, Z));
   for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&block->side[i]));
+  PetscCall(PetscMalloc1(n, &omega));
+  PetscCall(OmegaUnite(block, omega));
   block->n[0] = block->n[1] = 0;
-  PetscCall(BasisAdd(basis, Z, drop, n_added));
+  if (drop.energy > 0) PetscCall(CorrectionCompress(c, drop.energy, basis, omega, Z));
+  PetscCall(BVGetActiveColumns(Z, NULL, &n_left));
+  if (n_left) PetscCall(BasisAdd(basis, Z, drop.energy > 0 ? 0 : drop.length, n_added));
+  PetscCall(PetscFree(omega));
   PetscCall(BVDestroy(&Z));
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);

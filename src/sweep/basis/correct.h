@@ -16,9 +16,16 @@ typedef enum { CORRECT_BOTH, CORRECT_RIGHT, CORRECT_LEFT } CorrectionSides;
 
 /* Residuals of modes at any number of points, whose corrections are then solved for together; begins as {0} */
 typedef struct {
-  BV       side[2]; /* of right and left vectors */
-  PetscInt n[2];    /* columns */
+  BV         side[2];  /* of right and left vectors */
+  PetscInt   n[2];     /* columns */
+  PetscReal *omega[2]; /* |lambda| of the mode of each, rad/s */
 } CorrectionBlock;
+
+/* What is left out of corrections: what is shorter than `length` in M, where `energy` is zero; else of each one at most
+   `energy` |lambda|^2 in z'(K + h^2 M) z, so that kappa errs by `energy` |kappa| where its vectors lack it */
+typedef struct {
+  PetscReal length, energy;
+} CorrectionDrop;
 
 /* Sets the pencil to p and factors it at the upper end of the window; where the correction is that of another point its
    analysis serves again */
@@ -34,8 +41,8 @@ PetscReal CorrectionSpread(const Correction *correction, const Reduced *reduced,
 /* Adds the residuals of modes at the point that the pencil is at */
 PetscErrorCode CorrectionCollect(const Correction *correction, const ReducedModes *modes, CorrectionSides sides,
                                  const Basis *basis, CorrectionBlock *block);
-/* Appends to the basis the corrections whose M-norm exceeds drop, n_added = vectors gained, and empties the block */
-PetscErrorCode CorrectionApply(const Correction *correction, PetscReal drop, Basis *basis, CorrectionBlock *block,
+/* Appends the corrections to the basis, n_added = vectors gained, and empties the block */
+PetscErrorCode CorrectionApply(const Correction *correction, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
                                PetscInt *n_added);
 
 /* Leaves out the modes that the step before has settled: known there, with an error below the tolerance */

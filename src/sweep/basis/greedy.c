@@ -14,6 +14,9 @@
    two points alone both are full solutions, which say nothing of what lies between: there the middle is looked at.
    Where few points differ, as those of a load that changes contact statuses, the last full solution itself is looked at
    too: its corrections end at rtol.
+
+   Over a box of many parameters corrections are many and much alike. Of each block of them those directions are kept
+   that hold energy, in the norm K + h^2 M (correct.c).
 */
 #include "greedywork.h"
 
@@ -130,10 +133,10 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
   if (g->lazy) PetscCall(EstimatesLazy(run));
   worst = EstimateWorst(run);
-  if (!g->lazy || worst < 0 || run->estimate[worst] <= g->rtol) PetscCall(EstimatesAll(run));
+  if (!g->lazy || worst < 0 || run->estimate[worst] <= g->goal * g->rtol) PetscCall(EstimatesAll(run));
   worst    = EstimateWorst(run);
   g->worst = worst >= 0 ? run->estimate[worst] : 0;
-  *next    = g->worst > g->rtol ? worst : -1;
+  *next    = g->worst > g->goal * g->rtol ? worst : -1;
   PetscFunctionReturn(0);
 }
 
@@ -187,12 +190,12 @@ static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const Pet
    the distances only and are taken out in the end; the vectors found stay, as Z of the estimate. */
 static PetscErrorCode PointsLook(GreedyWork *run)
 {
-  Greedy *const   g         = run->greedy;
-  const PetscInt  n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
-  const PetscReal drop = run->drop;
-  PetscReal       worst, *middle;
-  PetscInt        n_added, n_statuses;
-  PetscBool       own = PETSC_FALSE;
+  Greedy *const        g         = run->greedy;
+  const PetscInt       n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
+  const CorrectionDrop drop = run->drop;
+  PetscReal            worst, *middle;
+  PetscInt             n_added, n_statuses;
+  PetscBool            own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n_parameters, &middle));
@@ -200,7 +203,7 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   if (run->n == 2) PointsMiddle(run, middle);
   g->looked  = PETSC_TRUE;
   run->first = n_samples - 1;
-  run->drop  = PetscMin(drop, LOOK_DROP);
+  run->drop  = (CorrectionDrop){PetscMin(drop.length, LOOK_DROP), drop.energy};
   if (g->most_looks) n_statuses = PetscMin(n_statuses, g->most_looks);
   for (int look = 0; look < PetscMax(GREEDY_LOOKS, n_statuses); look++) {
     const PetscReal *p     = LookNext(run, look, middle, &own);
@@ -245,7 +248,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
 
   PetscFunctionBeginUser;
   run.counter.progress = greedy->progress;
-  run.drop             = GREEDY_DROP * PetscSqrtReal(greedy->rtol);
+  run.drop             = (CorrectionDrop){GREEDY_DROP * PetscSqrtReal(greedy->rtol), greedy->energy};
   run.guarded.low      = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high     = high * (1 + GUARD);
   run.guarded.growth   = PetscMax(greedy->window.growth, greedy->reach);

@@ -5,7 +5,8 @@
 #include "points.h"
 #include <squeal/modes.h>
 
-#define GREEDY_LOOKS 4 /* points looked at with the factors of another, beside those of a full solution */
+#define GREEDY_LOOKS 4         /* points looked at with the factors of another, beside those of a full solution */
+#define GREEDY_SAFE  (1. / 30) /* of rtol at corrected points: a tenth of what POINTS_MARGIN leaves of it at others */
 
 /* A full solution */
 typedef struct {
@@ -21,6 +22,7 @@ typedef struct {
   ReducedWindow      window; /* of the eigenvalues asked for */
   const PointGroups *groups;
   PetscReal          rtol;
+  PetscReal          safe, goal;      /* what is asked where corrections are made, and of all estimates, beside rtol */
   const char        *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt           max_samples;
   PetscInt           n_samples;
@@ -36,6 +38,7 @@ typedef struct {
      are not from the present basis serve as bounds; 0 and false for the places of a sweep */
   PetscInt   most_looks;
   PetscBool  lazy;
+  PetscReal  energy; /* of CorrectionDrop: few directions of each block of corrections; 0: all that are long enough */
   Correction correction; /* the last factors, kept for what comes after */
   Progress  *progress;
   PetscErrorCode (*keep)(void *ctx); /* called after every full solution; may be NULL */

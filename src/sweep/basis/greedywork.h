@@ -3,7 +3,8 @@
 
 #include "greedy.h"
 
-#define LOOK_DROP 2e-9 /* vectors shorter than this tell no error: its square times a ratio of stiffnesses, 1e8 */
+#define LOOK_DROP   2e-9 /* vectors shorter than this tell no error: its square times a ratio of stiffnesses, 1e8 */
+#define LOOK_ENERGY 0.01 /* beside Greedy.energy, where what was left out is what errs */
 
 /* What the run knows */
 typedef struct {
@@ -15,7 +16,7 @@ typedef struct {
   PetscReal       *estimate; /* [n] */
   PetscInt        *fresh;    /* [n] vectors of the basis that it is from, 0 for none */
   PetscReal       *scale;    /* [n_parameters] */
-  PetscReal        drop;
+  CorrectionDrop   drop;
   CorrectionSides  sides;
   PetscInt         first;      /* sample from which on distances are measured */
   Correction      *correction; /* the greedy's */

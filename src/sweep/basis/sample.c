@@ -3,9 +3,7 @@
 */
 #include "greedywork.h"
 
-/* Asked where corrections are made, beside rtol: a tenth of what POINTS_MARGIN leaves of it at other points */
-#define SAFE    (1. / 30)
-#define SETTLED (0.3 * SAFE) /* beside rtol: a mode that needs no more corrections at this point */
+#define SETTLED 0.3 /* beside what is asked where corrections are made: a mode that needs no more at this point */
 /* Corrections of one point at most. */
 #define GREEDY_STEPS 8
 #define SAMPLE_REACH 0.1 /* how much farther than the modes found lies the growth that corrections follow */
@@ -56,7 +54,7 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
       run->greedy->reach = PetscMax(run->greedy->reach, (1 + SAMPLE_REACH) * PetscAbsReal(mode[i].sigma));
   run->guarded.growth = PetscMax(run->guarded.growth, run->greedy->reach);
   PetscCall(BasisCreateModes(run->basis, run->greedy->modes, n, 4, &block));
-  PetscCall(BasisAdd(run->basis, block, run->drop, &n_vectors));
+  PetscCall(BasisAdd(run->basis, block, run->drop.length, &n_vectors));
   PetscCall(BVDestroy(&block));
   PetscCall(BasisUse(run->basis, run->basis->reduced.n));
   PetscCall(SampleAdd(run, p, PETSC_TRUE, n_vectors, estimate));
@@ -74,7 +72,7 @@ PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *mod
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
-  PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->rtol, modes));
+  PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->safe * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
   PetscCall(CorrectionCollect(run->correction, modes, run->sides, run->basis, &block));
   PetscCall(CorrectionApply(run->correction, run->drop, run->basis, &block, n_added));
@@ -166,28 +164,30 @@ static PetscErrorCode FactorFirst(GreedyWork *run, const PetscReal p[])
 
 /* A full solution by corrections at p; first = the largest relative error that the basis had there before. A step
    is saved where the fall of earlier ones, fall = the largest error_after / error_before so far, already promises
-   less than SAFE rtol. n_passed counts points in a row that needed nothing and had all modes; a missing mode calls
+   less than safe rtol. n_passed counts points in a row that needed nothing and had all modes; a missing mode calls
    the eigensolver and begins the count anew. */
 PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *first)
 {
-  const PetscReal drop  = run->drop;
-  ReducedModes    modes = {0};
-  PetscReal       worst;
-  PetscInt        n_added, n_vectors = 0;
-  PetscBool       complete = PETSC_TRUE;
+  const CorrectionDrop drop  = run->drop;
+  const PetscReal      asked = run->greedy->safe * run->greedy->rtol;
+  ReducedModes         modes = {0};
+  PetscReal            worst;
+  PetscInt             n_added, n_vectors = 0;
+  PetscBool            complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  if (PointTimes(run, p, PETSC_TRUE)) run->drop = PetscMin(drop, LOOK_DROP); /* what was left out is what errs */
+  if (PointTimes(run, p, PETSC_TRUE)) /* what was left out is what errs */
+    run->drop = (CorrectionDrop){PetscMin(drop.length, LOOK_DROP), LOOK_ENERGY * drop.energy};
   PetscCall(FactorFirst(run, p));
   PetscCall(StepApply(run, p, &modes, &n_added, first));
   worst = *first;
-  if (worst > SAFE * run->greedy->rtol && !run->is_near) PetscCall(FactorMake(run, p));
-  for (int step = 1; step < GREEDY_STEPS && worst > SAFE * run->greedy->rtol; step++) {
+  if (worst > asked && !run->is_near) PetscCall(FactorMake(run, p));
+  for (int step = 1; step < GREEDY_STEPS && worst > asked; step++) {
     const PetscReal before = worst, fall = run->greedy->fall;
 
     n_vectors += n_added;
     PetscCall(BasisUse(run->basis, run->basis->reduced.n));
-    if (fall > 0 && fall * worst <= SAFE * run->greedy->rtol && run->greedy->reach <= run->greedy->window.growth)
+    if (fall > 0 && fall * worst <= asked && run->greedy->reach <= run->greedy->window.growth)
       break; /* the vectors just taken in are enough, where no others are needed to tell what lies beyond the growth */
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
     run->greedy->fall = PetscMax(fall, worst / before);
@@ -195,7 +195,7 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
   PetscCall(ReducedModesDestroy(&modes));
   run->drop = drop;
   PetscCall(SampleCount(run, p, &complete));
-  run->greedy->n_passed = *first <= SAFE * run->greedy->rtol && complete ? run->greedy->n_passed + 1 : 0;
+  run->greedy->n_passed = *first <= asked && complete ? run->greedy->n_passed + 1 : 0;
   PetscCall(SampleAdd(run, p, PETSC_FALSE, n_vectors, *first));
   run->greedy->sample[run->greedy->n_samples - 1].factored = run->is_near;
   if (!complete && run->greedy->n_samples < run->greedy->max_samples) {

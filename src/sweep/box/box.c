@@ -6,7 +6,10 @@
 */
 #include "box.h"
 
-#define BOX_LOOKS 6 /* at other points after a full solution, of the statuses that there are */
+#define BOX_LOOKS  6    /* at other points after a full solution, of the statuses that there are */
+#define BOX_MANY   0.2  /* of rtol, for the basis; the rest is for the fewer vectors that many points are on */
+#define BOX_SAFE   0.2  /* of that, where corrections are made: all other points are asked for their estimates, too */
+#define BOX_ENERGY 0.05 /* of that, what the corrections of a mode may lose */
 #define BOX_GUARD                                                                                                      \
   0.03 /* as basis/greedy.c holds modes beyond the band, so that branches are followed across its ends */
 
@@ -20,6 +23,8 @@ static PetscErrorCode BoxBeginGreedy(Box *box)
   g->window      = box->window;
   g->groups      = &box->groups;
   g->rtol        = box->rtol;
+  g->goal        = box->many ? BOX_MANY : 1;
+  g->safe        = BOX_SAFE * g->goal;
   g->option      = box->option;
   g->advice      = box->advice;
   g->max_samples = box->max_solutions;
@@ -27,6 +32,7 @@ static PetscErrorCode BoxBeginGreedy(Box *box)
   g->last        = PETSC_MAX_REAL;
   g->most_looks  = BOX_LOOKS;
   g->lazy        = PETSC_TRUE;
+  g->energy      = BOX_ENERGY * g->safe * box->rtol;
   PetscCall(PetscCalloc1(g->max_samples + 2 + BOX_LOOKS, &g->sample));
   PetscFunctionReturn(0);
 }

@@ -19,6 +19,7 @@ typedef struct {
   PetscReal   rtol;
   const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt    max_solutions, n_groups;
+  PetscBool   many;       /* points come, for which BoxCompress() pays */
   const Journal *journal; /* for what a killed run goes on from, or NULL; */
   const char    *begin;   /* its files begin so */
   /* */

@@ -3,7 +3,7 @@
    points of the box fewer directions matter. From their snapshots s, right and left vectors at some points, in
    coordinates of the basis, the directions
 
-      C W v = sigma^2 v,   C = sum s s',   W = |K| + h^2 M,  v' W v = 1
+      C W v = sigma^2 v,   C = sum (h / |lambda|)^2 s s',   W = |K| + h^2 M,  v' W v = 1
 
    come in the order of the energy that they hold (proper orthogonal decomposition; K. Karhunen, M. Loeve), h the
    upper end of the window and |K| the symmetric part of K at the nominal point. The leading ones are the model, the
@@ -18,11 +18,12 @@
 #include "base/algebra/dense.h"
 
 #define SNAPSHOTS     32   /* points whose modes are taken */
-#define COMPRESS_FROM 1e-3 /* tolerances that are tried */
-#define COMPRESS_TO   1e-7
+#define COMPRESS_FROM 5e-7 /* tolerances that are tried */
+#define COMPRESS_TO   1e-3
 #define ESTIMATES     40 /* fewer tell too little: of 15 vectors with 7 more the true error was all that was stated */
-#define COMPRESS_STEP 0.6
-#define LEAST_GAIN    0.7 /* a basis that is not smaller than this part of the other one is of no use */
+#define COMPRESS_STEP 1.5
+#define LEAST_OMEGA       0.01 /* slower modes count as if they were at this part of the upper end of the window */
+#define LEAST_GAIN    0.7  /* a basis that is not smaller than this part of the other one is of no use */
 
 /* B [m][m] = V' A V of the leading n x n block of A (column stride lda), V [m][n] */
 static PetscErrorCode MatrixProject(PetscInt n, PetscInt lda, const PetscReal A[], PetscInt m, const PetscReal V[],
@@ -49,12 +50,15 @@ static PetscErrorCode MatrixProject(PetscInt n, PetscInt lda, const PetscReal A[
   PetscFunctionReturn(0);
 }
 
-/* Adds the real and imaginary parts of vectors X [m][n] to C [n][n] */
-static void SnapshotsAdd(PetscInt n, PetscInt m, const PetscComplex X[], PetscReal C[])
+/* Adds the real and imaginary parts of vectors X [m][n] of modes lambda to C [n][n], h / |lambda| times: errors are to
+   be a part of each frequency */
+static void SnapshotsAdd(PetscReal h, PetscInt n, PetscInt m, const PetscComplex lambda[], const PetscComplex X[],
+                         PetscReal C[])
 {
   for (PetscInt a = 0; a < m; a++)
     for (PetscInt j = 0; j < n; j++) {
-      const PetscReal re = creal(X[a * n + j]), im = cimag(X[a * n + j]);
+      const PetscReal scale = PetscSqr(h / PetscMax(cabs(lambda[a]), LEAST_OMEGA * h));
+      const PetscReal re = scale * creal(X[a * n + j]), im = scale * cimag(X[a * n + j]);
 
       for (PetscInt i = 0; i < n; i++) C[j * n + i] += re * creal(X[a * n + i]) + im * cimag(X[a * n + i]);
     }
@@ -153,23 +157,24 @@ static PetscErrorCode SmallCost(const Box *box, const Reduced *small, PetscInt n
 /* The covariance C of right and left vectors of all modes at n points */
 static PetscErrorCode SnapshotsTake(const Box *box, PetscInt n, const PetscReal points[], PetscReal C[])
 {
-  const PetscInt size = box->basis.reduced.n_used;
-  ReducedModes  *modes;
+  const PetscInt  size = box->basis.reduced.n_used;
+  const PetscReal h    = box->window.high;
+  ReducedModes   *modes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &modes));
   PetscCall(BoxSolveAll(box, n, points, modes));
   for (PetscInt i = 0; i < n; i++) {
-    SnapshotsAdd(size, modes[i].n, modes[i].x, C);
-    SnapshotsAdd(size, modes[i].n, modes[i].y, C);
+    SnapshotsAdd(h, size, modes[i].n, modes[i].lambda, modes[i].x, C);
+    SnapshotsAdd(h, size, modes[i].n, modes[i].lambda, modes[i].y, C);
     PetscCall(ReducedModesDestroy(&modes[i]));
   }
   PetscCall(PetscFree(modes));
   PetscFunctionReturn(0);
 }
 
-/* Tries more and more directions, those whose part of the largest sigma exceeds a tolerance, until the cost rises. The
-   number is that of rank 0, whose rounding decides for all. */
+/* Tries fewer and fewer directions, those whose part of the largest sigma exceeds a tolerance, until the cost rises.
+   The number is that of rank 0, whose rounding decides for all. */
 static PetscErrorCode SmallChoose(Box *box, PetscInt n_points, const PetscReal points[], const PetscReal V[],
                                   const PetscReal w[])
 {
@@ -177,22 +182,23 @@ static PetscErrorCode SmallChoose(Box *box, PetscInt n_points, const PetscReal p
   PetscReal      least = PetscPowReal(LEAST_GAIN * n, 3), cost;
 
   PetscFunctionBeginUser;
-  for (PetscReal tolerance = COMPRESS_FROM; tolerance > COMPRESS_TO; tolerance *= COMPRESS_STEP) {
-    Reduced  small;
-    PetscInt m = 0;
+  for (PetscReal tolerance = COMPRESS_FROM; tolerance < COMPRESS_TO; tolerance *= COMPRESS_STEP) {
+    Reduced   small;
+    PetscInt  m = 0;
+    PetscBool better;
 
     while (m < n && w[m] > PetscSqr(tolerance) * w[0]) m++;
     PetscCallMPI(MPI_Bcast(&m, 1, MPIU_INT, 0, box->comm));
-    if (PetscPowReal(m, 3) >= least) break;
+    if (PetscPowReal(m, 3) >= least) continue;
     PetscCall(SmallMake(box, m, V, &small));
     PetscCall(SmallCost(box, &small, n_points, points, &cost));
-    if (cost < least) {
-      PetscCall(BoxForgetSmall(&box->small));
-      box->small = small;
-      least      = cost;
-    } else {
-      PetscCall(BoxForgetSmall(&small));
-    }
+    better = cost < least ? PETSC_TRUE : PETSC_FALSE;
+    if (!better) PetscCall(BoxForgetSmall(&small));
+    if (!better && box->small.n_used) break;
+    if (!better) continue;
+    PetscCall(BoxForgetSmall(&box->small));
+    box->small = small;
+    least      = cost;
   }
   PetscFunctionReturn(0);
 }
