@@ -155,6 +155,29 @@ def steps(folder):
     check("OP=MOD: a force that becomes 0 is gone", options["loads"] == "top_force", options)
 
 
+def viscous(folder):
+    """Stiffness over frequency: E_0 = 210 / (1 - 0.5) = 420 GPa, branches of 0.3 and 0.2 of it; at 1 kHz storage 2.5 and loss 0.4 of
+    E_inf."""
+    body, section = decks_abaqus.BODY + "*MATERIAL, NAME=M\n*DENSITY\n7.8e-9\n", "*SOLID SECTION, ELSET=E, MATERIAL=M\n"
+    series, elastic = "*VISCOELASTIC, TIME=PRONY\n0.3, 0.3, 1e-3\n0.2, {}, 1e-4\n", "*ELASTIC{}\n210000., 0.3\n"
+    options, listed = sections(folder, "deck.inp", body + series.format(0.2) + elastic.format("") + section)
+    check("a Prony series", same(options["e_young"], "210e9") and same(options["e_prony_modulus"], "126e9,84e9")
+          and same(options["e_prony_time"], "1e-3,1e-4") and not any("relax otherwise" in line for line in listed), (options, listed))
+    options, listed = sections(folder, "deck.inp", body + series.format(0) + elastic.format(", MODULI=INSTANTANEOUS") + section)
+    check("of a modulus of fast motions; bulk that does not relax is said", same(options["e_young"], "105e9")
+          and same(options["e_prony_modulus"], "63e9,42e9") and sum("relax otherwise" in line for line in listed) == 1, (options, listed))
+    rows = "*VISCOELASTIC, FREQUENCY=TABULAR\n0.4, -1.5, 0.4, -1.5, 1000.\n0.1, -0.2, 0.1, -0.2, 10.\n"
+    options, listed = sections(folder, "deck.inp", body + elastic.format("") + rows + section)
+    check("a table over frequency", same(options["e_table_frequency"], "10,1000") and same(options["e_table_modulus"], "252e9,525e9")
+          and same(options["e_table_loss_factor"], f"{0.1 / 1.2},{0.4 / 2.5}"), options)
+    for about, text in (("a sum of 1", series.format(0.2).replace("0.3, 0.3", "0.8, 0.8")),
+                        ("a law by a routine", "*VISCOELASTIC, TIME=CREEP\n"),
+                        ("a table of one frequency twice", rows.replace("1000.", "10."))):
+        options, listed = sections(folder, "deck.inp", body + elastic.format("") + text + section)
+        check(f"{about} is listed", not any("prony" in key or "table" in key for key in options)
+              and sum("not taken" in line for line in listed) == 1, (options, listed))
+
+
 def not_taken(folder):
     """What is read in part, or would be something else in squeal, is listed and makes nothing in the scene."""
     body, steel = decks_abaqus.BODY, decks_abaqus.STEEL + "*SOLID SECTION, ELSET=E, MATERIAL=M\n"
@@ -288,6 +311,7 @@ def main():
         abaqus(Path(name))
         others(Path(name))
         steps(Path(name))
+        viscous(Path(name))
         not_taken(Path(name))
         preloaded(Path(name))
         closed_pipe(Path(name))

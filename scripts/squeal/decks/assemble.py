@@ -259,6 +259,8 @@ def part_entry(name, section, material):
         row("alpha", ("rate", (material.alpha,)), "DAMPING")
     if material.beta:
         row("beta", ("time", (material.beta,)), "DAMPING")
+    for key, unit, values in material.law:
+        row(key, (unit, values), "VISCOELASTIC")
     if material.loss:
         row("loss_factor", ("", (material.loss,)), "LOSS")
     return entry

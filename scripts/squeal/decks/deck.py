@@ -61,6 +61,7 @@ class Material:
     alpha: float = 0
     beta: float = 0
     loss: float = 0  # factor of structural damping
+    law: tuple = ()  # of the modulus over frequency: (key of a part, unit, values)
     places: dict = field(default_factory=dict)
 
 

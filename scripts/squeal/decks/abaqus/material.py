@@ -110,6 +110,8 @@ def do_elastic(reader, _, card):
         why = "is for plane stress, not for solids" if kind == "LAMINA" else "is not understood"
         reader.deck.note(card.place, f"*ELASTIC, TYPE={kind}: {why}; give young, poisson, shear of material {material.name}")
         return
+    if choice(card.options.pop("MODULI", "LONG TERM"), "LONG TERM", "INSTANTANEOUS") == "INSTANTANEOUS":
+        reader.instant.add(material.name)
     if min(material.young) <= 0:
         raise rows[0][0].wrong(f"Young's modulus {min(material.young):g} must be positive")
     other_rows(reader, card, rest)

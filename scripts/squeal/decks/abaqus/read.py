@@ -9,7 +9,7 @@ import numpy
 from ...tables import BadInput
 from . import beams as abaqus_beams, bolts as abaqus_bolts, connectors as abaqus_connectors, joined as abaqus_joined, loads as abaqus_loads
 from . import material as abaqus_material, mesh as abaqus_mesh
-from . import model as abaqus_model, sets as abaqus_sets
+from . import model as abaqus_model, sets as abaqus_sets, viscous as abaqus_viscous
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from ..deck import NOT_NEEDED, Deck, Index, Place
 from ..text import read_bytes, real, shorter
@@ -52,7 +52,7 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
                           "TIED"},
          "CLEARANCE": {"MASTER", "SLAVE", "VALUE", "TABULAR"}, "CONTACT INTERFERENCE": {"SHRINK", "OP"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
-         "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
+         "VISCOELASTIC": set(), "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
          "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
          "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}, "STATIC": {"SOLVER"},
          "COMPLEX FREQUENCY": {"FRICTION DAMPING", "SOLVER", "RIGHT EIGENVECTORS"}}
@@ -71,7 +71,7 @@ def listed(do):
 
 CARDS = {keyword: listed(do) for keyword, do in (
     abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS |
-    abaqus_beams.CARDS | abaqus_connectors.CARDS | abaqus_bolts.CARDS).items()}
+    abaqus_beams.CARDS | abaqus_connectors.CARDS | abaqus_bolts.CARDS | abaqus_viscous.CARDS).items()}
 
 
 @dataclass
@@ -226,6 +226,7 @@ class Reader:
         self.coupling, self.solid = None, None  # that *KINEMATIC or *DISTRIBUTING follows; which nodes elements have
         self.unplaced = {}  # name of a part without an instance so far -> its place
         self.steps, self.forces, self.pressures, self.gravity = 0, [], [], []  # loads as they come, loads.py
+        self.viscous, self.instant = [], set()  # (material, whether a series, rows, place); names of those with fast moduli
         self.clearances, self.fits = [], []  # (slave and master, value or those of nodes, place)
         self.of_bolts = []  # forces of all steps, those that ended too
         self.supports = []  # (step, Support) as they come
@@ -331,6 +332,7 @@ class Reader:
 
     def finish(self):
         """What needs all of the deck."""
+        abaqus_viscous.finish(self)
         abaqus_bolts.finish(self)
         abaqus_loads.finish_loads(self)
         abaqus_connectors.finish(self)
