@@ -87,6 +87,33 @@ def weights(root):
     check(worst <= 0.05, f"A-weighting within {worst:.3f} dB of the table, which has one digit")
 
 
+def sphere(root):
+    """A breathing sphere of 720 triangles with the sphere's area, at ka 0.5 and at pi, where the air inside has a mode of its own."""
+    sys.path.insert(0, str(root / "scripts"))
+    from squeal.sound.boundary import Surface, radiate
+
+    density, speed, radius, n = 1.204, 343.2, 0.05, 6
+    golden = (1 + 5**0.5) / 2
+    corners = np.array([[x, s * 1.0, t * golden] for x in (0,) for s in (-1, 1) for t in (-1, 1)])
+    corners = np.concatenate([np.roll(corners, k, axis=1) for k in range(3)])
+    triples = [(a, b, c) for a in range(12) for b in range(a) for c in range(b)
+               if max(np.linalg.norm(corners[i] - corners[j]) for i, j in ((a, b), (b, c), (a, c))) < 2.1]
+    triangles = []
+    for a, b, c in corners[np.array(triples)]:
+        b, c = (b, c) if np.linalg.det([a, b, c]) > 0 else (c, b)
+        at = {(i, j): a + (b - a) * i / n + (c - a) * j / n for i in range(n + 1) for j in range(n + 1 - i)}
+        triangles += [[at[i, j], at[i + 1, j], at[i, j + 1]] for i in range(n) for j in range(n - i)]
+        triangles += [[at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]] for i in range(n) for j in range(n - i - 1)]
+    triangles = np.array(triangles)
+    triangles /= np.linalg.norm(triangles, axis=2)[..., None]
+    surface = Surface(radius * triangles / np.sqrt(Surface(triangles).area.sum() / (4 * np.pi)))
+    for ka in (0.5, np.pi):
+        heard, power = radiate(surface, np.ones(len(triangles)), ka * speed / radius, [[0.5, 0, 0]], (density, speed))
+        factor = 1j * ka / (1 + 1j * ka)
+        near(abs(heard[0]) / abs(density * speed * factor * radius / 0.5), 1, 1e-3, f"breathing sphere, ka {ka:.3g}: pressure")
+        near(power / (2 * np.pi * radius**2 * density * speed * abs(factor)**2), 1, 2e-3, f"breathing sphere, ka {ka:.3g}: power")
+
+
 def refused(root, folder):
     """One line each."""
     t = np.arange(0, 0.01, STEP)
@@ -109,6 +136,7 @@ def refused(root, folder):
 def main():
     root = Path(__file__).resolve().parents[2]
     weights(root)
+    sphere(root)
     with tempfile.TemporaryDirectory() as folder:
         tones(root, Path(folder) / "tones")
         refused(root, Path(folder))
