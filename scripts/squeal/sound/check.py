@@ -70,6 +70,7 @@ def compare(folder, name, modes):
         plain = part.rayleigh(velocity, omega)
         equivalent = part.air[0] * part.air[1] / 2 * (abs(velocity)**2 @ part.surface.area)
         longest = numpy.sqrt(part.surface.area.max()) * omega / (2 * numpy.pi * part.air[1])
-        levels = "; ".join(f"{one} {decibel(abs(a)**2 / 2):.1f}, {decibel(abs(b)**2 / 2):.1f}" for one, a, b in zip(part.names, plain, heard))
+        levels = "; ".join(f"{one} {decibel(abs(a)**2 / 2):.1f}, {decibel(abs(b)**2 / 2):.1f}"
+                           for one, a, b in zip(part.names, plain, heard))
         print(f"  mode {mode:3d}  {rows[mode]['freq_hz']:10.3f} Hz  {levels}; radiates {power / equivalent:.3f} of the equivalent power"
               + (f"; coarse: {longest:.2f} wavelengths a triangle" if longest > 1 / 6 else ""))
