@@ -54,8 +54,9 @@ def table(deck, material, rows, place, instant):
     order = numpy.argsort(frequency)
     if instant or min(less) <= 0 or min(loss) < 0 or frequency[order[0]] <= 0 or (numpy.diff(frequency[order]) <= 0).any():
         return "a modulus of slow motions, and rows with positive moduli and frequencies are needed"
-    material.law = (("table_frequency", "rate", tuple(frequency[order])),
-                    ("table_modulus", "stress", tuple(material.young[0] * less[order])), ("table_loss_factor", "", tuple((loss / less)[order])))
+    moduli = material.young[0] * less[order]
+    material.law = (("table_frequency", "rate", tuple(frequency[order])), ("table_modulus", "stress", tuple(moduli)),
+                    ("table_loss_factor", "", tuple((loss / less)[order])))
     said(deck, place, (rows[:, :2] == rows[:, 2:4]).all())
     return ""
 
