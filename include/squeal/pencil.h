@@ -89,6 +89,7 @@ typedef struct {
   Mat          A; /* reference */
   PetscBool    symmetric;
   PetscReal    scale, reference; /* of A; rad/s, 0 for none */
+  PetscReal    detour;           /* 0; h times 1 + i detour, on the way of an eigenvalue past a double one */
   Viscoelastic law;
   PetscComplex at; /* G(i reference), Pa */
 } PencilLaw;
@@ -258,9 +259,10 @@ typedef struct {
   Vec      xr[2], xi[2], yr[2], yi[2];
 } PencilVectors;
 
-/*@ PencilMeasureForms - the products of each term that PencilGetCauses() lists, called before, as many as n says; the
-    caller frees them. Collective. @*/
-PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *vectors, PetscInt *n, PencilForms **forms);
+/*@ PencilMeasureForms - the products of each term that PencilGetCauses() lists, called before, as many as n says, with
+    the loss that materials have at the eigenvalue lambda; the caller frees them. Collective. @*/
+PetscErrorCode PencilMeasureForms(Pencil pencil, PetscComplex lambda, const PencilVectors *vectors, PetscInt *n,
+                                  PencilForms **forms);
 
 /*@
    PencilMeasureDerivatives - y' (dQ / dp_j) x, Q(lambda; p) = lambda^2 M + lambda C + K, for each parameter p_j, from

@@ -44,12 +44,13 @@ PetscErrorCode OperatorsDestroyLaws(Operators o)
 
 PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex *slope)
 {
-  const PetscReal w = law->reference, viscous = w > 0 ? cimag(law->at) / w : 0;
-  ViscoelasticAt  at;
+  const PetscReal    w = law->reference, viscous = w > 0 ? cimag(law->at) / w : 0;
+  const PetscComplex scale = law->scale * CMPLX(1, law->detour);
+  ViscoelasticAt     at;
 
   ViscoelasticEvaluate(&law->law, lambda, &at);
-  if (slope) *slope = law->scale * (at.slope - viscous);
-  return law->scale * (at.modulus - creal(law->at) - lambda * viscous);
+  if (slope) *slope = scale * (at.slope - viscous);
+  return scale * (at.modulus - creal(law->at) - lambda * viscous);
 }
 
 PetscBool PencilHasLaws(Pencil pencil)

@@ -6,7 +6,7 @@
     viscoelastic.py closed UNDAMPED RUN zener,E1,tau,a
     viscoelastic.py closed UNDAMPED RUN table,FILE,E,TEMPERATURE    by SciPy's PchipInterpolator in log frequency; not in its first and last
                                                                     interval, whose end it makes otherwise
-    viscoelastic.py flutter RUN eta                                 two masses of 1 with K = (1 + i eta) [2 1; 1 2] - [0 4/3; 0 0]
+    viscoelastic.py flutter RUN LAW --friction 1.3                  two masses of 1 with K = (1 + g(lambda)) [2 1; 1 2] - [0 1.3; 0 0]
     viscoelastic.py matrices SOFT STIFF RUN LAW --mu 0.5            one part has the law: its stiffness is the difference of the matrices of
                                                                     SOFT and STIFF (-operators_save), in which its modulus is E and 2 E.
         hysteretic: K + i eta A is a complex linear problem. prony: with velocities and internal displacements z_j, lambda z_j = v -
@@ -51,11 +51,17 @@ def table_of(path, young, temperature):
     return g
 
 
-def flutter(eta):
-    """Eigenvalues of the two masses, omega > 0."""
-    a, b, c = 2 * (1 + 1j * eta), 1 + 1j * eta, 4 / 3
-    roots = [cmath.sqrt(-(a + sign * cmath.sqrt(b * (b - c)))) for sign in (1, -1)]
-    return [root if root.imag > 0 else -root for root in roots]
+def flutter(g, friction):
+    """Eigenvalues of the two masses, omega > 0: the one that grows and the other, each by fixed-point iteration."""
+    values = []
+    for sign in (1, -1):
+        value = 1j
+        for _ in range(STEPS):
+            b = 1 + g(value)
+            value = cmath.sqrt(-(2 * b + sign * 1j * cmath.sqrt(b * (friction - b))))
+            value = value if value.imag > 0 else -value
+        values.append(value)
+    return values
 
 
 def law_of(text):
@@ -184,6 +190,7 @@ def main():
     two.add_argument("stiff", type=Path)
     two.add_argument("--mu", type=float, default=0)
     three = ways.add_parser("flutter")
+    three.add_argument("--friction", type=float, required=True)
     for way in (one, two, three):
         way.add_argument("run", type=Path)
         way.add_argument("law")
@@ -194,7 +201,7 @@ def main():
     low, high = (2 * math.pi * float(word) for word in args.band.split(","))
     found = listed(args.run)
     if args.way == "flutter":
-        others = flutter(float(args.law))
+        others = flutter(law_of(args.law)[0], args.friction)
     elif args.way == "closed":
         others = [closed(value.imag, law_of(args.law)[0]) for value in listed(args.undamped)]
     else:

@@ -35,6 +35,11 @@ PetscErrorCode PartsAddLoss(Model model)
 
     if (p->loss > 0 && omega > 0) p->beta += p->loss / omega;
     PetscCall(ViscoelasticSet(model->comm, p->name, &p->viscous, p->young, omega > 0 ? 0 : p->loss, &p->law));
+    PetscCheck(
+      !(p->loss > 0 && omega > 0 && p->law.kind), model->comm, PETSC_ERR_USER_INPUT,
+      "-%s_loss_factor %.6g, with -model_loss_frequency, and the law of -%s (prony, zener or table) exclude each "
+      "other: give one damping",
+      p->name, (double)p->loss, p->name);
     any = p->loss > 0 || any ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCheck(omega == 0 || any, model->comm, PETSC_ERR_USER_INPUT,

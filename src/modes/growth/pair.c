@@ -92,7 +92,7 @@ static PetscErrorCode PairMeasure(Modes modes, PetscInt i, PetscInt partner, Mec
     pair->slope[a]  = 2 * pair->lambda[a] * CMPLX(m->product[0], m->product[1]);
     PetscCall(ModesGetVectors(modes, at[a], &v.xr[a], &v.xi[a], &v.yr[a], &v.yi[a]));
   }
-  PetscCall(PencilMeasureForms(modes->pencil, &v, &n, &forms));
+  PetscCall(PencilMeasureForms(modes->pencil, pair->lambda[0], &v, &n, &forms));
   for (PetscInt t = 0; t < n; t++) MechanismAdd(pair, &forms[t]);
   PetscCall(PetscFree(forms));
   PetscFunctionReturn(0);

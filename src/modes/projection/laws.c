@@ -15,20 +15,22 @@
 */
 #include "projection.h"
 
-#define LAWS_STAGES  3    /* of paths: 1, 4 and 16 steps of h */
+#define LAWS_STAGES  4   /* of paths: 1, 4 and 16 steps of h, and as many about double eigenvalues */
+#define LAWS_DETOUR  0.5 /* of h: how far these go, with both branches of a real problem then apart */
+#define LAWS_STEPS   64
 #define LAWS_LARGEST 0.5  /* rad that the phase may turn in a step of the contour */
 #define LAWS_SPLITS  30   /* of a step of it */
 #define LAWS_SIDE    16   /* steps of a side */
 #define LAWS_EQUAL   1e-9 /* relative distance of eigenvalues that are one, of vectors that are one */
 
-/* The pencil with a share of h in place of h */
+/* The pencil with a share of h in place of h, turned by the detour */
 typedef struct {
   DensePencil pencil;
   PencilLaw  *law;
   DenseLaw   *dense;
 } SharedLaws;
 
-static PetscErrorCode SharedLawsCreate(const DensePencil *whole, PetscReal share, SharedLaws *s)
+static PetscErrorCode SharedLawsCreate(const DensePencil *whole, PetscReal share, PetscReal detour, SharedLaws *s)
 {
   PetscFunctionBeginUser;
   s->pencil = *whole;
@@ -36,7 +38,8 @@ static PetscErrorCode SharedLawsCreate(const DensePencil *whole, PetscReal share
   for (PetscInt l = 0; l < whole->n_laws; l++) {
     s->law[l] = *whole->law[l].law;
     s->law[l].scale *= share;
-    s->dense[l] = (DenseLaw){&s->law[l], whole->law[l].A};
+    s->law[l].detour = detour * (1 - share);
+    s->dense[l]      = (DenseLaw){&s->law[l], whole->law[l].A};
   }
   s->pencil.law = s->dense;
   PetscFunctionReturn(0);
@@ -56,7 +59,7 @@ static PetscBool LambdaIsRigid(const Projection *p, PetscComplex lambda)
 }
 
 /* All modes by as many steps; good = none was lost, none came twice */
-static PetscErrorCode LawsFollow(const Projection *p, int steps, ProjectionModes *m, PetscBool *good)
+static PetscErrorCode LawsFollow(const Projection *p, int steps, PetscReal detour, ProjectionModes *m, PetscBool *good)
 {
   const DensePencil whole = SubspacePencil(&p->space);
 
@@ -65,7 +68,7 @@ static PetscErrorCode LawsFollow(const Projection *p, int steps, ProjectionModes
   for (int step = 1; step <= steps && *good; step++) {
     SharedLaws shared;
 
-    PetscCall(SharedLawsCreate(&whole, (PetscReal)step / steps, &shared));
+    PetscCall(SharedLawsCreate(&whole, (PetscReal)step / steps, detour, &shared));
     for (PetscInt i = 0; i < m->n && *good; i++) {
       if (LambdaIsRigid(p, m->lambda[i])) continue;
       PetscCall(DensePencilFollow(&shared.pencil, &m->lambda[i], &m->vectors[0][i * m->size],
@@ -125,7 +128,7 @@ static PetscErrorCode LawsGather(const Projection *p, ProjectionModes *m)
                            .vectors = {&all.vectors[0][i * all.size], &all.vectors[1][i * all.size]}};
     PetscBool       good;
 
-    PetscCall(LawsFollow(p, 1, &one, &good));
+    PetscCall(LawsFollow(p, 1, 0, &one, &good));
     if (!good) continue;
     m->lambda[m->n] = all.lambda[i];
     for (int side = 0; side < 2; side++)
@@ -168,9 +171,9 @@ PetscErrorCode ProjectionLawsSolve(const Projection *p, ProjectionModes *m)
   PetscFunctionBeginUser;
   PetscCall(ProjectionModesCreate(p, m->n, &start));
   PetscCall(LawsCopy(m, &start));
-  for (int stage = 0, steps = 1; stage < LAWS_STAGES && !good; stage++, steps *= 4) {
+  for (int stage = 0, steps = 1; stage < LAWS_STAGES && !good; stage++, steps = PetscMin(4 * steps, LAWS_STEPS)) {
     PetscCall(LawsCopy(&start, m));
-    PetscCall(LawsFollow(p, steps, m, &good));
+    PetscCall(LawsFollow(p, steps, stage + 1 == LAWS_STAGES ? LAWS_DETOUR : 0, m, &good));
   }
   if (!good) PetscCall(LawsCopy(&start, m));
   if (!good) PetscCall(LawsGather(p, m));
@@ -189,6 +192,7 @@ typedef struct {
   PetscComplex *nu, *T; /* [n], [size * size] */
   PetscBLASInt *pivot;
   PetscReal     turned; /* rad, until now */
+  PetscBool     lost;   /* the phase could not be followed */
 } Contour;
 
 /* All eigenvalues of the quadratic part, [2 size] at most */
@@ -265,6 +269,7 @@ static PetscErrorCode ContourStep(Contour *c, const PetscComplex lambda[2], cons
   PetscFunctionBeginUser;
   if ((PetscAbsReal(turn) <= LAWS_LARGEST && StepIsShort(c, lambda)) || !splits) {
     c->turned += turn;
+    if (!splits) c->lost = PETSC_TRUE;
     PetscFunctionReturn(0);
   }
   PetscCall(ContourPhase(c, middle, &between));
@@ -314,7 +319,8 @@ static PetscReal ContourRadius(const Projection *p, const ProjectionModes *found
   return d * (1 - LAWS_EQUAL);
 }
 
-PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing)
+PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
+                                   PetscBool *lost)
 {
   const PetscReal d = ContourRadius(p, found);
   Contour         c = {.pencil = SubspacePencil(&p->space)};
@@ -338,7 +344,9 @@ PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *f
   for (PetscInt i = 0; i < found->n; i++) inside -= ContourHolds(p, d, found->lambda[i]);
   *missing = (PetscInt)round(c.turned / (2 * PETSC_PI)) + inside;
   PetscCall(PetscFree3(c.nu, c.T, c.pivot));
+  *lost = c.lost;
   PetscCallMPI(MPI_Bcast(missing, 1, MPIU_INT, 0, p->modes->comm));
+  PetscCallMPI(MPI_Bcast(lost, 1, MPIU_BOOL, 0, p->modes->comm));
   PetscCall(PetscInfo(p->space.V, "%" PetscInt_FMT " modes beside those found, turns %.6f\n", *missing,
                       (double)(c.turned / (2 * PETSC_PI))));
   PetscFunctionReturn(0);

@@ -34,6 +34,7 @@ static const char why_whole[]   = "all modes of the system are in the window or 
 static const char why_guard[]   = "damping moves modes by more than the guard";
 static const char why_strong[]  = "damping is strong"; /* of laws, which may be weak beyond more modes */
 static const char why_missing[] = "the search on the projected problem misses modes that its contour integral counts";
+static const char why_edge[]    = "a mode lies on the edge of the window, where none can be counted: move the band";
 static const char why_differ[]  = "undamped right and left modes differ";
 
 /* Removes what lies farther from the shift than the distance */
@@ -221,7 +222,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   Modes           modes = p->modes;
   const PetscReal most  = modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1;
   ProjectionModes found;
-  PetscBool       settled;
+  PetscBool       settled, lost = PETSC_FALSE;
   PetscInt        missing = 0, n_modal;
 
   PetscFunctionBeginUser;
@@ -240,8 +241,9 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
   PetscCall(Iterate(p, &found, &settled));
   window->route.laws = p->pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
-  if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing));
+  if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing, &lost));
   if (missing) *why = why_missing;
+  if (lost) *why = why_edge;
   if (settled) PetscCall(PutModes(p, &found));
   window->route.n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";

@@ -116,8 +116,10 @@ PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *mo
 /* projection/laws.c - the modes of the window of the nonlinear problem in place of those of its quadratic part that may
    become them */
 PETSC_INTERN PetscErrorCode ProjectionLawsSolve(const Projection *p, ProjectionModes *modes);
-/* How many eigenvalues the window of the dense nonlinear problem holds beside these, by the argument principle */
-PETSC_INTERN PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing);
+/* How many eigenvalues the window of the dense nonlinear problem holds beside these, by the argument principle; lost =
+   one lies on its edge, where that does not tell */
+PETSC_INTERN PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
+                                                PetscBool *lost);
 /* The vectors V x, or V y, as a spectrum */
 PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
                                            Spectrum *s);

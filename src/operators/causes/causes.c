@@ -198,13 +198,23 @@ PetscErrorCode PencilMeasureCauses(Pencil pencil, PetscInt n, const PencilMode m
   PetscFunctionReturn(0);
 }
 
+/* The factor of a term of damping, of materials Im G(lambda) / Im lambda */
+static PetscReal TermLoss(const OperatorsTerm *term, PetscComplex lambda)
+{
+  ViscoelasticAt at;
+
+  if (!term->law || cimag(lambda) == 0) return TermLaw(term, NULL);
+  OperatorsLawAt(term->law, NULL, lambda, &at);
+  return cimag(at.modulus) / cimag(lambda);
+}
+
 /* Forms and products of a term times its coefficient: form = x_0^H A x_0, product[a][b] = y_a' A x_b, turned[a][b]
    = y_a' A' x_b, which is not computed where A is symmetric, being equal, and of an exact contact, where product
    stands for it. */
-static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscInt n, const CauseVector x[],
-                                       const CauseVector y[], PencilForms *forms)
+static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscComplex lambda, PetscInt n,
+                                       const CauseVector x[], const CauseVector y[], PencilForms *forms)
 {
-  const PetscReal scale = term->scale * TermLaw(term, NULL);
+  const PetscReal scale = term->scale * TermLoss(term, lambda);
 
   PetscFunctionBeginUser;
   *forms = (PencilForms){.kind     = term->kind,
@@ -224,7 +234,8 @@ static PetscErrorCode TermMeasureForms(const OperatorsTerm *term, PetscInt n, co
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *v, PetscInt *n, PencilForms **forms)
+PetscErrorCode PencilMeasureForms(Pencil pencil, PetscComplex lambda, const PencilVectors *v, PetscInt *n,
+                                  PencilForms **forms)
 {
   CauseVector x[2][2] = {0}, y[2][2] = {0}; /* of all unknowns, of those of the pencil; a mode each */
 
@@ -242,7 +253,7 @@ PetscErrorCode PencilMeasureForms(Pencil pencil, const PencilVectors *v, PetscIn
     const OperatorsTerm *term  = &pencil->causing.term[t];
     const int            space = term->constraint >= 0;
 
-    PetscCall(TermMeasureForms(term, v->n, x[space], y[space], &(*forms)[t]));
+    PetscCall(TermMeasureForms(term, lambda, v->n, x[space], y[space], &(*forms)[t]));
   }
   for (PetscInt a = 0; a < v->n; a++) {
     PetscCall(VectorDestroy(&x[1][a]));
