@@ -100,10 +100,12 @@ static PetscErrorCode MatrixMakeEven(MPI_Comm comm, const char option[], const c
   PetscCall(MatNorm(*A, NORM_FROBENIUS, &norm));
   PetscCall(MatAYPX(T, -1, *A, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatNorm(T, NORM_FROBENIUS, &part)); /* T = A - A' */
-  PetscCheck(part <= SUPERELEMENT_EVEN * norm, comm, PETSC_ERR_USER_INPUT,
-             "%s %s differs by %.2g of its norm from its transpose: a superelement is symmetric; where the file holds "
-             "half of it, give all of it",
-             option, file, (double)(norm > 0 ? part / norm : 0));
+  PetscCheck(
+    part <= SUPERELEMENT_EVEN * norm, comm, PETSC_ERR_USER_INPUT,
+    "%s %s differs by %.2g of its norm from its transpose: a superelement is symmetric; where the file holds "
+    "half of it, give all of it; the skew part of a spin or of friction is not supported: leave it out, or load "
+    "all matrices as -terms",
+    option, file, (double)(norm > 0 ? part / norm : 0));
   if (part > 0) PetscCall(MatAXPY(*A, -0.5, T, DIFFERENT_NONZERO_PATTERN));
   PetscCall(MatDestroy(&T));
   PetscFunctionReturn(0);
