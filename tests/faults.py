@@ -26,10 +26,10 @@ FAULTS = (
     ("a chain of ties ends after one step", "src/operators/points/dependents.c", "    if (left > 0) PetscCall(MatAXPY(o->Z",
      "    if (left > 0 && power == o->E) PetscCall(MatAXPY(o->Z", "tie"),
     ("loads on nodes that follow are lost in a reduced model", "src/reduced/bodies/ports.c",
-     "    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));\n",
+     "    PetscCall(ReducedPortSetNodal(r, nodal, i));\n",
      """    Mat E;
     Vec q, column;
-    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));
+    PetscCall(ReducedPortSetNodal(r, nodal, i));
     PetscCall(OperatorsGetDependents(r->run.operators, NULL, &E));
     if (E) {
       PetscCall(MatCreateVecs(E, &q, NULL));
@@ -51,7 +51,8 @@ FAULTS = (
      "coulomb-1 static_stick"),
     ("gap of the wrong side", "src/contact/surface/foot.c", "  return gap;\n", "  return -gap;\n", "static_motions"),
     ("mu is 1e-6 less in the step of dynamics: the balance of energy closes", "src/contact/projector/prepare.c",
-     "  pair->mu = FrictionSteady(&c->friction);\n", "  pair->mu = (1 - 1e-6) * FrictionSteady(&c->friction);\n", "transient_laws"),
+     "  pair->mu = factor * FrictionSteady(&c->friction);\n",
+     "  pair->mu = (1 - 1e-6) * factor * FrictionSteady(&c->friction);\n", "transient_laws"),
     ("mu is 1e-6 less in a reduced model", "src/reduced/run/pairs.c",
      "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n",
      "    r->motion.pairs[i].gap         = r->reduction.model.gap[i];\n"

@@ -45,6 +45,7 @@ typedef struct {
   PetscBool is_bolt, has_tension, has_shortening, has_axis;
   PetscInt  of_part;
   PetscReal axis[3], tension, shortening; /* of unit length; N, m */
+  PetscBool swings;                       /* about zero: in time alone, no part of an equilibrium */
 } Load;
 
 /* A place of a body that histories record: the nearest node of the part */
@@ -92,12 +93,13 @@ typedef struct {
   PetscBool fix[3];
 } Support;
 
-/* Prescribed displacement d of a set along the flagged directions, m; in time r(t) d, with a ramp */
+/* Prescribed displacement d of a set along the flagged directions, m; in time r(t) d, with a history */
 typedef struct {
   char     *name, *set;
   PetscReal displacement[3];
   PetscBool has_word, direction[3];
   char      word[16]; /* these as they are given, such as xz */
+  PetscBool swings;   /* about zero: in an equilibrium it holds */
 } PrescribedMotion;
 
 /* What the options name */
@@ -294,8 +296,13 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[]);
 /*@ ModelGetDisplaced - the same, with the displacements that motions prescribe where they are held. Collective. @*/
 PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[]);
 
-/*@ ModelGetMotions - the displacements that held motions prescribe at the local nodes, shape [nodes][3], m, of motion i
-    a share[i] (NULL: all of each); the mesh has some (Mesh.prescribed is not NULL). Collective. @*/
+/*@ ModelGetMotion - the displacement of held motion i alone at the local nodes, shape [nodes][3], m, also where it
+    swings. Collective. @*/
+PetscErrorCode ModelGetMotion(Model model, PetscInt i, PetscReal nodal[]);
+
+/*@ ModelGetMotions - the displacements that held motions prescribe in an equilibrium at the local nodes, shape
+    [nodes][3], m, of motion i a share[i] (NULL: all of each); the mesh has some (Mesh.prescribed is not NULL).
+    Collective. @*/
 PetscErrorCode ModelGetMotions(Model model, const PetscReal share[], PetscReal nodal[]);
 
 /*@ ModelSumShared - sums a vector of ModelCreateNodal() over all ranks that share a node; every one of them gets the

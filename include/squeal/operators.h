@@ -237,6 +237,10 @@ PetscErrorCode OperatorsInternalForces(Operators operators, const PetscReal p[],
 PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[], const PetscReal prescribed[],
                                          Vec local);
 
+/*@ OperatorsPrescribedDrag - the same of velocities (m/s) and damping, C_fd v: beta K of the parts, bushings; mass and
+   what holds a node to the ground do not couple it with others. Collective. @*/
+PetscErrorCode OperatorsPrescribedDrag(Operators operators, const PetscReal p[], const PetscReal velocity[], Vec local);
+
 /*@ OperatorsAddWeight - adds the weight of all parts under -model_gravity, f_i = sum_j m_ij g at the densities of p, to
     a vector of ModelCreateNodal(), N; total is its sum over the bodies. Collective. @*/
 PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec local, PetscReal total[3]);

@@ -86,6 +86,19 @@ PetscErrorCode ContactProjectorGetTurning(ContactProjector projector, PetscInt i
 PetscErrorCode ContactProjectorGetWay(ContactProjector projector, PetscInt interface, const PetscReal t[2],
                                       PetscReal *way, PetscBool *turning);
 
+/*@ ContactProjectorGetFriction - the factor of the friction coefficient of an interface at time t (s), and whether it
+   ever is another. Not collective. @*/
+PetscErrorCode ContactProjectorGetFriction(ContactProjector projector, PetscInt interface, PetscReal t,
+                                           PetscReal *factor, PetscBool *varies);
+
+/*@ ContactProjectorGetFactors - those of its sliding speed and its friction at time t (s). Not collective. @*/
+PetscErrorCode ContactProjectorGetFactors(ContactProjector projector, PetscInt interface, PetscReal t, PetscReal *speed,
+                                          PetscReal *friction);
+
+/*@ ContactProjectorGetSteady - whether sliding and friction of an interface stay as they are once ramps are over. Not
+   collective. @*/
+PetscErrorCode ContactProjectorGetSteady(ContactProjector projector, PetscInt interface, PetscBool *steady);
+
 /*@ ContactProjectorGetDelay - when the sliding of an interface begins, s; 0 where nothing slides as told. Not
    collective. @*/
 PetscErrorCode ContactProjectorGetDelay(ContactProjector projector, PetscInt interface, PetscReal *delay);

@@ -3,10 +3,10 @@
    what the modes leave out, with exact unilateral contact and Coulomb friction.
 
    Ports are directions in which forces act on the bodies and displacements are looked at: three for each pair of the
-   contact (opening along n, slip of the slave along t and b), one for each load, three for each probe. With the modes
-   Phi of K x = omega^2 M x below the cut-off (supports and springs included, contact left out, M lumped as in all
-   transients, Phi'M Phi = I), V the ports as vectors of all unknowns, P = V'Phi, forces p at the ports (N), lambda
-   those of the pairs:
+   contact (opening along n, slip of the slave along t and b), one for each load and motion, three for each probe. With
+   the modes Phi of K x = omega^2 M x below the cut-off (supports and springs included, contact left out, M lumped as
+   in all transients, Phi'M Phi = I), V the ports as vectors of all unknowns, P = V'Phi, forces p at the ports (N),
+   lambda those of the pairs:
 
       eta'' + C eta' + Omega^2 eta + Cm q' = P'p + Phi'J delta(t - T),     y = P eta + W p, but q in place of lambda
       W q + Cx q' + Cm'eta' = W lambda   in W of the pairs: q = lambda without damping
@@ -19,6 +19,12 @@
    Where displacements follow others, u = Z q (ties, points that are joined rigidly: OperatorsGetDependents()), K, M, D
    and V are Z'K Z, Z'M Z, Z'D Z and Z'V: bodies that a tie joins are one. Phi and X are kept as Z Phi and Z X, of all
    unknowns. Nodes that follow may have pairs, loads, probes and impulses.
+
+   Prescribed motions d(t) = r(t) d hold their nodes, which are no unknowns of K, M, D, and act as loads -K_fd d r and,
+   where something damps, -D_fd d r' (a lumped M has no M_fd). What they move at the ports themselves, Y r, is added
+   to y. With u_f of the free nodes and kappa = d'K_dd d the energy of all is that of u_f + r u_f'K_fd d + r^2 kappa /
+   2; the same is added to the work of the drives, from which goes what contact does on nodes that they move, and
+   likewise with damping. The inertia of the nodes that they hold is left out.
 
    Step from t_n to t_{n+1} = t_n + dt. Forces act on the modes as means (p_n + p_{n+1}) / 2, and these answer exactly
    (exponential of the coupled first-order system: C need not be diagonal, and modes may be overdamped); q obeys its law
@@ -64,20 +70,25 @@ typedef struct _p_ReducedRun    *ReducedRun;
 typedef struct _p_ReducedSparse *ReducedSparse;
 
 /* The reduced bodies: dense but for `sparse`, alike on every rank. Matrices are column-major. Ports: normal, t, b of
-   pair 0, of pair 1 and so on, then the loads, then x, y, z of each probe */
+   pair 0, of pair 1 and so on, then the loads, among them gravity, the motions, and their rates, then x, y, z of each
+   probe */
 typedef struct {
-  PetscInt     m, n_pairs, n_loads, n_probes, n_ports;
-  PetscReal   *omega2;   /* [m] (rad/s)^2, ascending, 0 for rigid modes */
-  PetscReal   *C;        /* [m][m] 1/s, symmetric; NULL without damping */
-  PetscReal   *P;        /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
-  PetscReal   *W;        /* [n_ports][n_ports], m/N; where sparse those of loads and probes alone */
-  PetscReal   *Cm;       /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
-  PetscReal   *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
-  PetscReal   *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
-  ReducedSparse sparse;  /* products with W and Cx in place of these; NULL where they are dense */
-  PetscReal   *gap;      /* [n_pairs] g0, m, positive open */
-  PairSpring  *spring;   /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
-  FrictionLaw *friction; /* [n_pairs] with the stated speed of each */
+  PetscInt      m, n_pairs, n_loads, n_probes, n_ports, n_motions;
+  PetscReal    *omega2;   /* [m] (rad/s)^2, ascending, 0 for rigid modes */
+  PetscReal    *C;        /* [m][m] 1/s, symmetric; NULL without damping */
+  PetscReal    *P;        /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
+  PetscReal    *W;        /* [n_ports][n_ports], m/N; where sparse those of loads and probes alone */
+  PetscReal    *Cm;       /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
+  PetscReal    *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal    *Y;        /* [n_motions][n_ports] what each motion moves at pairs and probes by itself, m */
+  PetscReal    *kappa;    /* [n_motions][n_motions] d'K_dd d, J */
+  PetscReal    *drag;     /* [n_motions][n_motions] what takes their rates, d'D d and with X d, J s */
+  PetscBool     dragged;  /* motions have two loads each, the second for their rate */
+  PetscReal    *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
+  ReducedSparse sparse;   /* products with W and Cx in place of these; NULL where they are dense */
+  PetscReal    *gap;      /* [n_pairs] g0, m, positive open */
+  PairSpring   *spring;   /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
+  FrictionLaw  *friction; /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
 /* A state at t_n; its numbers stand one behind another, eta first, y last */

@@ -2,6 +2,7 @@
    Map: life cycle, options, and the flow: axes -> bodies of some lines -> their chains, shared among the ranks -> rows.
 */
 #include "mapimpl.h"
+#include "reduced/refuse.h"
 #include "base/gather.h"
 #include "base/process/progress.h"
 #include <squeal/options.h>
@@ -159,6 +160,7 @@ static PetscErrorCode MapSetUp(Map map, Results results)
   PetscFunctionBeginUser;
   PetscCall(MapCheck(map));
   PetscCall(ReducedPrepare(map->reduced, results));
+  PetscCall(ReducedRefuseVarying(map->reduced, "-analysis map"));
   PetscCall(MapCheckPrepared(map));
   PetscCall(MapAxes(map));
   PetscCall(ReducedGetRun(map->reduced, &map->cutoff, &map->dt, &map->end));

@@ -61,16 +61,6 @@ PetscErrorCode ModelGetNodal(Model model, Vec u, PetscReal nodal[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[])
-{
-  const Mesh *mesh = &model->mesh;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelGetNodal(model, u, nodal));
-  for (PetscInt i = 0; i < 3 * mesh->n_nodes && mesh->prescribed; i++) nodal[i] += mesh->prescribed[i];
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelSumShared(Model model, Vec local)
 {
   DM  cdm;

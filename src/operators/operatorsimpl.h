@@ -143,7 +143,7 @@ PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsAddLaw(Operators operators, const char owner[], const Viscoelastic *values,
                                             const Quantity *(*row)(const char option[]), PetscInt young, Mat A);
 PETSC_INTERN PetscErrorCode OperatorsDestroyLaws(Operators operators);
-PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[],
+PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[], PetscBool viscous,
                                                     const PetscReal displacement[], PetscReal force[]);
 PETSC_INTERN PetscErrorCode OperatorsAddJointWeight(Operators operators, const PetscReal p[], PetscReal force[],
                                                     PetscReal total[3]);

@@ -1,7 +1,8 @@
 /*
-   Ramps in time from the options of their owner, and in words.
+   Ramps and what they come to from the options of their owner, and in words.
 */
 #include "ramp.h"
+#include "base/csv.h"
 
 static const char *const shapes[] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth", NULL};
 
@@ -11,11 +12,23 @@ static const char *RampIdleShape(const void *ramp, const QuantityRun *run)
   return ((const Ramp *)ramp)->length > 0 ? NULL : "not used without a positive -@ramp";
 }
 
+static const char *RampIdlePhase(const void *ramp, const QuantityRun *run)
+{
+  (void)run;
+  return ((const Ramp *)ramp)->frequency > 0 ? NULL : "not used without -@frequency";
+}
+
 static const Quantity rows[] = {
   {"-ramp", "time from nothing to all of it", "s", QUANTITY_REAL, QUANTITY_AT(Ramp, length), QUANTITY_NOT_NEGATIVE},
   {"-ramp_shape", "how it grows", NULL, QUANTITY_WORD, QUANTITY_AT(Ramp, shape), .initial = RAMP_SMOOTH,
    .words = shapes, .idle = RampIdleShape},
   {"-delay", "time at which it begins", "s", QUANTITY_REAL, QUANTITY_AT(Ramp, delay), QUANTITY_NOT_NEGATIVE},
+  {"-frequency", "it swings about zero from the delay on, as a cosine", "Hz",
+   QUANTITY_REAL, QUANTITY_AT(Ramp, frequency), QUANTITY_OR_NONE},
+  {"-phase", "of the swing at its beginning", "degrees", QUANTITY_REAL, QUANTITY_AT(Ramp, phase),
+   .idle = RampIdlePhase},
+  {"-history", "instead of a frequency: file of time_s,factor from the delay on, straight between its rows", NULL,
+   QUANTITY_PATH, QUANTITY_AT(Ramp, file), .path = "file"},
 };
 
 PetscErrorCode RampVisit(const QuantityVisitor *visitor, const char title[], const char name[], Ramp *ramp,
@@ -33,18 +46,128 @@ PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[], const char 
   PetscFunctionBeginUser;
   *ramp = (Ramp){.shape = RAMP_SMOOTH};
   PetscCall(RampVisit(&(QuantityVisitor){QuantitiesReadVisited, &comm}, title, name, ramp, NULL));
+  PetscCall(RampSetUp(comm, name, ramp));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampSwings(const char name[], PetscBool *swings)
+{
+  char      option[160];
+  PetscReal frequency = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_frequency", name));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, option, &frequency, NULL));
+  *swings = frequency > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Rows of the file on one rank; a fault in csv where they are no history */
+static PetscErrorCode TableRead(Csv *csv, Ramp *ramp)
+{
+  static const char *const columns[] = {"time_s", "factor"};
+  PetscInt                 room      = 0;
+
+  PetscFunctionBeginUser;
+  CsvOpen(csv, ramp->file, 2, columns, 2);
+  while (CsvNext(csv)) {
+    const PetscReal time = CsvReal(csv, 0, PETSC_FALSE), factor = CsvReal(csv, 1, PETSC_FALSE);
+
+    if (csv->fault[0]) break;
+    if (ramp->n ? time <= ramp->time[ramp->n - 1] : time != 0) {
+      PetscCall(PetscSNPrintf(csv->fault, sizeof(csv->fault), "line %d: time_s %.6g: %s", (int)csv->line, (double)time,
+                              ramp->n ? "times must rise" : "times must begin at 0"));
+      break;
+    }
+    if (ramp->n == room) {
+      room = PetscMax(64, 2 * room);
+      PetscCall(PetscRealloc((size_t)room * sizeof(*ramp->time), &ramp->time));
+      PetscCall(PetscRealloc((size_t)room * sizeof(*ramp->factor), &ramp->factor));
+    }
+    ramp->time[ramp->n]     = time;
+    ramp->factor[ramp->n++] = factor;
+  }
+  if (!csv->fault[0] && ramp->n < 2)
+    PetscCall(PetscSNPrintf(csv->fault, sizeof(csv->fault),
+                            "it has %" PetscInt_FMT " rows: two times are needed at least", ramp->n));
+  CsvClose(csv);
+  PetscFunctionReturn(0);
+}
+
+/* The same on all ranks, and the integral of the factor */
+static PetscErrorCode TableShare(MPI_Comm comm, const char name[], Ramp *ramp)
+{
+  PetscMPIInt rank, count;
+  Csv         csv = {.stream = NULL};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(TableRead(&csv, ramp));
+  PetscCallMPI(MPI_Bcast(csv.fault, sizeof(csv.fault), MPI_CHAR, 0, comm));
+  if (csv.fault[0]) PetscCall(RampDestroy(ramp));
+  PetscCheck(!csv.fault[0], comm, PETSC_ERR_USER_INPUT, "-%s_history %s: %s", name, ramp->file, csv.fault);
+  PetscCallMPI(MPI_Bcast(&ramp->n, 1, MPIU_INT, 0, comm));
+  PetscCall(PetscMPIIntCast(ramp->n, &count));
+  if (rank) PetscCall(PetscMalloc1(ramp->n, &ramp->time));
+  if (rank) PetscCall(PetscMalloc1(ramp->n, &ramp->factor));
+  PetscCallMPI(MPI_Bcast(ramp->time, count, MPIU_REAL, 0, comm));
+  PetscCallMPI(MPI_Bcast(ramp->factor, count, MPIU_REAL, 0, comm));
+  PetscCall(PetscCalloc1(ramp->n, &ramp->area));
+  for (PetscInt i = 1; i < ramp->n; i++)
+    ramp->area[i] =
+      ramp->area[i - 1] + 0.5 * (ramp->factor[i - 1] + ramp->factor[i]) * (ramp->time[i] - ramp->time[i - 1]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampSetUp(MPI_Comm comm, const char name[], Ramp *ramp)
+{
+  PetscFunctionBeginUser;
+  if (!ramp->file[0]) PetscFunctionReturn(0);
+  PetscCheck(!(ramp->frequency > 0), comm, PETSC_ERR_USER_INPUT,
+             "-%s_frequency and -%s_history are given; give one of them", name, name);
+  PetscCheck(ramp->length == 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_ramp and -%s_history are given; let the table begin with the ramp", name, name);
+  PetscCall(TableShare(comm, name, ramp));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampDestroy(Ramp *ramp)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(ramp->time));
+  PetscCall(PetscFree(ramp->factor));
+  PetscCall(PetscFree(ramp->area));
+  ramp->n = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RampAddChecksum(const Ramp *ramp, Checksum checksum)
+{
+  const PetscReal all[] = {(PetscReal)ramp->shape, ramp->delay, ramp->length, ramp->frequency, ramp->phase};
+
+  PetscFunctionBeginUser;
+  PetscCall(ChecksumAddReals(checksum, PETSC_STATIC_ARRAY_LENGTH(all), all));
+  PetscCall(ChecksumAddReals(checksum, ramp->n, ramp->time));
+  PetscCall(ChecksumAddReals(checksum, ramp->n, ramp->factor));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode RampDescribe(const Ramp *ramp, size_t size, char words[])
 {
-  char from[64] = "";
+  const PetscInt last     = ramp->n - 1;
+  char           from[64] = "", then[80] = "";
 
   PetscFunctionBeginUser;
   if (ramp->delay > 0) PetscCall(PetscSNPrintf(from, sizeof(from), " from %.6g s", ramp->delay));
+  if (ramp->frequency > 0)
+    PetscCall(
+      PetscSNPrintf(then, sizeof(then), ", swings at %.6g Hz from %.6g degrees on", ramp->frequency, ramp->phase));
+  if (ramp->n)
+    PetscCall(PetscSNPrintf(then, sizeof(then), ", then a table to %.6g s, %.6g of it from there on",
+                            (double)ramp->time[last], (double)ramp->factor[last]));
   if (ramp->length > 0)
-    PetscCall(PetscSNPrintf(words, size, "%s ramp over %.6g s%s", shapes[ramp->shape], ramp->length, from));
+    PetscCall(PetscSNPrintf(words, size, "%s ramp over %.6g s%s%s", shapes[ramp->shape], ramp->length, from, then));
   else
-    PetscCall(PetscSNPrintf(words, size, "at once%s", from));
+    PetscCall(PetscSNPrintf(words, size, "at once%s%s", from, then));
   PetscFunctionReturn(0);
 }

@@ -158,6 +158,8 @@ PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coeffic
 /* step/energy.c - displacement at a port, m */
 PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[],
                                                PetscInt port);
+/* What motions move at a port by themselves, m, by the factors of the loads; with their rates, m/s */
+PETSC_INTERN PetscReal ReducedMotionWay(const ReducedModel *model, const PetscReal loads[], PetscInt port);
 /* Of all pairs, [3 n_pairs] */
 PETSC_INTERN PetscErrorCode ReducedPairDisplacements(const ReducedModel *model, const PetscReal eta[],
                                                      const PetscReal p[], PetscReal y[]);
@@ -190,6 +192,24 @@ PETSC_INTERN PetscErrorCode ReducedWeighModes(ReducedRun reduced);
 /* ports.c - ports as vectors of all unknowns, impulses, and P */
 PETSC_INTERN PetscErrorCode ReducedSetPorts(ReducedRun reduced);
 
+/* bodies/motions.c - nodal forces to a column of the loads and probes */
+PETSC_INTERN PetscErrorCode ReducedPortSetNodal(ReducedRun reduced, Vec nodal, PetscInt column);
+
+/* bodies/motions.c - what prescribed motions do, their loads from column `first` on; the port of the first; energy, J,
+   that springs between free and moved nodes hold beside that of the free ones, with q of the pairs, p of the others */
+PETSC_INTERN PetscErrorCode ReducedSetMotions(ReducedRun reduced, PetscInt first);
+PETSC_INTERN PetscReal      ReducedMotionEnergy(const ReducedModel *model, const PetscReal eta[], const PetscReal q[],
+                                                const PetscReal p[]);
+/* When the residual is there: their damping D with what the residual moves; work that they do beside, J, of the change
+   of eta and the mean forces */
+PETSC_INTERN PetscErrorCode ReducedSettleDrag(ReducedRun reduced);
+PETSC_INTERN void      ReducedMotionDrag(const ReducedModel *model, const PetscReal d_eta[], const PetscReal mean[],
+                                         PetscReal dt, PetscReal *work);
+static inline PetscInt ReducedFirstMotion(const ReducedModel *model)
+{
+  return 3 * model->n_pairs + model->n_loads - (model->dragged ? 2 : 1) * model->n_motions;
+}
+
 /* linear.c - of the modes about a sliding state that turn in time the one that grows fastest: eigenvalue (rad/s),
    -infinity and 0 for none; real and imaginary part of its motion and forces, without loads, or NULL */
 PETSC_INTERN PetscErrorCode ReducedFastestMode(const ReducedModel *model, const ReducedState *sliding,
@@ -214,13 +234,16 @@ PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat 
 PETSC_INTERN PetscErrorCode ReducedSetPairs(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedTakePairs(ReducedRun reduced, PetscBool stepped);
 
-/* drive.c - impulses.csv of what has acted until t_n; what acts in the step from t_n; way (m) that pair i slides in
-   it as prescribed; factors [n_loads] of the loads at t */
+/* drive.c - impulses.csv of what has acted until t_n; friction of the pairs at t, where it has a history; what acts in
+   the step from t_n; way (m) that pair i slides in it as prescribed; factors [n_loads] of the loads at t, and of the
+   equilibrium about which some swing */
 PETSC_INTERN PetscErrorCode ReducedReportHits(ReducedRun reduced);
+PETSC_INTERN PetscErrorCode ReducedSetFriction(ReducedRun reduced, PetscReal t, PetscBool *changed);
 PETSC_INTERN PetscErrorCode ReducedGetWay(ReducedRun reduced, PetscInt i, PetscReal *way);
 PETSC_INTERN PetscErrorCode ReducedDriveCreate(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedDriveSet(ReducedRun reduced, ReducedDrive *drive);
 PETSC_INTERN void           ReducedSetLoads(ReducedRun reduced, PetscReal t, PetscReal factor[]);
+PETSC_INTERN void           ReducedSetSteadyLoads(ReducedRun reduced, PetscReal t, PetscReal factor[]);
 
 /* start.c - the state at t = 0 */
 PETSC_INTERN PetscErrorCode ReducedStart(ReducedRun reduced);

@@ -5,11 +5,9 @@
 
 PetscErrorCode ReducedRefuse(ReducedRun r)
 {
-  const ModelScene *scene;
-  PetscBool         laws = PETSC_FALSE;
+  PetscBool laws = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetScene(r->run.model, &scene));
   for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
     const ContactInterface *c = &r->run.interfaces[i];
     PetscReal               way;
@@ -31,11 +29,31 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
     laws || !r->request.springs || !r->run.n_interfaces, r->comm, PETSC_ERR_USER_INPUT,
     "-dynamics_contact penalty: no contact has a law, all are -..._law constraint; give one -..._kn_per_area or "
     "-..._pressure_law, or leave it out");
-  PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP,
-             "motion %s: a reduced model knows no prescribed motions; -dynamics_model full does",
-             scene->n_motions ? scene->motions[0].name : "");
+  PetscCall(ExternalCheckMotions(r->run.external, r->run.from_static));
   PetscCheck(r->run.n_interfaces, r->comm, PETSC_ERR_SUP,
              "-dynamics_model reduced needs -contacts: without them -analysis frf tells the response");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedRefuseVarying(ReducedRun r, const char by[])
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCheck(!scene->n_motions, r->comm, PETSC_ERR_SUP, "motion %s: %s has no prescribed motions; a transient has",
+             scene->n_motions ? scene->motions[0].name : "", by);
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    PetscCheck(!RampVaries(ExternalGetLoad(r->run.external, i)), r->comm, PETSC_ERR_SUP,
+               "-%s_frequency or _history: %s has loads that stay; leave it out", scene->loads[i].name, by);
+  for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
+    PetscBool steady;
+
+    PetscCall(ContactProjectorGetSteady(r->run.projector, i, &steady));
+    PetscCheck(steady, r->comm, PETSC_ERR_SUP,
+               "-%s_frequency, _history or _mu_history: %s has sliding and friction that stay; leave it out",
+               r->run.interfaces[i].name, by);
+  }
   PetscFunctionReturn(0);
 }
 

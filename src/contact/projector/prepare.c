@@ -98,13 +98,15 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
 /* Friction coefficient at the slip speed at t_n: s_n = s_{n-1/2} + (s_{n-1/2} - s_{n-3/2}) / 2 = 1.5 s_{n-1/2} - 0.5
    s_{n-3/2}, not below 0. It is explicit: the slip that the step finds does not enter, so that mu is one number in
    Gauss-Seidel and its cones stay convex. A pair without a slip before has s_n = s_{n-1/2}. */
-static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
+static void PairSetFriction(const ContactProjector p, PetscReal t, ProjectorPair *pair)
 {
   const ContactInterface *c = &p->contact->interfaces[pair->interface];
   FrictionLaw             law;
+  const ContactSliding   *s      = &p->sliding[pair->interface];
+  const PetscReal         factor = SlidingFrictionStays(s) ? 1 : RampValue(&s->friction, t);
   PetscReal               q[3], last;
 
-  pair->mu = FrictionSteady(&c->friction);
+  pair->mu = factor * FrictionSteady(&c->friction);
   if (!FrictionVaries(&c->friction)) return;
   PairVelocity(pair, p->nodes.before, q);
   last       = pair->slip;
@@ -112,7 +114,7 @@ static void PairSetFriction(const ContactProjector p, ProjectorPair *pair)
   if (last < 0) last = pair->slip;
   pair->slip_before = last;
   law               = FrictionAt(&c->friction, pair->speed);
-  pair->mu          = FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
+  pair->mu          = factor * FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
 /*
@@ -356,7 +358,7 @@ INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep
     PairSetDrift(p, step, before, after, pair);
     pair->offset[0] = PairGap(p, pair, after, p->nodes.u) / step->dt;
   }
-  PairSetFriction(p, pair);
+  PairSetFriction(p, step->time, pair);
   pair->offset[1] = pair->drift[1];
   pair->offset[2] = pair->drift[2];
   PairGuess(pair, p->order, step->kick, impulse);

@@ -37,8 +37,10 @@ PetscErrorCode ContactProjectorVisit(ContactProjector p, const QuantityVisitor *
 PetscErrorCode ContactProjectorSetFromOptions(ContactProjector p)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n_interfaces; i++) p->sliding[i].ramp.shape = RAMP_SMOOTH;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) p->sliding[i].ramp.shape = p->sliding[i].friction.shape = RAMP_SMOOTH;
   PetscCall(ContactProjectorVisit(p, &(QuantityVisitor){QuantitiesReadVisited, &p->contact->comm}));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCall(SlidingSetUp(p->contact->comm, &p->contact->interfaces[i], &p->sliding[i]));
   PetscFunctionReturn(0);
 }
 
@@ -74,8 +76,9 @@ PetscErrorCode ContactProjectorGetTurning(ContactProjector p, PetscInt i, PetscB
   PetscFunctionBeginUser;
   *turns = s->turning && s->rotates ? PETSC_TRUE : PETSC_FALSE;
   for (int d = 0; d < 3; d++) rotation[d] = *turns ? s->speed * s->axis[d] : 0;
-  PetscCheck(!*turns || s->ramp.length == 0, p->share.comm, PETSC_ERR_USER_INPUT,
-             "-%s_ramp: inertial forces of a frame whose rotation changes are not offered; leave out the ramp, or "
+  PetscCheck(!*turns || (s->ramp.length == 0 && !RampVaries(&s->ramp)), p->share.comm, PETSC_ERR_USER_INPUT,
+             "-%s_ramp, _frequency and _history: inertial forces of a frame whose rotation changes are not offered; "
+             "leave them out, or "
              "-dynamics_coriolis and -dynamics_centrifugal",
              p->contact->interfaces[i].name);
   PetscFunctionReturn(0);
@@ -364,6 +367,10 @@ PetscErrorCode ContactProjectorDestroy(ContactProjector *projector)
   if (!*projector) PetscFunctionReturn(0);
   PetscCall(BorderDestroy(&(*projector)->border));
   PetscCall(ProjectorDestroySurfaces(*projector));
+  for (PetscInt i = 0; i < CONTACT_MAX; i++) {
+    PetscCall(RampDestroy(&(*projector)->sliding[i].ramp));
+    PetscCall(RampDestroy(&(*projector)->sliding[i].friction));
+  }
   PetscCall(PetscFree(*projector));
   PetscFunctionReturn(0);
 }

@@ -17,13 +17,20 @@
 
 /* Sliding of the master of one interface */
 typedef struct {
-  PetscBool turning; /* the master moves; else the velocity is added to the slip */
-  PetscBool rotates; /* by the angular velocity of the interface; else along its slip */
-  PetscBool slides;  /* the options say a direction */
-  PetscReal axis[3]; /* unit vector of the rotation, or of the slip; 0 where nothing slides */
-  PetscReal speed;   /* of the master about it, rad/s, or of the slave along it, m/s */
-  Ramp      ramp;
+  PetscBool turning;  /* the master moves; else the velocity is added to the slip */
+  PetscBool rotates;  /* by the angular velocity of the interface; else along its slip */
+  PetscBool slides;   /* the options say a direction */
+  PetscReal axis[3];  /* unit vector of the rotation, or of the slip; 0 where nothing slides */
+  PetscReal speed;    /* of the master about it, rad/s, or of the slave along it, m/s */
+  Ramp      ramp;     /* of the speed */
+  Ramp      friction; /* of the coefficient */
 } ContactSliding;
+
+/* Whether the coefficient is the same at all times */
+static inline PetscBool SlidingFrictionStays(const ContactSliding *s)
+{
+  return s->friction.length == 0 && s->friction.delay == 0 && !RampVaries(&s->friction) ? PETSC_TRUE : PETSC_FALSE;
+}
 
 /* quantities.c - options of the projector; whether a master moves */
 extern const QuantityTable projector_quantities, sliding_quantities;
@@ -222,6 +229,7 @@ struct _p_ContactProjector {
 };
 
 /* sliding.c - options of the sliding of interface i, after its own ones */
+PETSC_INTERN PetscErrorCode SlidingSetUp(MPI_Comm comm, const ContactInterface *c, ContactSliding *sliding);
 PETSC_INTERN PetscErrorCode SlidingVisit(const ContactInterface *c, ContactSliding *sliding,
                                          const QuantityVisitor *visitor);
 /* sliding.c - raises the error for a sliding that is not fully said */

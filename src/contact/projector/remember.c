@@ -86,12 +86,12 @@ PetscErrorCode ContactProjectorAddChecksum(ContactProjector p, Checksum c)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n_interfaces; i++) {
-    const ContactSliding *s       = &p->sliding[i];
-    const PetscReal       ramps[] = {(PetscReal)s->ramp.shape, s->ramp.delay, s->ramp.length};
+    const ContactSliding *s = &p->sliding[i];
 
     PetscCall(ChecksumSetPart(c, "contact %s", p->contact->interfaces[i].name));
     PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){s->turning}));
-    PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(ramps), ramps));
+    PetscCall(RampAddChecksum(&s->ramp, c));
+    PetscCall(RampAddChecksum(&s->friction, c));
   }
   PetscFunctionReturn(0);
 }

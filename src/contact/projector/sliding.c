@@ -1,6 +1,6 @@
 /*
-   Kinematics of a sliding interface. With the ramp r(t), its integral R(t), and the given velocity of the slave
-   relative to the master, V s (s of -contact_slip, V of -contact_speed) or -w x (x - c) (-contact_rotation,
+   Kinematics of a sliding interface. With the history r(t) of its speed, its integral R(t), and the given velocity of
+   the slave relative to the master, V s (s of -contact_slip, V of -contact_speed) or -w x (x - c) (-contact_rotation,
    -contact_centre):
       prescribed  the part of r V s or -r w x (x - c) in the tangent plane is added to the slip velocity; of V s its
                   direction alone, so that the speed is V
@@ -23,13 +23,40 @@ static void SlidingSetAxis(const ContactInterface *c, ContactSliding *sliding)
   for (int d = 0; d < 3; d++) sliding->axis[d] = length > 0 ? vector[d] / length : 0;
 }
 
+/* Of the options of its friction, such as contact_mu */
+static PetscErrorCode SlidingNameFriction(const ContactInterface *c, size_t size, char name[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(name, size, "%s_mu", c->name));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SlidingSetUp(MPI_Comm comm, const ContactInterface *c, ContactSliding *sliding)
+{
+  char      name[160];
+  PetscReal least = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(SlidingNameFriction(c, sizeof(name), name));
+  PetscCall(RampSetUp(comm, c->name, &sliding->ramp));
+  PetscCall(RampSetUp(comm, name, &sliding->friction));
+  for (PetscInt i = 0; i < sliding->friction.n; i++) least = PetscMin(least, sliding->friction.factor[i]);
+  PetscCheck(!(sliding->friction.frequency > 0) && least >= 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s_%s: friction would become negative; give factors of time_s,factor that are not, by -%s_history", name,
+             least < 0 ? "history" : "frequency", name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SlidingVisit(const ContactInterface *c, ContactSliding *sliding, const QuantityVisitor *visitor)
 {
   const char *still = Vec3Length(c->rotation) > 0 || Vec3Length(c->slip) > 0 ? NULL : CONTACT_STILL;
+  char        name[160];
 
   PetscFunctionBeginUser;
   PetscCall(QuantitiesVisit(visitor, &sliding_quantities, c->name, sliding, NULL));
-  PetscCall(RampVisit(visitor, "Ramp of contact", c->name, &sliding->ramp, still));
+  PetscCall(RampVisit(visitor, "History of the speed of contact", c->name, &sliding->ramp, still));
+  PetscCall(SlidingNameFriction(c, sizeof(name), name));
+  PetscCall(RampVisit(visitor, "History of the friction of contact", name, &sliding->friction, NULL));
   SlidingSetAxis(c, sliding);
   PetscFunctionReturn(0);
 }
@@ -87,6 +114,35 @@ PetscErrorCode ContactProjectorGetWay(ContactProjector p, PetscInt interface, co
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactProjectorGetFriction(ContactProjector p, PetscInt interface, PetscReal t, PetscReal *factor,
+                                           PetscBool *varies)
+{
+  const ContactSliding *sliding = &p->sliding[interface];
+
+  PetscFunctionBeginUser;
+  *factor = RampValue(&sliding->friction, t);
+  *varies = SlidingFrictionStays(sliding) ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetFactors(ContactProjector p, PetscInt interface, PetscReal t, PetscReal *speed,
+                                          PetscReal *friction)
+{
+  PetscFunctionBeginUser;
+  *speed    = RampValue(&p->sliding[interface].ramp, t);
+  *friction = RampValue(&p->sliding[interface].friction, t);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProjectorGetSteady(ContactProjector p, PetscInt interface, PetscBool *steady)
+{
+  const ContactSliding *sliding = &p->sliding[interface];
+
+  PetscFunctionBeginUser;
+  *steady = !RampVaries(&sliding->ramp) && !RampVaries(&sliding->friction) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProjectorGetDelay(ContactProjector p, PetscInt interface, PetscReal *delay)
 {
   PetscFunctionBeginUser;
@@ -96,6 +152,8 @@ PetscErrorCode ContactProjectorGetDelay(ContactProjector p, PetscInt interface, 
 
 PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *sliding, PetscViewer viewer)
 {
+  char words[240];
+
   PetscFunctionBeginUser;
   if (!sliding->slides || sliding->speed == 0) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "  nothing makes it slide but the displacements\n"));
@@ -105,10 +163,11 @@ PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *slid
     viewer, sliding->turning ? "  %s moves, described in its own frame: " : "  meshes stay, %s slides as prescribed: ",
     c->master));
   PetscCall(PetscViewerASCIIPrintf(viewer, sliding->rotates ? "%.6g rad/s" : "%.6g m/s", (double)sliding->speed));
-  if (sliding->ramp.length > 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, ", %s ramp of %.6g s",
-                                     sliding->ramp.shape == RAMP_SMOOTH ? "smooth" : "linear", sliding->ramp.length));
-  if (sliding->ramp.delay > 0) PetscCall(PetscViewerASCIIPrintf(viewer, " from %.6g s on", sliding->ramp.delay));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscCall(RampDescribe(&sliding->ramp, sizeof(words), words));
+  PetscCall(PetscViewerASCIIPrintf(viewer, ", %s\n", words));
+  if (!SlidingFrictionStays(sliding)) {
+    PetscCall(RampDescribe(&sliding->friction, sizeof(words), words));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  its friction: %s\n", words));
+  }
   PetscFunctionReturn(0);
 }

@@ -35,9 +35,9 @@ PetscErrorCode ExternalVisit(External external, const QuantityVisitor *visitor)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(external->model, &scene));
   for (PetscInt i = 0; i < external->n_loads; i++)
-    PetscCall(RampVisit(visitor, "Ramp of load", scene->loads[i].name, &external->loads[i].ramp, NULL));
+    PetscCall(RampVisit(visitor, "History of load", scene->loads[i].name, &external->loads[i].ramp, NULL));
   for (PetscInt i = 0; i < external->n_motions; i++)
-    PetscCall(RampVisit(visitor, "Ramp of motion", scene->motions[i].name, &external->motions[i].ramp, NULL));
+    PetscCall(RampVisit(visitor, "History of motion", scene->motions[i].name, &external->motions[i].ramp, NULL));
   PetscCall(QuantitiesVisitList(visitor, &impulses_list, external->n_impulses, external->impulses));
   for (PetscInt i = 0; i < external->n_parts; i++)
     PetscCall(QuantitiesVisit(visitor, &start_velocity, scene->parts[i].name, &external->velocity[3 * i], NULL));
@@ -91,15 +91,6 @@ PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **val
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ExternalAddRamp(const Ramp *ramp, Checksum c)
-{
-  const PetscReal all[] = {(PetscReal)ramp->shape, ramp->delay, ramp->length};
-
-  PetscFunctionBeginUser;
-  PetscCall(ChecksumAddReals(c, PETSC_STATIC_ARRAY_LENGTH(all), all));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ExternalAddChecksum(External external, Checksum c)
 {
   PetscFunctionBeginUser;
@@ -108,13 +99,13 @@ PetscErrorCode ExternalAddChecksum(External external, Checksum c)
   PetscCall(ModelAddLoadsChecksum(external->model, c));
   for (PetscInt i = 0; i < external->n_loads; i++) {
     PetscCall(ChecksumSetPart(c, "load %s", external->loads[i].name));
-    PetscCall(ExternalAddRamp(&external->loads[i].ramp, c));
+    PetscCall(RampAddChecksum(&external->loads[i].ramp, c));
   }
   for (PetscInt i = 0; i < external->n_motions; i++) {
     const Drive *m = &external->motions[i];
 
     PetscCall(ChecksumSetPart(c, "motion %s", m->prescribed->name));
-    PetscCall(ExternalAddRamp(&m->ramp, c));
+    PetscCall(RampAddChecksum(&m->ramp, c));
   }
   for (PetscInt i = 0; i < external->n_acting; i++) {
     const Impulse *hit = &external->impulses[i];

@@ -1,5 +1,5 @@
 /*
-   External (private to dynamics/) - forces and motions that the scene prescribes in time: ramped loads, gravity,
+   External (private to dynamics/) - forces and motions that the scene prescribes in time: loads, gravity,
    impulses, prescribed displacements of sets, initial velocities, inertial forces of a turning frame.
 
    Energy. With the external forces and those of the drives F_n at t_n, the work in the step around t_n is
@@ -15,6 +15,7 @@
 #include <squeal/quantity.h>
 #include <squeal/statics.h>
 #include "dynamics/bodies/bodies.h"
+#include "quantity/ramp.h"
 
 typedef struct _p_External *External;
 
@@ -113,8 +114,13 @@ PETSC_INTERN PetscBool ExternalIsHitting(External external);
 PETSC_INTERN PetscErrorCode ExternalCountHits(External external, PetscInt *n);
 PETSC_INTERN PetscErrorCode ExternalGetHit(External external, PetscInt i, ExternalHit *hit);
 
-/* ExternalGetLoadFactor - the factor of load i of the scene at time t. Not collective. */
-PETSC_INTERN PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t);
+/* ExternalGetLoad, ExternalGetMotion - the history of load or motion i of the scene (borrowed). Not collective. */
+PETSC_INTERN const Ramp *ExternalGetLoad(External external, PetscInt i);
+PETSC_INTERN const Ramp *ExternalGetMotion(External external, PetscInt i);
+
+/* ExternalCheckMotions - raises the error for displacements that begin with a jump; moved: from an equilibrium with
+   those that do not swing. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckMotions(External external, PetscBool moved);
 
 /* ExternalFindHit - the impulse i of the scene, due at `time` (s), and its node: local on one rank that has it, -1 on
    all others; no ExternalSetUp() is needed. Collective. Errors: PETSC_ERR_USER_INPUT for a node that is held in its
@@ -128,8 +134,8 @@ PETSC_INTERN const PetscReal *ExternalGetVelocity(External external);
    written in place; valid until the next ExternalSetFrame() of another part). Not collective. */
 PETSC_INTERN PetscErrorCode ExternalGetMemory(External external, PetscInt *n, PetscReal **values);
 
-/* ExternalAddChecksum - adds loads, gravity, motions, impulses, their ramps, and velocities at the start. Collective;
-   after ExternalSetUp(). */
+/* ExternalAddChecksum - adds loads, gravity, motions, impulses, their histories, and velocities at the start.
+   Collective; after ExternalSetUp(). */
 PETSC_INTERN PetscErrorCode ExternalAddChecksum(External external, Checksum checksum);
 
 /* ExternalView - in words, such as "load press: 100 N, smooth ramp over 0.002 s". Collective. */

@@ -1,5 +1,5 @@
 /*
-   Loads of the model in time: F(t) = r(t) F (N) with a ramp r, distributed by the model once for all. Of the work
+   Loads of the model in time: F(t) = r(t) F (N) with a history r, distributed by the model once for all. Of the work
    dt/2 (v_{n-1/2} + v_{n+1/2})'F(t_n), J, a step takes the power v'F at both of its ends: now with r(t_n), and `old`
    with the factor of the step before, whose second half it is (history/ledger.c).
 */
@@ -19,7 +19,7 @@ PetscErrorCode TimedLoadsSetFromOptions(External external)
 
     PetscCall(PetscStrallocpy(scene->loads[i].name, &load->name));
     load->is_bolt = scene->loads[i].is_bolt;
-    PetscCall(RampSetFromOptions(external->comm, "Ramp of load", load->name, &load->ramp));
+    PetscCall(RampSetFromOptions(external->comm, "History of load", load->name, &load->ramp));
   }
   PetscFunctionReturn(0);
 }
@@ -99,9 +99,9 @@ PetscErrorCode TimedLoadsAdvance(External external, const ExternalStep *step, Ex
   PetscFunctionReturn(0);
 }
 
-PetscReal ExternalGetLoadFactor(External external, PetscInt i, PetscReal t)
+const Ramp *ExternalGetLoad(External external, PetscInt i)
 {
-  return RampValue(&external->loads[i].ramp, t);
+  return &external->loads[i].ramp;
 }
 
 PetscErrorCode TimedLoadsView(External external, PetscViewer viewer)
@@ -133,6 +133,7 @@ PetscErrorCode TimedLoadsDestroy(External external)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < external->n_loads; i++) {
     PetscCall(PetscFree(external->loads[i].name));
+    PetscCall(RampDestroy(&external->loads[i].ramp));
     PetscCall(ForcePatternDestroy(&external->loads[i].pattern));
   }
   PetscCall(PetscFree(external->loads));

@@ -16,6 +16,7 @@
 
 /* of s, from 0 and 1: rounding of bases */
 #define SHARE_TOLERANCE 1e-8
+#define MOTION_BEGINS   1e-12 /* part of a displacement that is rounding of 0 */
 
 PetscErrorCode MotionsSetFromOptions(External external)
 {
@@ -29,21 +30,39 @@ PetscErrorCode MotionsSetFromOptions(External external)
     Drive *motion = &external->motions[i];
 
     motion->prescribed = &scene->motions[i];
-    PetscCall(RampSetFromOptions(external->comm, "Ramp of motion", motion->prescribed->name, &motion->ramp));
+    PetscCall(RampSetFromOptions(external->comm, "History of motion", motion->prescribed->name, &motion->ramp));
   }
   PetscFunctionReturn(0);
 }
 
-/* Raises the error for a jump, whose velocity d / dt would depend on the step */
+/* Raises the error for a jump at the beginning, whose velocity d / dt would depend on the step */
 static PetscErrorCode MotionCheckRamp(MPI_Comm comm, const Drive *motion)
 {
   const PetscReal *x = motion->prescribed->displacement;
 
   PetscFunctionBeginUser;
-  PetscCheck((x[0] == 0 && x[1] == 0 && x[2] == 0) || motion->ramp.length > 0, comm, PETSC_ERR_USER_INPUT,
-             "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump", motion->prescribed->name,
-             motion->ramp.length);
+  PetscCheck(
+    (x[0] == 0 && x[1] == 0 && x[2] == 0) || PetscAbsReal(RampValue(&motion->ramp, motion->ramp.delay)) < MOTION_BEGINS,
+    comm, PETSC_ERR_USER_INPUT,
+    "-%s_ramp %.6g must be given and positive (s): a displacement cannot jump; a -%s_history may begin with 0, "
+    "a -%s_frequency with -%s_phase 90 or -90",
+    motion->prescribed->name, motion->ramp.length, motion->prescribed->name, motion->prescribed->name,
+    motion->prescribed->name);
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExternalCheckMotions(External external, PetscBool moved)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_motions; i++)
+    if (!moved || external->motions[i].prescribed->swings)
+      PetscCall(MotionCheckRamp(external->comm, &external->motions[i]));
+  PetscFunctionReturn(0);
+}
+
+const Ramp *ExternalGetMotion(External external, PetscInt i)
+{
+  return &external->motions[i].ramp;
 }
 
 /* Share of the prescribed directions in component j of a node */
@@ -193,6 +212,7 @@ PetscErrorCode MotionsDestroy(External external)
   for (PetscInt i = 0; i < external->n_motions; i++) {
     Drive *motion = &external->motions[i];
 
+    PetscCall(RampDestroy(&motion->ramp));
     PetscCall(PetscFree4(motion->index, motion->full, motion->before, motion->after));
   }
   PetscCall(PetscFree(external->motions));

@@ -29,6 +29,41 @@ static PetscErrorCode StartCheckAbsent(Dynamics d, const char name[], const char
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for what is not at the start what the sliding state has; what swings about zero is no part of it */
+static PetscErrorCode StartCheckFactor(Dynamics d, const char name[], const char what[], PetscReal factor)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(
+    factor == 1, d->comm, PETSC_ERR_USER_INPUT,
+    "-%s%s begins with %.6g: with -dynamics_start static, the steady state under the whole loads, it must begin "
+    "with 1; or take -dynamics_start rest",
+    name, what, (double)factor);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StartCheckHistories(Dynamics d)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(d->model, &scene));
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    if (!scene->loads[i].swings)
+      PetscCall(StartCheckFactor(d, scene->loads[i].name, "_history", RampValue(ExternalGetLoad(d->external, i), 0)));
+  for (PetscInt i = 0; i < scene->n_motions; i++)
+    if (!scene->motions[i].swings)
+      PetscCall(
+        StartCheckFactor(d, scene->motions[i].name, "_history", RampValue(ExternalGetMotion(d->external, i), 0)));
+  for (PetscInt i = 0; i < d->n_interfaces && d->projector; i++) {
+    PetscReal speed, friction;
+
+    PetscCall(ContactProjectorGetFactors(d->projector, i, 0, &speed, &friction));
+    PetscCall(StartCheckFactor(d, d->interfaces[i].name, "_frequency or _history", speed));
+    PetscCall(StartCheckFactor(d, d->interfaces[i].name, "_mu_history", friction));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsCheckStatic(Dynamics d)
 {
   static const char *const ramps[]    = {"_ramp", "_delay"};
@@ -39,10 +74,19 @@ PetscErrorCode DynamicsCheckStatic(Dynamics d)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(d->model, &scene));
   for (int r = 0; r < 2; r++) {
-    for (PetscInt i = 0; i < scene->n_loads; i++) PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r]));
-    for (PetscInt i = 0; i < scene->n_motions; i++) PetscCall(StartCheckAbsent(d, scene->motions[i].name, ramps[r]));
-    for (PetscInt i = 0; i < n; i++) PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r]));
+    for (PetscInt i = 0; i < scene->n_loads; i++)
+      if (!scene->loads[i].swings) PetscCall(StartCheckAbsent(d, scene->loads[i].name, ramps[r]));
+    for (PetscInt i = 0; i < scene->n_motions; i++)
+      if (!scene->motions[i].swings) PetscCall(StartCheckAbsent(d, scene->motions[i].name, ramps[r]));
+    for (PetscInt i = 0; i < n; i++) {
+      char friction[160];
+
+      PetscCall(PetscSNPrintf(friction, sizeof(friction), "%s_mu", interfaces[i].name));
+      PetscCall(StartCheckAbsent(d, interfaces[i].name, ramps[r]));
+      PetscCall(StartCheckAbsent(d, friction, ramps[r]));
+    }
   }
+  PetscCall(StartCheckHistories(d));
   PetscFunctionReturn(0);
 }
 
@@ -230,6 +274,21 @@ static PetscErrorCode StartCheckGaps(Dynamics d)
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for motions that go on: on the mesh the sliding state holds their nodes */
+static PetscErrorCode StartCheckMoving(Dynamics d)
+{
+  const ModelScene *scene;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(d->model, &scene));
+  for (PetscInt i = 0; i < scene->n_motions; i++)
+    PetscCheck(!RampVaries(ExternalGetMotion(d->external, i)), d->comm, PETSC_ERR_SUP,
+               "-%s_frequency or _history: -dynamics_start static on the mesh has motions that stay; take "
+               "-dynamics_start rest, or -dynamics_model reduced",
+               scene->motions[i].name);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DynamicsStartState(Dynamics d)
 {
   PetscScalar *u, *v;
@@ -244,6 +303,7 @@ PetscErrorCode DynamicsStartState(Dynamics d)
     PetscCall(DynamicsCheckStatic(d));
     PetscCall(DynamicsCheckExact(d));
     PetscCall(StartCheckGaps(d));
+    PetscCall(StartCheckMoving(d));
     PetscCall(StaticsCheckLasting(d->statics));
     PetscCall(StaticsSolve(d->statics, NULL));
     PetscCall(StaticsGetState(d->statics, NULL, &displacement));

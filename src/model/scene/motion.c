@@ -1,9 +1,10 @@
 /*
    Motions: displacements of named sets that are prescribed along some of the directions x, y, z. Where they are held,
-   as they are outside time, u = d there: these displacements are no unknowns, and K_fd d is a load on the free ones. A
-   direction that a support fixes stays fixed.
+   as they are outside time, u = d there (0 where they swing): these displacements are no unknowns, and K_fd d is a
+   load on the free ones. A direction that a support fixes stays fixed.
 */
 #include "model/modelimpl.h"
+#include "quantity/ramp.h"
 #include <petscbt.h>
 #include <squeal/options.h>
 
@@ -25,6 +26,7 @@ PetscErrorCode MotionCheck(MPI_Comm comm, void *owner, void *record)
 
   PetscFunctionBeginUser;
   (void)owner;
+  PetscCall(RampSwings(motion->name, &motion->swings));
   PetscCheck(!set || (word[0] && strspn(word, "xyz") == strlen(word)), comm, PETSC_ERR_USER_INPUT,
              "-%s_directions '%s' must be some of the letters x, y, z", motion->name, word);
   PetscCheck(set || x[0] != 0 || x[1] != 0 || x[2] != 0, comm, PETSC_ERR_USER_INPUT,
@@ -94,22 +96,56 @@ static PetscErrorCode MotionFlag(Model model, const PrescribedMotion *motion, Pe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelGetMotion(Model model, PetscInt i, PetscReal nodal[])
+{
+  const Mesh             *mesh   = &model->mesh;
+  const PrescribedMotion *motion = &model->scene.motions[i];
+  PetscInt                n, *vertex;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(nodal, 3 * mesh->n_nodes));
+  PetscCall(ModelGetSetNodes(model, motion->set, &n, &vertex));
+  for (PetscInt k = 0; k < 3 * n; k++) {
+    const PetscInt at = 3 * vertex[k / 3] + k % 3;
+
+    if (motion->direction[k % 3]) nodal[at] = mesh->prescribed[at];
+  }
+  PetscCall(PetscFree(vertex));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelGetMotions(Model model, const PetscReal share[], PetscReal nodal[])
 {
   const Mesh *mesh = &model->mesh;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(nodal, mesh->prescribed, 3 * mesh->n_nodes));
-  for (PetscInt i = 0; i < model->scene.n_motions && share; i++) {
+  for (PetscInt i = 0; i < model->scene.n_motions; i++) {
     const PrescribedMotion *motion = &model->scene.motions[i];
+    const PetscReal         part   = motion->swings ? 0 : share ? share[i] : 1;
     PetscInt                n, *vertex;
 
-    if (share[i] == 1) continue;
+    if (part == 1) continue;
     PetscCall(ModelGetSetNodes(model, motion->set, &n, &vertex));
     for (PetscInt k = 0; k < 3 * n; k++)
-      if (motion->direction[k % 3]) nodal[3 * vertex[k / 3] + k % 3] *= share[i];
+      if (motion->direction[k % 3]) nodal[3 * vertex[k / 3] + k % 3] *= part;
     PetscCall(PetscFree(vertex));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelGetDisplaced(Model model, Vec u, PetscReal nodal[])
+{
+  const Mesh *mesh = &model->mesh;
+  PetscReal  *held;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetNodal(model, u, nodal));
+  if (!mesh->prescribed) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(3 * mesh->n_nodes, &held));
+  PetscCall(ModelGetMotions(model, NULL, held));
+  for (PetscInt i = 0; i < 3 * mesh->n_nodes; i++) nodal[i] += held[i];
+  PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
 }
 

@@ -52,7 +52,7 @@ static PetscErrorCode OperatorsForcesOf(Operators o, const PetscReal p[], const 
   PetscCall(VecSet(local, 0));
   PetscCall(VecGetArray(local, &force));
   PetscCall(OperatorsAddCellForces(o, OperatorsPoint(o, p), -1, displacement, force));
-  PetscCall(OperatorsAddJointForces(o, OperatorsPoint(o, p), displacement, force));
+  PetscCall(OperatorsAddJointForces(o, OperatorsPoint(o, p), PETSC_FALSE, displacement, force));
   PetscCall(VecRestoreArray(local, &force));
   PetscCall(ModelSumShared(o->model, local));
   PetscFunctionReturn(0);
@@ -95,6 +95,34 @@ PetscErrorCode OperatorsPrescribedForces(Operators operators, const PetscReal p[
     PetscCall(OperatorsForcesOf(operators, p, prescribed, local));
   else
     PetscCall(VecSet(local, 0));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsPrescribedDrag(Operators o, const PetscReal p[], const PetscReal prescribed[], Vec local)
+{
+  const PetscReal  *value = OperatorsPoint(o, p);
+  const ModelScene *scene;
+  PetscScalar      *force, *part;
+  PetscInt          n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetScene(o->model, &scene));
+  PetscCall(VecSet(local, 0));
+  PetscCall(VecGetLocalSize(local, &n));
+  PetscCall(PetscMalloc1(n, &part));
+  PetscCall(VecGetArray(local, &force));
+  for (PetscInt k = 0; k < scene->n_parts; k++) {
+    const PetscReal beta = value[N_PART_PARAMETERS * k + PART_BETA];
+
+    if (beta == 0) continue;
+    PetscCall(PetscArrayzero(part, n));
+    PetscCall(OperatorsAddCellForces(o, value, k, prescribed, part));
+    for (PetscInt i = 0; i < n; i++) force[i] += beta * part[i];
+  }
+  PetscCall(OperatorsAddJointForces(o, value, PETSC_TRUE, prescribed, force));
+  PetscCall(VecRestoreArray(local, &force));
+  PetscCall(PetscFree(part));
+  PetscCall(ModelSumShared(o->model, local));
   PetscFunctionReturn(0);
 }
 

@@ -252,8 +252,8 @@ PetscErrorCode OperatorsGetJoint(Operators o, const PetscReal p[], PetscInt i, P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode OperatorsAddJointForces(Operators o, const PetscReal p[], const PetscReal displacement[],
-                                       PetscReal force[])
+PetscErrorCode OperatorsAddJointForces(Operators o, const PetscReal p[], PetscBool viscous,
+                                       const PetscReal displacement[], PetscReal force[])
 {
   const ModelScene *scene;
 
@@ -265,7 +265,7 @@ PetscErrorCode OperatorsAddJointForces(Operators o, const PetscReal p[], const P
 
     PetscCall(OperatorsGetJoint(o, p, i, k, c, &m));
     PetscCall(ModelGetMeanMotion(o->model, mean, displacement, q));
-    for (int d = 0; d < 6; d++) q[d] *= k[d];
+    for (int d = 0; d < 6; d++) q[d] *= viscous ? c[d] : k[d];
     ModelAddMeanForce(mean, q, force);
   }
   PetscFunctionReturn(0);

@@ -4,7 +4,8 @@
 
       f = (p_F / |F|) f_F + (p_M / |M|) f_M    (N),
 
-   with f_F, f_M, F, M of the scene; <name>_tension (N) or <name>_shortening (m) of a bolt (bodies/bolt.c). No matrix of
+   with f_F, f_M, F, M of the scene; <name>_tension (N) or <name>_shortening (m) of a bolt (bodies/bolt.c). What swings
+   has no part in it. No matrix of
    the bodies depends on them: pencils do through the sliding state alone.
 */
 #include "operators/operatorsimpl.h"
@@ -36,6 +37,8 @@ PetscErrorCode OperatorsAddLoadParameters(Operators o)
     const OperatorsParameter bolt  = {.value = load->has_tension ? load->tension : load->shortening};
     const OperatorsParameter turn  = {.value = Vec3Length(load->moment), .length = PETSC_TRUE};
 
+    o->load_size[i] = (LoadParameters){-1, -1};
+    if (load->swings) continue;
     if (load->is_bolt)
       PetscCall(SizeAdd(o, load, load->has_tension ? "tension" : "shortening", bolt, &o->load_size[i].force));
     else if (load->is_pressure)
@@ -87,6 +90,7 @@ PetscErrorCode OperatorsAddLoads(Operators o, const PetscReal p[], const PetscRe
       PetscCall(OperatorsAddBolt(o, p, i, part * length, local, size));
       continue;
     }
+    if (scene->loads[i].swings) continue;
     PetscCall(ModelAddLoad(o->model, i, factor, local));
     *size += PetscMax(force, moment) * scene->loads[i].size;
   }

@@ -4,14 +4,24 @@
 PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
 {
   const PetscInt   m = from->m, n = from->n_pairs, N = from->n_ports;
-  const PetscInt   size[]   = {m, m * m, m * N, N * N, 3 * n * m, 9 * n * n, 9 * n * n};
-  const PetscReal *source[] = {from->omega2, from->C, from->P, from->W, from->Cm, from->Cx, from->Mx};
-  PetscReal      **copy[]   = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx, &to->Mx};
+  const PetscInt   size[]   = {m,
+                               m * m,
+                               m * N,
+                               N * N,
+                               3 * n * m,
+                               9 * n * n,
+                               9 * n * n,
+                               from->n_motions * N,
+                               from->n_motions * from->n_motions,
+                               from->n_motions * from->n_motions};
+  const PetscReal *source[] = {from->omega2, from->C,  from->P, from->W,     from->Cm,
+                               from->Cx,     from->Mx, from->Y, from->kappa, from->drag};
+  PetscReal **copy[] = {&to->omega2, &to->C, &to->P, &to->W, &to->Cm, &to->Cx, &to->Mx, &to->Y, &to->kappa, &to->drag};
 
   PetscFunctionBeginUser;
   *to        = *from;
   to->sparse = NULL; /* maps and cycles have dense models */
-  for (int i = 0; i < 7; i++) {
+  for (int i = 0; i < 10; i++) {
     if (!source[i]) continue;
     PetscCall(PetscMalloc1(size[i], copy[i]));
     PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
@@ -36,6 +46,9 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscCall(PetscFree(model->Cm));
   PetscCall(PetscFree(model->Cx));
   PetscCall(PetscFree(model->Mx));
+  PetscCall(PetscFree(model->Y));
+  PetscCall(PetscFree(model->kappa));
+  PetscCall(PetscFree(model->drag));
   PetscCall(PetscFree2(model->gap, model->friction));
   PetscCall(PetscFree(model->spring));
   PetscFunctionReturn(0);

@@ -54,18 +54,6 @@ static PetscErrorCode PortSetUnit(ReducedRun r, PetscInt vertex, int d, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* Nodal forces to column k */
-static PetscErrorCode PortSetNodal(ReducedRun r, Vec nodal, PetscInt k, Mat columns)
-{
-  Vec column;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatDenseGetColumnVecWrite(columns, k, &column));
-  PetscCall(OperatorsTakeNodal(r->run.operators, nodal, column));
-  PetscCall(MatDenseRestoreColumnVecWrite(columns, k, &column));
-  PetscFunctionReturn(0);
-}
-
 /* Load i of the scene, N; of a bolt with the shortening that it has, or finds in the sliding state */
 static PetscErrorCode PortsAddLoad(ReducedRun r, PetscInt i, Vec nodal)
 {
@@ -96,7 +84,7 @@ static PetscErrorCode PortsFindBolts(ReducedRun r)
 }
 
 /* Loads, then the weight where there is gravity; N for the factor 1. */
-static PetscErrorCode PortsSetLoads(ReducedRun r)
+static PetscErrorCode PortsSetLoads(ReducedRun r, PetscInt n)
 {
   const ModelScene *scene;
   Vec               nodal;
@@ -105,13 +93,13 @@ static PetscErrorCode PortsSetLoads(ReducedRun r)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
   PetscCall(PortsFindBolts(r));
-  for (PetscInt i = 0; i < r->reduction.model.n_loads; i++) {
+  for (PetscInt i = 0; i < n; i++) {
     PetscCall(ModelCreateNodal(r->run.model, &nodal));
     if (i < scene->n_loads)
       PetscCall(PortsAddLoad(r, i, nodal));
     else
       PetscCall(OperatorsAddWeight(r->run.operators, r->request.p, nodal, total));
-    PetscCall(PortSetNodal(r, nodal, i, r->reduction.others));
+    PetscCall(ReducedPortSetNodal(r, nodal, i));
     PetscCall(VecDestroy(&nodal));
   }
   PetscFunctionReturn(0);
@@ -197,13 +185,18 @@ static PetscErrorCode PortsSetShapes(ReducedRun r)
 PetscErrorCode ReducedSetPorts(ReducedRun r)
 {
   const ModelScene *scene;
-  PetscInt          n_own;
+  PetscInt          n_own, n_forces;
+  Mat               C;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(r->run.model, &scene));
+  PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
   PetscCall(PortsCreatePairs(r));
-  r->reduction.model.n_loads  = scene->n_loads + (ModelHasGravity(r->run.model) ? 1 : 0);
-  r->reduction.model.n_probes = scene->n_probes;
+  n_forces                     = scene->n_loads + (ModelHasGravity(r->run.model) ? 1 : 0);
+  r->reduction.model.n_motions = scene->n_motions;
+  r->reduction.model.dragged   = C && scene->n_motions ? PETSC_TRUE : PETSC_FALSE;
+  r->reduction.model.n_loads   = n_forces + (r->reduction.model.dragged ? 2 : 1) * scene->n_motions;
+  r->reduction.model.n_probes  = scene->n_probes;
   for (PetscInt i = 0; i < scene->n_circles; i++) r->reduction.model.n_probes += scene->circles[i].n;
   r->reduction.model.n_ports =
     3 * r->reduction.model.n_pairs + r->reduction.model.n_loads + 3 * r->reduction.model.n_probes;
@@ -211,8 +204,9 @@ PetscErrorCode ReducedSetPorts(ReducedRun r)
   PetscCall(MatCreateDense(r->comm, n_own, PETSC_DECIDE, PETSC_DETERMINE,
                            r->reduction.model.n_loads + 3 * r->reduction.model.n_probes, NULL, &r->reduction.others));
   PetscCall(MatZeroEntries(r->reduction.others));
-  PetscCall(PortsSetLoads(r));
+  PetscCall(PortsSetLoads(r, n_forces));
   PetscCall(PortsSetProbes(r));
+  PetscCall(ReducedSetMotions(r, n_forces));
   PetscCall(PortsSetHits(r));
   PetscCall(PortsSetShapes(r));
   PetscFunctionReturn(0);

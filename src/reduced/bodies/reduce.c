@@ -15,6 +15,7 @@ PetscErrorCode ReducedReduce(ReducedRun r)
   PetscCall(ReducedSetPorts(r));
   PetscCall(ReducedSetPairs(r));
   PetscCall(ReducedSetResidual(r));
+  PetscCall(ReducedSettleDrag(r));
   PetscCall(ReducedStateCreate(&r->reduction.model, &r->motion.state));
   PetscCall(ReducedReportCreate(&r->reduction.model, &r->motion.report));
   PetscCall(PetscCalloc3(r->reduction.model.m, &r->motion.acceleration, 2 * r->reduction.model.n_ports,

@@ -222,6 +222,7 @@ static PetscErrorCode CycleReduce(LimitCycle c, Results results)
   PetscFunctionBeginUser;
   PetscCall(DynamicsSetEndless(c->reduced->dynamics));
   PetscCall(ReducedPrepare(c->reduced, results));
+  PetscCall(ReducedRefuseVarying(c->reduced, "-analysis cycle"));
   PetscCall(ReducedChoose(c->reduced));
   PetscCall(ShiftInvertDestroy(&c->reduced->reduction.inverse));
   c->reduced->motion.state.time = CYCLE_FAR;

@@ -89,7 +89,7 @@ PetscErrorCode ReducedWeighGrowth(ReducedRun r, PetscReal *off)
   PetscCall(ReducedStateCreate(&r->reduction.model, &rest));
   PetscCall(PetscMalloc7(r->reduction.model.n_loads, &loads, n, &closed, n, &lambda_n, N, &z[0][0], N, &z[0][1], N,
                          &z[1][0], N, &z[1][1]));
-  ReducedSetLoads(r, r->run.end, loads);
+  ReducedSetSteadyLoads(r, r->run.end, loads);
   PetscCall(ReducedEquilibrium(&r->reduction.model, loads, &rest, &found));
   for (PetscInt i = 0; i < n; i++) {
     closed[i]   = rest.status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;

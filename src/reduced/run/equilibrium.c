@@ -47,6 +47,7 @@ static void SlidingSystemFill(SlidingSystem *s)
 
     s->x[m + j] = -model->gap[s->pair[j]] - s->line[s->pair[j]].closing;
     for (PetscInt l = 0; l < model->n_loads; l++) s->x[m + j] -= model->W[port + N * (first + l)] * s->loads[l];
+    s->x[m + j] -= ReducedMotionWay(model, s->loads, port);
     for (PetscInt k = 0; k < m; k++) {
       s->A[k + size * (m + j)] = -(P[k] - mu * P[m + k]);
       s->A[m + j + size * k]   = P[k];

@@ -47,6 +47,41 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
+/* Of the motions at a port, m/s^2, with what they do by way of the residual, by the second difference of their factors
+   over a step to both sides */
+static PetscReal RecordMotionAcceleration(ReducedRun r, PetscInt port)
+{
+  const ReducedModel *model = &r->reduction.model;
+  const PetscReal     t = r->motion.state.time, dt = r->motion.dt;
+  PetscReal           a = 0;
+
+  for (PetscInt i = 0; i < model->n_motions; i++) {
+    const Ramp     *ramp = ExternalGetMotion(r->run.external, i);
+    const PetscReal Y = model->Y[model->n_ports * i + port] + ReducedColumn(model, ReducedFirstMotion(model) + i)[port];
+
+    if (Y != 0) a += Y * (RampValue(ramp, t + dt) - 2 * RampValue(ramp, t) + RampValue(ramp, t - dt)) / (dt * dt);
+  }
+  return a;
+}
+
+/* Adds what the motions move, of their factors or rates in p, to nodal values */
+static PetscErrorCode RecordAddMotions(ReducedRun r, const PetscReal p[], PetscReal nodal[])
+{
+  const ReducedModel *model = &r->reduction.model;
+  const Mesh         *mesh;
+  PetscReal          *moved;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetMesh(r->run.model, &mesh));
+  PetscCall(PetscMalloc1(3 * mesh->n_nodes, &moved));
+  for (PetscInt i = 0; i < model->n_motions; i++) {
+    PetscCall(ModelGetMotion(r->run.model, i, moved));
+    for (PetscInt k = 0; k < 3 * mesh->n_nodes; k++) nodal[k] += p[ReducedFirstMotion(model) + i] * moved[k];
+  }
+  PetscCall(PetscFree(moved));
+  PetscFunctionReturn(0);
+}
+
 /* Motion of a node that is looked at */
 static void RecordNode(void *ctx, PetscInt node, PetscReal u[3], PetscReal v[3], PetscReal a[3])
 {
@@ -59,6 +94,7 @@ static void RecordNode(void *ctx, PetscInt node, PetscReal u[3], PetscReal v[3],
     v[d] = ReducedPortDisplacement(model, r->motion.state.rate, r->motion.p_rate, port + d);
     a[d] = 0;
     for (PetscInt k = 0; k < model->m; k++) a[d] += model->P[k + model->m * (port + d)] * r->motion.acceleration[k];
+    a[d] += RecordMotionAcceleration(r, port + d);
   }
 }
 
@@ -87,6 +123,7 @@ static PetscErrorCode RecordLiftOne(ReducedRun r, const PetscReal coordinates[],
   PetscCall(MatDenseRestoreColumnVecRead(X, 0, &others));
   PetscCall(ReducedAddCombination(r->reduction.Phi, coordinates, x));
   PetscCall(ModelGetNodal(r->run.model, x, nodal));
+  PetscCall(RecordAddMotions(r, p, nodal));
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&ports));
   PetscCall(MatDestroy(&B));

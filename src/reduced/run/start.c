@@ -226,12 +226,14 @@ static PetscErrorCode StartLaws(ReducedRun r)
 PetscErrorCode ReducedStart(ReducedRun r)
 {
   ReducedState *s = &r->motion.state;
+  PetscBool     changed;
 
   PetscFunctionBeginUser;
   PetscCall(StartVelocities(r));
   if (r->run.from_static) PetscCall(StartSliding(r));
   PetscCall(StartShape(r));
   ReducedSetLoads(r, 0, &s->p[3 * r->reduction.model.n_pairs]);
+  PetscCall(ReducedSetFriction(r, 0, &changed));
   PetscCall(StartLaws(r));
   PetscCall(PetscArraycpy(s->last, s->p, r->reduction.model.n_ports));
   PetscCall(PetscArraycpy(s->q, s->p, 3 * r->reduction.model.n_pairs));

@@ -1,5 +1,6 @@
 /*
-   What acts in the step from t_n: factors of the loads at its end, the way of the prescribed sliding, impulses. One at
+   What acts in the step from t_n: factors of the loads and of friction at its end, the way of the prescribed sliding,
+   impulses. One at
    T between two times of the run acts at both, in the shares max(0, 1 - |T - t_n| / dt), so that its mean time is T:
    all at one of them would shift the phase of what it starts by up to omega dt.
 */
@@ -15,10 +16,33 @@ PetscErrorCode ReducedDriveCreate(ReducedRun r)
 
 void ReducedSetLoads(ReducedRun r, PetscReal t, PetscReal factor[])
 {
-  const PetscInt n = r->reduction.model.n_loads - (ModelHasGravity(r->run.model) ? 1 : 0);
+  const ReducedModel *model = &r->reduction.model;
+  const PetscInt      first = model->n_loads - (model->dragged ? 2 : 1) * model->n_motions;
+  const PetscInt      n     = first - (ModelHasGravity(r->run.model) ? 1 : 0);
 
-  for (PetscInt i = 0; i < r->reduction.model.n_loads; i++)
-    factor[i] = i < n && !r->run.from_static ? ExternalGetLoadFactor(r->run.external, i, t) : 1;
+  for (PetscInt i = 0; i < first; i++) factor[i] = i < n ? RampValue(ExternalGetLoad(r->run.external, i), t) : 1;
+  for (PetscInt i = 0; i < model->n_motions; i++) {
+    const Ramp *ramp = ExternalGetMotion(r->run.external, i);
+
+    factor[first + i] = RampValue(ramp, t);
+    if (model->dragged) factor[first + model->n_motions + i] = RampRate(ramp, t);
+  }
+}
+
+void ReducedSetSteadyLoads(ReducedRun r, PetscReal t, PetscReal factor[])
+{
+  const ReducedModel *model   = &r->reduction.model;
+  PetscReal          *motions = &factor[ReducedFirstMotion(model) - 3 * model->n_pairs];
+  const ModelScene   *scene;
+
+  (void)ModelGetScene(r->run.model, &scene);
+  ReducedSetLoads(r, t, factor);
+  for (PetscInt i = 0; i < scene->n_loads; i++)
+    if (scene->loads[i].swings) factor[i] = 0;
+  for (PetscInt i = 0; i < model->n_motions; i++) {
+    if (scene->motions[i].swings) motions[i] = 0;
+    if (model->dragged) motions[model->n_motions + i] = 0;
+  }
 }
 
 /* Sum of the shares of Phi'J, m sqrt(kg)/s; hit is false where there is none. Shares of the two times around T add
@@ -65,12 +89,33 @@ PetscErrorCode ReducedGetWay(ReducedRun r, PetscInt i, PetscReal *way)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ReducedSetFriction(ReducedRun r, PetscReal t, PetscBool *changed)
+{
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
+    const ContactPair *pair     = &r->reduction.pair[i];
+    FrictionLaw       *friction = &r->reduction.model.friction[i];
+    PetscReal          factor;
+    PetscBool          varies;
+
+    PetscCall(ContactProjectorGetFriction(r->run.projector, pair->interface, t, &factor, &varies));
+    if (!varies) continue;
+    *friction = FrictionAt(&r->run.interfaces[pair->interface].friction, pair->speed);
+    FrictionScale(friction, factor);
+    *changed = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ReducedDriveSet(ReducedRun r, ReducedDrive *drive)
 {
   const PetscReal end = r->motion.state.time + r->motion.dt;
-  PetscBool       hit;
+  PetscBool       hit, changed;
 
   PetscFunctionBeginUser;
+  PetscCall(ReducedSetFriction(r, end, &changed));
+  if (changed) PetscCall(ReducedStepperTakeFriction(r->motion.stepper));
   ReducedSetLoads(r, end, r->motion.loads);
   for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) PetscCall(ReducedGetWay(r, i, &r->motion.sliding[i]));
   PetscCall(DriveKick(r, &hit));

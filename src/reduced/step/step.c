@@ -160,6 +160,7 @@ static PetscErrorCode StepperSetFree(ReducedStepper s, const ReducedDrive *drive
   if (!s->sparse) ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
   ReducedBlockTimes(&(DenseBlock){ReducedColumn(model, n), n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n],
                     s->free);
+  for (PetscInt i = 0; i < n && model->n_motions; i++) s->free[i] += ReducedMotionWay(model, &state->p[n], i);
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
     s->slip0[2 * i + 1] = state->y[3 * i + 2];
@@ -235,6 +236,22 @@ static void StepperAccount(ReducedStepper s, ReducedState *state, ReducedReport 
   }
 }
 
+/* What the drives of motions do beside their loads, J: what the springs at the nodes that they move take up, less what
+   contact does on these nodes */
+static PetscReal StepperMotionWork(ReducedStepper s, const ReducedState *state)
+{
+  const ReducedModel *model = s->model;
+  const PetscInt      n     = 3 * model->n_pairs;
+  PetscReal           work  = 0;
+
+  if (!model->n_motions) return 0;
+  work =
+    ReducedMotionEnergy(model, s->next, s->q, state->p) - ReducedMotionEnergy(model, state->eta, state->q, state->last);
+  for (PetscInt i = 0; i < n; i++)
+    work -= s->mean[i] * (ReducedMotionWay(model, &state->p[n], i) - ReducedMotionWay(model, &state->last[n], i));
+  return work;
+}
+
 /* Work of the loads, J: mean . (change of their displacements), less what only lambda - q makes of a load that
    changes */
 static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
@@ -253,7 +270,7 @@ static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
     for (PetscInt i = 0; i < n; i++) lag += w[i] * (s->mean[i] - 0.5 * (s->q[i] + state->q[i]));
     work += s->mean[j] * dy - lag * s->port[j];
   }
-  return work;
+  return work + StepperMotionWork(s, state);
 }
 
 /* Work that damping takes, J: x'Q x of the modes, x = (z at the beginning, g), and that of the residual, 2 d eta .
@@ -281,6 +298,18 @@ static PetscErrorCode StepperDamping(ReducedStepper s, PetscReal *taken)
     work += ReducedForm(n, n, s->model->Cx, s->dq) / s->dt;
   *taken = work;
   PetscFunctionReturn(0);
+}
+
+/* What damping takes between free and moved nodes, J: the drives do it */
+static void StepperShareDrag(ReducedStepper s, const ReducedState *state, ReducedReport *report)
+{
+  PetscReal work;
+
+  if (!s->model->dragged) return;
+  for (PetscInt k = 0; k < s->model->m; k++) s->product[k] = s->next[k] - state->eta[k];
+  ReducedMotionDrag(s->model, s->product, s->mean, s->dt, &work);
+  report->external += work;
+  report->damping -= work;
 }
 
 /* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
@@ -319,6 +348,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   if (report->works) {
     PetscCall(StepperDamping(s, &report->damping));
     report->damping = -report->damping;
+    StepperShareDrag(s, state, report);
   }
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));

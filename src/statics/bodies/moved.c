@@ -4,52 +4,8 @@
    m of the load step before. An interference (m) of the surfaces adds to m_n: they approach by it before bodies yield.
 */
 #include "statics/staticsimpl.h"
-#include "base/gather.h"
+#include "contact/bodies/moved.h"
 #include "base/algebra/vec3.h"
-#include <stdlib.h>
-
-/* A node that a motion moves */
-typedef struct {
-  PetscInt  number; /* over all ranks */
-  PetscReal d[3];   /* m */
-} MovedVertex;
-
-static int MovedVertexCompare(const void *left, const void *right)
-{
-  const MovedVertex *a = left, *b = right;
-
-  return (a->number > b->number) - (a->number < b->number);
-}
-
-/* Those of all ranks, ascending, on every rank; the caller frees them */
-static PetscErrorCode MovedVerticesGather(MPI_Comm comm, const Mesh *mesh, const PetscReal nodal[], PetscInt *n,
-                                          MovedVertex **all)
-{
-  PetscInt     n_here = 0;
-  MovedVertex *here;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_nodes, &here));
-  for (PetscInt v = 0; v < mesh->n_nodes; v++) {
-    const PetscReal *d = &nodal[3 * v];
-
-    if (!mesh->owned[v] || Vec3Dot(d, d) == 0) continue;
-    here[n_here++] = (MovedVertex){mesh->number[v], {d[0], d[1], d[2]}};
-  }
-  PetscCall(GatherRecords(comm, n_here, sizeof(MovedVertex), here, n, all));
-  PetscCall(PetscFree(here));
-  if (*n) qsort(*all, (size_t)*n, sizeof(MovedVertex), MovedVertexCompare);
-  PetscFunctionReturn(0);
-}
-
-/* sum += weight d of a node */
-static void MovedAdd(PetscInt n, const MovedVertex all[], PetscInt number, PetscReal weight, PetscReal sum[3])
-{
-  const MovedVertex  key   = {.number = number};
-  const MovedVertex *found = n ? bsearch(&key, all, (size_t)n, sizeof(key), MovedVertexCompare) : NULL;
-
-  for (int d = 0; d < 3 && found; d++) sum[d] += weight * found->d[d];
-}
 
 /* m [rows] of what a stage prescribes; NULL where nothing is */
 static PetscErrorCode MovedCreate(Model model, const Stage *stage, const PairRows *rows, PetscReal **moved)
@@ -71,10 +27,9 @@ static PetscErrorCode MovedCreate(Model model, const Stage *stage, const PairRow
   for (PetscInt p = 0; p < rows->n_pairs; p++) {
     const ContactPair *q    = &rows->pair[p];
     const PetscReal   *e[3] = {q->n, q->t, q->b};
-    PetscReal          d[3] = {0, 0, 0};
+    PetscReal          d[3];
 
-    for (PetscInt i = 0; i < q->n_master; i++) MovedAdd(n, all, q->master[i].number, q->master[i].weight, d);
-    for (PetscInt k = 0; k < q->n_slave; k++) MovedAdd(n, all, q->slave[k].number, -q->slave[k].weight, d);
+    MovedApart(n, all, q, d);
     for (PetscInt i = 0; i < rows->law[p].d; i++) (*moved)[rows->first[p] + i] = Vec3Dot(e[i], d);
     (*moved)[rows->first[p]] += stage->interference[q->interface];
   }

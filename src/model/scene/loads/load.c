@@ -10,6 +10,7 @@
 #include "model/modelimpl.h"
 #include "base/algebra/vec3.h"
 #include "kernels/contact/facet.h"
+#include "quantity/ramp.h"
 #include <squeal/options.h>
 
 /* The set of a load, or its point with the moment on it */
@@ -35,6 +36,9 @@ PetscErrorCode LoadCheck(MPI_Comm comm, void *owner, void *record)
 
   PetscFunctionBeginUser;
   PetscCall(BoltCheck(comm, owner, load));
+  PetscCall(RampSwings(load->name, &load->swings));
+  PetscCheck(!load->is_bolt || !load->swings, comm, PETSC_ERR_USER_INPUT,
+             "-%s_frequency: a bolt under tension does not swing about zero; leave it out", load->name);
   if (load->is_bolt) PetscFunctionReturn(0);
   PetscCall(LoadCheckPlace(comm, owner, load));
   PetscCheck(!load->has_force || !load->is_pressure, comm, PETSC_ERR_USER_INPUT,
@@ -200,9 +204,10 @@ PetscErrorCode LoadView(Model model, const Load *load, PetscViewer viewer)
     PetscCall(PetscSNPrintf(moment, sizeof(moment), ", and %.6g, %.6g, %.6g %s", (double)load->moment[0],
                             (double)load->moment[1], (double)load->moment[2], unit));
   if (load->is_pressure) PetscCall(PetscSNPrintf(words, sizeof(words), "%.6g %s, ", (double)load->pressure, pascal));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all%s\n", load->name,
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  load %s on %s: %s%.6g, %.6g, %.6g N in all%s%s\n", load->name,
                                    load->on_point ? "a point" : load->set, words, (double)load->force[0],
-                                   (double)load->force[1], (double)load->force[2], moment));
+                                   (double)load->force[1], (double)load->force[2], moment,
+                                   load->swings ? ", swings about zero, in time alone" : ""));
   PetscFunctionReturn(0);
 }
 
