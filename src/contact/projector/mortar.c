@@ -49,6 +49,14 @@ static PetscErrorCode SurfaceNumber(const ContactSurface *s, PetscInt n, const P
   PetscFunctionReturn(0);
 }
 
+/* Whether this rank has pairs of an interface, or may get some */
+static PetscBool PairsAreHere(const ContactProjector p, PetscInt i)
+{
+  for (PetscInt k = 0; k < p->n_pairs; k++)
+    if (p->pair[k].interface == i) return PETSC_TRUE;
+  return p->share.rank == p->share.root ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscErrorCode ProjectorMortarNumber(ContactProjector p, PetscInt n, const PetscInt unique[])
 {
   PetscFunctionBeginUser;
@@ -56,7 +64,7 @@ PetscErrorCode ProjectorMortarNumber(ContactProjector p, PetscInt n, const Petsc
     ProjectorMortar *m = p->mortar[i];
     PetscInt        *number[2];
 
-    if (!m || p->share.rank != p->share.root) continue;
+    if (!m || !PairsAreHere(p, i)) continue;
     PetscCall(SurfaceNumber(&m->moved.slave, n, unique, &number[0]));
     PetscCall(SurfaceNumber(m->moved.master, n, unique, &number[1]));
     PetscCall(ContactMovedNumber(&m->moved, number[0], number[1]));

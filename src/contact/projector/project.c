@@ -275,7 +275,7 @@ static PetscBool SweepIsLast(const ContactProjector p, const ProjectorConvergenc
   const PetscReal next = c->change * p->rate;
 
   if (next > PetscSqr(0.5 * (ProjectorTolerance(p) * scale + c->noise))) return PETSC_FALSE;
-  if (!p->spread || next <= PetscSqr(0.5 * c->noise / NOISE)) return PETSC_TRUE;
+  if (!p->fine || next <= PetscSqr(0.5 * c->noise / NOISE)) return PETSC_TRUE;
   return last > 0 && c->change > 0.25 * last ? PETSC_TRUE : PETSC_FALSE;
 }
 

@@ -61,12 +61,11 @@ typedef struct {
   PetscInt         *first;            /* [places][2] where sides of slave and master begin; [places] the end */
 } ProjectorMortar;
 
-/* natural map residual, relative to the largest impulse of the step before and of this one; and where all ranks solve,
-   since sweeps then go in another order on other ranks */
-#define PROJECTOR_RTOL        1e-10
-#define PROJECTOR_RTOL_SPREAD 1e-13
+/* natural map residual, relative to the largest impulse of the step before and of this one; and where pairs are
+   so many that all ranks may solve them: sweeps then go in another order on other ranks */
+#define PROJECTOR_RTOL      1e-10
+#define PROJECTOR_RTOL_FINE 1e-13
 
-#define PROJECTOR_SPREAD 1000 /* pairs from which on all ranks solve: their messages cost less than the pairs */
 typedef enum { PROJECTOR_AUTO, PROJECTOR_ONE, PROJECTOR_ALL } ProjectorRanks;
 
 #define PROJECTOR_PAST 3 /* steps of which forces are kept, for the guess of the next */
@@ -187,6 +186,7 @@ struct _p_ContactProjector {
   PetscInt       max_it;
   ProjectorRanks ranks;  /* that solve */
   PetscBool      spread; /* all do */
+  PetscBool      fine;   /* to rounding, whoever does */
   ContactSliding sliding[CONTACT_MAX];
   ProjectorShare share;
   PetscBool      has_mass;
@@ -200,7 +200,7 @@ struct _p_ContactProjector {
   ProjectorRow    *row;                 /* [n_pairs] */
   PetscInt        *node;                /* [n_pairs][CONTACT_MAX_MASTER] of the facets that slaves face, and */
   PetscReal       *weight;              /* of these */
-  ProjectorMortar *mortar[CONTACT_MAX]; /* pairs on the root; NULL: slave nodes and points of the master */
+  ProjectorMortar *mortar[CONTACT_MAX]; /* NULL: slave nodes and points of the master */
   PetscReal        knot[2], between;    /* times of the mortar knots, s; how far t_{n+1} is from one to the other */
   PetscReal       *u_knot;              /* [2][n_nodes][3] displacements there, m; NULL where all pairs stay */
   PetscInt        *first_candidate;
@@ -271,7 +271,7 @@ static inline PetscBool MortarIsHere(const ContactProjector p, PetscInt i)
 /* Largest residual of the natural map, relative to the largest impulse */
 static inline PetscReal ProjectorTolerance(const ContactProjector p)
 {
-  return p->spread ? PROJECTOR_RTOL_SPREAD : PROJECTOR_RTOL;
+  return p->fine ? PROJECTOR_RTOL_FINE : PROJECTOR_RTOL;
 }
 
 /* Number of the node at place i of holder[] */

@@ -7,8 +7,8 @@ static const char *const kinematics[] = {[PETSC_FALSE] = "prescribed", [PETSC_TR
 static const Quantity forces[] = {
   {"-projector_max_it", "sweeps of Gauss-Seidel", NULL, QUANTITY_INT, QUANTITY_AT(struct _p_ContactProjector, max_it),
    .initial = 1000, QUANTITY_POSITIVE},
-  {"-projector_ranks", "ranks that solve the pairs: auto is all from 1,000 pairs on", NULL, QUANTITY_WORD,
-   QUANTITY_AT(struct _p_ContactProjector, ranks), .words = ranks},
+  {"-projector_ranks", "ranks that solve the pairs; auto: all where 1,000 or more take one rank longer than its cells",
+   NULL, QUANTITY_WORD, QUANTITY_AT(struct _p_ContactProjector, ranks), .words = ranks},
 };
 static const Quantity sliding[] = {
   {"-kinematics", "add the sliding velocity, or move the master", NULL, QUANTITY_WORD,

@@ -63,7 +63,7 @@ static PetscErrorCode PairsSetMemory(ContactProjector p, const PetscReal v[])
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = *v++;
   }
   PetscCall(ProjectorSearch(p, t, 1, v));
-  PetscCall(MortarSetMemory(p, v + 3 * p->share.n_nodes));
+  PetscCall(MortarSetMemory(p, p->u_knot ? v + 3 * p->share.n_nodes : NULL));
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,8 @@
    Nodes of the contact surfaces of a scene, with numbers of their own, those of the masters
    (contact/surface/surface.h), and the slaves. All is made once from the mesh as it is; every rank sees the lists, and
    keeps the slaves whose pairs it solves. Where all ranks solve, that are those whose nodes it owns, up to its share;
-   the rest goes to ranks that have less, in the order of the places. Mortar pairs are the root's, as are few.
+   the rest goes to ranks that have less, in the order of the places. Mortar pairs whose sides change are the root's, as
+   are few pairs of any kind.
 */
 #include "projectorimpl.h"
 #include "base/gather.h"
@@ -186,13 +187,17 @@ static PetscErrorCode SlavesDeal(ContactProjector p, PetscInt *n, Slave slave[])
 {
   const PetscMPIInt size = p->share.size, root = p->share.root;
   const PetscInt    most = (*n + size - 1) / size;
-  PetscInt         *has, turn = 0, mine = 0;
+  const Mesh       *mesh;
+  PetscInt         *has, turn = 0, mine = 0, n_cells;
 
   PetscFunctionBeginUser;
-  p->spread = p->ranks == PROJECTOR_ALL || (p->ranks == PROJECTOR_AUTO && *n >= PROJECTOR_SPREAD);
+  PetscCall(ModelGetMesh(p->contact->model, &mesh));
+  PetscCallMPI(MPI_Allreduce(&mesh->n_cells, &n_cells, 1, MPIU_INT, MPI_SUM, p->share.comm));
+  p->spread = p->ranks == PROJECTOR_ALL || (p->ranks == PROJECTOR_AUTO && ModelSharesPairs(*n, size, n_cells));
+  p->fine   = p->ranks == PROJECTOR_ALL || (p->ranks == PROJECTOR_AUTO && *n >= MODEL_MANY_PAIRS);
   PetscCall(PetscCalloc1(size, &has));
   for (PetscInt i = 0; i < *n; i++) {
-    if (!p->spread || p->mortar[slave[i].interface])
+    if (!p->spread || MortarTravels(p, slave[i].interface))
       slave[i].rank = ~root;
     else if (++has[slave[i].rank] > most)
       slave[i].rank = size; /* one too many */

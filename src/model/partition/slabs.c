@@ -23,9 +23,6 @@ enum { COST_TURNED = 2, COST_ALONG = 3, COST_GENERAL = 8 };
    while the others go on (contact/projector/projector.c) */
 #define COST_CONTACT 28
 
-/* Cells at the contact from which on all ranks share the pairs evenly, wherever the cells are */
-#define MOST_CELLS 1000
-
 /* Bodies of the undistributed mesh */
 typedef struct {
   PetscInt     n, *of_vertex, *of_cell;
@@ -42,8 +39,9 @@ static PetscErrorCode BodyListDestroy(BodyList *bodies)
   PetscFunctionReturn(0);
 }
 
-/* Adds the cost of the pairs to the cells at the contact of swept bodies that stay whole */
-static PetscErrorCode ContactAddCost(Model model, const BodyList *bodies, Clusters *clusters)
+/* Adds the cost of the pairs to the cells at the contact of swept bodies that stay whole, unless all ranks share the
+   pairs evenly, wherever the cells are */
+static PetscErrorCode ContactAddCost(Model model, PetscInt n_ranks, const BodyList *bodies, Clusters *clusters)
 {
   PetscBool *at_contact;
   PetscInt   n = 0;
@@ -52,7 +50,7 @@ static PetscErrorCode ContactAddCost(Model model, const BodyList *bodies, Cluste
   PetscCall(PetscCalloc1(clusters->n_cells, &at_contact));
   PetscCall(TogetherFlag(model, at_contact));
   for (PetscInt c = 0; c < clusters->n_cells; c++) n += at_contact[c] && bodies->whole[bodies->of_cell[c]] ? 1 : 0;
-  for (PetscInt c = 0; c < clusters->n_cells && n < MOST_CELLS; c++)
+  for (PetscInt c = 0; c < clusters->n_cells && !ModelSharesPairs(n, n_ranks, clusters->n_cells); c++)
     if (at_contact[c] && bodies->whole[bodies->of_cell[c]]) clusters->cost[c] += COST_CONTACT;
   PetscCall(PetscFree(at_contact));
   PetscFunctionReturn(0);
@@ -156,7 +154,7 @@ static PetscErrorCode BodiesCluster(Model model, PetscInt n_ranks, BodyList *bod
   PetscCall(CellsCentres(model, clusters->n_cells, slabs->centre));
   PetscCall(BodyListCreate(model, clusters, bodies));
   PetscCall(BodyListChooseWhole(n_ranks, bodies));
-  PetscCall(ContactAddCost(model, bodies, clusters));
+  PetscCall(ContactAddCost(model, n_ranks, bodies, clusters));
   for (PetscInt b = 0; b < bodies->n; b++) {
     if (bodies->lines[b] && !bodies->whole[b]) PetscCall(ChainAdd(model, bodies, b, node, clusters, slabs));
     if (!bodies->whole[b]) continue;
