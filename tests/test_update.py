@@ -230,6 +230,7 @@ def check_held(bar):
           "held: that of all of them up by as much")
     check(all(row["low_95"] == "" for row in rows.values()),
           "held: no parameter with a part in that has an interval")
+    check(all(float(row["deviation_percent"]) > 100 for row in rows.values()), "held: their deviations say that nothing is known")
 
 
 def check_prior(bar):

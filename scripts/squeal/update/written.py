@@ -8,11 +8,13 @@ from ..response.record import write_rows
 from ..tables import BadInput, print_table, read_table, whole
 
 PARAMETERS = ("parameter", "unit", "start", "value", "low_95", "high_95", "deviation_percent", "prior_deviation_percent", "held_percent")
-READ = {"parameter": str, "value": float, "deviation_percent": float, "held_percent": float}
+READ = {"parameter": str, "value": float, "held_percent": float}
 INTERVAL = 1.959963984540054  # standard deviations to each side of a 95 % interval
 BENT = 0.3  # of the standard deviation of an onset, that the curve moves it by
 ONSETS = ("parameter", "critical_value", "low_95", "high_95", "deviation", "second_order", "freq_hz", "kind", "label")
 LEFT = 1.0  # per cent of its own direction that the data do not tell, from which on a parameter is not identified
+OPEN = 1e3  # deviation from which on nothing is known
+ROUNDING = 1e-12  # of a direction
 FEW = 0.1  # of the largest part of a direction: what is not named
 
 
@@ -21,10 +23,15 @@ def held_share(fit, k):
     return 100 * math.sqrt(sum(vector[k]**2 for _, vector in fit.held))
 
 
+def deviation_of(fit, k):
+    """Standard deviation of a parameter, with its part of the directions that are held: what the data leave open there is unknown too."""
+    return math.sqrt(fit.covariance[k, k] + sum((min(size, OPEN) * vector[k])**2 for size, vector in fit.held if abs(vector[k]) > ROUNDING))
+
+
 def parameter_rows(model, fit, prior):
     """Rows of update.csv."""
     for k, (name, value) in enumerate(model.values(fit.t).items()):
-        deviation, left = math.sqrt(fit.covariance[k, k]), held_share(fit, k)
+        deviation, left = deviation_of(fit, k), held_share(fit, k)
         weight = prior.weight[k, k]
         ends = [value * math.exp(sign * INTERVAL * deviation) for sign in (-1, 1)] if left < LEFT else ("", "")
         yield (name, model.units[name], model.start[name], value, *ends, 100 * deviation, 100 / math.sqrt(weight) if weight > 0 else "",
@@ -84,7 +91,7 @@ def print_all(model, fit, prior):
                    f"{INTERVAL * row[7]:.3g}" if row[7] else "-") if row[8] < LEFT else
                   (row[0], f"{row[2]:.6g}", f"{row[3]:.6g}", "not", "identified", row[1] or "-", "-", "-") for row in rows))
     for deviation, vector in fit.held:
-        size = f"a change by {100 * deviation:.3g} %" if deviation < 1e3 else "no change"
+        size = f"a change by {100 * deviation:.3g} %" if deviation < OPEN else "no change"
         print(f"not identified: {direction_words(model, vector)} together: {size} would show in the data; held at the start. A prior, or "
               f"other "
               "measurements, fix it")
