@@ -13,7 +13,8 @@
       p(x, t) = d/dt  rho / (2 pi)  int v_n(y, t - R / c) / R dA.
 
    It is exact for a flat surface in a rigid wall. A disc without a wall radiates less at low frequencies, where sound
-   goes round its rim; what other bodies hide and reflect is left out. Integrals are by the quadrature of the faces.
+   goes round its rim; what other bodies hide and reflect is left out. The surface stays where it is meshed. Integrals
+   are by the quadrature of the faces.
 
    In time the surface is known at times t_n, h apart. A point adds what it does at t_n to the four nearest times of
    t_n + R / c, by Lagrange's polynomials of third order; the derivative is a central difference of fourth order. Both

@@ -7,8 +7,9 @@
 */
 #include "soundimpl.h"
 
-#define N_TAPS  4
-#define NEAREST 3 /* least k */
+#define N_TAPS     4
+#define NEAREST    3   /* least k */
+#define MOST_DELAY 1e6 /* most k */
 
 struct _p_SoundListener {
   Sound      sound;
@@ -19,8 +20,7 @@ struct _p_SoundListener {
   PetscInt  *delay;   /* [points][microphones] k, 0 for points that do not face the microphone */
   PetscReal *tap;     /* [points][microphones][N_TAPS] */
   PetscInt   n_shapes;
-  PetscReal
-    *answer; /* [n_shapes][length][microphones] s after a rate 1 at one time, of all ranks; NULL without shapes */
+  PetscReal *answer; /* [n_shapes][length][microphones] s after a rate 1 at one time, of all ranks; or NULL */
 };
 
 /* Times the size: Lagrange's polynomials of the times t_{m-k+1}, t_{m-k}, t_{m-k-1}, t_{m-k-2} at t_m - (k + f) h; the
@@ -38,7 +38,7 @@ static PetscErrorCode ListenerSetDelays(SoundListener l)
 {
   const Sound         sound    = l->sound;
   const SoundSurface *s        = &sound->surface;
-  PetscInt            range[2] = {-PETSC_MAX_INT, NEAREST}; /* the least, negated; the most */
+  PetscReal           range[2] = {-MOST_DELAY, NEAREST}; /* the least, negated; the most */
 
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < s->n; q++)
@@ -50,18 +50,24 @@ static PetscErrorCode ListenerSetDelays(SoundListener l)
       R     = SoundSurfaceDistance(s, q, x);
       steps = R / (sound->speed * l->h);
       if (R <= 0) continue;
+      range[0] = PetscMax(range[0], -steps);
+      range[1] = PetscMax(range[1], steps);
+      if (steps >= MOST_DELAY) continue;
       l->delay[at] = (PetscInt)PetscFloorReal(steps);
       TapsSet(steps - (PetscReal)l->delay[at], sound->density * s->area[q] / (2 * PETSC_PI * R), &l->tap[N_TAPS * at]);
-      range[0] = PetscMax(range[0], -l->delay[at]);
-      range[1] = PetscMax(range[1], l->delay[at]);
     }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_INT, MPI_MAX, sound->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, sound->comm));
+  PetscCheck(
+    range[1] < MOST_DELAY, sound->comm, PETSC_ERR_USER_INPUT,
+    "-sound_microphones: sound takes %g s to one of them, %g times -dynamics_history_interval %g s, at most %g "
+    "times: move it nearer, or see to -sound_speed",
+    (double)(range[1] * l->h), (double)range[1], (double)l->h, MOST_DELAY);
   PetscCheck(
     -range[0] >= NEAREST, sound->comm, PETSC_ERR_USER_INPUT,
     "-sound_microphones: one is nearer than %g m to the surface, 3 steps of -dynamics_history_interval %g s at "
     "the speed of sound: move it away, or shorten the interval",
     (double)(NEAREST * sound->speed * l->h), (double)l->h);
-  l->length = range[1] + N_TAPS + 2;
+  l->length = (PetscInt)range[1] + N_TAPS + 2;
   PetscFunctionReturn(0);
 }
 

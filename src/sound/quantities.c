@@ -15,8 +15,8 @@ static const Quantity rows[] = {
    .initial = 1.204, QUANTITY_POSITIVE, .idle = SoundIdle, .restart = PETSC_TRUE},
   {"-sound_speed", "speed of sound in it, in any set of units", "m/s", QUANTITY_REAL, SOUND_AT(speed), .initial = 343.2,
    QUANTITY_POSITIVE, .idle = SoundIdle, .restart = PETSC_TRUE},
-  {"-sound_energy", "energy of the vibration that the sound of modes is told for", "J", QUANTITY_REAL, SOUND_AT(energy),
-   .initial = 1e-3, QUANTITY_POSITIVE, .idle = SoundIdle, .in = RUN_MODES},
+  {"-sound_energy", "energy of vibration at which the sound of each mode is stated", "J", QUANTITY_REAL,
+   SOUND_AT(energy), .initial = 1e-3, QUANTITY_POSITIVE, .idle = SoundIdle, .in = RUN_MODES},
 };
 const QuantityTable sound_quantities = {"Sound", "sound.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = HEARD};
 

@@ -18,6 +18,9 @@ PetscErrorCode SoundSetFromOptions(Sound sound)
   PetscCall(QuantitiesRead(sound->comm, &sound_quantities, sound));
   PetscCheck(!sound->n || sound->model, sound->comm, PETSC_ERR_USER_INPUT,
              "-sound_microphones: matrices without a mesh have no surface that radiates");
+  for (PetscInt i = 0; i < sound->n; i++)
+    PetscCheck(strcmp(sound->microphone[i].name, "power"), sound->comm, PETSC_ERR_USER_INPUT,
+               "-sound_microphones power: sound.csv has columns of that name; choose another one");
   PetscFunctionReturn(0);
 }
 

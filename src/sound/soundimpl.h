@@ -32,7 +32,7 @@ struct _p_Sound {
 extern const QuantityList  microphones_list;
 extern const QuantityTable sound_quantities;
 
-/* surface.c - all points; area [parts] of each, m^2, over all ranks. Collective */
+/* surface.c - all points. Collective */
 PETSC_INTERN PetscErrorCode SoundSurfaceCreate(Sound sound, SoundSurface *surface);
 PETSC_INTERN PetscErrorCode SoundSurfaceDestroy(SoundSurface *surface);
 /* Velocity along the normal at point q, m/s */
@@ -40,7 +40,7 @@ PETSC_INTERN PetscReal SoundSurfaceNormal(const SoundSurface *surface, PetscInt 
 /* Distance from point q to a place (m), negative where the point does not face it */
 PETSC_INTERN PetscReal SoundSurfaceDistance(const SoundSurface *surface, PetscInt q, const PetscReal x[3]);
 
-/* pressure.c - the place of a microphone, m */
+/* The place of a microphone, m */
 static inline void SoundPlace(Sound sound, PetscInt i, PetscReal x[3])
 {
   for (int d = 0; d < 3; d++) x[d] = sound->metre * sound->microphone[i].at[d];

@@ -70,14 +70,15 @@ def main_line(pressure, step):
 def events(pressure, step, threshold, frame):
     """Noises as dynamometers count them: (begin, end, s; frequency, Hz; level, dB(A)) of runs of frames whose main line exceeds the
     threshold, with frequencies within 5 % of each other."""
-    n, found = max(16, int(round(frame / step))), []
+    n, found = max(16, min(int(round(frame / step)), len(pressure))), []
     for begin in range(0, len(pressure) - n + 1, n):
-        frequency, size = main_line(pressure[begin:begin + n], step)
+        end = begin + n if begin + 2 * n <= len(pressure) else len(pressure)  # the last one has the rest
+        frequency, size = main_line(pressure[begin:end], step)
         if size < threshold:
             continue
         last = found[-1] if found else None
         if last and last[1] == begin and abs(frequency / last[2] - 1) < 0.05:
-            found[-1] = [last[0], begin + n, *((frequency, size) if size > last[3] else last[2:])]
+            found[-1] = [last[0], end, *((frequency, size) if size > last[3] else last[2:])]
         else:
-            found.append([begin, begin + n, frequency, size])
+            found.append([begin, end, frequency, size])
     return [(begin * step, end * step, frequency, size) for begin, end, frequency, size in found]

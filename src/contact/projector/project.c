@@ -305,14 +305,16 @@ static PetscErrorCode PairsSweep(ContactProjector p, PetscInt n, PetscReal befor
 PetscErrorCode PairsSolve(ContactProjector p, ProjectorConvergence *c)
 {
   const PetscReal rtol    = ProjectorTolerance(p);
-  PetscReal       most[3] = {0}, scale, residual; /* largest impulse before, noise, pairs to be visited */
+  PetscReal       most[4] = {0}, scale, residual; /* largest impulse before, noise, pairs to be visited, rate */
   PetscInt        n;
 
   PetscFunctionBeginUser;
   *c      = (ProjectorConvergence){.worst = -1};
   n       = PairsLook(p, &most[0], &most[1]);
   most[2] = (PetscReal)n;
-  PetscCall(BorderLargest(p, 3, most));
+  most[3] = p->rate;
+  PetscCall(BorderLargest(p, 4, most));
+  p->rate = most[3]; /* that of ranks which come together in this step differs */
   PetscCall(PairsPass(p, n, NULL));
   c->noise = most[1];
   scale    = most[0];

@@ -199,6 +199,11 @@ PetscErrorCode HistoryGetMemory(History h, PetscInt *n, PetscReal **values)
   if (h->sound_table) PetscCall(ResultsTableFlush(h->sound_table, &mark[4]));
   if (h->film) PetscCall(ResultsFilmGetTimes(h->film, &n_frames, &times));
   if (h->listener) PetscCall(SoundListenerGetMemory(h->listener, &n_sound, &sound));
+  if (!h->listener && h->n_heard) { /* it goes on, and has no row yet */
+    n_sound = h->n_heard;
+    PetscCall(PetscMalloc1(n_sound, &sound));
+    PetscCall(PetscArraycpy(sound, h->heard, n_sound));
+  }
   HistoryKept kept = {.rows     = h->rows,
                       .pairs    = h->pairs,
                       .frames   = h->frames,
@@ -270,6 +275,8 @@ PetscErrorCode HistoryAddChecksum(History h, Checksum c)
   PetscCall(ChecksumSetPart(c, "-dynamics_filters"));
   if (h->filters) PetscCall(ChecksumAddInts(c, h->filters->n, h->filters->mode));
   PetscCall(SoundAddChecksum(h->sound, c));
+  if (HistoryHears(h)) PetscCall(ChecksumSetPart(c, "-dynamics_history_interval"));
+  if (HistoryHears(h)) PetscCall(ChecksumAddReals(c, 1, &h->rows.interval));
   PetscFunctionReturn(0);
 }
 

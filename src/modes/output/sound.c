@@ -18,6 +18,8 @@
 #define SOUND_CELL 256
 #define REFERENCE  1000. /* Hz */
 
+#define SILENCE (-999.) /* dB */
+
 PetscErrorCode ModesSetSound(Modes modes, Sound sound)
 {
   PetscFunctionBeginUser;
@@ -36,7 +38,7 @@ static PetscReal WeightSize(PetscReal f)
 /* Decibels of a ratio of powers; -inf has no place in a table */
 static PetscReal Decibel(PetscReal ratio)
 {
-  return ratio > 0 ? 10 * PetscLog10Real(ratio) : -999;
+  return ratio > 0 ? 10 * PetscLog10Real(ratio) : SILENCE;
 }
 
 /* Header of sound.csv, which the caller frees */
@@ -117,6 +119,12 @@ static PetscErrorCode SoundWriteRow(Modes modes, PetscInt i, const Mesh *mesh, c
   PetscCall(SoundGetEnergy(modes->sound, &row[2]));
   PetscCall(SoundMeasurePower(modes->sound, vr, vi, power));
   PetscCall(SoundMeasurePressure(modes->sound, modes->mode[i].omega, vr, vi, pressure, &pressure[n]));
+  for (PetscInt k = 0; k < n_parts + 2 * n; k++)
+    PetscCheck(
+      !PetscIsInfOrNanReal(k < n_parts ? power[k] : pressure[k - n_parts]), modes->comm, PETSC_ERR_USER_INPUT,
+      "the sound of the mode at %g Hz is not finite: see to -sound_energy, -sound_density, -sound_speed and the "
+      "places of -sound_microphones",
+      (double)freq);
   for (PetscInt part = 0; part < n_parts; part++) row[3] += power[part];
   row[4] = Decibel(row[3] / PICOWATT);
   for (PetscInt k = 0; k < n; k++) {
@@ -126,7 +134,7 @@ static PetscErrorCode SoundWriteRow(Modes modes, PetscInt i, const Mesh *mesh, c
     cell[0] = re;
     cell[1] = im;
     cell[2] = Decibel((re * re + im * im) / (2 * QUIETEST * QUIETEST));
-    cell[3] = cell[2] + weight;
+    cell[3] = cell[2] > SILENCE ? cell[2] + weight : SILENCE;
   }
   PetscCall(ResultsTableNumbers(table, 5 + n_parts + 4 * n, row));
   PetscCall(PetscFree2(row, pressure));

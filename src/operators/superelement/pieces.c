@@ -99,9 +99,10 @@ PetscErrorCode SuperelementSum(Operators o, const Superelement *s, int i, Mat *s
     if (!piece->A[i] || piece->scale[i] == 0) continue;
     if (*sum)
       PetscCall(MatAXPY(*sum, piece->scale[i], piece->A[i], DIFFERENT_NONZERO_PATTERN));
-    else
+    else {
       PetscCall(MatDuplicate(piece->A[i], MAT_COPY_VALUES, sum));
-    if (piece == s || !s->A[i]) PetscCall(MatScale(*sum, piece->scale[i]));
+      PetscCall(MatScale(*sum, piece->scale[i]));
+    }
   }
   PetscFunctionReturn(0);
 }

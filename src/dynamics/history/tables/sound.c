@@ -40,8 +40,16 @@ PetscErrorCode SoundCreateHeader(History h, char **header)
 /* Before the first row, or the first one of a run that goes on */
 static PetscErrorCode HistoryListen(History h, const HistoryMotions *motions)
 {
+  const ModelScene *scene;
+
   PetscFunctionBeginUser;
   if (h->listener) PetscFunctionReturn(0);
+  PetscCall(ModelGetScene(h->source.model, &scene));
+  PetscCheck(
+    !motions || !scene->n_motions, h->comm, PETSC_ERR_SUP,
+    "-sound_microphones hear the modes of a reduced model, not what motion %s moves: take -dynamics_model full, "
+    "or leave one of them out",
+    scene->motions[0].name);
   PetscCall(SoundListen(h->sound, h->rows.interval, &h->listener));
   if (motions) PetscCall(SoundListenerTakeShapes(h->listener, motions->shapes));
   if (h->n_heard) PetscCall(SoundListenerSetMemory(h->listener, h->n_heard, h->heard));
