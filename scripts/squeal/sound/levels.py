@@ -27,10 +27,12 @@ def decibel(mean_square):
         return 10 * numpy.log10(mean_square / REFERENCE**2)
 
 
-def shares(pressure, step):
-    """Frequencies, Hz, and what each adds to the mean square, Pa^2, of a record without its mean."""
+def shares(pressure, step, window=False):
+    """Frequencies, Hz, and what each adds to the mean square, Pa^2, of a record without its mean; by a Hann window, which keeps a tone
+    out of other bands."""
     n = len(pressure)
-    square = numpy.abs(numpy.fft.rfft(pressure - pressure.mean()))**2 / n**2
+    weight = numpy.hanning(n + 1)[:n] * numpy.sqrt(8 / 3) if window else 1
+    square = numpy.abs(numpy.fft.rfft((pressure - pressure.mean()) * weight))**2 / n**2
     square[1:(n + 1) // 2] *= 2
     return numpy.fft.rfftfreq(n, step), square
 
@@ -43,7 +45,7 @@ def level(pressure, step, weighted=True):
 
 def third_octaves(pressure, step):
     """(middle, Hz; dB; dB(A)) of the bands that the record tells."""
-    f, square = shares(pressure, step)
+    f, square = shares(pressure, step, True)
     rows = []
     for n in BANDS:
         middle = 1000 * 10**(n / 10)

@@ -12,6 +12,7 @@ from .levels import level, main_line, shares, third_octaves, weighting, decibel
 
 RATE = 48000  # Hz, of the file
 DYNAMIC = 60  # dB that the spectrogram shows
+FRAME = 4e-3  # s of it: lines 250 Hz apart
 
 
 def write_table(path, header, rows):
@@ -59,14 +60,14 @@ def draw(path, name, time, pressure, late):
     bands.set_title(f"{name}: {level(pressure[late], step):.1f} dB(A) from {time[late][0]:.4g} to {time[late][-1]:.4g} s")
     bands.set_xlabel("third octave, Hz")
     bands.set_ylabel("dB(A)")
-    f, square = shares(pressure[late], step)
+    f, square = shares(pressure[late], step, True)
     heard = f <= 20000
     sizes = decibel(numpy.maximum(square * weighting(f)**2, 1e-30))[heard]
     lines.plot(f[heard] / 1000, sizes, color=VERMILION, linewidth=0.8)
     lines.set_ylim(sizes.max() - DYNAMIC, sizes.max() + 5)
     lines.set_xlabel("frequency, kHz")
     lines.set_ylabel("line, dB(A)")
-    n = max(64, len(time) // 60)
+    n = max(64, min(len(time) // 5, int(FRAME / step)))
     with numpy.errstate(divide="ignore"):
         power, f, t, drawn = image.specgram(pressure, NFFT=n, noverlap=3 * n // 4, Fs=1 / step, cmap="magma")
     top = 10 * numpy.log10(max(power.max(), 1e-30))
