@@ -58,7 +58,7 @@ typedef struct {
   PetscErrorCode (*write)(Chain *chain);
   PetscErrorCode (*view)(Chain *chain, PetscViewer viewer); /* of `shown` */
   PetscErrorCode (*judge)(Chain *chain);               /* raises an error where results that are written do not hold */
-  PetscErrorCode (*add)(Chain *chain, unsigned *does); /* RunBits that hang on its own options */
+  PetscErrorCode (*add)(Chain *chain, unsigned *does); /* RunBits that depend on its own options */
   unsigned does;                                       /* RunBits of every such run, beside its own */
   unsigned uses; /* SceneUses; USES_ALL takes the options of every analysis, too */
 } AnalysisRow;

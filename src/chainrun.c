@@ -249,7 +249,7 @@ SHOW(ChainViewMap, MapView(chain->map, viewer))
 SHOW(ChainViewSubstructure, SubstructureView(chain->substructure, viewer))
 SHOW(ChainViewCycle, CycleView(chain->cycle, viewer))
 
-/* The bits of `does` hold in every such run; what hangs on options add() and scope.c add. Those in time write as they
+/* The bits of `does` hold in every such run; what depends on options add() and scope.c add. Those in time write as they
    go, and look for checkpoints before they begin */
 #define LINEAR (USES_DAMPING | USES_SPIN)
 const AnalysisRow chain_analyses[N_ANALYSES] = {

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""options/reference.md has every option that the program tells by -help_json, with its default, unit, meaning and choices, as
+"""The pages in options/reference have every option that the program tells by -help_json, with its default, unit, meaning and choices, as
 scripts/manual --reference writes them, and an example of its own for each. Breaks when an option or a default changes and the
-page does not. -help shows the same options with the same sentences. What rows say may vary is what sweeps and maps offer.
+pages do not. -help shows the same options with the same sentences. What rows say may vary is what sweeps and maps offer.
 
     test_options.py SQUEAL"""
 
 import difflib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,7 +17,7 @@ SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.options import ask, options_of
 
-PAGE = SOURCE / "options/reference.md"
+PAGES = SOURCE / "options/reference"
 VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc_elements", "4,24,1", "-rig_pad_elements", "2,2,1",
           "-rig_beam_elements", "3", "-contact_force", "10", "-contact_friction_damping"]
 # What could vary in that scene, were it given
@@ -24,13 +25,24 @@ ABSENT = re.compile(r"(^|_)(spin|\w+_(total|per_area)|moment|tension|shortening|
                     r"rotation|wear_(rate|rate_master|time)|mu_(static|kinetic|decay_speed|viscous|stribeck_speed))$")
 
 
+def text_of(folder):
+    """All pages of a folder."""
+    return "\n".join(page.read_text() for page in sorted(folder.glob("*.md")))
+
+
+def written(squeal, folder):
+    """The pages as they would be written now."""
+    shutil.copytree(PAGES, folder)
+    subprocess.run([sys.executable, SOURCE / "scripts/manual", "--reference", folder, squeal], capture_output=True, text=True,
+                   cwd=folder, check=True)
+    return text_of(folder)
+
+
 def faults_of(squeal, folder):
-    """What is wrong with the page, and with -help."""
+    """What is wrong with the pages, and with -help."""
     options = options_of([squeal], folder=folder)
-    text = PAGE.read_text()
-    now = subprocess.run([sys.executable, SOURCE / "scripts/manual", "--reference", PAGE, squeal], capture_output=True, text=True,
-                         cwd=folder, check=True).stdout
-    yield from (line for line in difflib.unified_diff(text.splitlines(), now.splitlines(), "page", "program", lineterm="", n=0))
+    now = written(squeal, Path(folder) / "reference")
+    yield from difflib.unified_diff(text_of(PAGES).splitlines(), now.splitlines(), "pages", "program", lineterm="", n=0)
     for name, example in re.findall(r"^\| `-(\w+)` \|.*\| `(.*)` \|$", now, re.MULTILINE):
         if not re.match(rf"-{name}( \S|$)", example):
             yield f"-{name}: '{example}' is no example of it"
@@ -62,9 +74,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         squeal = Path(sys.argv[1]).resolve()
         faults = [*faults_of(squeal, folder), *varied_faults(squeal, folder)]
-    print("\n".join(faults) or "the page is that of the program")
+    print("\n".join(faults) or "the pages are those of the program")
     if faults:
-        print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/reference.md PROGRAM")
+        print("to write the tables anew, with empty examples for new options: scripts/manual --reference options/reference PROGRAM")
     return 1 if faults else 0
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What the READMEs and pages say of the repository is so: every path that they name exists, every test of the table in
 tests/validation.md is one, faults of tests/faults.py are in that of tests/quality.md and can be planted in the sources as they are, and
-README.md has at most 900 words. Breaks when a file is moved or changed and a README or a fault is forgotten. Exit status: 0, or 1.
+README.md has at most 900 words, a page 3,000, a cell of a table 160 characters. Breaks when a file is moved or changed and a README or a
+fault is forgotten. Exit status: 0, or 1.
 
 A path is a word between backticks, or in an indented block, that begins with a folder of the top; NAME in it stands for
 anything. Names of C and Python files without a folder are looked for in all of them. Links are relative to the
@@ -15,7 +16,8 @@ import faults as planted
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("include/", "options/", "scripts/", "src/", "tests/")
-MOST_WORDS = 900
+MOST_WORDS, MOST_WORDS_PAGE, MOST_CELL = 900, 3000, 160
+CELL = re.compile(r"(?<!\\)\|")
 CODE = re.compile(r"`([^`]+)`|^    (.*)$", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)#]*)(?:#([^)]*))?\)")
 FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
@@ -59,6 +61,19 @@ def faults(readme):
             yield f"the link to {link}#{anchor} leads nowhere"
 
 
+def too_long():
+    """Pages of too many words, and rows of tables with a cell that is too long."""
+    for page in readmes():
+        text, name = page.read_text(), page.relative_to(ROOT)
+        length, most = len(text.split()), MOST_WORDS if name == Path("README.md") else MOST_WORDS_PAGE
+        if length > most:
+            yield f"{name}: {length} words, more than {most}"
+        for number, line in enumerate(FENCED.sub(lambda block: "\n" * block[0].count("\n"), text).splitlines(), 1):
+            longest = max((len(cell.strip()) for cell in CELL.split(line)), default=0) if line.startswith("|") else 0
+            if longest > MOST_CELL:
+                yield f"{name}:{number}: a cell of {longest} characters, more than {MOST_CELL}"
+
+
 def unknown_tests():
     """Names in the last column of the table of accuracy that are neither a case, a unit test nor one of meson.build."""
     accuracy = "".join(page.read_text() for page in (ROOT / "tests").glob("validation*.md"))
@@ -86,10 +101,8 @@ def lost_faults():
 def main():
     found = [f"{readme.relative_to(ROOT)}: {fault}" for readme in readmes() for fault in faults(readme)]
     found += [f"tests/validation*.md: there is no test {name}" for name in unknown_tests()]
-    found += lost_faults()
+    found += [*lost_faults(), *too_long()]
     length = len((ROOT / "README.md").read_text().split())
-    if length > MOST_WORDS:
-        found.append(f"README.md: {length} words, more than {MOST_WORDS}")
     n_words = sum(word.startswith(FOLDERS) for readme in readmes() for word in words(readme.read_text()))
     if n_words < 50:
         found.append(f"only {n_words} paths in {len(readmes())} READMEs: are they read as they are written?")

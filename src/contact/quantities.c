@@ -72,7 +72,7 @@ static const char *ContactIdleForce(const void *contact, const QuantityRun *run)
            : "not used by modes without -@friction_damping or a -@pressure_law";
 }
 
-/* Of a speed without a direction, and where neither friction nor its damping nor wear hangs on it */
+/* Of a speed without a direction, and where neither friction nor its damping nor wear depends on it */
 static const char *ContactIdleSpeed(const void *contact, const QuantityRun *run)
 {
   const ContactInterface *c = contact;
@@ -161,10 +161,8 @@ static const Quantity tie[] = {
    "each node of the slave follows its foot; means of both surfaces are one (mortar); or where not all meshes match "
    "(auto)",
    NULL, QUANTITY_WORD, TIE(discretization), .words = discretizations},
-  {"-far",
-   "nodes farther off are an error, or stay free; with mortar, chosen by auto too, those beside the master always stay "
-   "free, and others are an error",
-   NULL, QUANTITY_WORD, TIE(free), .words = fars, .idle = TieIdleFar},
+  {"-far", "nodes farther off are an error, or stay free; with mortar those beside the master always stay free", NULL,
+   QUANTITY_WORD, TIE(free), .words = fars, .idle = TieIdleFar},
 };
 
 static const QuantityTable ties          = {"Tie", "contact.h", PETSC_STATIC_ARRAY_LENGTH(tie), tie, .in = 0};

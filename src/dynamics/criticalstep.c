@@ -11,7 +11,7 @@
    symmetric Q D^-1/2 with its transpose where superelements make M more than the diagonal D (BodiesApplyRoot()).
    With its largest eigenvector x, x'Mx = 1, k = x'Kx, c = x'Cx, the next dt solves dt^2 k + 2 dt c = 2 / b: from
    above, since another vector may be worse at the new dt. lambda_max is raised by the tolerance of the residual, not
-   by the residual that is left, which hangs on rounding and ranks: the eigenvalue itself has twice its digits. Upper
+   by the residual that is left, which depends on rounding and ranks: the eigenvalue itself has twice its digits. Upper
    bound of lambda_max for the check: that of the single elements.
 */
 #include "dynamicsimpl.h"

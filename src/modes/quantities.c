@@ -71,9 +71,8 @@ static const Quantity rows[] = {
    "-..._force (auto)",
    NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE, .idle = ModesIdleContact},
   {MODES_DAMPING,
-   "route of a damped solution: projection on undamped modes and vectors for strong damping, or PEP where these are "
-   "too "
-   "many (auto); always projection (project), or PEP",
+   "route of a damped solution: projection on undamped modes (project), PEP (pep), or PEP only where a projection is "
+   "too large (auto)",
    NULL, QUANTITY_WORD, MODES_AT(damping), .initial = DAMPING_AUTO, .words = routes, MODES_GIVEN(has_route),
    .restart = PETSC_TRUE},
 };

@@ -41,10 +41,8 @@ static const Quantity rows[] = {
   {"-dynamics_compare", "eigenvalues of a reduced model beside those of the mesh in -modes_band", NULL, QUANTITY_BOOL,
    REDUCED_AT(request.compare), .initial = PETSC_TRUE, .idle = ReducedIdle, .in = RUN_TRANSIENT | RUN_CYCLE},
   {"-dynamics_verify",
-   "after a reduced run once more with half the step, and with 2.25 times the cut-off; an error where the rms of the "
-   "normal force "
-   "in the last half of the time, or the share of the time without contact, differs by more than 10 % beyond twice its "
-   "standard error",
+   "after a reduced run again with half the step, and with 2.25 times the cut-off; an error where forces differ by "
+   "more than 10 %",
    NULL, QUANTITY_BOOL, REDUCED_AT(request.verify), .idle = ReducedIdle, .in = RUN_HISTORY},
 };
 

@@ -83,9 +83,8 @@ static const Quantity rows[] = {
   {"-sample_restart", "go on where a run of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
    SAMPLE_AT(restart), .initial = PETSC_TRUE},
   {"-sample_conditions",
-   "CSV file of conditions in place of samples: condition, direction (forward, reverse), and columns named like "
-   "options "
-   "of the scene, with a unit in brackets, as piston_pressure [bar]",
+   "CSV file of conditions in place of samples: condition, direction (forward, reverse), columns named like options, "
+   "as piston_pressure [bar]",
    NULL, QUANTITY_PATH, SAMPLE_AT(file), .path = "file"},
   {"-sample_ignore", "columns of that file that are left out", NULL, QUANTITY_NAMES, SAMPLE_AT(ignored),
    .count = offsetof(struct _p_Sample, n_ignored)},

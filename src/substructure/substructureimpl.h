@@ -126,7 +126,7 @@ PETSC_INTERN PetscErrorCode InterfaceGather(Substructure s, Mat all, Mat inside)
 /* shapes/modes.c - all modes of two matrices below a frequency, Hz. Collective. */
 PETSC_INTERN PetscErrorCode MatrixModesSolve(MPI_Comm comm, Mat K, Mat M, PetscReal cutoff, MatrixModes *modes);
 PETSC_INTERN PetscErrorCode MatrixModesDestroy(MatrixModes *modes);
-/* shapes/canon.c - their vectors as columns of a dense block, in a basis that does not hang on rounding: node [own rows
+/* shapes/canon.c - their vectors as columns of a dense block, in a basis free of rounding's choice: node [own rows
    of K] tells place and direction of each. Collective. */
 PETSC_INTERN PetscErrorCode MatrixModesTake(Substructure s, const MatrixModes *modes, const PetscInt node[], Mat *Phi);
 

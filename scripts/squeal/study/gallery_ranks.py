@@ -49,7 +49,7 @@ RUNS = {
     "block": Run("block", "block", nudge=BLOCK),
     "bar_impact": Run("bar_impact", "bars", nudge=("right_young", STEEL)),
     "sliding_block": Run("sliding_block", "sliding_block", nudge=("block_young", 1e9), short="-ts_max_time 50e-3",
-                         why="at 51 ms friction stops it, and which node sticks first hangs on rounding"),
+                         why="at 51 ms friction stops it, and which node sticks first depends on rounding"),
     "massi2005": Run("massi2005", quick=SMALL),
     "massi2005 static": Run("massi2005", words="-analysis static", quick=SMALL),
     "massi2005_coarse": Run("massi2005 massi2005_coarse", quick="-rig_disc_elements 9,67,1 -rig_pad_elements 4,4,2"),

@@ -15,7 +15,7 @@
    from there on they agree best with a slave that ends at the border itself, and below they make frequencies too high;
    where all of a surface has less over the master, as faces larger than the master have, the most covered nodes have
    pairs. q are those nodes of the face that keep their pairs; where a face has none, those of the nearest faces. Every
-   rank decides for all nodes, from sums that do not hang on the ranks.
+   rank decides for all nodes, from sums that do not depend on the ranks.
 */
 #include "mortarimpl.h"
 

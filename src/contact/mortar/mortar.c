@@ -16,7 +16,7 @@
    master, to rounding of the overlap. Integrals are over the mesh at rest, n is that of the pair (pair.c).
 
    Every rank takes the facets around the slave nodes that it owns, first those all over the master, then the others,
-   each in the order of the surface, so that no sum hangs on the ranks.
+   each in the order of the surface, so that no sum depends on the ranks.
 */
 #include "mortarimpl.h"
 

@@ -268,7 +268,7 @@ static PetscErrorCode PairsPass(ContactProjector p, PetscInt n, PetscReal size[2
 
 /* Whether a sweep whose change (squared) comes after `last`, or after none, 0, is the last one: the next would change
    impulses by less than the tolerance, going by how fast changes decrease, in the step before where this one has not
-   shown it yet. Where the order of pairs hangs on the ranks, sweeps go on until changes are rounding: those of one
+   shown it yet. Where the order of pairs depends on the ranks, sweeps go on until changes are rounding: those of one
    term, or no longer decreasing. */
 static PetscBool SweepIsLast(const ContactProjector p, const ProjectorConvergence *c, PetscReal last, PetscReal scale)
 {

@@ -7,7 +7,8 @@ static const char *const kinematics[] = {[PETSC_FALSE] = "prescribed", [PETSC_TR
 static const Quantity forces[] = {
   {"-projector_max_it", "sweeps of Gauss-Seidel", NULL, QUANTITY_INT, QUANTITY_AT(struct _p_ContactProjector, max_it),
    .initial = 1000, QUANTITY_POSITIVE},
-  {"-projector_ranks", "ranks that solve the pairs; auto: all where 1,000 or more take one rank longer than its cells",
+  {"-projector_ranks",
+   "ranks that solve the contact pairs: one, all, or all only from 1,000 pairs on and where that is faster (auto)",
    NULL, QUANTITY_WORD, QUANTITY_AT(struct _p_ContactProjector, ranks), .words = ranks},
 };
 static const Quantity sliding[] = {

@@ -7,7 +7,7 @@
 
    with the phase of v at which the normal forces of the pairs are largest, the root of the sum of their squares, at t =
    0, and its sign by that of the pair of the largest, later pairs counting up to twice as much: the phase of an
-   eigensolver hangs on the signs of the bodies' modes, hence on ranks, and tells where the steps lie. From there
+   eigensolver depends on the signs of the bodies' modes, hence on ranks, and tells where the steps lie. From there
    Newton's method goes on at that amplitude: the plane of pseudo-arclength is normal to v, and the parameter is left
    free. While all pairs stay closed and slide the motion is linear, and the parameter that of the onset whatever a; it
    moves when pairs begin to open. Amplitude 1 is that at which normal forces of the pairs change by as much as they are

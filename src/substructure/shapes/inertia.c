@@ -109,7 +109,7 @@ static PetscErrorCode InertiaChoose(Substructure s, PetscReal E[], PetscReal mas
   PetscFunctionReturn(0);
 }
 
-/* V [n][n of the interface] in a basis that does not hang on rounding */
+/* V [n][n of the interface] in a basis that does not depend on rounding */
 static PetscErrorCode InertiaTurn(Substructure s, PetscInt n, const PetscReal mu[], const PetscReal mass[],
                                   const PetscReal V[], PetscReal turned[])
 {

@@ -7,7 +7,7 @@
       on each rank meanwhile: its other pairs
 
    so that only one rank at a time changes a shared node, all copies are alike to the last bit, and the sweep is one of
-   Gauss-Seidel over all pairs, in an order that hangs on the ranks. Hence the answer does by the tolerance
+   Gauss-Seidel over all pairs, in an order that depends on the ranks. Hence the answer does by the tolerance
    (ProjectorTolerance). Each rank knows the nodes of all others: colours are found without talking, greedily in the
    order of the ranks. Ranks that nothing joins, as where meshes match, neither wait nor talk.
 */
