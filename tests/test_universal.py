@@ -62,15 +62,15 @@ def check_round(folder):
     found = read(universal.units(1e3, 2.0) + universal.nodes(PLACES) + universal.trace([1, 7, 0, 120, 1]), folder)
     check(found.factors == (1e3, 2.0) and found.traces[0][1] == [1, 7, 0, 120, 1], "round: units and trace lines")
     one = {label: values(3, label) for label in PLACES}
-    found = read(universal.shape(one, 123.456, 0, 1, growth=-7.5), folder).shapes[0]
-    lam = complex(-7.5, 2 * np.pi * 123.456)
-    check(all(np.allclose(found.values[label], row, rtol=0, atol=1e-5) for label, row in one.items())
-          and np.isclose(found.freq, 123.456, rtol=1e-5)
-          and np.isclose(found.damping, 7.5 / abs(lam), rtol=1e-5), "round: a complex shape, frequency and damping of its eigenvalue")
-    found = read(universal.shape({label: row.real for label, row in one.items()}, 50.0, 0.012, 2), folder).shapes[0]
-    check(all(np.allclose(found.values[label], row.real, rtol=0, atol=1e-5) for label, row in one.items())
-          and (found.freq, found.damping) == (50, 0.012),
-          "round: a real shape")
+    for number in (55, 2414):
+        found = read(universal.shape(one, 123.456, 0, 1, growth=-7.5, dataset=number), folder).shapes[0]
+        lam = complex(-7.5, 2 * np.pi * 123.456)
+        check(all(np.allclose(found.values[label], row, rtol=0, atol=1e-5) for label, row in one.items())
+              and np.isclose(found.freq, 123.456, rtol=1e-5) and found.title == "MODE 1"
+              and np.isclose(found.damping, 7.5 / abs(lam), rtol=1e-5), f"round: a complex shape of dataset {number}, its eigenvalue")
+        found = read(universal.shape({label: row.real for label, row in one.items()}, 50.0, 0.012, 2, dataset=number), folder).shapes[0]
+        check(all(np.allclose(found.values[label], row.real, rtol=0, atol=1e-5) for label, row in one.items())
+              and (found.freq, found.damping) == (50, 0.012), f"round: a real shape of dataset {number}")
     wave = values(len(FREQ), 3) * 1e-7
     for binary in ("", "<", ">"):
         for form, digits in ((5, 1e-7 if binary else 1e-5), (6, 0 if binary else 1e-12)):
@@ -109,10 +109,13 @@ def check_left(folder):
     other = universal.function(FREQ, wave, (7, 3), (1, 2)).replace(f"{4:5d}{1:10d}{1:5d}".encode(), f"{6:5d}{1:10d}{1:5d}".encode())
     still = universal.shape({1: np.ones(3)}, 0, 0, 1).replace(universal.whole(1, 2, 2, 8, 2, 3).encode(),
                                                               universal.whole(1, 1, 2, 8, 2, 3).encode())
+    still += universal.shape({1: np.ones(3)}, 0, 0, 1, dataset=2414).replace(universal.whole(1).encode() + b"MODE 1",
+                                                                             universal.whole(2).encode() + b"MODE 1")
     said = read(universal.block(2412, "a\n") + universal.block(4711, "b\n") + 2 * other + still, folder).said
     check([line.split(":", 2)[2] for line in said] == [" dataset 2412 (elements) left out", " dataset 4711 (not understood) left out",
                                                       " function of type 6 (coherence) and 1 more left out",
-                                                      " dataset 55 of analysis 1 (static), no modes left out"], f"left: {len(said)} lines")
+                                                      " dataset 55 of analysis 1 (static), no modes left out",
+                                                      " dataset 2414 on elements, not at nodes left out"], f"left: {len(said)} lines")
 
 
 def examples():
@@ -125,6 +128,9 @@ def examples():
                                                                                                            even=False), LINES
     yield "binary.unv", head + universal.function(FREQ, wave, (7, -3), (1, 2), binary="<") \
         + universal.function(FREQ, wave, (1, 1), (1, 2), 5, False, binary=">") + shapes, BYTES + LINES
+    newer = universal.shape(one, 50.0, 0.01, 1, growth=-1.0, dataset=2414) \
+        + universal.shape({label: row.real for label, row in two.items()}, 60.0, 0.01, 2, dataset=2414)
+    yield "newer.unv", head + newer, LINES
     yield "old.unv", universal.nodes(PLACES, 15, 4) + universal.cylinder(4, 18) + shapes, LINES
     yield "modes.csv", b"freq_hz,damping_ratio\n100,0.01\n200,\n300,0.02\n", LINES
     yield "frf.csv", b"freq_hz,a_re_m_n,a_im_m_n\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n", LINES

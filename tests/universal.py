@@ -1,5 +1,5 @@
-"""Universal files after the published layout, as the tests write them: datasets 15, 2411, 82, 164, 55, 58 and 58b. It shares nothing with
-what reads them."""
+"""Universal files after the published layout, as the tests write them: datasets 15, 2411, 82, 164, 55, 2414, 58 and 58b. It shares nothing
+with what reads them."""
 
 import numpy
 
@@ -50,16 +50,22 @@ def trace(labels, name="lines"):
     return block(82, whole(1, len(labels), 1) + f"{name:<80}\n" + "".join(whole(*labels[k:k + 8]) for k in range(0, len(labels), 8)))
 
 
-def shape(values, freq, damping, number, growth=None):
-    """A mode: values [3] by label; complex ones with growth (1/s) as a complex mode, else as a real one."""
+def shape(values, freq, damping, number, growth=None, dataset=55):  # pylint: disable=too-many-arguments
+    """A mode: values [3] by label; complex ones with growth (1/s) as a complex mode, else as a real one; in dataset 55 or 2414."""
     is_complex = growth is not None
     head = whole(1, 3 if is_complex else 2, 2, 8, 5 if is_complex else 2, 3) + whole(2, 6 if is_complex else 4, 1, number)
     facts = (growth, 2 * numpy.pi * freq, 0, 0, 0, 0) if is_complex else (freq, 1.0, damping, 0.0)
     text = titles(f"MODE {number}") + head + rows(facts, 13, 5, 6)
+    if dataset == 2414:
+        line = whole(1, 3 if is_complex else 2, 2, 8, 5 if is_complex else 2, 3)
+        none = 6 * (0,)
+        of = (none, (growth, 2 * numpy.pi * freq, 0, 0, 0, 0)) if is_complex else ((0, freq, 0, 1, damping, 0), none)
+        text = whole(number) + f"{'Mode':<80}\n" + whole(1) + titles(f"MODE {number}") + line + whole(1, 1, 1, 0, 1, number, 0, 0) \
+            + whole(*8 * [0]) + rows(of[0], 13, 5, 6) + rows(of[1], 13, 5, 6)
     for label, row in values.items():
         row = numpy.stack([row.real, row.imag], axis=1).ravel() if is_complex else numpy.real(row)
         text += whole(label) + rows(row, 13, 5, 6)
-    return block(55, text)
+    return block(dataset, text)
 
 
 def function_head(response, reference, freq, count, form, even, numerator=8):

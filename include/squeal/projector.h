@@ -95,6 +95,10 @@ PetscErrorCode ContactProjectorGetFriction(ContactProjector projector, PetscInt 
 PetscErrorCode ContactProjectorGetFactors(ContactProjector projector, PetscInt interface, PetscReal t, PetscReal *speed,
                                           PetscReal *friction);
 
+/*@ ContactProjectorCheckSteps - that steps of dt (s) see the histories of sliding and friction: an error for swings of
+   fewer than two steps a cycle, warnings. Collective. @*/
+PetscErrorCode ContactProjectorCheckSteps(ContactProjector projector, PetscReal dt);
+
 /*@ ContactProjectorGetSteady - whether sliding and friction of an interface stay as they are once ramps are over. Not
    collective. @*/
 PetscErrorCode ContactProjectorGetSteady(ContactProjector projector, PetscInt interface, PetscBool *steady);

@@ -81,7 +81,10 @@ double CsvReal(Csv *csv, PetscInt column, PetscBool whole)
   char        *end;
   const double value = strtod(text, &end);
 
-  if (!csv->fault[0] && (end == text || *end || !(fabs(value) <= CSV_LARGEST) || (whole && value != rint(value))))
+  if (!csv->fault[0] && end != text && !*end && fabs(value) > CSV_LARGEST)
+    (void)snprintf(csv->fault, sizeof(csv->fault), "line %d: %s '%.40s' must be from -%.0e to %.0e", (int)csv->line,
+                   csv->column[column], text, CSV_LARGEST, CSV_LARGEST);
+  if (!csv->fault[0] && (end == text || *end || isnan(value) || (whole && value != rint(value))))
     (void)snprintf(csv->fault, sizeof(csv->fault), "line %d: %s '%.40s' is no %snumber", (int)csv->line,
                    csv->column[column], text, whole ? "whole " : "");
   return value;

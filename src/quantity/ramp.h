@@ -58,6 +58,14 @@ PETSC_INTERN PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[]
 /*@ RampSetUp - reads the table of one whose rows are read, and checks both. Collective. @*/
 PETSC_INTERN PetscErrorCode RampSetUp(MPI_Comm comm, const char name[], Ramp *ramp);
 
+/*@
+   RampCheckSteps - that steps of dt (s) see its swing and its table (resolved.c). Collective.
+
+   Errors: PETSC_ERR_USER_INPUT for fewer than two steps a cycle; a warning for fewer than ten, and for a row between
+   two steps that they leave out.
+@*/
+PETSC_INTERN PetscErrorCode RampCheckSteps(MPI_Comm comm, const char name[], const Ramp *ramp, PetscReal dt);
+
 /*@ RampDestroy - frees its table. Not collective. @*/
 PETSC_INTERN PetscErrorCode RampDestroy(Ramp *ramp);
 

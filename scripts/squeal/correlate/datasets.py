@@ -1,33 +1,21 @@
-"""Datasets of a universal file that a correlation needs: 15 and 2411 nodes, 82 trace lines, 55 shapes, 58 functions, 164 units.
+"""Datasets of a universal file that a correlation needs: 15 and 2411 nodes, 82 trace lines, 55 and 2414 shapes, 58 functions, 164 units.
 A universal file keeps a length of L m as length factor times L, hence values are divided by the factors of dataset 164."""
 
-import math
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy
 
+from .shapes import shape_55, shape_2414
 from .systems import CYLINDRICAL, systems_18, systems_2420
-from .universal import HEAD_58, TITLES, datasets, integers, reals, shown
-from ..tables import BadInput, printable
+from .universal import HEAD_58, datasets, integers, reals, shown, words
+from ..tables import BadInput
 
 FRF = 4  # of dataset 58: type of a function
-NORMAL, COMPLEX, COMPLEX_VELOCITY = 2, 3, 7  # of dataset 55: analyses that are modes
-ANALYSES = {0: "unknown", 1: "static", 4: "transient", 5: "frequency response", 6: "buckling", 9: "static, not linear"}
-WIDTHS = {2: 3, 3: 6}  # characteristic of the data -> values of a node
-NAMES = {151: "header", 1858: "qualifiers of functions", 2400: "model header", 2412: "elements", 2414: "analysis data", 2429: "groups",
+NAMES = {151: "header", 1858: "qualifiers of functions", 2400: "model header", 2412: "elements", 2429: "groups",
          2435: "groups", 2467: "groups", 2477: "groups"}
 FUNCTIONS = {0: "unknown", 1: "time response", 2: "auto spectrum", 3: "cross spectrum", 5: "transmissibility", 6: "coherence",
              9: "power spectral density", 12: "spectrum"}
-
-
-@dataclass
-class Shape:
-    """A mode: natural frequency (Hz), damping ratio, or nan; values [nodes][3] by label of the node."""
-    where: str
-    title: str
-    freq: float
-    damping: float
-    values: dict
 
 
 @dataclass
@@ -55,11 +43,6 @@ class Contents:
     functions: list = field(default_factory=list)
     factors: tuple | None = None  # of length and force
     said: list = field(default_factory=list)
-
-
-def words(line):
-    """A title."""
-    return printable(line.decode("utf-8", "replace").strip())
 
 
 class Reader:
@@ -141,67 +124,6 @@ class Reader:
         if factors is None or not 3 <= len(factors) <= 4 or not (factors[:2] > 0).all():
             raise self.wrong(data.line, "dataset 164 must have a line of words, then three factors above 0 and an offset")
         self.to.factors = tuple(factors[:2].tolist())
-
-    def shape_55(self, data):
-        """A mode; data of other analyses are left out with a line."""
-        lines, first = data.lines, data.line
-        head = integers(lines[TITLES], 6) if len(lines) > TITLES + 2 else None
-        if head is None:
-            raise self.wrong(first + min(TITLES, len(lines)), "dataset 55 must have five titles, then six whole numbers")
-        _, analysis, kind, _, form, width = head
-        numbers = integers(lines[TITLES + 1])
-        if not numbers or len(numbers) < 2 or numbers[0] != len(numbers) - 2 or not 0 <= numbers[1] <= 48:
-            raise self.wrong(first + TITLES + 1, f"{shown(lines[TITLES + 1])} must be two counts and as many whole numbers as the first "
-                             f"says")
-        begin = TITLES + 2 + -(-numbers[1] // 6)
-        facts = reals(b" ".join(lines[TITLES + 2:begin]))
-        if facts is None or len(facts) != numbers[1]:
-            raise self.wrong(first + TITLES + 2, f"must be {numbers[1]} numbers, as the line above states")
-        if analysis not in (NORMAL, COMPLEX, COMPLEX_VELOCITY) or kind not in WIDTHS:
-            what = f"of analysis {analysis} ({ANALYSES.get(analysis, 'unknown')}), no modes"
-            what = what if kind in WIDTHS else f"of characteristic {kind}, not vectors"
-            return self.leave(f"dataset 55 {what}", first)
-        if form not in (2, 4, 5, 6) or width != WIDTHS[kind]:
-            raise self.wrong(first + TITLES, f"data of type {form} with {width} values: must be 2, 4, 5 or 6, with {WIDTHS[kind]}")
-        values = self.values_55(data, begin, width * (2 if form > 4 else 1))
-        if form > 4:
-            values = {label: row[::2] + 1j * row[1::2] for label, row in values.items()}
-        if width == 6 and any(abs(row[3:]).any() for row in values.values()):
-            self.leave("rotations of dataset 55", first)
-        freq, damping = self.frequency(first, analysis, facts)
-        title = next((words(line) for line in lines[:TITLES] if words(line).upper() not in ("", "NONE")), "")
-        return self.to.shapes.append(Shape(f"{self.path}:{first}", title, freq, damping, {label: row[:3] for label, row in values.items()}))
-
-    def values_55(self, data, begin, count):
-        """Values by label of the node."""
-        found, step = {}, 1 + -(-count // 6)
-        for k in range(begin, len(data.lines), step):
-            label, row = integers(data.lines[k], 1), reals(b" ".join(data.lines[k + 1:k + step]))
-            if label is None or label[0] < 1:
-                raise self.wrong(data.line + k, f"{shown(data.lines[k])} is no label of a node")
-            if row is None or len(row) != count:
-                raise self.wrong(data.line + k + 1, f"node {label[0]} must have {count} numbers")
-            if label[0] in found:
-                raise self.wrong(data.line + k, f"node {label[0]} stands twice in one shape")
-            found[label[0]] = row
-        return found
-
-    def frequency(self, line, analysis, facts):
-        """Natural frequency and damping ratio of a mode."""
-        least = 4 if analysis == NORMAL else 2
-        if len(facts) < least:
-            raise self.wrong(line + TITLES + 1, f"a mode of analysis {analysis} has {least} numbers at least, here are {len(facts)}")
-        if analysis == NORMAL:
-            freq, damping, hysteretic = facts[0], facts[2], facts[3]
-            if hysteretic and not damping:
-                self.leave("hysteretic damping of dataset 55, taken as half of it viscous,", line)
-                damping = hysteretic / 2
-        else:
-            size = math.hypot(facts[0], facts[1])
-            freq, damping = abs(facts[1]) / (2 * math.pi), -facts[0] / size if size else math.nan
-        if freq < 0 or not -1 <= damping <= 1:
-            raise self.wrong(line + TITLES + 2, f"a mode of {freq:g} Hz with damping ratio {damping:g} is none")
-        return freq, damping if damping else math.nan
 
     def function_58(self, data):
         """A frequency response; other functions are left out with a line."""
@@ -288,8 +210,8 @@ class Reader:
 
     def read(self):
         """All of it."""
-        known = {15: self.nodes_15, 2411: self.nodes_2411, 82: self.traces_82, 55: self.shape_55, 58: self.function_58,
-                 164: self.units_164, 18: self.systems_all, 2420: self.systems_all}
+        known = {15: self.nodes_15, 2411: self.nodes_2411, 82: self.traces_82, 55: partial(shape_55, self),
+                 2414: partial(shape_2414, self), 58: self.function_58, 164: self.units_164, 18: self.systems_all, 2420: self.systems_all}
         for data in datasets(self.path):
             if data.number in known:
                 known[data.number](data)

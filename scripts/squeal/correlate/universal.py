@@ -10,9 +10,9 @@ import numpy
 from ..tables import BadInput, printable, regular
 
 MARK = b"-1"
-TITLES = 5  # lines of free text at the head of datasets 55 and 58, which may hold anything
+TITLES = 5  # lines of free text at the head of datasets 55, 58 and, behind three others, 2414, which may hold anything
 HEAD_58 = 11  # lines before the numbers of dataset 58
-FREE = {55: TITLES, 58: TITLES}
+FREE = {55: TITLES, 58: TITLES, 2414: 3 + TITLES}
 TOUCHING = re.compile(rb"(?<=[0-9.])(?=[-+])")  # numbers that fill their columns: -1.5E+00-2.5E+00
 FORTRAN = bytes.maketrans(b"dD", b"EE")
 BINARY = re.compile(rb"\s*58b\s+(\d+)\s+(\d+)\s+(\d+)\s+(\d+)(?:\s+\d+)*\s*", re.IGNORECASE)
@@ -61,6 +61,11 @@ class Cursor:
 def shown(text):
     """The begin of a line, for an error."""
     return "'" + printable(text.decode("utf-8", "replace").strip()[:40]) + "'"
+
+
+def words(line):
+    """A title."""
+    return printable(line.decode("utf-8", "replace").strip())
 
 
 def raw_block(cursor, head, first):

@@ -21,14 +21,20 @@ TINY = 1e-9  # of the largest variance: directions that are left out
 
 @dataclass
 class Onset:
-    """A row of onsets.csv with the differences of its critical value, by direction; nan where it is not there."""
+    """A row of onsets.csv with the differences of its critical value by direction, nan where it is not there, and the steps they are of."""
     row: dict
     first: list = field(default_factory=list)
     second: list = field(default_factory=list)
+    steps: list = field(default_factory=list)
+    draws: numpy.ndarray | None = None  # critical values of scripts/update --draws
 
     def deviation(self):
         """Standard deviation."""
         return math.sqrt(sum(x**2 for x in self.first))
+
+    def at(self, t):
+        """Critical value at t from the parameters found, to first order."""
+        return self.row["critical_value"] + sum(x * (step @ t) / (step @ step) for x, step in zip(self.first, self.steps))
 
     def bend(self):
         """By how much the mean is moved."""
@@ -69,6 +75,7 @@ def onsets_of(model, found, text):
         step = math.sqrt(variances[k]) * vectors[:, k]
         sides = [partners(onsets, sweep(model, found.t + sign * step, name, values)) for sign in (1, -1)]
         for one, up, down in zip(onsets, *sides):
+            one.steps.append(step)
             both = up is not None and down is not None
             one.first.append((up["critical_value"] - down["critical_value"]) / 2 if both else math.nan)
             one.second.append(up["critical_value"] + down["critical_value"] - 2 * one.row["critical_value"] if both else math.nan)

@@ -11,7 +11,8 @@ PARAMETERS = ("parameter", "unit", "start", "value", "low_95", "high_95", "devia
 READ = {"parameter": str, "value": float, "held_percent": float}
 INTERVAL = 1.959963984540054  # standard deviations to each side of a 95 % interval
 BENT = 0.3  # of the standard deviation of an onset, that the curve moves it by
-ONSETS = ("parameter", "critical_value", "low_95", "high_95", "deviation", "second_order", "freq_hz", "kind", "label")
+ONSETS = ("parameter", "critical_value", "low_95", "high_95", "deviation", "second_order", "freq_hz", "kind", "label", "draws",
+          "draws_low_95", "draws_high_95")
 LEFT = 1.0  # per cent of its own direction that the data do not tell, from which on a parameter is not identified
 OPEN = 1e3  # deviation from which on nothing is known
 ROUNDING = 1e-12  # of a direction
@@ -30,11 +31,11 @@ def deviation_of(fit, k):
 
 def parameter_rows(model, fit, prior):
     """Rows of update.csv."""
+    before = numpy.sqrt(numpy.diag(numpy.linalg.inv(prior.weight + numpy.eye(len(prior.weight)) / OPEN**2)))  # with all others unknown
     for k, (name, value) in enumerate(model.values(fit.t).items()):
         deviation, left = deviation_of(fit, k), held_share(fit, k)
-        weight = prior.weight[k, k]
         ends = [value * math.exp(sign * INTERVAL * deviation) for sign in (-1, 1)] if left < LEFT else ("", "")
-        yield (name, model.units[name], model.start[name], value, *ends, 100 * deviation, 100 / math.sqrt(weight) if weight > 0 else "",
+        yield (name, model.units[name], model.start[name], value, *ends, 100 * deviation, 100 * before[k] if before[k] < OPEN / 2 else "",
                left)
 
 
@@ -112,6 +113,12 @@ def print_all(model, fit, prior):
     print(f"{fit.models} models, {model.runs} runs, {model.seconds:.1f} s of a processor" + ("" if fit.converged else "; NOT CONVERGED"))
 
 
+def drawn_interval(draws):
+    """How many draws have an onset, and its 95 % interval; nothing of fewer than 40."""
+    found = draws[numpy.isfinite(draws)] if draws is not None else ()
+    return (len(found), *map(float, numpy.quantile(found, (0.025, 0.975)))) if len(found) >= 40 else ("", "", "")
+
+
 def tell_onsets(name, onsets, output):
     """Writes and prints the onsets with their intervals, of which that of the sweep itself is part."""
     rows = []
@@ -119,13 +126,17 @@ def tell_onsets(name, onsets, output):
         deviation = math.hypot(one.deviation(), one.row["error_estimate"]) if one.first else math.nan
         value = one.row["critical_value"]
         rows.append((name, value, *((value - INTERVAL * deviation, value + INTERVAL * deviation, deviation, one.bend())
-                                    if math.isfinite(deviation) else 4 * [""]), one.row["freq_hz"], one.row["kind"], one.row["label"]))
+                                    if math.isfinite(deviation) else 4 * [""]), one.row["freq_hz"], one.row["kind"], one.row["label"],
+                     *drawn_interval(one.draws)))
         if math.isfinite(deviation):
             said = f"+- {INTERVAL * deviation:.2g} (95 %)" + (
                 ", whose dependence is bent: -analysis sample tells more" if abs(one.bend()) > BENT * deviation else "")
         else:
             said = "but not for all parameters within their intervals"
         print(f"{one.row['kind'].replace('_', ' ')} at {name} = {value:.5g} {said}, {one.row['freq_hz']:.1f} Hz {one.row['label']}")
+        if rows[-1][-3]:
+            print(f"  of {len(one.draws)} draws: {numpy.nanmedian(one.draws):.5g}, 95 % from {rows[-1][-2]:.5g} to {rows[-1][-1]:.5g}"
+                  + (f"; {len(one.draws) - rows[-1][-3]} have none near" if rows[-1][-3] < len(one.draws) else ""))
     if not rows:
         print(f"no onset over {name}")
     write_rows(output / "update_onsets.csv", ONSETS, rows)

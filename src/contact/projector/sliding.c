@@ -134,6 +134,21 @@ PetscErrorCode ContactProjectorGetFactors(ContactProjector p, PetscInt interface
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactProjectorCheckSteps(ContactProjector p, PetscReal dt)
+{
+  char name[160];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n_interfaces; i++) {
+    const ContactInterface *c = &p->contact->interfaces[i];
+
+    PetscCall(SlidingNameFriction(c, sizeof(name), name));
+    PetscCall(RampCheckSteps(p->contact->comm, c->name, &p->sliding[i].ramp, dt));
+    PetscCall(RampCheckSteps(p->contact->comm, name, &p->sliding[i].friction, dt));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactProjectorGetSteady(ContactProjector p, PetscInt interface, PetscBool *steady)
 {
   const ContactSliding *sliding = &p->sliding[interface];

@@ -107,6 +107,9 @@ PETSC_INTERN PetscErrorCode ExternalCheckLate(External external, PetscReal end, 
 PETSC_INTERN PetscErrorCode ExternalCheckDelay(External external, const char name[], PetscReal delay, PetscReal end,
                                                LateJudge judge);
 
+/* ExternalCheckSteps - that steps of dt (s) see the histories of loads and motions. Collective. */
+PETSC_INTERN PetscErrorCode ExternalCheckSteps(External external, PetscReal dt);
+
 /* ExternalIsHitting - whether an impulse acts in the step that ExternalAdvance() began. Not collective. */
 PETSC_INTERN PetscBool ExternalIsHitting(External external);
 

@@ -41,6 +41,22 @@ PetscErrorCode ExternalCheckDelay(External external, const char name[], PetscRea
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ExternalCheckSteps(External external, PetscReal dt)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < external->n_loads; i++) {
+    const TimedLoad *load = &external->loads[i];
+
+    PetscCall(RampCheckSteps(external->comm, load->name, &load->ramp, dt));
+  }
+  for (PetscInt i = 0; i < external->n_motions; i++) {
+    const Drive *motion = &external->motions[i];
+
+    PetscCall(RampCheckSteps(external->comm, motion->prescribed->name, &motion->ramp, dt));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExternalCheckLate(External external, PetscReal end, PetscReal dt, LateJudge judge)
 {
   /* t_n of the last step; 1e-12 keeps an end that is a whole number of steps but for rounding from one more */

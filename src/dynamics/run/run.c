@@ -27,6 +27,8 @@ PetscErrorCode DynamicsCheckTimes(Dynamics d, PetscReal end, PetscReal dt)
 {
   PetscFunctionBeginUser;
   PetscCall(ExternalCheckLate(d->external, end, dt, LATE_ALL));
+  PetscCall(ExternalCheckSteps(d->external, dt));
+  if (d->n_interfaces) PetscCall(ContactProjectorCheckSteps(d->projector, dt));
   for (PetscInt i = 0; i < d->n_interfaces; i++) {
     const ContactInterface *c = &d->interfaces[i];
     PetscReal               delay;

@@ -47,8 +47,9 @@ PETSC_INTERN PetscErrorCode DynamicsCheckExact(Dynamics dynamics);
    is asked for, and the run's is 0. Not collective. */
 PETSC_INTERN PetscErrorCode DynamicsSetEndless(Dynamics dynamics);
 
-/* DynamicsCheckTimes - what comes after the end of a run of steps dt, s: ExternalCheckLate(), sliding that begins
-   there, and an interval of checkpoints that is longer than the run, an error of the command line. Collective. */
+/* DynamicsCheckTimes - what steps dt, s, do not see of histories (ExternalCheckSteps()); what comes after the end of
+   the run: ExternalCheckLate(), sliding that begins there, and an interval of checkpoints that is longer than the run,
+   an error of the command line. Collective. */
 PETSC_INTERN PetscErrorCode DynamicsCheckTimes(Dynamics dynamics, PetscReal end, PetscReal dt);
 
 /* DynamicsGetStep - step and end of a run whose caller takes another `dt` where -ts_dt does not say one. Collective. */
