@@ -6,7 +6,10 @@
 from the sliding state u = -mu(v) N / k with a velocity, by scipy's solve_ivp (DOP853, rtol 1e-10) between the events w = 0 and
 k |u| = mu_s N; in between it sticks, u' = -v. TRANSIENT is a folder with transient.csv, whose friction_force_n and tip_vy_m_s are
 compared: the largest difference of the velocity to 5e-3, and the mean one of the force to 2e-2, of the largest values. The block is
-no rigid mass: with ten times its modulus 1.1e-3 and 2e-3 are left. A decay speed of 1 % more is off by 9e-3."""
+no rigid mass: with ten times its modulus 1.1e-3 and 2e-3 are left. A decay speed of 1 % more is off by 9e-3.
+
+With --closed TOLERANCE the block of tests/cases/stick_slip.toml, whose friction falls at once: with D = (mu_s - mu_k) N / k and
+w = sqrt(k / m) it swings about -mu_k N / k by sqrt(D^2 + (v / w)^2), with the period 2 D / v + (2 / w) (pi - atan(w D / v))."""
 
 import argparse
 import csv
@@ -59,13 +62,32 @@ def integrate(times):
     return velocity, force, n_sticks
 
 
+def closed(times, place, normal, tolerance):
+    """Least and largest displacement after the first stop, and the last period, beside the closed form."""
+    stiffness, static, kinetic, speed = 1e4, 0.4, 0.2, 0.1
+    fall, rate = (static - kinetic) * normal / stiffness, math.sqrt(stiffness)
+    size = math.hypot(fall, speed / rate)
+    period = 2 * fall / speed + 2 / rate * (math.pi - math.atan(rate * fall / speed))
+    x = place + kinetic * normal / stiffness
+    up = numpy.flatnonzero((x[:-1] < 0) & (x[1:] >= 0) & (times[1:] > 0.5 * period))
+    zeros = times[up] - x[up] * (times[up + 1] - times[up]) / (x[up + 1] - x[up])
+    late = times > zeros[-2]
+    off = -x[late].min() / size - 1, x[late].max() / size - 1, (zeros[-1] - zeros[-2]) / period - 1
+    print(f"{len(zeros)} periods of {period:.6g} s, by {size:.6g} m; off: {off[0]:.2e} down, {off[1]:.2e} up, period {off[2]:.2e}")
+    return len(zeros) > 1 and max(map(abs, off)) <= tolerance
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("transient", type=Path)
+    parser.add_argument("--closed", type=float, metavar="TOLERANCE")
     args = parser.parse_args()
     with (args.transient / "transient.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     times, found, pulled = (numpy.array([float(row[name]) for row in rows]) for name in ("time_s", "tip_vy_m_s", "friction_force_n"))
+    if args.closed:
+        place, normal = (numpy.array([float(row[name]) for row in rows]) for name in ("tip_y_m", "normal_force_n"))
+        raise SystemExit(not closed(times, place, normal.mean(), args.closed))
     velocity, force, n_sticks = integrate(times)
     sticks = sum(row["n_stick"] == "4" for row in rows)
     off = abs(found - velocity).max() / abs(velocity).max(), abs(pulled - force).mean() / abs(force).max()

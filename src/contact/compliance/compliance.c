@@ -53,7 +53,7 @@ static PetscErrorCode ComplianceAllocate(PetscInt n, ContactCompliance *complian
                          &c->chord.border, 4 * n, &c->chord.want, 4 * n, &c->chord.next));
   PetscCall(PetscCalloc4(n, &c->chord.frame, 4 * n, &c->chord.b, 4 * n, &c->chord.s, 4 * n, &c->chord.z));
   PetscCall(PetscCalloc2(3 * n, &c->chord.x, 3 * n, &c->chord.f));
-  PetscCall(PetscCalloc1(3 * n, &c->slip));
+  PetscCall(PetscCalloc3(3 * n, &c->slip, n, &c->rests, n, &c->hold));
   PetscCall(PetscMalloc2(3 * n * COMPLIANCE_MIXED, &c->chord.basis, 3 * n * COMPLIANCE_MIXED, &c->chord.step));
   c->totals   = (ComplianceReport){.converged = PETSC_TRUE, .worst = -1};
   *compliance = c;
@@ -123,6 +123,14 @@ PetscErrorCode ContactComplianceSetFriction(ContactCompliance c, const FrictionL
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactComplianceSetResting(ContactCompliance c, const ContactStatus status[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++)
+    c->rests[p] = c->varies[p] && status[p] == CONTACT_STICK ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactComplianceSetTolerance(ContactCompliance c, PetscReal rtol)
 {
   PetscFunctionBeginUser;
@@ -188,7 +196,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(ComplianceDualDestroy(c));
   PetscCall(ComplianceDestroySprings(c));
   PetscCall(PetscFree4(c->krylov.held, c->krylov.released, c->krylov.motion, c->krylov.force));
-  PetscCall(PetscFree(c->slip));
+  PetscCall(PetscFree3(c->slip, c->rests, c->hold));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(0);
 }

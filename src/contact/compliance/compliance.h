@@ -101,6 +101,10 @@ PETSC_INTERN PetscErrorCode ContactComplianceCheckDefinite(ContactCompliance com
 PETSC_INTERN PetscErrorCode ContactComplianceSetFriction(ContactCompliance compliance, const FrictionLaw friction[],
                                                          PetscReal dt);
 
+/*@ ContactComplianceSetResting - statuses [n] at the end of the step before: pairs that stick go on resting while
+    mu(0) holds them, however steeply mu falls with the slip speed. Not collective. @*/
+PETSC_INTERN PetscErrorCode ContactComplianceSetResting(ContactCompliance compliance, const ContactStatus status[]);
+
 /*@ ContactComplianceSetSprings - laws [n] in series with the pairs, copied; once. W is copied. Not collective. @*/
 PETSC_INTERN PetscErrorCode ContactComplianceSetSprings(ContactCompliance compliance, const PairSpring law[]);
 

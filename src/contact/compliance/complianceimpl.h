@@ -18,6 +18,9 @@ typedef struct {
 #define COMPLIANCE_MIXED 12   /* differences of iterates that are combined */
 #define COMPLIANCE_WEAK  300. /* slip over friction of a pair that chord.c gives no index across its slip */
 
+/* Whether a pair has mu(0), as it rests, in a step (step.c) */
+typedef enum { HOLD_NONE, HOLD_RESTS, HOLD_RELEASED } ComplianceHold;
+
 /* A pair as chord.c holds it */
 typedef struct {
   PetscReal e[2], mu, c; /* direction of slip; friction coefficient; slip over friction, 0 sticks */
@@ -83,6 +86,8 @@ struct _p_ContactCompliance {
   FrictionLaw      *friction; /* [n] */
   PetscReal        *mu;       /* [n] at the stated speed */
   PetscBool        *varies;   /* [n] with the slip speed */
+  PetscBool        *rests;    /* [n] those that vary, at the end of the step before */
+  ComplianceHold   *hold;     /* [n] */
   PetscReal         weight;   /* a: statuses are decided by l - a v */
   PetscReal         dt, rtol;
   PetscReal        *free;    /* v without forces, [n][3] */

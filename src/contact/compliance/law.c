@@ -13,7 +13,8 @@
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
 /* mu of the slip speed |v_T| / dt (m/s) at the present v, and how it falls per length of w: d mu / d|w_T| = mu'(s) /
-   (dt weight), 1/m, since |w_T| = weight |v_T|. k infinite: the pair has no compliance of its own, it is in W. */
+   (dt weight), 1/m, since |w_T| = weight |v_T|. A
+   pair that is held has mu(0). k infinite: the pair has no compliance of its own, it is in W. */
 CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
   PetscReal   slip;
@@ -21,6 +22,10 @@ CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal w
 
   for (PetscInt i = 0; i < 3; i++) w[i] = -weight * c->v[3 * p + i];
   if (!c->varies[p]) return pair;
+  if (c->hold[p] == HOLD_RESTS) {
+    pair.mu = FrictionMu(&c->friction[p], 0);
+    return pair;
+  }
   slip      = hypot(c->v[3 * p + 1], c->v[3 * p + 2]) / c->dt;
   pair.mu   = FrictionMu(&c->friction[p], slip);
   pair.fall = pair.mu > 0 ? FrictionSlope(&c->friction[p], slip) / (c->dt * weight) : 0;
@@ -53,11 +58,11 @@ PetscErrorCode ComplianceMove(ContactCompliance c)
   PetscFunctionReturn(0);
 }
 
-/* noise: v of a closed pair is a small difference of free and W kappa l. What rounding of the two leaves is not the
-   method's fault, and a residual below it cannot be asked for. */
+/* noise: v of a closed pair is a small difference of free and W kappa l. What rounding of the two leaves, also in mu
+   where that falls steeply, is not the method's fault, and a residual below it cannot be asked for. */
 void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
 {
-  PetscReal sum = 0, size = 0;
+  PetscReal sum = 0, size = 0, steepest = 1;
 
   *miss = (ComplianceMiss){.worst = -1};
   for (PetscInt p = 0; p < c->n; p++) {
@@ -69,6 +74,7 @@ void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
     pair   = ComplianceGetPair(c, p, 1, w);
     square = PetscSqr(l[0] - PetscMax(0, l[0] - v[0])) + PetscSqr(CoulombResidual(&pair, l, w));
     sum += square;
+    steepest = PetscMax(steepest, PetscAbsReal(pair.fall) * l[0]);
     for (PetscInt i = 0; i < 3; i++) {
       miss->scale = PetscMax(miss->scale, PetscAbsReal(l[i]));
       if (l[0] > 0) size = PetscMax(size, PetscAbsReal(c->free[3 * p + i]) + PetscAbsReal(v[i]));
@@ -78,7 +84,7 @@ void ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss)
     miss->worst   = p;
   }
   miss->norm  = PetscSqrtReal(sum);
-  miss->noise = MOTION_NOISE * PETSC_MACHINE_EPSILON * size;
+  miss->noise = MOTION_NOISE * PETSC_MACHINE_EPSILON * size * steepest;
 }
 
 PetscBool ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss)

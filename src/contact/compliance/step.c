@@ -1,5 +1,10 @@
 /*
    One step on W as it is: scales of the pairs, the order of the methods, the report. Statuses are decided at its end.
+
+   Where mu falls so steeply with the slip speed that a step has more than one solution, a pair may stick by its static
+   friction, or slide with less at once. A pair that rests goes on resting while mu(0) holds it, and so does one whose
+   slip would turn back within the step: it passes rest. Such pairs have mu(0) first; those that slide with that are
+   released, and the laws are solved again.
 */
 #include "complianceimpl.h"
 
@@ -88,13 +93,6 @@ static PetscErrorCode StepBegin(ContactCompliance c, const PetscReal q[], const 
   PetscFunctionReturn(0);
 }
 
-/* Forces out, statuses decided */
-static void StepEnd(ContactCompliance c, PetscReal lambda[])
-{
-  ComplianceChoose(c);
-  for (PetscInt i = 0; i < 3 * c->n; i++) lambda[i] = c->kappa[i / 3] * c->l[i];
-}
-
 /* The residual is relative to scale + noise / rtol, hence below rtol exactly where ComplianceIsSolved() says so */
 static void StepJudge(ContactCompliance c, const ComplianceMiss *miss)
 {
@@ -119,27 +117,73 @@ void ComplianceReportStep(ContactCompliance c)
   all->worst    = one->worst;
 }
 
+/* The methods one after the other until the laws hold */
+static PetscErrorCode StepIterate(ContactCompliance c, ComplianceMiss *miss)
+{
+  PetscFunctionBeginUser;
+  if (ComplianceIsMap(c)) {
+    PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, miss));
+  } else
+    PetscCall(ComplianceChordIterate(c, miss));
+  c->report.route = ComplianceIsMap(c) ? COMPLIANCE_NEWTON : COMPLIANCE_CHORD;
+  while (!ComplianceIsSolved(c, miss) &&
+         c->report.route < (ComplianceIsMap(c) ? COMPLIANCE_DAMPED : COMPLIANCE_PATH)) {
+    c->report.route++;
+    if (c->report.route == COMPLIANCE_NEWTON) PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, miss));
+    if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, miss));
+    if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, miss));
+  }
+  if (ComplianceIsSolved(c, miss)) PetscCall(ComplianceRefine(c, miss));
+  ComplianceChoose(c);
+  PetscFunctionReturn(0);
+}
+
+/* Releases held pairs that slide, and holds those that turn back beside the guess, each once in a step; true where
+   there are any, so that the laws are solved again */
+static PetscBool StepHoldOthers(ContactCompliance c, const PetscReal lambda[])
+{
+  PetscBool changed = PETSC_FALSE;
+
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal *l = &c->l[3 * p], *before = &lambda[3 * p];
+
+    if (!c->varies[p] || c->status[p] != CONTACT_SLIP || c->hold[p] == HOLD_RELEASED) continue;
+    if (c->hold[p] == HOLD_NONE && l[1] * before[1] + l[2] * before[2] >= 0) continue;
+    c->hold[p] = c->hold[p] == HOLD_NONE ? HOLD_RESTS : HOLD_RELEASED;
+    changed    = PETSC_TRUE;
+  }
+  return changed;
+}
+
+/* Laws that do not hold with pairs held are solved from the guess without */
+static PetscErrorCode StepLetGo(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
+                                const PetscReal lambda[], ComplianceMiss *miss)
+{
+  PetscBool held = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) {
+    if (c->hold[p] == HOLD_RESTS) held = PETSC_TRUE;
+    c->hold[p] = HOLD_RELEASED;
+  }
+  if (!held) PetscFunctionReturn(0);
+  PetscCall(StepBegin(c, q, slip0, lambda));
+  PetscCall(StepIterate(c, miss));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ComplianceSolveLines(ContactCompliance c, const PetscReal q[], const PetscReal slip0[],
                                     PetscReal lambda[])
 {
   ComplianceMiss miss;
 
   PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < c->n; p++) c->hold[p] = c->rests[p] ? HOLD_RESTS : HOLD_NONE;
   PetscCall(StepBegin(c, q, slip0, lambda));
-  if (ComplianceIsMap(c)) {
-    PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
-  } else
-    PetscCall(ComplianceChordIterate(c, &miss));
-  c->report.route = ComplianceIsMap(c) ? COMPLIANCE_NEWTON : COMPLIANCE_CHORD;
-  while (!ComplianceIsSolved(c, &miss) &&
-         c->report.route < (ComplianceIsMap(c) ? COMPLIANCE_DAMPED : COMPLIANCE_PATH)) {
-    c->report.route++;
-    if (c->report.route == COMPLIANCE_NEWTON) PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, &miss));
-    if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, &miss));
-    if (c->report.route == COMPLIANCE_PATH) PetscCall(ComplianceFollow(c, &miss));
-  }
-  if (ComplianceIsSolved(c, &miss)) PetscCall(ComplianceRefine(c, &miss));
+  do PetscCall(StepIterate(c, &miss));
+  while (ComplianceIsSolved(c, &miss) && StepHoldOthers(c, lambda));
+  if (!ComplianceIsSolved(c, &miss)) PetscCall(StepLetGo(c, q, slip0, lambda, &miss));
   StepJudge(c, &miss);
-  StepEnd(c, lambda);
+  for (PetscInt i = 0; i < 3 * c->n; i++) lambda[i] = c->kappa[i / 3] * c->l[i];
   PetscFunctionReturn(0);
 }

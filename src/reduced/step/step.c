@@ -181,6 +181,7 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
   report->residual = 0;
   report->its      = 0;
   if (!n) PetscFunctionReturn(0);
+  PetscCall(ContactComplianceSetResting(s->laws, state->status));
   PetscCall(ContactComplianceSolve(s->laws, s->free, s->slip0, state->p, NULL, &solved));
   PetscCheck(solved.converged, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED,
              "contact forces do not converge at %.6g s: residual %.2e of pair %" PetscInt_FMT
