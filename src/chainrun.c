@@ -256,7 +256,7 @@ const AnalysisRow chain_analyses[N_ANALYSES] = {
   [ANALYSIS_MODES]  = {SQUEAL_MODES, SHOWN_MODES, ChainGivePencil, ChainSolveModes, ChainWriteModes, ChainViewModes,
                        .uses = LINEAR | USES_LAWS},
   [ANALYSIS_SWEEP]  = {SQUEAL_SWEEP, SHOWN_SWEEP, ChainForgetPencil, ChainSolveSweep, ChainWriteSweep, ChainViewSweep,
-                       .add = ChainAddSweep, .uses = LINEAR},
+                       .add = ChainAddSweep, .uses = LINEAR | USES_LAWS},
   [ANALYSIS_STATIC] = {SQUEAL_STATICS, SHOWN_STATICS, NULL, ChainSolveStatics, ChainWriteStatics, ChainViewStatics,
                        .does = RUN_EQUILIBRIUM, .uses = USES_LOADS | USES_LAWS},
   [ANALYSIS_TRANSIENT] = {SQUEAL_DYNAMICS, SHOWN_DYNAMICS, NULL, ChainIntegrate, NULL, ChainViewTransient,

@@ -122,7 +122,7 @@ static PetscErrorCode ScopeNameLaw(const Scope *s, size_t size, char text[], Pet
 
     if (!p->law.kind) continue;
     *hysteretic = p->law.kind == VISCOELASTIC_HYSTERETIC ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(ViscoelasticName(&p->law, 0, &option, name));
+    PetscCall(ViscoelasticName(&p->law, -1, &option, name));
     PetscCall(PetscSNPrintf(text, size, "-%s_%s", p->name, option));
   }
   PetscFunctionReturn(0);
@@ -138,12 +138,13 @@ PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *s)
   PetscCall(ScopeNameLaw(s, sizeof(option), option, &hysteretic));
   if (!option[0]) PetscFunctionReturn(0);
   PetscCall(OperatorsGetSave(s->operators, &folder));
-  PetscCheck(s->uses & USES_LAWS, comm, PETSC_ERR_USER_INPUT,
-             "%s makes the stiffness depend on the frequency, which -analysis %s does not know as yet, only modes, frf "
-             "and static, which has the static stiffness; %s",
-             option, AnalysisNames[s->analysis],
-             hysteretic && s->model ? "give -model_loss_frequency, Hz, for damping that is exact there"
-                                    : "leave it out, or damp with -..._beta or a -..._kind damping matrix");
+  PetscCheck(
+    s->uses & USES_LAWS, comm, PETSC_ERR_USER_INPUT,
+    "%s makes the stiffness depend on the frequency, which -analysis %s does not know as yet, only modes, frf, "
+    "sweep with -sweep_method full, and static, which has the static stiffness; %s",
+    option, AnalysisNames[s->analysis],
+    hysteretic && s->model ? "give -model_loss_frequency, Hz, for damping that is exact there"
+                           : "leave it out, or damp with -..._beta or a -..._kind damping matrix");
   PetscCheck(!folder[0], comm, PETSC_ERR_USER_INPUT,
              "-operators_save %s: %s makes the stiffness depend on the frequency, which no matrix has; leave one of "
              "them out",

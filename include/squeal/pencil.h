@@ -305,6 +305,9 @@ PetscErrorCode PencilGetParts(Pencil pencil, PencilParts *parts);
     collective. @*/
 PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex *slope);
 
+/*@ OperatorsHaveLaws - the same of their parts and matrices. Not collective. @*/
+PetscBool OperatorsHaveLaws(Operators operators);
+
 /*@ PencilHasLaws - whether stiffness depends on the eigenvalue. Not collective. @*/
 PetscBool PencilHasLaws(Pencil pencil);
 

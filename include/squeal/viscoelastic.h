@@ -18,7 +18,8 @@
    Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984). Off the axis it is continued to first order: with
    lambda = |lambda| e^(i pi / 2 + i d) its value at |lambda| plus i d times the slope in log w there, as of an analytic
    function; what is left out is of second order in d, about -sigma / w. Beyond its ends it is constant; callers refuse
-   what lies there.
+   what lies there. Between tables of two temperatures log(E (1 + i eta)) is linear in the temperature T, so that
+   log |E| and the loss angle are; beyond the first and the last T nothing is known, and it is refused.
 
    All laws but tables are zero at lambda = 0: E is the static modulus, of slow motions, with a table too.
 */
@@ -46,14 +47,21 @@ typedef struct {
   PetscComplex modulus, slope;
 } ViscoelasticRow;
 
-/* A law with its values: eta; E_1 .. E_n, tau_1 .. tau_n (Pa, s); E_1, tau, a; none of a table */
+/* Rows of one temperature */
 typedef struct {
-  ViscoelasticKind       kind;
-  PetscInt               n;     /* values */
-  PetscReal              young; /* E, Pa */
-  PetscReal              value[VISCOELASTIC_PARAMETERS];
-  PetscInt               n_rows;
-  const ViscoelasticRow *row; /* [n_rows] borrowed from who has read them */
+  PetscReal        temperature;
+  PetscInt         n_rows;
+  ViscoelasticRow *row; /* [n_rows] */
+} ViscoelasticTable;
+
+/* A law with its values: eta; E_1 .. E_n, tau_1 .. tau_n (Pa, s); E_1, tau, a; of a table T where it has any */
+typedef struct {
+  ViscoelasticKind         kind;
+  PetscInt                 n;     /* values */
+  PetscReal                young; /* E, Pa */
+  PetscReal                value[VISCOELASTIC_PARAMETERS];
+  PetscInt                 n_tables;
+  const ViscoelasticTable *table; /* [n_tables] T ascends; borrowed from who has read them */
 } Viscoelastic;
 
 /* G at an eigenvalue and its derivatives */
@@ -80,8 +88,8 @@ typedef struct {
   PetscBool has_file, has_temperature;
 } ViscoelasticAsked;
 
-/* Sweeps do not vary them as yet */
-#define VISCOELASTIC_VARIES .varies = 0
+/* Sweeps in full vary them */
+#define VISCOELASTIC_VARIES .varies = VARIES_LINEAR | VARIES_DAMPING
 
 /* Rows of the options of a ViscoelasticAsked, a member of a record that has a name; more may follow in each */
 #define VISCOELASTIC_ROWS(type, asked, ...)                                                                            \
@@ -133,11 +141,12 @@ typedef struct {
      .given = offsetof(type, asked.has_file),                                                                          \
      __VA_ARGS__},                                                                                                     \
     {"-table_temperature",                                                                                             \
-     "its rows of this temperature, in the unit of the table",                                                         \
+     "the temperature, in the unit of the table; between two of the table by logarithms of the modulus",               \
      NULL,                                                                                                             \
      QUANTITY_REAL,                                                                                                    \
      QUANTITY_AT(type, asked.temperature),                                                                             \
      .given = offsetof(type, asked.has_temperature),                                                                   \
+     VISCOELASTIC_VARIES,                                                                                              \
      __VA_ARGS__},                                                                                                     \
     {"-table_frequency",                                                                                               \
      "or the table as three lists: rising frequencies",                                                                \
@@ -178,8 +187,11 @@ void ViscoelasticEvaluate(const Viscoelastic *law, PetscComplex lambda, Viscoela
 /*@ ViscoelasticRange - the frequencies, rad/s, for which a law tells something: all but of a table. Not collective. @*/
 void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2]);
 
-/*@ ViscoelasticName - the option of value i of a law, without dash and name, and with the number of its branch, as
-    prony_time_2, in name[32]. Not collective. @*/
+/*@ ViscoelasticLimits - the least and the largest temperature of a table, infinite of other laws. Not collective. @*/
+void ViscoelasticLimits(const Viscoelastic *law, PetscReal limit[2]);
+
+/*@ ViscoelasticName - the option of value i of a law, or of the law itself, i < 0, without dash and name, and with
+    the number of its branch, as prony_time_2, in name[32]. Not collective. @*/
 PetscErrorCode ViscoelasticName(const Viscoelastic *law, PetscInt i, const char **option, char name[32]);
 
 /*@ ViscoelasticDescribe - the law in words, as a view has it. Not collective. @*/

@@ -10,6 +10,7 @@ PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelast
                                const Quantity *(*row)(const char option[]), PetscInt young, Mat A)
 {
   OperatorsLaw *law;
+  PetscReal     limit[2];
   const char   *option;
   char          name[32];
 
@@ -24,11 +25,16 @@ PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelast
       &o->parameters, owner, name,
       &(OperatorsParameter){.row = row(option), .value = values->value[i], .damps = PETSC_TRUE, .law = PETSC_TRUE},
       &law->parameter[i]));
+    if (values->kind != VISCOELASTIC_TABLE) continue;
+    ViscoelasticLimits(values, limit);
+    o->parameters.list[law->parameter[i]].lower  = limit[0];
+    o->parameters.list[law->parameter[i]].upper  = limit[1];
+    o->parameters.list[law->parameter[i]].closed = PETSC_TRUE;
   }
   for (int k = 0; k < 2 && A; k++) {
     PetscCall(TermsAdd(&o->terms, k ? OPERATORS_DAMPING : OPERATORS_STIFFNESS, A, PETSC_TRUE, 0, NULL));
     o->terms.term[o->terms.n - 1].law = law;
-    PetscCall(ViscoelasticName(values, 0, &option, name));
+    PetscCall(ViscoelasticName(values, -1, &option, name));
     PetscCall(TermsSetCause(&o->terms, "material damping", owner, option));
   }
   PetscFunctionReturn(0);
@@ -53,6 +59,11 @@ PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex
   return scale * (at.modulus - creal(law->at) - lambda * viscous);
 }
 
+PetscBool OperatorsHaveLaws(Operators o)
+{
+  return o->n_laws ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscBool PencilHasLaws(Pencil pencil)
 {
   return pencil->operators->n_laws && !pencil->real ? PETSC_TRUE : PETSC_FALSE;
@@ -65,9 +76,10 @@ PetscErrorCode PencilCheckRange(Pencil pencil, const char option[], const PetscR
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < o->n_laws; i++) {
-    PetscReal known[2];
+    const Viscoelastic law = OperatorsLawValues(o->law[i], pencil->parameters.p);
+    PetscReal          known[2];
 
-    ViscoelasticRange(&o->law[i]->law, known);
+    ViscoelasticRange(&law, known);
     PetscCheck(range[0] >= known[0] * (1 - LAW_SAME) && range[1] <= known[1] * (1 + LAW_SAME), pencil->comm,
                PETSC_ERR_USER_INPUT,
                "%s asks for %.6g to %.6g Hz, a -..._table tells the modulus from %.6g to %.6g Hz: a table is not "

@@ -219,6 +219,10 @@ PetscErrorCode SweepSolve(Sweep sweep, Results results)
   PetscFunctionBeginUser;
   sweep->results = results;
   PetscCall(SweepChooseMethod(sweep));
+  PetscCheck(sweep->method == SWEEP_FULL || !OperatorsHaveLaws(sweep->operators), sweep->comm, PETSC_ERR_USER_INPUT,
+             "-sweep_method %s: the stiffness of a part depends on the frequency, which only full solutions know; give "
+             "-sweep_method full",
+             sweep->method == SWEEP_REAL ? "real" : "reduced");
   PetscCall(ResultsGetDirectory(results, &sweep->folder));
   PetscCall(ModesGetBand(sweep->modes, band, &sweep->window.growth));
   PetscCall(ModesGetLimit(sweep->modes, &sweep->limit));

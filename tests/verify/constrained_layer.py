@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Modes of a simply supported beam with a constrained layer against D. Ross, E. E. Ungar, E. M. Kerwin (Structural Damping, ASME, 1959).
+"""Modes of a simply supported beam or plate with a constrained layer against D. Ross, E. E. Ungar, E. M. Kerwin (Structural
+Damping, ASME, 1959).
 
     constrained_layer.py MODES.csv --length 0.3 --thickness 2e-3,2e-4,5e-4 --young 210e9,20e6,210e9 --density 7800,1200,7800 \\
                          --loss 0.5 --modes 4
+    constrained_layer.py ... --width 0.2 --modes 1,1 3,1 1,3
 
-Layers 1 base, 2 viscoelastic with a loss factor at every frequency, 3 cover, all without Poisson's effect. Mode n has the wave number p =
-n pi / L, the bending stiffness of their formula with complex E_2 and G_2 = E_2 / 2, and lambda^2 = - EI p^4 / (mass per length).
-Prints the largest relative differences of omega and of the modal loss factor Im lambda^2 / Re lambda^2. Exit status 0 up to
---tolerance, or 1."""
+Layers 1 base, 2 viscoelastic with a loss factor at every frequency, 3 cover, all without Poisson's effect. Mode n has the wave number
+p = n pi / L, mode (m, n) of a plate p^2 = (m pi / L)^2 + (n pi / width)^2 (the displacements along its layers are gradients), the
+bending stiffness of their formula with complex E_2 and G_2 = E_2 / 2, and lambda^2 = - EI p^4 / (mass per length). Prints the largest
+relative differences of omega and of the modal loss factor Im lambda^2 / Re lambda^2. Exit status 0 up to --tolerance, or 1."""
 
 import argparse
 import cmath
@@ -35,21 +37,23 @@ def main():
         parser.add_argument(f"--{name}", type=float, required=True)
     for name in ("thickness", "young", "density"):
         parser.add_argument(f"--{name}", required=True)
-    parser.add_argument("--modes", type=int, default=4)
+    parser.add_argument("--width", type=float, help="of a plate")
+    parser.add_argument("--modes", nargs="+", default=["4"], help="how many of a beam; pairs of half waves of a plate")
     parser.add_argument("--tolerance", type=float, default=0.01)
     args = parser.parse_args()
     h, young, density = ([float(word) for word in text.split(",")] for text in (args.thickness, args.young, args.density))
     with open(args.table, newline="") as lines:
         found = [complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])) for row in csv.DictReader(lines)]
     mass, worst = sum(r * t for r, t in zip(density, h)), [0, 0]
-    for n in range(1, args.modes + 1):
-        p = n * math.pi / args.length
+    waves = [[int(word) for word in text.split(",")] for text in args.modes]
+    for name in waves if args.width else range(1, waves[0][0] + 1):
+        p = math.pi * (math.hypot(name[0] / args.length, name[1] / args.width) if args.width else name / args.length)
         value = cmath.sqrt(-stiffness((young[0], young[1] * (1 + 1j * args.loss), young[2]), h, p) * p**4 / mass)
         value = value if value.imag > 0 else -value
         mode = min(found, key=lambda other: abs(other - value))
         loss = [(v**2).imag / (v**2).real for v in (mode, value)]
         hertz = [v.imag / 2 / math.pi for v in (mode, value)]
-        print(f"mode {n}: {hertz[0]:.5g} Hz and loss factor {loss[0]:.5g}, by the formula {hertz[1]:.5g} Hz and {loss[1]:.5g}")
+        print(f"mode {name}: {hertz[0]:.5g} Hz and loss factor {loss[0]:.5g}, by the formula {hertz[1]:.5g} Hz and {loss[1]:.5g}")
         worst = [max(worst[0], abs(mode.imag / value.imag - 1)), max(worst[1], abs(loss[0] / loss[1] - 1))]
     print(f"largest relative differences {worst[0]:.3g} and {worst[1]:.3g}, allowed {args.tolerance:g}")
     return 0 if max(worst) <= args.tolerance else 1

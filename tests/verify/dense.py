@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """All modes of a run against the eigenvalues of its own matrices by LAPACK's dense QR iteration, which shares nothing with
-the sparse solvers: verify/dense.py RUN MU RTOL [TOP]. RUN has modes.csv and, of -operators_save, K.bin, M.bin and H.bin; without
-damping (K + MU H) x = omega^2 M x, whose 1 / (omega^2 - s) are the eigenvalues of (K + MU H - s M)^-1 M, s < 0 since rigid
+the sparse solvers: verify/dense.py RUN MU RTOL [TOP]. RUN has modes.csv and, of -operators_save, K.bin, M.bin and, with friction,
+H.bin; without damping (K + MU H) x = omega^2 M x, whose 1 / (omega^2 - s) are the eigenvalues of (K + MU H - s M)^-1 M, s < 0 since rigid
 motions may make K singular. With damping, where C.bin is there and TOP (Hz) is the band's upper end, Q(lambda) x =
 (lambda^2 M + lambda C + K + MU H) x = 0, whose mu = 1 / (lambda - s) are those of mu^2 Q(s) + mu Q'(s) + M; all modes
 with growth or decay below a tenth of TOP's angular frequency must be there. Frequencies and growth
@@ -55,7 +55,9 @@ def judge(modes, found, must, tolerance):
 
 def main():
     folder, mu, tolerance = Path(sys.argv[1]), float(sys.argv[2]), float(sys.argv[3])
-    stiffness = matrix(folder / "K.bin") + mu * matrix(folder / "H.bin")
+    stiffness = matrix(folder / "K.bin")
+    if (folder / "H.bin").exists():
+        stiffness = stiffness + mu * matrix(folder / "H.bin")
     mass = matrix(folder / "M.bin")
     if len(sys.argv) > 4:
         top = float(sys.argv[4])

@@ -13,8 +13,8 @@
         z_j / t_j, a larger linear one. zener: Newton's method on the bordered T(lambda), and no count. By SuperLU and ARPACK about
         several shifts, which must give the same list as RUN within the band.
 
-Moduli E_j are in units of E. RUN and UNDAMPED are folders with modes.csv. Prints the largest relative difference; exit status 0 below
---tolerance and as many modes, or 1."""
+Moduli E_j are in units of E. RUN and UNDAMPED are folders with modes.csv, RUN with --point N one of a sweep. Prints the largest
+relative difference; exit status 0 below --tolerance and as many modes, or 1."""
 
 import argparse
 import cmath
@@ -38,16 +38,30 @@ SHIFTS = 9
 
 
 def table_of(path, young, temperature):
-    """g(lambda) of the rows of one temperature, to first order off the axis."""
+    """g(lambda) of the rows of one temperature, or between two with linear logarithms, to first order off the axis."""
+    tables, t = {}, float(temperature)
     with open(path, newline="") as lines:
-        rows = [[float(row[name]) for name in ("frequency_hz", "modulus", "loss_factor")] for row in csv.DictReader(lines)
-                if float(row["temperature"]) == float(temperature)]
-    x, e, eta = np.log(2 * np.pi * np.array(rows)[:, 0]), np.array(rows)[:, 1], np.array(rows)[:, 2]
-    parts = [scipy.interpolate.PchipInterpolator(x, y) for y in (e, e * eta)]
+        for row in csv.DictReader(lines):
+            values = [float(row[name]) for name in ("frequency_hz", "modulus", "loss_factor")]
+            tables.setdefault(float(row["temperature"]), []).append(values)
+    about = [max(key for key in tables if key <= t), min(key for key in tables if key >= t)]
+    share = (t - about[0]) / (about[1] - about[0]) if about[1] > about[0] else 0
+    parts = []
+    for key in about:
+        hertz, e, eta = np.array(tables[key]).T
+        parts.append([scipy.interpolate.PchipInterpolator(np.log(2 * np.pi * hertz), y) for y in (e, e * eta)])
+
+    def at(x):
+        first, second = (complex(real(x), imaginary(x)) for real, imaginary in parts)
+        return cmath.exp((1 - share) * cmath.log(first) + share * cmath.log(second))
+
+    def slope(x):
+        relative = [complex(real(x, 1), imaginary(x, 1)) / complex(real(x), imaginary(x)) for real, imaginary in parts]
+        return at(x) * ((1 - share) * relative[0] + share * relative[1])
 
     def g(s):
-        at, slope = (complex(parts[0](math.log(abs(s)), k), parts[1](math.log(abs(s)), k)) for k in (0, 1))
-        return (at + 1j * (cmath.phase(s) - math.pi / 2) * slope) / float(young) - 1
+        x = math.log(abs(s))
+        return (at(x) + 1j * (cmath.phase(s) - math.pi / 2) * slope(x)) / float(young) - 1
     return g
 
 
@@ -80,10 +94,11 @@ def law_of(text):
     return lambda s: e * (s * t)**a / (1 + (s * t)**a), lambda s: e * a * (s * t)**a / s / (1 + (s * t)**a)**2
 
 
-def listed(folder):
-    """Eigenvalues of modes.csv that oscillate."""
-    with (folder / "modes.csv").open(newline="") as lines:
-        rows = [complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])) for row in csv.DictReader(lines)]
+def listed(folder, point=None):
+    """Eigenvalues of modes.csv, or of a point of sweep.csv, that oscillate."""
+    with (folder / ("sweep.csv" if point else "modes.csv")).open(newline="") as lines:
+        rows = [complex(float(row["growth_rad_s"]), 2 * math.pi * float(row["freq_hz"])) for row in csv.DictReader(lines)
+                if not point or row["point"] == point]
     return [value for value in rows if value.imag > 0]
 
 
@@ -196,10 +211,11 @@ def main():
         way.add_argument("law")
         way.add_argument("--band", help="Hz, low,high of the run", default="0,inf")
         way.add_argument("--growth", type=float, default=math.inf, help="1/s, of the run")
+        way.add_argument("--point", help="of a sweep")
         way.add_argument("--tolerance", type=float, default=1e-10)
     args = parser.parse_args()
     low, high = (2 * math.pi * float(word) for word in args.band.split(","))
-    found = listed(args.run)
+    found = listed(args.run, args.point)
     if args.way == "flutter":
         others = flutter(law_of(args.law)[0], args.friction)
     elif args.way == "closed":

@@ -73,20 +73,24 @@ PetscErrorCode ViscoelasticAddChecksum(const Viscoelastic *law, Checksum c)
   if (!law->kind) PetscFunctionReturn(0);
   PetscCall(ChecksumAddInts(c, 1, (const PetscInt[]){law->kind}));
   PetscCall(ChecksumAddReals(c, law->n, law->value));
-  for (PetscInt i = 0; i < law->n_rows; i++) {
-    const ViscoelasticRow *row = &law->row[i];
+  for (PetscInt t = 0; t < law->n_tables; t++)
+    for (PetscInt i = 0; i < law->table[t].n_rows; i++) {
+      const ViscoelasticRow *row = &law->table[t].row[i];
 
-    PetscCall(ChecksumAddReals(c, 3, (const PetscReal[]){row->x, creal(row->modulus), cimag(row->modulus)}));
-  }
+      PetscCall(ChecksumAddReals(
+        c, 4, (const PetscReal[]){row->x, creal(row->modulus), cimag(row->modulus), law->table[t].temperature}));
+    }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ViscoelasticFree(Viscoelastic *law)
 {
-  ViscoelasticRow *row = (ViscoelasticRow *)law->row;
+  ViscoelasticTable *table = (ViscoelasticTable *)law->table;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(row));
-  law->row = NULL;
+  for (PetscInt t = 0; t < law->n_tables; t++) PetscCall(PetscFree(table[t].row));
+  PetscCall(PetscFree(table));
+  law->table    = NULL;
+  law->n_tables = 0;
   PetscFunctionReturn(0);
 }

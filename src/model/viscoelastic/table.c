@@ -4,7 +4,8 @@
 
       d_k-1 d_k / (r d_k + (1 - r) d_k-1),   r = (1 + h_k / (h_k-1 + h_k)) / 3,   h_k = x_k+1 - x_k,
 
-   zero between two of different sign, and the secant itself at an end (Fritsch and Butland).
+   zero between two of different sign, and the secant itself at an end (Fritsch and Butland). Each temperature has a
+   table of its own.
 */
 #include "viscoelasticimpl.h"
 #include "base/csv.h"
@@ -12,35 +13,31 @@
 enum { COLUMN_FREQUENCY, COLUMN_MODULUS, COLUMN_LOSS, COLUMN_TEMPERATURE, N_TABLE_COLUMNS };
 static const char *const columns[N_TABLE_COLUMNS] = {"frequency_hz", "modulus", "loss_factor", "temperature"};
 
-#define TABLE_SAME 1e-9 /* relative: temperatures that are one */
-
-/* Three numbers of each row, as they are read */
+/* Numbers of each row, as they are read */
 typedef struct {
   PetscInt   n;
-  PetscReal *value; /* [n][3] Hz, Pa, - */
+  PetscReal *value; /* [n][N_TABLE_COLUMNS] Hz, Pa, -, the temperature or 0 */
 } TableValues;
 
-static PetscErrorCode ValuesAdd(TableValues *t, const PetscReal value[3])
+static PetscErrorCode ValuesAdd(TableValues *t, const PetscReal value[N_TABLE_COLUMNS])
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscRealloc((size_t)(3 * (t->n + 1)) * sizeof(*t->value), &t->value));
-  PetscCall(PetscArraycpy(&t->value[3 * t->n++], value, 3));
+  PetscCall(PetscRealloc((size_t)(N_TABLE_COLUMNS * (t->n + 1)) * sizeof(*t->value), &t->value));
+  PetscCall(PetscArraycpy(&t->value[N_TABLE_COLUMNS * t->n++], value, N_TABLE_COLUMNS));
   PetscFunctionReturn(0);
 }
 
-/* Rows of a file, those of the temperature that is asked for; on one rank */
+/* Rows of a file; on one rank */
 static PetscErrorCode ValuesRead(const ViscoelasticAsked *asked, Csv *csv, TableValues *t)
 {
   PetscFunctionBeginUser;
   CsvOpen(csv, asked->file, N_TABLE_COLUMNS, columns, COLUMN_TEMPERATURE);
   while (CsvNext(csv)) {
-    const PetscReal value[3] = {CsvReal(csv, COLUMN_FREQUENCY, PETSC_FALSE), CsvReal(csv, COLUMN_MODULUS, PETSC_FALSE),
-                                CsvReal(csv, COLUMN_LOSS, PETSC_FALSE)};
-    const PetscBool has      = csv->at[COLUMN_TEMPERATURE] >= 0 ? PETSC_TRUE : PETSC_FALSE;
-    const PetscReal degrees  = has ? CsvReal(csv, COLUMN_TEMPERATURE, PETSC_FALSE) : 0;
-    const PetscReal apart    = PetscAbsReal(degrees - asked->temperature);
+    const PetscBool has = csv->at[COLUMN_TEMPERATURE] >= 0 && asked->has_temperature ? PETSC_TRUE : PETSC_FALSE;
+    PetscReal       value[N_TABLE_COLUMNS] = {0};
 
-    if (asked->has_temperature && apart > TABLE_SAME * PetscAbsReal(asked->temperature)) continue;
+    for (int k = 0; k < N_TABLE_COLUMNS; k++)
+      if (k < COLUMN_TEMPERATURE || has) value[k] = CsvReal(csv, k, PETSC_FALSE);
     if (!csv->fault[0]) PetscCall(ValuesAdd(t, value));
   }
   if (!csv->fault[0] && asked->has_temperature && csv->at[COLUMN_TEMPERATURE] < 0)
@@ -61,8 +58,8 @@ static PetscErrorCode ValuesReadFile(MPI_Comm comm, const char name[], const Vis
   PetscCallMPI(MPI_Bcast(csv.fault, sizeof(csv.fault), MPI_CHAR, 0, comm));
   PetscCheck(!csv.fault[0], comm, PETSC_ERR_USER_INPUT, "-%s_table %s: %s", name, asked->file, csv.fault);
   PetscCallMPI(MPI_Bcast(&t->n, 1, MPIU_INT, 0, comm));
-  if (rank) PetscCall(PetscMalloc1(3 * t->n, &t->value));
-  PetscCall(PetscMPIIntCast(3 * t->n, &count));
+  if (rank) PetscCall(PetscMalloc1(N_TABLE_COLUMNS * t->n, &t->value));
+  PetscCall(PetscMPIIntCast(N_TABLE_COLUMNS * t->n, &count));
   PetscCallMPI(MPI_Bcast(t->value, count, MPIU_REAL, 0, comm));
   PetscFunctionReturn(0);
 }
@@ -77,29 +74,24 @@ static PetscErrorCode ValuesTakeLists(MPI_Comm comm, const char name[], const Vi
                "%" PetscInt_FMT ", %" PetscInt_FMT " and %" PetscInt_FMT " values",
                name, name, name, asked->n_listed[0], asked->n_listed[1], asked->n_listed[2]);
   for (PetscInt i = 0; i < asked->n_listed[0]; i++)
-    PetscCall(ValuesAdd(t, (PetscReal[3]){asked->listed[0][i], asked->listed[1][i], asked->listed[2][i]}));
+    PetscCall(
+      ValuesAdd(t, (PetscReal[N_TABLE_COLUMNS]){asked->listed[0][i], asked->listed[1][i], asked->listed[2][i]}));
   PetscFunctionReturn(0);
 }
 
-/* Raises an error for rows that are no material, or do not rise */
+/* Raises an error for a row that is no material */
 static PetscErrorCode ValuesCheck(MPI_Comm comm, const char name[], const TableValues *t)
 {
   PetscFunctionBeginUser;
   PetscCheck(t->n >= 2, comm, PETSC_ERR_USER_INPUT,
-             "-%s_table has %" PetscInt_FMT " rows%s: two frequencies are needed at least", name, t->n,
-             t->n ? "" : " of that temperature");
+             "-%s_table has %" PetscInt_FMT " rows: two frequencies are needed at least", name, t->n);
   for (PetscInt i = 0; i < t->n; i++) {
-    const PetscReal *v = &t->value[3 * i];
+    const PetscReal *v = &t->value[N_TABLE_COLUMNS * i];
 
     PetscCheck(v[0] > 0 && v[1] > 0 && v[2] >= 0, comm, PETSC_ERR_USER_INPUT,
                "-%s_table: at %.6g Hz the modulus is %.6g and the loss factor %.6g: frequency and modulus must be "
                "positive, the loss factor not negative",
                name, (double)v[0], (double)v[1], (double)v[2]);
-    PetscCheck(
-      !i || v[0] > v[-3], comm, PETSC_ERR_USER_INPUT,
-      "-%s_table: %.6g Hz after %.6g Hz: frequencies must rise; give -%s_table_temperature where the table has "
-      "several",
-      name, (double)v[0], (double)v[-3], name);
   }
   PetscFunctionReturn(0);
 }
@@ -129,11 +121,59 @@ static PetscComplex RowSlope(const ViscoelasticRow row[], PetscInt n, PetscInt i
                SlopeBetween(h, (PetscReal[2]){cimag(d[0]), cimag(d[1])}));
 }
 
+/* The rows of a temperature, with their slopes, in the order of the file */
+static PetscErrorCode TableMake(MPI_Comm comm, const char name[], const TableValues *t, ViscoelasticTable *table)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(t->n, &table->row));
+  for (PetscInt i = 0; i < t->n; i++) {
+    const PetscReal *v = &t->value[N_TABLE_COLUMNS * i], x = PetscLogReal(2 * PETSC_PI * v[0]);
+
+    if (v[COLUMN_TEMPERATURE] != table->temperature) continue;
+    PetscCheck(
+      !n || x > table->row[n - 1].x, comm, PETSC_ERR_USER_INPUT,
+      "-%s_table: %.6g Hz after %.6g Hz: frequencies must rise; give -%s_table_temperature where the table has "
+      "several",
+      name, (double)v[0], (double)(PetscExpReal(table->row[n - 1].x) / (2 * PETSC_PI)), name);
+    table->row[n++] = (ViscoelasticRow){.x = x, .modulus = CMPLX(v[1], v[1] * v[2])};
+  }
+  PetscCheck(n >= 2, comm, PETSC_ERR_USER_INPUT,
+             "-%s_table has 1 row of the temperature %.6g: two frequencies are needed at least", name,
+             (double)table->temperature);
+  for (PetscInt i = 0; i < n; i++) table->row[i].slope = RowSlope(table->row, n, i);
+  table->n_rows = n;
+  PetscFunctionReturn(0);
+}
+
+/* A table of each temperature, ascending */
+static PetscErrorCode TablesMake(MPI_Comm comm, const char name[], const TableValues *t, PetscInt *n_tables,
+                                 ViscoelasticTable **tables)
+{
+  PetscReal *temperature;
+  PetscInt   n = t->n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &temperature));
+  for (PetscInt i = 0; i < n; i++) temperature[i] = t->value[N_TABLE_COLUMNS * i + COLUMN_TEMPERATURE];
+  PetscCall(PetscSortRemoveDupsReal(&n, temperature));
+  PetscCall(PetscMalloc1(n, tables));
+  for (PetscInt k = 0; k < n; k++) {
+    (*tables)[k] = (ViscoelasticTable){.temperature = temperature[k]};
+    PetscCall(TableMake(comm, name, t, &(*tables)[k]));
+  }
+  *n_tables = n;
+  PetscCall(PetscFree(temperature));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ViscoelasticReadTable(MPI_Comm comm, const char name[], const ViscoelasticAsked *asked,
                                      Viscoelastic *law)
 {
-  TableValues      t = {.n = 0};
-  ViscoelasticRow *row;
+  TableValues        t = {.n = 0};
+  ViscoelasticTable *tables;
+  PetscReal          limit[2];
 
   PetscFunctionBeginUser;
   if (asked->has_file)
@@ -141,16 +181,16 @@ PetscErrorCode ViscoelasticReadTable(MPI_Comm comm, const char name[], const Vis
   else
     PetscCall(ValuesTakeLists(comm, name, asked, &t));
   PetscCall(ValuesCheck(comm, name, &t));
-  PetscCall(PetscMalloc1(t.n, &row));
-  for (PetscInt i = 0; i < t.n; i++) {
-    const PetscReal *v = &t.value[3 * i];
-
-    row[i] = (ViscoelasticRow){.x = PetscLogReal(2 * PETSC_PI * v[0]), .modulus = CMPLX(v[1], v[1] * v[2])};
-  }
-  for (PetscInt i = 0; i < t.n; i++) row[i].slope = RowSlope(row, t.n, i);
+  PetscCall(TablesMake(comm, name, &t, &law->n_tables, &tables));
   PetscCall(PetscFree(t.value));
-  law->kind   = VISCOELASTIC_TABLE;
-  law->n_rows = t.n;
-  law->row    = row;
+  law->kind  = VISCOELASTIC_TABLE;
+  law->table = tables;
+  if (!asked->has_temperature) PetscFunctionReturn(0);
+  law->n        = 1;
+  law->value[0] = asked->temperature;
+  ViscoelasticLimits(law, limit);
+  PetscCheck(asked->temperature >= limit[0] && asked->temperature <= limit[1], comm, PETSC_ERR_USER_INPUT,
+             "-%s_table_temperature %.6g: the table has temperatures from %.6g to %.6g, and is not continued beyond",
+             name, (double)asked->temperature, (double)limit[0], (double)limit[1]);
   PetscFunctionReturn(0);
 }

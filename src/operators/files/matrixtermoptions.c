@@ -139,7 +139,7 @@ PetscErrorCode OperatorsNameLaw(Operators o, size_t size, char text[], PetscBool
 
     if (!law->kind) continue;
     *hysteretic = law->kind == VISCOELASTIC_HYSTERETIC ? PETSC_TRUE : PETSC_FALSE;
-    PetscCall(ViscoelasticName(law, 0, &option, name));
+    PetscCall(ViscoelasticName(law, -1, &option, name));
     PetscCall(PetscSNPrintf(text, size, "-%s_%s", o->named[t].name, option));
   }
   PetscFunctionReturn(0);
