@@ -50,6 +50,9 @@
    The contact laws hold to 1e-9 of the largest force at every step; where they cannot, the point has failed. Friction
    is turned along the slip to 1e-7 of that force. -analysis transient has 1e-12 and 1e-10 there.
 
+   Disturbed runs, -map_disturbances of each point, tell which other motions it has: from its sliding state with random
+   velocities (map/basins.c), until their regime is known as above.
+
    The error of the cut-off and of the step is not in error_estimate: -map_verify tells it at some points, by transients
    from their own sliding states with half the step, with contact laws to 1e-12, and with 2.25 times the cut-off:
    differences of amplitude and frequency where both runs vibrate; what lies above the higher cut-off is not in them. A

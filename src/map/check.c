@@ -82,6 +82,9 @@ PetscErrorCode MapCheckTimes(Map map)
   PetscInt n_steps, n_windows;
 
   PetscFunctionBeginUser;
+  PetscCheck(map->disturbance_least <= map->disturbance, map->comm, PETSC_ERR_USER_INPUT,
+             "-map_disturbance_least %.6g J must be at most -map_disturbance %.6g J", (double)map->disturbance_least,
+             (double)map->disturbance);
   PetscCheck(map->window >= 32 * map->dt && map->end >= 8 * map->window, map->comm, PETSC_ERR_USER_INPUT,
              "-map_window %.6g s must be 32 steps of %.6g s at least, and -ts_max_time %.6g s 8 windows",
              (double)map->window, (double)map->dt, (double)map->end);

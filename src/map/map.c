@@ -197,6 +197,7 @@ PetscErrorCode MapSolve(Map map, Results results)
   PetscCall(MapLines(map, table));
   PetscCall(ProgressEnd(&map->progress));
   PetscCall(MapVerify(map, results));
+  PetscCall(MapBasins(map, results));
   PetscCall(MapShareDestroy(&map->share));
   for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k]));
   PetscCall(MapForget(map));

@@ -7,16 +7,17 @@
 #include "reduced/parameter.h"
 #include "results/journal/journal.h"
 
-#define MAP_RTOL            1e-9 /* of the contact laws (map.h) */
-#define MAP_MAX_AXES        2
-#define MAP_MAX_TEXT        65536 /* length of a list of values */
-#define MAP_MAX_MODES       24    /* that grow at a point and are listed */
-#define MAP_SETTLED_WINDOWS 3     /* that agree */
-#define MAP_MAX_TWINS       8
-#define MAP_STICKING_SHARE  0.01 /* of the time */
-#define MAP_N_QUANTILES     3
-#define MAP_MAX_POINTS      100000
-#define MAP_MAX_STEPS       1e8 /* of a transient, whose record is kept until its regime is known */
+#define MAP_RTOL             1e-9 /* of the contact laws (map.h) */
+#define MAP_MAX_AXES         2
+#define MAP_MAX_TEXT         65536 /* length of a list of values */
+#define MAP_MAX_MODES        24    /* that grow at a point and are listed */
+#define MAP_SETTLED_WINDOWS  3     /* that agree */
+#define MAP_MAX_TWINS        8
+#define MAP_STICKING_SHARE   0.01 /* of the time */
+#define MAP_N_QUANTILES      3
+#define MAP_MAX_POINTS       100000
+#define MAP_MAX_DISTURBANCES 10000
+#define MAP_MAX_STEPS        1e8 /* of a transient, whose record is kept until its regime is known */
 
 typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_BISTABLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
@@ -82,6 +83,15 @@ typedef struct {
   PetscReal rms, freq, growth; /* relative; Hz; 1/s */
 } MapError;
 
+/* A kind of motion that disturbed runs of a point end in: means, in a row; the least and the largest rms, N; runs, and
+   the interval of its probability */
+typedef struct {
+  MapPoint  row;
+  PetscReal least, most;
+  PetscInt  n;
+  PetscReal interval[2];
+} MapBasin;
+
 /* A counter that ranks share */
 typedef struct {
   MPI_Win window;
@@ -98,8 +108,10 @@ struct _p_Map {
   PetscBool    linked;
   MapDirection direction;
   PetscReal    window, rtol;
-  PetscInt     n_verify; /* points of which errors are told */
-  PetscInt     n_twins;  /* of a point, at most */
+  PetscInt     n_verify;                       /* points of which errors are told */
+  PetscInt     n_twins;                        /* of a point, at most */
+  PetscInt     n_disturbances, seed;           /* runs of a point with random velocities */
+  PetscReal    disturbance, disturbance_least; /* J */
   /* the grid */
   PetscInt   n_axes;
   MapAxis    axis[MAP_MAX_AXES];
@@ -118,6 +130,7 @@ struct _p_Map {
   PetscInt       n_reductions, m, n_pairs;
   PetscLogDouble seconds[2]; /* reductions, transients */
   MapError       error[MAP_N_CHECKS];
+  PetscInt       disturbed[MAP_N_REGIMES]; /* runs with random velocities */
   /* restart */
   PetscBool   restart;
   const char *folder;
@@ -131,15 +144,16 @@ extern const QuantityTable map_quantities;
 /* A chain that is run (point/chain.c): bodies, and work */
 typedef struct _p_MapMarch *MapMarch;
 struct _p_MapMarch {
-  Map            map;
-  PetscReal      dt; /* s */
-  MapBodies     *bodies;
-  ReducedStepper stepper;
-  ReducedState   state, rest; /* the motion; the sliding state of the point */
-  ReducedReport  report;
-  PetscReal     *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
-  PetscInt       n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
-  PetscInt       first;                  /* window from which the numbers of a transient are */
+  Map              map;
+  PetscReal        dt; /* s */
+  MapBodies       *bodies;
+  ReducedStepper   stepper;
+  ReducedState     state, rest; /* the motion; the sliding state of the point */
+  ReducedReport    report;
+  PetscReal       *sliding, *loads, *kick; /* [n_pairs] m, [n_loads], [m] */
+  const PetscReal *disturbance;            /* [m] rates beside those of the sliding state, m sqrt(kg)/s, or NULL */
+  PetscInt         n, n_windows, n_most;   /* steps of a window; windows of the point, at most */
+  PetscInt         first;                  /* window from which the numbers of a transient are */
   /* works in a transient; of impulses, with the energy that it began with, J */
   PetscReal      contact, friction, given;
   PetscReal     *slip;           /* [n_most n] mean slip speed along t, m/s */
@@ -208,11 +222,12 @@ PETSC_INTERN PetscErrorCode MapShareDestroy(MapShare *share);
 PETSC_INTERN PetscErrorCode MapCountBatch(Map map, PetscInt n_jobs, PetscInt n_bodies, PetscInt *batch);
 
 /* point/chain.c - the k-th point of a chain, without numbers; steps dt on some bodies (borrowed), laws to rtol; all
-   points of a chain, row [n_linked], and a point from its own sliding state, row with its place; not collective */
+   points of a chain, row [n_linked], and a point from its own sliding state, with rates [m] beside that or NULL, row
+   with its place; not collective */
 PETSC_INTERN void           MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchCreate(Map map, MapBodies *bodies, PetscReal dt, PetscReal rtol, MapMarch *march);
 PETSC_INTERN PetscErrorCode MapChain(MapMarch march, PetscInt chain, MapPoint row[]);
-PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, MapPoint *row);
+PETSC_INTERN PetscErrorCode MapMarchAlone(MapMarch march, const PetscReal rate[], MapPoint *row);
 PETSC_INTERN PetscErrorCode MapMarchDestroy(MapMarch *march);
 
 /* point/march.c - a transient from `state` until its regime is known; end MAP_FAILED where it has none. Not
@@ -273,6 +288,9 @@ PETSC_INTERN PetscReal MapSpreadOfLevel(PetscInt n_runs, const PetscInt n[], Pet
 /* map/verify.c - errors of step, contact laws and cut-off at some points, into map_errors.csv */
 PETSC_INTERN PetscErrorCode MapVerify(Map map, Results results);
 
+/* map/basins.c - disturbed runs of all points and what they end in, into map_disturbed.csv and map_basins.csv */
+PETSC_INTERN PetscErrorCode MapBasins(Map map, Results results);
+
 /* map/write.c - the tables */
 PETSC_INTERN PetscErrorCode MapTableOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point);
@@ -281,3 +299,8 @@ PETSC_INTERN PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPo
 PETSC_INTERN PetscErrorCode MapErrorsOpen(Results results, ResultsTable *table);
 PETSC_INTERN PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const MapPoint *point,
                                          const MapError *error);
+PETSC_INTERN PetscErrorCode MapDisturbedOpen(Results results, ResultsTable *table);
+PETSC_INTERN PetscErrorCode MapDisturbedAdd(Map map, ResultsTable table, PetscInt run, PetscReal energy,
+                                            const MapPoint *point);
+PETSC_INTERN PetscErrorCode MapBasinOpen(Results results, ResultsTable *table);
+PETSC_INTERN PetscErrorCode MapBasinAdd(Map map, ResultsTable table, const MapBasin *basin);

@@ -6,6 +6,12 @@
 static const char *const directions[] = {
   [MAP_BOTH] = "both", [MAP_UP] = "up", [MAP_DOWN] = "down", [MAP_APART] = "apart", NULL};
 
+static const char *UndisturbedIdle(const void *map, const QuantityRun *run)
+{
+  (void)run;
+  return ((const struct _p_Map *)map)->n_disturbances ? NULL : "not used without -map_disturbances";
+}
+
 static const Quantity rows[] = {
   {"-map_parameter", "one or two options of the scene to vary, e.g. contact_mu,press_force", NULL, QUANTITY_TEXT,
    MAP_AT(parameter)},
@@ -31,6 +37,17 @@ static const Quantity rows[] = {
    "rounding is not "
    "in error_estimate",
    NULL, QUANTITY_INT, MAP_AT(n_twins), .initial = 3, QUANTITY_WITHIN(0, MAP_MAX_TWINS)},
+  {"-map_disturbances",
+   "runs of each point from its sliding state with random velocities, as blows at all contact pairs give them: which "
+   "motions there are, and how probable each is",
+   NULL, QUANTITY_INT, MAP_AT(n_disturbances), QUANTITY_WITHIN(0, MAP_MAX_DISTURBANCES)},
+  {"-map_disturbance", "energy of these velocities", "J", QUANTITY_REAL, MAP_AT(disturbance), .initial = 1e-3,
+   QUANTITY_POSITIVE, .idle = UndisturbedIdle},
+  {"-map_disturbance_least",
+   "least energy of these velocities, whose logarithms are spread evenly up to -map_disturbance; 0: all have that one",
+   "J", QUANTITY_REAL, MAP_AT(disturbance_least), QUANTITY_NOT_NEGATIVE, .idle = UndisturbedIdle},
+  {"-map_seed", "another one draws other velocities; the same on any number of ranks", NULL, QUANTITY_INT, MAP_AT(seed),
+   .initial = 1, QUANTITY_NOT_NEGATIVE, .why = "a number of draws", .idle = UndisturbedIdle},
   {"-map_restart", "go on where a map of the same scene in -output_dir was stopped", NULL, QUANTITY_BOOL,
    MAP_AT(restart), .initial = PETSC_TRUE},
 };

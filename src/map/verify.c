@@ -73,7 +73,7 @@ static PetscErrorCode VerifyRunOne(Map map, PetscInt job, const VerifyBatch *b, 
   PetscCall(MapMarchCreate(map, &b->bodies[VERIFY_BODIES * b->slot[point] + (check == MAP_HIGHER_CUTOFF)],
                            check == MAP_HALF_STEP ? map->dt / 2 : map->dt,
                            check == MAP_TIGHT_LAWS ? VERIFY_RTOL : MAP_RTOL, &march));
-  PetscCall(MapMarchAlone(march, &done->row));
+  PetscCall(MapMarchAlone(march, NULL, &done->row));
   PetscCall(MapMarchDestroy(&march));
   PetscFunctionReturn(0);
 }

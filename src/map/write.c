@@ -87,6 +87,15 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   PetscFunctionReturn(0);
 }
 
+/* The second value of a row as text, empty for none */
+static PetscErrorCode MapSecond(Map map, const MapPoint *r, char second[64])
+{
+  PetscFunctionBeginUser;
+  second[0] = '\0';
+  if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, 64, "%.15g", (double)map->axis[1].value[r->line]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MapModesOpen(Results results, ResultsTable *table)
 {
   PetscFunctionBeginUser;
@@ -97,12 +106,12 @@ PetscErrorCode MapModesOpen(Results results, ResultsTable *table)
 
 PetscErrorCode MapModesAdd(Map map, ResultsTable table, const MapPoint *r)
 {
-  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
-  char           second[64] = "";
+  const MapAxis *x = &map->axis[0];
+  char           second[64];
 
   PetscFunctionBeginUser;
   if (r->down && map->direction == MAP_BOTH) PetscFunctionReturn(0);
-  if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
+  PetscCall(MapSecond(map, r, second));
   for (PetscInt k = 0; k < PetscMin(r->n_growing, MAP_MAX_MODES); k++)
     PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%.15g,%.15g,%.15g,%s", (int)(r->line * x->n + r->place + 1),
                               (double)x->value[r->place], second, (double)(r->omega[k] / (2 * PETSC_PI)),
@@ -123,17 +132,69 @@ PetscErrorCode MapErrorsOpen(Results results, ResultsTable *table)
 
 PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const MapPoint *r, const MapError *error)
 {
-  const MapAxis *x = &map->axis[0], *y = &map->axis[1];
-  char           second[64] = "";
+  const MapAxis *x = &map->axis[0];
+  char           second[64];
 
   PetscFunctionBeginUser;
-  if (map->n_axes > 1) PetscCall(PetscSNPrintf(second, sizeof(second), "%.15g", (double)y->value[r->line]));
+  PetscCall(MapSecond(map, r, second));
   PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s",
                             (int)(r->line * x->n + r->place + 1), (double)x->value[r->place], second, run,
                             regimes[r->regime], (double)(r->end == MAP_FAILED ? NAN : r->freq),
                             (double)(r->end == MAP_FAILED ? NAN : r->rms), (double)r->growth, (double)r->mode_freq,
                             (double)error->freq, (double)error->rms, (double)error->growth, (int)r->steps,
                             (double)r->time, ends[r->end]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapDisturbedOpen(Results results, ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsTableOpen(
+    results, "map_disturbed",
+    "point,value,value_2,run,energy_j,regime,freq_hz,force_rms_n,error_estimate,steps,time_s,status", table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapDisturbedAdd(Map map, ResultsTable table, PetscInt run, PetscReal energy, const MapPoint *r)
+{
+  const PetscReal none = r->end == MAP_FAILED ? NAN : 0;
+  char            second[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(MapSecond(map, r, second));
+  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%d,%.15g,%s,%.15g,%.15g,%.15g,%d,%.15g,%s",
+                            (int)(r->line * map->axis[0].n + r->place + 1), (double)map->axis[0].value[r->place],
+                            second, (int)run, (double)energy, regimes[r->regime], (double)(r->freq + none),
+                            (double)(r->rms + none), (double)(r->error + none), (int)r->steps, (double)r->time,
+                            ends[r->end]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapBasinOpen(Results results, ResultsTable *table)
+{
+  PetscFunctionBeginUser;
+  PetscCall(
+    ResultsTableOpen(results, "map_basins",
+                     "point,value,value_2,regime,freq_hz,force_rms_n,force_rms_least_n,force_rms_most_n,runs,of,"
+                     "probability,probability_low,probability_high",
+                     table));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapBasinAdd(Map map, ResultsTable table, const MapBasin *basin)
+{
+  const MapPoint *r    = &basin->row;
+  const PetscReal none = r->end == MAP_FAILED ? NAN : 0;
+  char            second[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(MapSecond(map, r, second));
+  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%s,%.15g,%.15g,%.15g,%.15g,%d,%d,%.15g,%.15g,%.15g",
+                            (int)(r->line * map->axis[0].n + r->place + 1), (double)map->axis[0].value[r->place],
+                            second, regimes[r->regime], (double)(r->freq + none), (double)(r->rms + none),
+                            (double)(basin->least + none), (double)(basin->most + none), (int)basin->n,
+                            (int)map->n_disturbances, (double)basin->n / (double)map->n_disturbances,
+                            (double)basin->interval[0], (double)basin->interval[1]));
   PetscFunctionReturn(0);
 }
 
@@ -247,6 +308,9 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
                                    "steps, %.3g s; %" PetscInt_FMT " reductions of the bodies, %.3g s\n",
                                    early, (double)steps, (double)map->seconds[1], map->n_reductions,
                                    (double)map->seconds[0]));
+  for (int k = 0; k < MAP_N_REGIMES && map->n_disturbances; k++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %" PetscInt_FMT "%s", k ? "" : "  disturbed runs:", regimes[k],
+                                     map->disturbed[k], k + 1 < MAP_N_REGIMES ? "," : "\n"));
   for (int k = 0; k < MAP_N_CHECKS && map->n_verify; k++) PetscCall(MapViewError(map, (MapCheckRun)k, viewer));
   PetscFunctionReturn(0);
 }

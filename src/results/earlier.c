@@ -81,6 +81,8 @@ static const struct {
   {"map.csv", NULL},
   {"map_modes.csv", NULL},
   {"map_errors.csv", NULL},
+  {"map_disturbed.csv", NULL},
+  {"map_basins.csv", NULL},
   {"impulse.csv", NULL},
   {"transient.csv", "transient.csv.part"},
   {"transient.xmf", "transient.csv.part"},

@@ -5,7 +5,7 @@
 #include "conditions/conditions.h"
 #include "draw/distribution.h"
 #include "draw/sequence.h"
-#include "statistics/estimate.h"
+#include "base/statistics/estimate.h"
 #include "statistics/indices.h"
 #include "sweep/box/box.h"
 #include "sweep/full/compare.h"

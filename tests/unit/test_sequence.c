@@ -5,7 +5,7 @@
 */
 #include "sample/draw/distribution.h"
 #include "sample/draw/sequence.h"
-#include "sample/statistics/estimate.h"
+#include "base/statistics/estimate.h"
 #include "check.h"
 
 #define N_POINTS 1024

@@ -126,8 +126,7 @@ static PetscErrorCode StepIterate(ContactCompliance c, ComplianceMiss *miss)
   } else
     PetscCall(ComplianceChordIterate(c, miss));
   c->report.route = ComplianceIsMap(c) ? COMPLIANCE_NEWTON : COMPLIANCE_CHORD;
-  while (!ComplianceIsSolved(c, miss) &&
-         c->report.route < (ComplianceIsMap(c) ? COMPLIANCE_DAMPED : COMPLIANCE_PATH)) {
+  while (!ComplianceIsSolved(c, miss) && c->report.route < (ComplianceIsMap(c) ? COMPLIANCE_DAMPED : COMPLIANCE_PATH)) {
     c->report.route++;
     if (c->report.route == COMPLIANCE_NEWTON) PetscCall(ComplianceIterate(c, PETSC_FALSE, COMPLIANCE_MAX_IT, miss));
     if (c->report.route == COMPLIANCE_DAMPED) PetscCall(ComplianceIterate(c, PETSC_TRUE, COMPLIANCE_MAX_IT, miss));

@@ -81,6 +81,7 @@ static PetscErrorCode MarchBegin(MapMarch w, PetscBool go_on, MapPoint *row, Pet
   if (found) MapModesTake(2 * model->m, w->sigma, w->omega, &w->map->limit, row);
   if (found && model->Mx) PetscCall(MarchWeigh(w, row));
   if (found && !go_on) PetscCall(ReducedStateCopy(model, &w->rest, &w->state));
+  for (PetscInt k = 0; k < model->m && w->disturbance; k++) w->state.rate[k] += w->disturbance[k];
   row->growth    = fastest.growth;
   row->mode_freq = fastest.freq;
   row->index     = fastest.index;
@@ -157,12 +158,13 @@ PetscErrorCode MapChain(MapMarch w, PetscInt chain, MapPoint row[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapMarchAlone(MapMarch w, MapPoint *row)
+PetscErrorCode MapMarchAlone(MapMarch w, const PetscReal rate[], MapPoint *row)
 {
   PetscBool good;
 
   PetscFunctionBeginUser;
-  w->n_twins = 0;
+  w->n_twins     = 0;
+  w->disturbance = rate;
   PetscCall(MarchPoint(w, PETSC_FALSE, row, &good));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Private to sample/: what is estimated from samples of one number. Pure functions: no MPI, no options. */
+/* Private: what is estimated from samples of one number. Pure functions: no MPI, no options. */
 #pragma once
 
 #include <petscsys.h>
