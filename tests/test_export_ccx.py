@@ -5,7 +5,8 @@
               supports, springs at nodes, in all and per area, forces and a pressure; brought back by scripts/import it has
               the same frequencies and growth, and its loads do the same work, to 1e-9
   contact     two boxes in sliding contact, the same; the direction of slip, which no deck has, is given again
-  CalculiX    finds the frequencies of squeal in the decks of hex20 with springs, to 1e-5, where there is ccx
+  CalculiX    finds the frequencies of squeal in the decks of hex20 with springs, to 1e-5, where there is ccx; complex ones of one
+              contact and of two
   tie         reaches as far in the deck as in squeal
   rig         the built-in rig, in the file of -rig_save, has the same modes; and in a deck
   notes       what a deck does not have is listed, an option a line
@@ -73,6 +74,20 @@ oil: {set: block_top, viscosity: "0,0,10"}
 probes: tip
 tip: {at: "0,0,0.03"}
 modes: {target: 1, count: 12, growth: 5000, contact: all}
+"""
+TWO = """model: {mesh: two.msh}
+parts: plate,low,high
+plate: {young: 1.1e11, poisson: 0.3, density: 7100}
+low: {young: 1e10, poisson: 0.3, density: 2500}
+high: {young: 1.2e10, poisson: 0.3, density: 2500}
+supports: edge,low_back,high_back
+edge: {set: plate_left, fix: xyz}
+low_back: {set: low_bottom, fix: xy}
+high_back: {set: high_top, fix: xy}
+contacts: low_rub,high_rub
+low_rub: {surfaces: "low_top,plate_bottom", kn_per_area: 1e17, mu: 0.5, slip: "0,1,0"}
+high_rub: {surfaces: "high_bottom,plate_top", kn_per_area: 1e17, mu: 0.7, slip: "1,1,0"}
+modes: {target: 1, count: 12, growth: 20000, contact: all}
 """
 RIG = """model: {source: rig}
 rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
@@ -222,6 +237,27 @@ def check_sliding(top):
     check(done.returncode == 0, "sliding: of boxes on each other too")
 
 
+def check_two_sliding(top):
+    """Pads on both sides of a plate, which slide in two directions with two coefficients."""
+    if not shutil.which("ccx"):
+        return
+    run(top, sys.executable, SOURCE / "tests/boxes.py", "two.msh", "plate:hex20:-0.02,-0.02,-0.004:0.06,0.06,0.004:4,4,1",
+        "low:hex20:0,0,-0.024:0.04,0.04,-0.004:2,2,2", "high:hex20:0,0,0.004:0.04,0.04,0.024:2,2,2")
+    (top / "two.yaml").write_text(TWO)
+    squeal(top, "two.yaml", "two", "-output_fields", 0)
+    run(top, SOURCE / "scripts/export_ccx", "two", "--sliding")
+    run(top / "two", "ccx", "deck")
+    modes, theirs = modes_of(top / "two"), eigenvalues(top / "two/deck.dat")
+    worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
+    check(worst < CALCULIX and max(modes.real) > 1,
+          f"CalculiX: --sliding of two contacts, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+    for words, said in ((["-low_rub_surfaces", "plate_bottom,low_top"], "it must stay"),
+                        (["-contacts", "high_rub", "-high_rub_law", "constraint"], "high_rub is none")):
+        squeal(top, "two.yaml", "wrong", "-output_fields", 0, *words)
+        done = run_command([SOURCE / "scripts/export_ccx", "wrong", "--sliding"], top)
+        check(done.returncode == 1 and said in done.stderr and done.stderr.count("\n") == 1, f"sliding: {done.stderr.strip()}")
+
+
 def check_tie(top):
     """A tie across a gap of 0.8 mm, more than the 2.5 % of an element that CalculiX takes by itself, less than 5 % of a facet."""
     run(top, sys.executable, SOURCE / "tests/boxes.py", "tied.msh", "low:hex8:0,0,0:0.06,0.04,0.01:3,2,1",
@@ -276,6 +312,7 @@ def main():
         check_contact(Path(name))
         check_rig(Path(name))
         check_sliding(Path(name))
+        check_two_sliding(Path(name))
         check_tie(Path(name))
         check_bad(Path(name))
     print("\n".join([f"{len(FAULTS)} faults", *FAULTS]))

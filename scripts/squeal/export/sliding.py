@@ -1,8 +1,8 @@
-"""A deck that brings CalculiX into the state of full sliding of a scene with one contact, whose modes it then finds: complex ones
-where friction couples them.
+"""A deck that brings CalculiX into the state of full sliding of a scene, whose modes it then finds: complex ones where friction couples
+them. Each contact has a slave's body of its own, as pads on both sides of a disc.
 
-A static step makes all points of the contact slip equally: each body moves as a whole, that of the slave into the other until the
-pressure is PRESSURE, and by SLIDE along the direction of slip. It starts as much before its place, so that the meshes are in theirs
+A static step makes all points of a contact slip equally: each body moves as a whole, that of the slave into the other by DEEP, well
+above rounding, and by SLIDE along the direction of slip. It starts as much before its place, so that the meshes are in theirs
 after it. *FREQUENCY about this state asks again whether each point slips, by comparing two sides that are equal: rounding would
 decide, half of the points would stick and frequencies be off by 1e-3. Hence the static step has a friction coefficient that is larger
 by EXCESS. Across the direction of slip CalculiX leaves the slope of sticking, N/m^3, which is such that friction is reached at half
@@ -16,8 +16,8 @@ from ..decks.mesh.faces import nodes_by_kind, surface_nodes
 from ..tables import BadInput
 from .inp import frequency_cards, held_cards, model_cards, pair_cards, real
 
-PRESSURE, SLIDE, TWICE, EXCESS = 1e4, 0.2, 2, 1e-2  # Pa, of the size of the slave's body, -, -
-BODIES = "SLIDES", "STAYS"
+DEEP, SLIDE, TWICE, EXCESS = 2.5e-13, 0.2, 2, 1e-2  # both of the size of the slave's body, -, -
+STAYS = "STAYS"
 
 
 def body_of(deck, start):
@@ -54,32 +54,52 @@ def outward(deck, name, normal):
     return normal if away @ normal > 0 else -normal
 
 
+def sliding_bodies(deck):
+    """Nodes of the slave's body of each contact; none is part of another contact."""
+    bodies = [body_of(deck, surface_nodes(deck, deck.surfaces[contact.slave][0])) for contact in deck.contacts]
+    for contact, slides in zip(deck.contacts, bodies):
+        if contact.stiffness is None or not numpy.any(contact.slip):
+            raise BadInput(f"{deck.path}: a deck of sliding needs contacts by -law penalty, with a direction -slip; {contact.name} is none")
+        for other, body in zip(deck.contacts, bodies):
+            if body[surface_nodes(deck, deck.surfaces[contact.master][0])].any():
+                raise BadInput(f"{deck.path}: the master of {contact.name} is on the body that slides at {other.name}, or on that of its "
+                               "own slave: it must stay")
+            if other is not contact and (body & slides).any():
+                raise BadInput(f"{deck.path}: {contact.name} and {other.name} have one slave's body, which cannot slide at both")
+    if not bodies:
+        raise BadInput(f"{deck.path}: a deck of sliding needs a contact, by -law penalty, with a direction -slip")
+    return bodies
+
+
 def prepare(deck):
-    """Moves the slave's body back and names both; returns the contact, the slide, m, and the motion of the static step."""
-    if len(deck.contacts) != 1 or deck.contacts[0].stiffness is None or not numpy.any(deck.contacts[0].slip):
-        raise BadInput(f"{deck.path}: a deck of sliding needs one contact, by -law penalty, with a direction -slip")
-    contact = deck.contacts[0]
-    nodes = {name: numpy.concatenate([block.nodes.ravel() for block in deck.blocks]) for name in BODIES}
-    slides = body_of(deck, surface_nodes(deck, deck.surfaces[contact.slave][0]))
-    if slides[surface_nodes(deck, deck.surfaces[contact.master][0])].any():
-        raise BadInput(f"{deck.path}: slave and master of {contact.name} are one body, which cannot slide on itself")
-    for name, members in zip(BODIES, (slides, ~slides)):
-        deck.node_sets[name] = numpy.intersect1d(nodes[name], numpy.flatnonzero(members)), contact.place
-    along = numpy.array(contact.slip) / numpy.linalg.norm(contact.slip)
-    slide = SLIDE * numpy.ptp(deck.x[slides], axis=0).max()
-    deck.x[slides] -= slide * along
-    return contact, slide, slide * along + mean_normal(deck, contact.slave) * PRESSURE / contact.stiffness
+    """Moves the slaves' bodies back and names all bodies; returns of each contact the name of its body, pressure over slide, Pa/m, and the
+    motion of the static step."""
+    bodies, motions, place = sliding_bodies(deck), [], deck.contacts[0].place
+    nodes = numpy.unique(numpy.concatenate([block.nodes.ravel() for block in deck.blocks]))
+    deck.node_sets[STAYS] = nodes[~numpy.any(bodies, axis=0)[nodes]], place
+    for k, (contact, slides) in enumerate(zip(deck.contacts, bodies), 1):
+        deck.node_sets[f"SLIDES{k}"] = nodes[slides[nodes]], contact.place
+        along = numpy.array(contact.slip) / numpy.linalg.norm(contact.slip)
+        size = numpy.ptp(deck.x[slides], axis=0).max()
+        deck.x[slides] -= SLIDE * size * along
+        motion = size * (SLIDE * along + DEEP * mean_normal(deck, contact.slave))
+        motions.append((f"SLIDES{k}", DEEP * contact.stiffness / SLIDE, motion))
+    return motions
 
 
 def sliding_cards(deck):
     """A whole deck; that of the scene is changed."""
-    contact, slide, motion = prepare(deck)
-    mu, slope = contact.mu or 0, real(TWICE * (contact.mu or 0) * PRESSURE / slide)
-    friction = ["*FRICTION", f"{real(mu * (1 + EXCESS))}, {slope}"] if mu else []
-    changed = [f"*CHANGE FRICTION, INTERACTION={contact.name}", "*FRICTION", f"{real(mu)}, {slope}"] if mu else []
+    motions = prepare(deck)
+    contacts, moved, changed = [], [f"{STAYS}, 1, 3"], []
+    for contact, (body, steep, motion) in zip(deck.contacts, motions):
+        mu, slope = contact.mu or 0, real(TWICE * (contact.mu or 0) * steep)
+        contacts += [f"*SURFACE INTERACTION, NAME={contact.name}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+                     real(contact.stiffness)]
+        contacts += ["*FRICTION", f"{real(mu * (1 + EXCESS))}, {slope}"] if mu else []
+        contacts += pair_cards(contact)
+        changed += [f"*CHANGE FRICTION, INTERACTION={contact.name}", "*FRICTION", f"{real(mu)}, {slope}"] if mu else []
+        moved += [f"{body}, {d + 1}, {d + 1}, {real(value)}" for d, value in enumerate(motion)]
     _, *supports = held_cards(deck) or [""]
     modes = frequency_cards(deck, True)
-    return [*model_cards(deck), f"*SURFACE INTERACTION, NAME={contact.name}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-            real(contact.stiffness), *friction, *pair_cards(contact), "*STEP", "*STATIC, DIRECT", "1., 1.", "*BOUNDARY",
-            f"{BODIES[1]}, 1, 3", *(f"{BODIES[0]}, {d + 1}, {d + 1}, {real(value)}" for d, value in enumerate(motion)), "*END STEP",
-            modes[0], *changed, "*BOUNDARY, OP=NEW", *supports, *modes[1:]]
+    return [*model_cards(deck), *contacts, "*STEP", "*STATIC, DIRECT", "1., 1.", "*BOUNDARY", *moved, "*END STEP", modes[0], *changed,
+            "*BOUNDARY, OP=NEW", *supports, *modes[1:]]
