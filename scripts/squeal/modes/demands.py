@@ -20,6 +20,7 @@ DAMPINGS = (("disc beta 5e-7 s, pad beta 1e-7 s", "-disc_beta 5e-7 -pad_beta 1e-
             ("alpha 100 1/s, beta 1e-7 s on all parts", SAME_BOTH, 1.1),
             ("beta 1e-5 s on all parts", ALL.format("beta", "1e-5"), 3),  # most times of the undamped run
             ("beta 1e-4 s on all parts", ALL.format("beta", "1e-4"), 5),
+            ("beta 1e-5 s on the pad alone", "-pad_beta 1e-5", 5),
             ("beta 1e-4 s on the pad alone", "-pad_beta 1e-4", 5),
             *((f"dashpots of {viscosity} N s/m in all", DASHPOTS.format(viscosity), 5) for viscosity in ("1e2", "1e4", "1e6")),
             ("friction damping at 1e-3 m/s", "-contact_speed 1e-3 -contact_force 100 -contact_friction_damping", 5))
