@@ -8,6 +8,7 @@
   held      modulus and density of a free body: only their ratio is told, a prior fixes it
   stages    an earlier update is the prior of the next: a free disc, the brake assembled, pressed and rubbing
   damping   factors of Rayleigh damping from damping ratios
+  draws     where growth begins, by closed forms
   onset     friction at lock-in, and how sure it is, beside a sweep of the brake that was measured
   bad       a line each
 
@@ -29,6 +30,8 @@ SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
 from squeal.study.updated import N, NAMES, TEST, YOUNG, Bar, Brake, row, samples  # noqa: E402
 from squeal.update import solve  # noqa: E402
+from squeal.update.draws import begins_of  # noqa: E402
+from squeal.update.onset import Onset  # noqa: E402
 from squeal.update.written import INTERVAL  # noqa: E402
 
 FAULTS = []
@@ -69,6 +72,19 @@ def check_solve():
     direction = found.held[0][1] / abs(found.held[0][1]).max()
     check(len(found.held) == 1 and abs(direction[:2]).max() < 1e-6 and abs(found.t[:2] - 0.1).max() < 1e-3,
           "solve: a direction that is not told is held")
+
+
+def check_draws():
+    """Where growth begins between values of the other parameter: g = sqrt(m - 0.37) beyond a lock-in, g = m - 0.37 of damped modes; a
+    lock-in that ends, and one that begins."""
+    m = np.linspace(0, 1, 15)
+    root, line = np.sqrt(np.maximum(m - 0.37, 0)), m - 0.37
+    two = np.where(m < 0.55, root, np.sqrt(np.maximum(m - 0.81, 0)))
+    found = [begins_of(m, growth) for growth in (root, line, two, 0 * m, 1 + m)]
+    check(np.allclose(found[0], [0.37], atol=1e-12) and np.allclose(found[1], [0.37], atol=1e-12) and found[3:] == [[], []]
+          and np.allclose(found[2], [0.37, 0.81], atol=1e-12), f"draws: growth begins at {found[:3]}")
+    onset = Onset({"critical_value": 0.4}, first=[0.02, -0.03], steps=[np.array([0.1, 0]), np.array([0, 0.2])])
+    check(abs(onset.at(np.array([0.05, 0.1])) - (0.4 + 0.02 / 2 - 0.03 / 2)) < 1e-15, "draws: the onset of a draw to first order")
 
 
 def truth(rng, own=YOUNG):
@@ -156,6 +172,7 @@ def check_onset(brake):
 
 def main():
     check_solve()
+    check_draws()
     with tempfile.TemporaryDirectory() as folder:
         bar = Bar(Path(folder) / "row", sys.argv[1], run_command, row, 19)
         check_eight(Bar(Path(folder) / "samples", sys.argv[1], run_command, samples, 23, 8e9), "samples", 0.3)
