@@ -24,6 +24,18 @@ PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char te
   PetscFunctionReturn(0);
 }
 
+/* What to do where the name is one of a law of stiffness that the scene does not have */
+static const char *LawHint(const char name[])
+{
+  static const char *const of_laws[] = {"_loss_factor", "_prony_", "_zener_", "_table_temperature"};
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(of_laws); k++)
+    if (strstr(name, of_laws[k]))
+      return "; a law of the stiffness varies where the scene gives it, a loss factor above 0 without "
+             "-model_loss_frequency";
+  return "";
+}
+
 PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char option[], const char name[],
                                  PetscInt *index)
 {
@@ -39,8 +51,8 @@ PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char 
     PetscCall(WordsAdd(valid, i ? ", " : "", sizeof(valid)));
     PetscCall(WordsAdd(valid, parameters[i].name, sizeof(valid)));
   }
-  PetscCheck(*index >= 0, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that can be varied; valid are %s",
-             option, name, valid);
+  PetscCheck(*index >= 0, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that can be varied; valid are %s%s",
+             option, name, valid, LawHint(name));
   PetscFunctionReturn(0);
 }
 
