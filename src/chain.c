@@ -139,6 +139,7 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(MapCreate(comm, &chain->map));
   PetscCall(MapSetFromOptions(chain->map));
   PetscCall(CycleCreate(comm, &chain->cycle));
+  PetscCall(CycleSetSound(chain->cycle, chain->sound));
   PetscCall(CycleSetFromOptions(chain->cycle));
   PetscCall(StaticsCreate(comm, &chain->statics));
   PetscCall(StaticsSetFromOptions(chain->statics));
@@ -158,6 +159,7 @@ static PetscErrorCode ChainCreateAnalyses(MPI_Comm comm, Chain *chain)
   PetscCall(DesignCreate(comm, &chain->design));
   PetscCall(DesignSetFromOptions(chain->design));
   PetscCall(FrfCreate(comm, &chain->frf));
+  PetscCall(FrfSetSound(chain->frf, chain->sound));
   PetscCall(FrfSetFromOptions(chain->frf));
   PetscCall(SubstructureCreate(comm, &chain->substructure));
   PetscCall(SubstructureSetFromOptions(chain->substructure));
@@ -315,7 +317,7 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     else
       PetscCall(ContactSetUpTies(chain->contact));
     PetscCall(SquealStageEnd(SQUEAL_CONTACT));
-    if (1U << chain->analysis & (RUN_MODES | RUN_TRANSIENT | RUN_CYCLE)) PetscCall(SoundSetUp(chain->sound));
+    if (1U << chain->analysis & (RUN_MODES | RUN_FRF | RUN_TRANSIENT | RUN_CYCLE)) PetscCall(SoundSetUp(chain->sound));
     PetscCall(ChainNeedsMatrices(chain, pairs, &matrices));
     if (!matrices) PetscCall(OperatorsOmitMatrices(chain->operators));
   }

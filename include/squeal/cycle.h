@@ -63,6 +63,7 @@
 
 #include <squeal/quantity.h>
 #include <squeal/reduced.h>
+#include <squeal/sound.h>
 
 typedef struct _p_LimitCycle *LimitCycle;
 
@@ -81,6 +82,9 @@ PetscErrorCode CycleFollowsTransient(LimitCycle cycle, PetscBool *follows);
 
 /*@ CycleVisit - shows the rows of its options. Collective. @*/
 PetscErrorCode CycleVisit(LimitCycle c, const QuantityVisitor *visitor);
+
+/*@ CycleSetSound - microphones that hear the cycles (borrowed); NULL has none. Not collective. @*/
+PetscErrorCode CycleSetSound(LimitCycle cycle, Sound sound);
 
 /*@ CycleSetRooms - the reduced run, at whose end a cycle is looked for, and the operators (borrowed), with the values p
     [parameters] of their parameters, NULL for those of the scene. Collective. @*/

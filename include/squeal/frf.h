@@ -32,6 +32,7 @@
 #include <squeal/quantity.h>
 #include <squeal/modes.h>
 #include <squeal/results.h>
+#include <squeal/sound.h>
 #include <squeal/statics.h>
 
 typedef struct _p_Frf *Frf;
@@ -64,6 +65,9 @@ PetscErrorCode FrfSetModes(Frf frf, Modes modes);
    the pencil has
     the sliding state, or NULL (both referenced until FrfWrite()). Not collective. @*/
 PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics);
+
+/*@ FrfSetSound - microphones that hear the force (referenced until FrfWrite()); NULL has none. Not collective. @*/
+PetscErrorCode FrfSetSound(Frf frf, Sound sound);
 
 /*@ FrfSetPencil - the system, at its point when FrfSolve() is called (referenced until then). Not collective. @*/
 PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil);
@@ -110,7 +114,8 @@ PetscErrorCode FrfGetPeaks(Frf frf, PetscInt *n, const FrfPeak **peaks);
 /*@ FrfView - what was done, and the peaks. Collective. @*/
 PetscErrorCode FrfView(Frf frf, PetscViewer viewer);
 
-/*@ FrfWrite - frf.csv and peaks.csv, with -frf_times also impulse.csv. Collective. @*/
+/*@ FrfWrite - frf.csv and peaks.csv, with -frf_times also impulse.csv, with microphones
+    sound_frf.csv. Collective. @*/
 PetscErrorCode FrfWrite(Frf frf, Results results);
 
 /*@ FrfDestroy - frees the solver. Collective. @*/

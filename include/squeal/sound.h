@@ -91,6 +91,31 @@ PetscErrorCode SoundMeasurePower(Sound sound, const PetscReal vr[], const PetscR
 PetscErrorCode SoundMeasurePressure(Sound sound, PetscReal omega, const PetscReal vr[], const PetscReal vi[],
                                     PetscReal pr[], PetscReal pi[]);
 
+/*@ SoundCreateHeader - columns of a table of sound: `lead`, power_w, power_db, power_<part>_w of each part, and of each
+    microphone _re_pa, _im_pa, _db, _dba; the caller frees it. Not collective. @*/
+PetscErrorCode SoundCreateHeader(Sound sound, const char lead[], char **header);
+
+/*@ SoundGetRowSize - numbers of a row behind `lead`. Not collective. @*/
+PetscErrorCode SoundGetRowSize(Sound sound, PetscInt *n);
+
+/*@
+   SoundMeasureRow - one tone: W, dB, W, Pa, dB, dB(A) as the header has them. Collective; after SoundSetUp().
+
+   Input Parameters:
++  omega - rad/s
+-  vr, vi - velocity of the nodes, amplitude [nodes][3], in the scene's units
+   Output Parameter:
+.  row - [n] of SoundGetRowSize()
+
+   Errors: PETSC_ERR_USER_INPUT for sound that is not finite.
+@*/
+PetscErrorCode SoundMeasureRow(Sound sound, PetscReal omega, const PetscReal vr[], const PetscReal vi[],
+                               PetscReal row[]);
+
+/*@ SoundAddRows - tones of different frequency together: their powers added up; the pressure is the root of the sum of
+    squared amplitudes, without a phase. Not collective. @*/
+PetscErrorCode SoundAddRows(Sound sound, PetscInt n, const PetscReal rows[], PetscReal all[]);
+
 /* What a run in time has heard until now */
 typedef struct _p_SoundListener *SoundListener;
 

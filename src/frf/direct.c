@@ -140,6 +140,31 @@ static PetscErrorCode DirectError(Direct *d, Vec z, PetscReal *error)
   PetscFunctionReturn(0);
 }
 
+/* What the force radiates: u of all unknowns, from the first block and the second */
+static PetscErrorCode DirectHear(Frf frf, Direct *d, PetscInt i)
+{
+  PencilMatrices     pencil;
+  Vec                part[2] = {NULL, NULL};
+  const PetscScalar *u;
+  PetscScalar       *to;
+  PetscInt           n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(frf->pencil, &pencil));
+  PetscCall(VecGetArrayRead(d->u, &u));
+  for (PetscInt k = 0; k < d->parts; k++) {
+    PetscCall(MatCreateVecs(pencil.K, &part[k], NULL));
+    PetscCall(VecGetLocalSize(part[k], &n));
+    PetscCall(VecGetArrayWrite(part[k], &to));
+    PetscCall(PetscArraycpy(to, &u[k * n], n));
+    PetscCall(VecRestoreArrayWrite(part[k], &to));
+  }
+  PetscCall(VecRestoreArrayRead(d->u, &u));
+  PetscCall(FrfHear(frf, i, 0, part[0], part[1]));
+  for (int k = 0; k < 2; k++) PetscCall(VecDestroy(&part[k]));
+  PetscFunctionReturn(0);
+}
+
 /* Solves for the force and for every output, and measures the error: the root of the sum of squares over the
    outputs. One factorisation, 1 + n_outputs solves. */
 static PetscErrorCode DirectRespond(Frf frf, Direct *d, PetscInt i)
@@ -157,6 +182,7 @@ static PetscErrorCode DirectRespond(Frf frf, Direct *d, PetscInt i)
     PetscCall(DirectError(d, d->z[p], &error));
     frf->error[i] = hypot(frf->error[i], error);
   }
+  if (FrfHears(frf)) PetscCall(DirectHear(frf, d, i));
   if (d->parts == 2) {
     PetscCall(DirectExchange(d->u));
     PetscCall(VecMDot(d->u, n, d->l, &frf->im[i * n]));

@@ -40,6 +40,13 @@ PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FrfSetSound(Frf frf, Sound sound)
+{
+  PetscFunctionBeginUser;
+  frf->sound = sound;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode FrfSetPencil(Frf frf, Pencil pencil)
 {
   PetscFunctionBeginUser;
@@ -158,6 +165,11 @@ PetscErrorCode FrfSolve(Frf frf)
   PetscFunctionBeginUser;
   PetscCall(FrfCheckLaws(frf));
   PetscCall(PetscCalloc3(frf->n * frf->n_outputs, &frf->re, frf->n * frf->n_outputs, &frf->im, frf->n, &frf->error));
+  if (FrfHears(frf)) {
+    PetscCall(SoundGetRowSize(frf->sound, &frf->n_heard));
+    frf->n_heard++;
+    PetscCall(PetscCalloc1(frf->n * frf->n_heard, &frf->heard));
+  }
   if (frf->method == FRF_DIRECT)
     PetscCall(FrfSolveDirect(frf));
   else
@@ -209,6 +221,7 @@ PetscErrorCode FrfDestroy(Frf *frf)
   PetscCall(PetscFree(s->output));
   PetscCall(PetscFree3(s->re, s->im, s->error));
   PetscCall(PetscFree(s->peak));
+  PetscCall(PetscFree(s->heard));
   PetscCall(ChecksumDestroy(&s->journal.scene));
   PetscCall(PetscFree(*frf));
   PetscFunctionReturn(0);

@@ -5,6 +5,7 @@
 #include "solver/factor/shiftinvert.h"
 #include <squeal/quantity.h>
 #include <squeal/frf.h>
+#include <squeal/sound.h>
 #include <squeal/statics.h>
 #include <complex.h>
 
@@ -17,6 +18,7 @@ struct _p_Frf {
   Pencil    pencil;
   Statics   statics; /* whose sliding state the pencil is about, or NULL */
   Journal   journal; /* of a direct response */
+  Sound     sound;
   /* set by options */
   char       force[256], frequencies[4096], times[4096], directions[8];
   PetscBool  has_directions;
@@ -39,6 +41,8 @@ struct _p_Frf {
   /* results */
   PetscReal *re, *im; /* [n][n_outputs] m/N */
   PetscReal *error;   /* [n] m/N */
+  PetscInt   n_heard; /* numbers of a row of sound_frf.csv behind freq_hz, 0 without microphones */
+  PetscReal *heard;   /* [n][n_heard] */
   PetscReal *impulse; /* [n_times][n_outputs] m/(N s) */
   PetscInt   n_peaks;
   FrfPeak   *peak;
@@ -64,6 +68,12 @@ PETSC_INTERN PetscErrorCode FrfSolveDirect(Frf frf);
 PETSC_INTERN PetscErrorCode FrfResume(Frf frf, PetscInt *n);
 PETSC_INTERN PetscErrorCode FrfKeep(Frf frf, PetscInt n);
 PETSC_INTERN PetscErrorCode FrfForget(Frf frf);
+
+/* tables/sound.c - whether somebody listens; the row of frequency i, of an answer in the unknowns of the pencil, im
+   NULL for a real one; the table. Collective. */
+PETSC_INTERN PetscBool      FrfHears(Frf frf);
+PETSC_INTERN PetscErrorCode FrfHear(Frf frf, PetscInt i, PetscReal error, Vec re, Vec im);
+PETSC_INTERN PetscErrorCode FrfWriteSound(Frf frf, Results results);
 
 /* contribution.c - how much each mode gives to the response */
 typedef struct {

@@ -6,7 +6,8 @@
 #include "base/process/interrupt.h"
 #include "base/path.h"
 
-#define FRF_KEPT "frf_restart"
+#define FRF_KEPT  "frf_restart"
+#define FRF_ITEMS 4
 
 /* A force or an output, by its entries of all unknowns */
 static PetscErrorCode FrfSumVector(Vec v, Checksum c)
@@ -45,24 +46,26 @@ static PetscErrorCode FrfSumScene(Frf frf, Checksum c)
   PetscCall(ChecksumAddReals(c, frf->n, frf->freq));
   PetscCall(FrfSumVector(frf->f, c));
   for (PetscInt k = 0; k < frf->n_outputs; k++) PetscCall(FrfSumVector(frf->l[k], c));
+  PetscCall(SoundAddChecksum(frf->sound, c));
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
 }
 
 /* The responses of n frequencies; n < 0: any */
-static void FrfListItems(Frf frf, PetscInt n, JournalItem item[3])
+static void FrfListItems(Frf frf, PetscInt n, JournalItem item[FRF_ITEMS])
 {
   const PetscInt m = n < 0 ? 1 : frf->n_outputs;
 
   item[0] = (JournalItem){"real parts", n * m, n < 0 ? NULL : frf->re};
   item[1] = (JournalItem){"imaginary parts", n * m, n < 0 ? NULL : frf->im};
   item[2] = (JournalItem){"errors", n, n < 0 ? NULL : frf->error};
+  item[3] = (JournalItem){"sound", n < 0 ? n : n * frf->n_heard, n < 0 ? NULL : frf->heard};
 }
 
 PetscErrorCode FrfResume(Frf frf, PetscInt *n)
 {
-  PetscReal  *to[3] = {frf->re, frf->im, frf->error};
-  JournalItem item[3];
+  PetscReal  *to[FRF_ITEMS] = {frf->re, frf->im, frf->error, frf->heard};
+  JournalItem item[FRF_ITEMS];
   PetscBool   taken;
 
   PetscFunctionBeginUser;
@@ -71,9 +74,9 @@ PetscErrorCode FrfResume(Frf frf, PetscInt *n)
   PetscCall(ChecksumCreate(frf->comm, &frf->journal.scene));
   PetscCall(FrfSumScene(frf, frf->journal.scene));
   FrfListItems(frf, -1, item);
-  PetscCall(JournalTake(&frf->journal, FRF_KEPT, "the response begins anew", 3, item, &taken));
+  PetscCall(JournalTake(&frf->journal, FRF_KEPT, "the response begins anew", FRF_ITEMS, item, &taken));
   if (taken) *n = item[2].n;
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < FRF_ITEMS; k++) {
     if (taken) PetscCall(PetscArraycpy(to[k], item[k].values, item[k].n));
     PetscCall(PetscFree(item[k].values));
   }
@@ -87,12 +90,12 @@ PetscErrorCode FrfResume(Frf frf, PetscInt *n)
    response. */
 PetscErrorCode FrfKeep(Frf frf, PetscInt n)
 {
-  JournalItem item[3];
+  JournalItem item[FRF_ITEMS];
 
   PetscFunctionBeginUser;
   if (!frf->restart || !frf->journal.results || !JournalIsDue(n)) PetscFunctionReturn(0);
   FrfListItems(frf, n, item);
-  PetscCall(JournalKeep(&frf->journal, FRF_KEPT, 3, item, &frf->restart));
+  PetscCall(JournalKeep(&frf->journal, FRF_KEPT, FRF_ITEMS, item, &frf->restart));
   if (frf->restart)
     InterruptSays("%d of %d frequencies are kept, with which the same command goes on", (int)n, (int)frf->n);
   PetscFunctionReturn(0);

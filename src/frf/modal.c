@@ -213,6 +213,22 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
   PetscFunctionReturn(0);
 }
 
+/* What the force radiates, on the space with one step more */
+static PetscErrorCode SuperpositionHear(Frf frf, Superposition *s)
+{
+  FrfField before, field;
+
+  PetscFunctionBeginUser;
+  if (!FrfHears(frf)) PetscFunctionReturn(0);
+  PetscCall(FrfFieldCreate(frf, &s->space, s->shift, s->b, &before));
+  PetscCall(ModesAnswersStep(&s->answers));
+  PetscCall(FrfFieldCreate(frf, &s->space, s->shift, s->b, &field));
+  PetscCall(FrfHearFields(frf, &s->space, &field, &before));
+  PetscCall(FrfFieldDestroy(&before));
+  PetscCall(FrfFieldDestroy(&field));
+  PetscFunctionReturn(0);
+}
+
 /* Collective. The factors of the modes are kept for the answers: no further factorisation. Residues name the
    modes of peaks; they are not summed. */
 PetscErrorCode FrfSolveModal(Frf frf)
@@ -231,6 +247,7 @@ PetscErrorCode FrfSolveModal(Frf frf)
   PetscCall(SuperpositionCreate(frf, &s));
   PetscCall(SuperpositionGrow(frf, &s));
   frf->n_vectors = s.space.space.n;
+  PetscCall(SuperpositionHear(frf, &s));
   PetscCall(SuperpositionDestroy(frf, &s));
   PetscCall(FrfResiduesCreate(frf, &residues));
   PetscCall(FrfFindPeaks(frf, &residues));

@@ -52,3 +52,17 @@ PETSC_INTERN PetscErrorCode FrfSchurCreate(const ModesSpace *space, PetscBool ro
 PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscInt n, const PetscReal omega[], PetscReal re[],
                                             PetscReal im[], PetscInt *pole);
 PETSC_INTERN PetscErrorCode FrfSchurDestroy(FrfSchur *schur);
+
+/* Coordinates of the answers on the n vectors of a space, [frequencies][n] */
+typedef struct {
+  PetscInt   n;
+  PetscReal *re, *im;
+} FrfField;
+
+/* tables/sound.c - these, of a force in the unknowns of the pencil; what they radiate, beside those of the space before
+   its last step. Collective. */
+PETSC_INTERN PetscErrorCode FrfFieldCreate(Frf frf, const ModesSpace *space, PetscReal shift, Vec force,
+                                           FrfField *field);
+PETSC_INTERN PetscErrorCode FrfFieldDestroy(FrfField *field);
+PETSC_INTERN PetscErrorCode FrfHearFields(Frf frf, const ModesSpace *space, const FrfField *field,
+                                          const FrfField *before);

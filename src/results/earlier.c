@@ -90,6 +90,8 @@ static const struct {
   {"circles.csv", "transient.csv.part"},
   {"sound_time.csv", "transient.csv.part"},
   {"sound.csv", NULL},
+  {"sound_frf.csv", NULL},
+  {"sound_cycle.csv", NULL},
   {"circle_nodes.csv", "transient.csv.part"},
   {"impulses.csv", "transient.csv.part"},
   {"contact_pairs.csv", "transient.csv.part"},

@@ -2,7 +2,7 @@
 #include "soundimpl.h"
 
 #define SOUND_AT(member) QUANTITY_AT(struct _p_Sound, member)
-#define HEARD            (RUN_MODES | RUN_HISTORY)
+#define HEARD            (RUN_MODES | RUN_FRF | RUN_CYCLE | RUN_HISTORY)
 
 static const char *SoundIdle(const void *sound, const QuantityRun *run)
 {
@@ -16,7 +16,7 @@ static const Quantity rows[] = {
   {"-sound_speed", "speed of sound in it, in any set of units", "m/s", QUANTITY_REAL, SOUND_AT(speed), .initial = 343.2,
    QUANTITY_POSITIVE, .idle = SoundIdle, .restart = PETSC_TRUE},
   {"-sound_energy", "energy of vibration at which the sound of each mode is stated", "J", QUANTITY_REAL,
-   SOUND_AT(energy), .initial = 1e-3, QUANTITY_POSITIVE, .idle = SoundIdle, .in = RUN_MODES},
+   SOUND_AT(energy), .initial = 1e-3, QUANTITY_POSITIVE, .idle = SoundIdle, .in = RUN_MODES | RUN_FRF},
 };
 const QuantityTable sound_quantities = {"Sound", "sound.h", PETSC_STATIC_ARRAY_LENGTH(rows), rows, .in = HEARD};
 

@@ -114,6 +114,48 @@ def sphere(root):
         near(power / (2 * np.pi * radius**2 * density * speed * abs(factor)**2), 1, 2e-3, f"breathing sphere, ka {ka:.3g}: power")
 
 
+def rows(folder, table, *lines):
+    """A table by its lines."""
+    folder.mkdir(exist_ok=True)
+    (folder / table).write_text("\n".join(lines) + "\n")
+
+
+def cycles(root, folder):
+    """Two harmonics of 1 and 0.5 Pa, a quarter of a period apart; a response of two frequencies."""
+    rows(folder, "sound_cycle.csv",
+         "point,harmonic,freq_hz,error_db,cutoff_error_db,power_w,power_db,front_re_pa,front_im_pa,front_db,front_dba",
+         "1,0,2000,0.1,,1,120,1.1180339887,0,92,93", "1,1,2000,,,1,120,1,0,91,92", "1,2,4000,,,1,120,0,0.5,85,86")
+    done = sound(root, folder)
+    check(done.returncode == 0 and "cycle 1: 2000.0 Hz, 2 harmonics; front 93.0 dB(A)" in done.stdout,
+          f"a cycle: {done.stdout}{done.stderr}")
+    with wave.open(str(folder / "cycle_front.wav")) as file:
+        heard = np.frombuffer(file.readframes(file.getnframes()), "<i2") / 32767
+    t = np.arange(len(heard)) / 48000
+    expected = np.cos(4000 * np.pi * t) - 0.5 * np.sin(8000 * np.pi * t)
+    near(abs(heard - expected / abs(expected).max()).max(), 0, 1e-3, "3 s of it in the file" if len(heard) == 144000 else "LENGTH")
+    rows(folder, "sound_frf.csv", "freq_hz,field_error,power_w,power_db,front_re_pa,front_im_pa,front_db,front_dba",
+         "1000,0,1,120,1,0,91,91", "2000,0,1,110,2,0,97,98.2")
+    done = sound(root, folder, "--most", "1")
+    check("2000.000 Hz    98.2 dB(A)" in done.stdout and "1000.000" not in done.stdout,
+          f"the loudest frequency: {done.stdout}{done.stderr}")
+    check((folder / "sound_frf.png").stat().st_size > 10000, "its picture")
+    for words, what in ((["--cycle", "2"], "has cycles 1 to 1"), (["--window", "0,1"], "--window does nothing with"),
+                        (["--directivity", "disc"], "no such table"),
+                        (["--boundary", "disc", "--most", "3"], "take --modes and --distance alone")):
+        done = sound(root, folder, *words)
+        check(done.returncode and what in done.stderr, f"{words}: {done.stderr.strip().splitlines()[-1]}")
+
+
+def directions(root):
+    """A breathing sphere is as loud in all directions, on circles about its middle."""
+    sys.path.insert(0, str(root / "scripts"))
+    from squeal.sound.directivity import circles
+
+    angle, places = circles(np.array([0.1, 0, 0]), 0.5)
+    check(np.allclose(np.linalg.norm(places - [0.1, 0, 0], axis=2), 0.5) and np.allclose(places[1, 18], [0.1, 0, 0.5])
+          and np.isclose(angle[18], np.pi / 2), "places on circles")
+
+
 def refused(root, folder):
     """One line each."""
     t = np.arange(0, 0.01, STEP)
@@ -137,8 +179,10 @@ def main():
     root = Path(__file__).resolve().parents[2]
     weights(root)
     sphere(root)
+    directions(root)
     with tempfile.TemporaryDirectory() as folder:
         tones(root, Path(folder) / "tones")
+        cycles(root, Path(folder) / "cycles")
         refused(root, Path(folder))
     sys.exit(1 if FAILED else 0)
 

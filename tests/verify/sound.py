@@ -9,7 +9,15 @@
     sound.py power RUN
         sound.csv of a mesh of hex8 beside the integral of the field in modes.h5 over the outer surface that VTK finds
     sound.py beside ONE OTHER FROM TOLERANCE
-        sound_time.csv of two runs from a time (s) on, of the rms"""
+        sound_time.csv of two runs from a time (s) on, of the rms
+    sound.py forced RUN LENGTH WIDTH MASS STIFFNESS
+        sound_frf.csv of the same plate on springs (N/m) that 1 N moves
+    sound.py fields MODAL DIRECT
+        sound_frf.csv by superposition and as a whole: the difference of pressures within the error that is told
+    sound.py cycle CYCLE TRANSIENT DECIBEL
+        sound_cycle.csv beside sound_time.csv of the transient that ends in it: levels of all and of each harmonic, in the last 10 ms
+    sound.py branch BRANCH CYCLE DECIBEL
+        sound_cycle.csv of a branch of which the last cycle, or the first, is that of the other run"""
 
 import csv
 import sys
@@ -28,7 +36,7 @@ WEIGHTS = {1000: 0.0, 1250: 0.6, 1600: 1.0, 2000: 1.2, 2500: 1.3, 3150: 1.2, 400
 def rows_of(path):
     """Rows of a table, numbers all."""
     with Path(path).open(newline="") as file:
-        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        return [{name: float(value) if value else np.nan for name, value in row.items()} for row in csv.DictReader(file)]
 
 
 def rayleigh(place, omega, length, width):
@@ -145,8 +153,72 @@ def beside(one, other, begin, tolerance):
     return words
 
 
+def forced(folder, length, width, mass, stiffness):
+    """v = i omega F / (k - m omega^2); its damping, of strain, does not act on a rigid plate."""
+    words = []
+    for row in rows_of(Path(folder) / "sound_frf.csv"):
+        omega = 2 * np.pi * row["freq_hz"]
+        speed = 1j * omega / (stiffness - mass * omega**2)
+        power_of = DENSITY * SPEED * abs(speed)**2 * length * width
+        words.append((f"power at {row['freq_hz']:g} Hz", abs(row["power_w"] / power_of - 1), 1e-5))
+        for name, place in PLACES.items():
+            expected = rayleigh(place, omega, length, width) * speed
+            found = complex(row[f"{name}_re_pa"], row[f"{name}_im_pa"])
+            words.append((f"pressure {name} at {row['freq_hz']:g} Hz", abs(found / expected - 1), 1e-3))
+        away = 1j * omega * DENSITY * speed * length * width * np.exp(-200j * omega / SPEED) / (2 * np.pi * 200)
+        if row["freq_hz"] == 10:
+            words.append(("a point source", abs(complex(row["away_re_pa"], row["away_im_pa"]) / away - 1), 1e-6))
+    return words
+
+
+def fields(modal, direct):
+    """Ten times the error, as microphones weigh the field otherwise than its norm does."""
+    pairs = zip(*(rows_of(Path(folder) / "sound_frf.csv") for folder in (modal, direct)))
+    words = []
+    for a, b in pairs:
+        p, q = (complex(row["near_re_pa"], row["near_im_pa"]) for row in (a, b))
+        words.append((f"near at {a['freq_hz']:g} Hz", abs(p / q - 1), 10 * a["field_error"] + 1e-7))
+    words.append(("largest stated error", max(row["field_error"] for row in rows_of(Path(modal) / "sound_frf.csv")), 1e-3))
+    return words
+
+
+def cycle(folder, transient, decibel):
+    """Amplitudes of the harmonics by least squares over whole periods."""
+    rows = [row for row in rows_of(Path(folder) / "sound_cycle.csv") if row["point"] == 1]
+    freq, words = rows[1]["freq_hz"], []
+    heard = rows_of(Path(transient) / "sound_time.csv")
+    t = np.array([row["time_s"] for row in heard])
+    late = t > t[-1] - np.floor(10e-3 * freq) / freq
+    n = int(20e3 / freq)
+    base = np.column_stack([wave(2 * np.pi * h * freq * t[late]) for h in range(1, n + 1) for wave in (np.cos, np.sin)])
+    for name in ("front", "side"):
+        p = np.array([row[f"{name}_pa"] for row in heard])[late]
+        size = np.hypot(*np.linalg.lstsq(base, p - p.mean(), rcond=None)[0].reshape(n, 2).T)
+        levels = 20 * np.log10(np.array([np.sqrt((size**2).sum()), *size]) / np.sqrt(2) / 20e-6)
+        for h in range(0, 3):
+            words.append((f"{name}, harmonic {h}", abs(rows[h][f"{name}_db"] - levels[h]), decibel))
+    words.append(("all of them", abs(rows[0]["power_w"] / sum(row["power_w"] for row in rows[1:]) - 1), 1e-12))
+    return words
+
+
+def branch(folder, own, decibel):
+    """All harmonics of the cycle of the same frequency; the other end of the branch sounds otherwise."""
+    rows, alone = (rows_of(Path(run) / "sound_cycle.csv") for run in (folder, own))
+    near = min({row["point"] for row in rows}, key=lambda k: abs(next(r for r in rows if r["point"] == k)["freq_hz"] - alone[0]["freq_hz"]))
+    same = [row for row in rows if row["point"] == near]
+    words = [(f"harmonic {a['harmonic']:g}", abs(a["front_db"] - b["front_db"]), decibel) for a, b in zip(same, alone)]
+    other = next(row for row in rows if row["point"] != near)
+    return [*words, ("another modulus", 1 / max(abs(other["front_db"] - alone[0]["front_db"]), 1e-9), 1 / (2 * decibel))]
+
+
 def main():
     what, *words = sys.argv[1:]
+    if what == "forced":
+        check(forced(words[0], *map(float, words[1:])))
+    if what == "fields":
+        check(fields(*words))
+    if what in ("cycle", "branch"):
+        check({"cycle": cycle, "branch": branch}[what](*words[:2], float(words[2])))
     if what == "piston":
         check(piston(words[0], *map(float, words[1:])))
     if what == "tone":

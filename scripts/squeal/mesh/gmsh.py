@@ -1,6 +1,7 @@
 """Meshes that the program gmsh makes of the scripts of options/ and others, and what stands in its files, in text."""
 
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -10,15 +11,19 @@ from ..run.program import ROOT
 from ..tables import BadInput, regular
 
 TRI6, TET10, QUAD8, HEX20 = 9, 11, 16, 17  # numbers of types
-TRIES, FOLDED = 4, "Failed to reach critical value"
+FOLDED = "Failed to reach critical value"
+FACTORS = 1, 1, 0.98, 0.96, 0.94  # of sizes, where a mesh has folded elements
 DIMENSION = {15: 0, 1: 1, 8: 1} | dict.fromkeys((2, 3, TRI6, 10, QUAD8), 2)  # of others 3
 
 
 def run_gmsh(script, path, *options, form="msh41", dimension=3):
-    """Has gmsh mesh a script into a file; what it calls an error is one. Its meshes differ from run to run: one in which curved elements
-    stay folded is made again."""
-    words = ["gmsh", f"-{dimension}", "-format", form, script, "-o", path, *options]
-    for _ in range(TRIES):
+    """Has gmsh mesh a script into a file; what it calls an error is one. A mesh in which curved elements stay folded is made again, as
+    meshes differ from run to run, then of smaller elements, which is said."""
+    for factor in FACTORS:
+        words = ["gmsh", f"-{dimension}", "-format", form, script, "-o", path, *options]
+        if factor != 1:
+            words += ["-setnumber", "Mesh.MeshSizeFactor", factor]
+            print(f"{Path(script).name}: curved elements stay folded; meshed again with all sizes times {factor}", file=sys.stderr)
         try:
             done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
         except OSError:

@@ -52,8 +52,8 @@ class Part:
         return numpy.array(heard)
 
 
-def compare(folder, name, modes):
-    """Prints for each mode and microphone both levels, and the power beside the equivalent one."""
+def part_and_rows(folder, name, modes):
+    """A part, and the rows of sound.csv by their mode, which has those that are asked for."""
     try:
         part = Part(folder, name)
         rows = {int(row["mode"]): row for row in part.results.table("sound")}
@@ -62,6 +62,12 @@ def compare(folder, name, modes):
     unknown = [mode for mode in modes if mode not in rows]
     if unknown:
         raise BadInput(f"--modes {unknown[0]}: sound.csv has no such mode")
+    return part, rows
+
+
+def compare(folder, name, modes):
+    """Prints for each mode and microphone both levels, and the power beside the equivalent one."""
+    part, rows = part_and_rows(folder, name, modes)
     print(f"{name} by itself: {len(part.triangles)} triangles; dB by Rayleigh's integral, by boundary elements")
     for mode in modes:
         omega, energy = 2 * numpy.pi * rows[mode]["freq_hz"], rows[mode]["energy_j"]

@@ -142,7 +142,7 @@ static PetscErrorCode HistoryBeginTables(History history, const ResultsMark mark
     PetscCall(PetscFree(header));
   }
   if (HistoryHears(history) && !history->sound_table) {
-    PetscCall(SoundCreateHeader(history, &header));
+    PetscCall(HistoryCreateSoundHeader(history, &header));
     PetscCall(HistoryBeginTable(results, "sound_time", header, mark[4], &history->sound_table));
     PetscCall(PetscFree(header));
   }

@@ -93,7 +93,7 @@ PETSC_INTERN PetscErrorCode CirclesWriteNodes(History history);
 /* tables/sound.c - whether there are microphones; header of sound_time.csv, which the caller frees, and a row.
    Collective. */
 PETSC_INTERN PetscBool      HistoryHears(History history);
-PETSC_INTERN PetscErrorCode SoundCreateHeader(History history, char **header);
+PETSC_INTERN PetscErrorCode HistoryCreateSoundHeader(History history, char **header);
 PETSC_INTERN PetscErrorCode HistoryWriteSound(History history, const HistoryState *state);
 
 /* live.c */

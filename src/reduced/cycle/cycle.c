@@ -140,7 +140,9 @@ static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const Shoo
   point->fold        = along ? PETSC_TRUE : PETSC_FALSE;
   point->its         = at->its;
   point->residual    = at->residual;
+  PetscCall(CycleListen(c));
   PetscCall(CycleFlowMeasure(&c->flow, at, &point->found, point->probe));
+  PetscCall(CycleHear(c, at->period, c->reduced->request.cutoff, &point->sound));
   PetscCall(ShootingGetStability(&c->shooting, at, &point->stability));
   if (c->verify) PetscCall(CycleRefine(c, at, along, point));
   if (c->higher) PetscCall(CycleHigherLook(c->higher, at, along, point));
@@ -256,6 +258,16 @@ PetscErrorCode CycleSolve(LimitCycle c, Results results)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CyclePointDestroy(CyclePoint *p)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(p->probe, p->finer_probe, p->spread_probe));
+  PetscCall(PetscFree(p->sound.row));
+  PetscCall(PetscFree(p->finer_sound.row));
+  PetscCall(PetscFree(p->higher_sound.row));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CycleDestroy(LimitCycle *cycle)
 {
   LimitCycle c = *cycle;
@@ -267,8 +279,7 @@ PetscErrorCode CycleDestroy(LimitCycle *cycle)
   PetscCall(CycleFamilyDestroy(&c->family));
   PetscCall(PetscFree2(c->shooting.size, c->shooting.weight));
   PetscCall(PetscFree(c->shooting.free));
-  for (PetscInt i = 0; i < c->n_points; i++)
-    PetscCall(PetscFree3(c->point[i].probe, c->point[i].finer_probe, c->point[i].spread_probe));
+  for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CyclePointDestroy(&c->point[i]));
   PetscCall(PetscFree(c->point));
   PetscCall(PetscFree(c->p));
   PetscCall(PetscFree(*cycle));

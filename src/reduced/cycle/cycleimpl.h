@@ -52,6 +52,7 @@ typedef struct {
   PetscReal               contact, friction; /* works in a period that is measured, J */
   PetscReal              *force; /* [n_steps] normal force after each, N; NULL but while a cycle is measured */
   PetscReal              *shown; /* [n_steps][3][n_looked] displacement, residual part of it, velocity of the modes */
+  PetscReal              *rates; /* [n_steps][m] of the scene's modes; NULL but while a cycle is heard */
   PetscReal               dt;    /* of the stepper */
   ReducedStepper          stepper;
   ReducedTangent          tangent;
@@ -59,6 +60,12 @@ typedef struct {
   ReducedReport           report;
   PetscInt                n_flows; /* periods that were integrated */
 } CycleFlow;
+
+/* What a cycle radiates: harmonic 0, all together, and 1 to n, each a row of sound.h */
+typedef struct {
+  PetscInt   n, n_row;
+  PetscReal *row; /* [n + 1][n_row], NULL where nobody listens */
+} CycleSound;
 
 /* A cycle in numbers */
 typedef struct {
@@ -78,6 +85,7 @@ typedef struct {
   ShootingStability stability, finer_stability, higher_stability;
   PetscReal         multiplier_spread;
   CycleProbe       *probe, *finer_probe, *spread_probe; /* [n_looked] */
+  CycleSound        sound, finer_sound, higher_sound;
 } CyclePoint;
 
 typedef struct _p_CycleHigher *CycleHigher;
@@ -91,7 +99,8 @@ struct _p_LimitCycle {
   ReducedRun         reduced;
   Operators          operators;
   Results            results;
-  PetscReal         *p; /* [parameters] of the operators */
+  Sound              sound; /* NULL: nobody listens */
+  PetscReal         *p;     /* [parameters] of the operators */
   ReducedParameter   varied;
   CycleFamily       *family;
   const CycleFamily *beside; /* borrowed: of the cycles with a lower cut-off */
@@ -133,6 +142,12 @@ PETSC_INTERN PetscErrorCode CycleFlowSetValue(CycleFlow *flow, PetscReal value);
 PETSC_INTERN PetscErrorCode CycleFlowRun(void *flow, const PetscReal x[], PetscReal period, PetscReal value,
                                          PetscReal y[], PetscReal M[]);
 PETSC_INTERN PetscErrorCode CycleFlowDestroy(CycleFlow *flow);
+
+/* sound.c - keeps the rates of the next period that is measured, where somebody listens; what that cycle radiates, of
+   modes up to `cutoff` (Hz), for the caller to free; the table. Collective */
+PETSC_INTERN PetscErrorCode CycleListen(LimitCycle cycle);
+PETSC_INTERN PetscErrorCode CycleHear(LimitCycle cycle, PetscReal period, PetscReal cutoff, CycleSound *heard);
+PETSC_INTERN PetscErrorCode CycleWriteSound(LimitCycle cycle);
 
 /* measure.c - a cycle in numbers; probe [n_looked] or NULL */
 PETSC_INTERN PetscErrorCode CycleFlowMeasure(CycleFlow *flow, const ShootingCycle *cycle, CycleMeasure *measure,

@@ -140,6 +140,16 @@ static PetscErrorCode FlowPrepare(CycleFlow *f, PetscReal period, PetscReal valu
   PetscFunctionReturn(0);
 }
 
+/* Rates after step k, in the scene's modes */
+static void FlowKeepRates(CycleFlow *f, PetscInt k)
+{
+  const PetscInt m    = f->model->m;
+  PetscReal     *rate = &f->rates[m * k];
+
+  for (PetscInt j = 0; j < m; j++) rate[j] = f->state.rate[j];
+  if (f->family) (void)CycleFamilyTurn(f->family, PETSC_TRUE, 1, m, rate);
+}
+
 /* The normal force after step k, and what probes show: displacement, of it that of the residual, and velocity of the
    modes */
 static void FlowLook(CycleFlow *f, PetscInt k)
@@ -151,6 +161,7 @@ static void FlowLook(CycleFlow *f, PetscInt k)
 
   f->force[k] = 0;
   for (PetscInt i = 0; i < model->n_pairs; i++) f->force[k] += f->state.p[3 * i];
+  if (f->rates) FlowKeepRates(f, k);
   for (PetscInt i = 0; i < 3 * n; i++) u[i] = 0;
   if (!n) return;
   ReducedBlockTimes(&(DenseBlock){&model->W[N * f->first], pairs, n, N}, PETSC_TRUE, 1, f->state.q, residual);

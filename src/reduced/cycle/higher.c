@@ -24,6 +24,7 @@ static PetscErrorCode HigherCopy(LimitCycle c, ReducedRun bodies, LimitCycle *co
   PetscFunctionBeginUser;
   PetscCall(CycleCreate(c->comm, copy));
   PetscCall(CycleSetRooms(*copy, bodies, c->operators, c->p));
+  PetscCall(CycleSetSound(*copy, c->sound));
   PetscCall(PetscStrncpy((*copy)->parameter, c->parameter, sizeof((*copy)->parameter)));
   (*copy)->varied   = c->varied;
   (*copy)->range[0] = c->range[0];
@@ -92,7 +93,9 @@ PetscErrorCode CycleHigherLook(CycleHigher h, const ShootingCycle *at, const Sho
     PetscCall(ShootingSolve(&c->shooting, here));
   point->has_higher = here->converged;
   if (!here->converged) PetscFunctionReturn(0);
+  PetscCall(CycleListen(c));
   PetscCall(CycleFlowMeasure(&c->flow, here, &point->higher, NULL));
+  PetscCall(CycleHear(c, here->period, c->reduced->request.cutoff / REDUCED_HIGHER, &point->higher_sound));
   PetscCall(ShootingGetStability(&c->shooting, here, &point->higher_stability));
   if (along) point->value_error += PetscAbsReal(here->value - at->value);
   PetscFunctionReturn(0);

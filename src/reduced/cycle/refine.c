@@ -101,7 +101,9 @@ PetscErrorCode CycleRefine(LimitCycle c, const ShootingCycle *at, const Shooting
   PetscCall(CycleSolveAgain(c, along, &other));
   point->has_finer = other.converged;
   if (other.converged) {
+    PetscCall(CycleListen(c));
     PetscCall(CycleFlowMeasure(&c->flow, &other, &point->finer, point->finer_probe));
+    PetscCall(CycleHear(c, other.period, c->reduced->request.cutoff, &point->finer_sound));
     PetscCall(ShootingGetStability(&c->shooting, &other, &point->finer_stability));
     if (along) point->value_error += CycleError(at->value, other.value, 0);
   }

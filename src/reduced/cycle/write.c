@@ -192,5 +192,6 @@ PetscErrorCode CycleWrite(LimitCycle c)
   for (PetscInt i = 0; i < c->n_points; i++) PetscCall(CycleWriteRow(c, i, table));
   PetscCall(ResultsTableClose(&table));
   PetscCall(CycleWriteProbes(c));
+  PetscCall(CycleWriteSound(c));
   PetscFunctionReturn(0);
 }

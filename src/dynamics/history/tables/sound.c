@@ -15,7 +15,7 @@ PetscBool HistoryHears(History h)
   return n ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode SoundCreateHeader(History h, char **header)
+PetscErrorCode HistoryCreateSoundHeader(History h, char **header)
 {
   const Microphone *microphone;
   PetscInt          n;

@@ -1,7 +1,7 @@
 /*
    Maxima of the response over the frequencies of the table.
 */
-#include "frfimpl.h"
+#include "frf/frfimpl.h"
 
 #define PEAK_NEAR 0.03 /* of the frequency, within which a maximum is that of a mode */
 

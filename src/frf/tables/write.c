@@ -1,7 +1,7 @@
 /*
    The response for people and for files.
 */
-#include "frfimpl.h"
+#include "frf/frfimpl.h"
 #include "base/text.h"
 #include <string.h>
 
@@ -186,6 +186,7 @@ PetscErrorCode FrfWrite(Frf frf, Results results)
   PetscCall(FrfWriteResponse(frf, results));
   PetscCall(FrfWritePeaks(frf, results));
   if (frf->n_times) PetscCall(FrfWriteImpulse(frf, results));
+  if (FrfHears(frf)) PetscCall(FrfWriteSound(frf, results));
   PetscCall(FrfForget(frf));
   PetscFunctionReturn(0);
 }
