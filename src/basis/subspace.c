@@ -238,6 +238,7 @@ PetscErrorCode SubspaceDestroy(Subspace *s)
     PetscCall(MatDestroy(&term->transposed));
     for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&term->image[i]));
     PetscCall(EntryRowsDestroy(&term->rows));
+    for (int i = 0; i < 2; i++) PetscCall(PetscFree(term->factor[i]));
     PetscCall(PetscFree(term->small));
   }
   PetscCall(PetscFree(s->term));

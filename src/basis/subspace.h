@@ -14,6 +14,8 @@ typedef struct {
   Mat        left, right;        /* borrowed, a row for each closed pair, A symmetric; NULL for none */
   BV         image[2];           /* left V, right V */
   EntryRows  rows;               /* of A, where these are looked at */
+  PetscInt   rank;               /* of a product: its rows on all ranks, which each has, of the columns: */
+  PetscReal *factor[2];          /* [n][rank] left V, right V */
   PetscReal *small;              /* [n * n], column-major */
 } SubspaceTerm;
 

@@ -93,6 +93,36 @@ static PetscErrorCode TermProductsFill(const Subspace *s, const TermProducts *p,
   PetscFunctionReturn(0);
 }
 
+/* The rows of the images of new columns, of all ranks, behind those of `first` columns */
+static PetscErrorCode FactorExtend(PetscInt first, BV images, SubspaceTerm *term, PetscReal **factor)
+{
+  const PetscScalar *local;
+  PetscInt           n_own, n, stride, at = 0;
+  PetscMPIInt        size, own, *count, *begin;
+  MPI_Comm           comm = PetscObjectComm((PetscObject)images);
+  Mat                columns;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(BVGetActiveColumns(images, NULL, &n));
+  PetscCall(BVGetSizes(images, &n_own, &term->rank, NULL));
+  PetscCall(PetscMalloc2(size, &count, size, &begin));
+  PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)((first + n) * term->rank), factor));
+  PetscCall(PetscMPIIntCast(n_own, &own));
+  PetscCallMPI(MPI_Allgather(&own, 1, MPI_INT, count, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) begin[r] = (PetscMPIInt)at, at += count[r];
+  PetscCall(BVGetMat(images, &columns));
+  PetscCall(MatDenseGetLDA(columns, &stride));
+  PetscCall(MatDenseGetArrayRead(columns, &local));
+  for (PetscInt j = 0; j < n; j++)
+    PetscCallMPI(MPI_Allgatherv(local + j * stride, own, MPIU_SCALAR, *factor + (first + j) * term->rank, count, begin,
+                                MPIU_SCALAR, comm));
+  PetscCall(MatDenseRestoreArrayRead(columns, &local));
+  PetscCall(BVRestoreMat(images, &columns));
+  PetscCall(PetscFree2(count, begin));
+  PetscFunctionReturn(0);
+}
+
 /* Adds V' L' R W in the rows before, and V' R' L W in the new ones; L V and R V follow */
 static PetscErrorCode PairsExtend(const Subspace *s, PetscInt k, BV block, SubspaceTerm *term)
 {
@@ -109,6 +139,7 @@ static PetscErrorCode PairsExtend(const Subspace *s, PetscInt k, BV block, Subsp
     PetscCall(BlockCreate(term->image[i], n, &images[i]));
     PetscCall(BlockMultiplySideBySide(1, &sides[i], block, images[i]));
     PetscCall(SubspaceAppend(first, s->room, images[i], term->image[i]));
+    if (term->product) PetscCall(FactorExtend(first, images[i], term, &term->factor[i]));
   }
   for (int i = 0; i < 2; i++) {
     PetscCall(BlockProducts(term->image[i], NULL, images[1 - i], &H[i]));

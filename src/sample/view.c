@@ -126,6 +126,9 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(
       viewer, "most points on %" PetscInt_FMT " vectors made of these, %" PetscInt_FMT " on all\n", s->box.small.n_used,
       s->n_large));
+  if (s->box.turned.n_used)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "modes of these are sought in a core of %" PetscInt_FMT " directions\n",
+                                     s->box.turned.core.m));
   PetscCall(VerifiedView(s, viewer));
   PetscCall(PetscViewerASCIIPrintf(
     viewer, "time: basis and samples %.2f s, %" PetscInt_FMT " points, %" PetscInt_FMT " between for branches\n",

@@ -120,7 +120,7 @@ static PetscErrorCode TestPlane(int *failed)
                         -creal(modes.lambda[1] * modes.lambda[1] + modes.lambda[2] * modes.lambda[2]) / 2, 1.5, 1e-9);
   PetscCall(PetscArraycpy(modes.x + 2 * 6, modes.x + 6, 6));
   PetscCall(PetscArraycpy(modes.y + 2 * 6, modes.y + 6, 6));
-  PetscCall(ModeFrameCreate(&dense.system.reduced, &p, &(StandardForm){.scale = 1}, PETSC_TRUE, &modes, &frame));
+  PetscCall(ModeFrameCreate(&dense.system.reduced, &p, &(StandardForm){.scale = 1}, FRAME_REFINED, &modes, &frame));
   PetscCall(ModePlaneRefine(frame, 2, member, X, Y));
   *failed += CheckClose("right plane is invariant", PlaneResidual(frame, X, Y, PETSC_FALSE), 0, 1e-13);
   *failed += CheckClose("left plane is invariant", PlaneResidual(frame, Y, X, PETSC_TRUE), 0, 1e-13);

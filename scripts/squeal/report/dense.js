@@ -6,6 +6,32 @@
 
 const NOT_FINITE = "a matrix is not finite at these values";
 
+// sum a[o + i] b[p + i] of n products, in four sums side by side
+function dotAt(n, a, o, b, p) {
+  let s = 0, t = 0, u = 0, v = 0, i = 0;
+  for (; i < n - 3; i += 4) {
+    s += a[o + i] * b[p + i];
+    t += a[o + i + 1] * b[p + i + 1];
+    u += a[o + i + 2] * b[p + i + 2];
+    v += a[o + i + 3] * b[p + i + 3];
+  }
+  for (; i < n; i++) s += a[o + i] * b[p + i];
+  return s + t + (u + v);
+}
+
+// b[p + i] += f a[o + i] of n numbers
+function addAt(n, f, a, o, b, p) {
+  let i = 0;
+  if (f === 0) return;
+  for (; i < n - 3; i += 4) {
+    b[p + i] += f * a[o + i];
+    b[p + i + 1] += f * a[o + i + 1];
+    b[p + i + 2] += f * a[o + i + 2];
+    b[p + i + 3] += f * a[o + i + 3];
+  }
+  for (; i < n; i++) b[p + i] += f * a[o + i];
+}
+
 // Factors of A [n * n] (column-major) in place; the rows' order
 function factorReal(n, A) {
   const order = new Int32Array(n);
@@ -16,10 +42,7 @@ function factorReal(n, A) {
     if (A[k * n + best] === 0) throw new Error("the mass matrix is singular");
     if (best !== k) for (let j = 0; j < n; j++) { const t = A[j * n + k]; A[j * n + k] = A[j * n + best]; A[j * n + best] = t; }
     for (let i = k + 1; i < n; i++) A[k * n + i] /= A[k * n + k];
-    for (let j = k + 1; j < n; j++) {
-      const f = A[j * n + k];
-      if (f !== 0) for (let i = k + 1; i < n; i++) A[j * n + i] -= f * A[k * n + i];
-    }
+    for (let j = k + 1; j < n; j++) addAt(n - k - 1, -A[j * n + k], A, k * n + k + 1, A, j * n + k + 1);
   }
   return order;
 }
@@ -32,25 +55,20 @@ function solveReal(n, LU, order, m, B) {
       const j = order[k], f = B[o + j];
       B[o + j] = B[o + k];
       B[o + k] = f;
-      if (f !== 0) for (let i = k + 1; i < n; i++) B[o + i] -= f * LU[k * n + i];
+      addAt(n - k - 1, -f, LU, k * n + k + 1, B, o + k + 1);
     }
     for (let k = n - 1; k >= 0; k--) {
       const f = (B[o + k] /= LU[k * n + k]);
-      if (f !== 0) for (let i = 0; i < k; i++) B[o + i] -= f * LU[k * n + i];
+      addAt(k, -f, LU, k * n, B, o);
     }
   }
 }
 
 // b := A^-T b
 function solveTransposed(n, LU, order, b) {
-  for (let k = 0; k < n; k++) {
-    let sum = b[k];
-    for (let i = 0; i < k; i++) sum -= LU[k * n + i] * b[i];
-    b[k] = sum / LU[k * n + k];
-  }
+  for (let k = 0; k < n; k++) b[k] = (b[k] - dotAt(k, LU, k * n, b, 0)) / LU[k * n + k];
   for (let k = n - 1; k >= 0; k--) {
-    let sum = b[k];
-    for (let i = k + 1; i < n; i++) sum -= LU[k * n + i] * b[i];
+    const sum = b[k] - dotAt(n - k - 1, LU, k * n + k + 1, b, k + 1);
     b[k] = b[order[k]];
     b[order[k]] = sum;
   }
@@ -79,9 +97,8 @@ function balance(N, a, d) {
   }
 }
 
-// Eliminates below the subdiagonal of a [N * N], whose places keep the factors; the rows' order
-function eliminate(N, a, order) {
-  const factors = new Float64Array(N);
+// Eliminates below the subdiagonal of a [N * N]; row m of l has the factors, behind its place m; the rows' order
+function eliminate(N, a, l, order) {
   for (let m = 1; m < N - 1; m++) {
     let best = m;
     for (let i = m + 1; i < N; i++) if (Math.abs(a[i * N + m - 1]) > Math.abs(a[best * N + m - 1])) best = i;
@@ -91,18 +108,14 @@ function eliminate(N, a, order) {
       for (let i = 0; i < N; i++) { const t = a[i * N + best]; a[i * N + best] = a[i * N + m]; a[i * N + m] = t; }
     }
     const pivot = a[m * N + m - 1], top = m * N;
+    l.fill(0, top + m + 1, top + N);
     if (pivot === 0) continue;
     for (let i = m + 1; i < N; i++) {
-      const f = a[i * N + m - 1] / pivot, row = i * N;
-      a[row + m - 1] = factors[i] = f;
-      if (f !== 0) for (let j = m; j < N; j++) a[row + j] -= f * a[top + j];
+      const f = l[top + i] = a[i * N + m - 1] / pivot;
+      a[i * N + m - 1] = 0;
+      addAt(N - m, -f, a, top + m, a, i * N + m);
     }
-    for (let i = 0; i < N; i++) {
-      const row = i * N;
-      let sum = 0;
-      for (let k = m + 1; k < N; k++) sum += factors[k] * a[row + k];
-      a[row + m] += sum;
-    }
+    for (let i = 0; i < N; i++) a[i * N + m] += dotAt(N - m - 1, l, top + m + 1, a, i * N + m + 1);
   }
 }
 
@@ -206,6 +219,7 @@ class Hessenberg {
   constructor(N) {
     this.N = N;
     this.h = new Float64Array(N * N);  // by rows
+    this.l = new Float64Array(N * N);
     this.work = new Float64Array(N * N);
     this.im = new Float64Array(N * N);
     this.d = new Float64Array(N);
@@ -225,7 +239,7 @@ class Hessenberg {
     if (sum !== 0) throw new Error(NOT_FINITE);
     if (d[0] === 0) balance(N, h, d);
     else for (let i = 0; i < N; i++) for (let j = 0, f = 1 / d[i]; j < N; j++) h[i * N + j] *= f * d[j];
-    eliminate(this.N, this.h, this.order);
+    eliminate(N, h, this.l, this.order);
   }
 
   eigenvalues() {
@@ -237,8 +251,8 @@ class Hessenberg {
   shift(a, b) {
     const N = this.N, u = this.work, v = this.im, tiny = 2.2e-16 * (Math.abs(a) + Math.abs(b)) || 1e-300;
     this.complex = b !== 0;
+    u.set(this.h);
     for (let i = 0; i < N; i++) {
-      for (let j = Math.max(0, i - 1); j < N; j++) u[i * N + j] = this.h[i * N + j];
       u[i * N + i] -= a;
       if (!this.complex) continue;
       v.fill(0, i * N + Math.max(0, i - 1), (i + 1) * N);
@@ -258,7 +272,7 @@ class Hessenberg {
       if (this.complex) this.clearComplex(k, row, next);
       else {
         const f = this.lr[k] = u[next + k] / u[row + k];
-        if (f !== 0) for (let j = k + 1; j < N; j++) u[next + j] -= f * u[row + j];
+        addAt(N - k - 1, -f, u, row + k + 1, u, next + k + 1);
       }
     }
   }
@@ -284,11 +298,15 @@ class Hessenberg {
     }
     for (let k = N - 1; k >= 0; k--) {
       const o = k * N;
-      let x = re[k], y = im[k];
+      let x = 0, y = 0, z = 0, w = 0;
       for (let j = k + 1; j < N; j++) {
-        x -= u[o + j] * re[j] - v[o + j] * im[j];
-        y -= u[o + j] * im[j] + v[o + j] * re[j];
+        x += u[o + j] * re[j];
+        z += v[o + j] * im[j];
+        y += u[o + j] * im[j];
+        w += v[o + j] * re[j];
       }
+      x = re[k] - (x - z);
+      y = im[k] - (y + w);
       const a = u[o + k], b = v[o + k], d = a * a + b * b;
       re[k] = (x * a + y * b) / d;
       im[k] = (y * a - x * b) / d;
@@ -303,9 +321,7 @@ class Hessenberg {
     }
     for (let k = N - 1; k >= 0; k--) {
       const o = k * N;
-      let sum = x[k];
-      for (let j = k + 1; j < N; j++) sum -= u[o + j] * x[j];
-      x[k] = sum / u[o + k];
+      x[k] = (x[k] - dotAt(N - k - 1, u, o + k + 1, x, k + 1)) / u[o + k];
     }
   }
 
@@ -313,7 +329,7 @@ class Hessenberg {
     const N = this.N, u = this.work;
     for (let k = 0; k < N; k++) {
       const o = k * N, f = x[k] /= u[o + k];
-      for (let j = k + 1; j < N; j++) x[j] -= u[o + j] * f;
+      addAt(N - k - 1, -f, u, o + k + 1, x, k + 1);
     }
     for (let k = N - 2; k >= 0; k--) {
       x[k] -= this.lr[k] * x[k + 1];
@@ -344,10 +360,9 @@ class Hessenberg {
 
   // x := S x
   back(x) {
-    const N = this.N, h = this.h;
+    const N = this.N;
     for (let m = N - 2; m > 0; m--) {
-      const f = x[m];
-      for (let i = m + 1; i < N; i++) x[i] += h[i * N + m - 1] * f;
+      addAt(N - m - 1, x[m], this.l, m * N + m + 1, x, m + 1);
       const j = this.order[m], t = x[m];
       x[m] = x[j]; x[j] = t;
     }
@@ -356,22 +371,20 @@ class Hessenberg {
 
   // x := S^-1 x
   forth(x) {
-    const N = this.N, h = this.h;
+    const N = this.N;
     for (let i = 0; i < N; i++) x[i] /= this.d[i];
     for (let m = 1; m < N - 1; m++) {
       const j = this.order[m], t = x[m];
       x[m] = x[j]; x[j] = t;
-      for (let i = m + 1; i < N; i++) x[i] -= h[i * N + m - 1] * x[m];
+      addAt(N - m - 1, -x[m], this.l, m * N + m + 1, x, m + 1);
     }
   }
 
   // y := S^-T y
   backTransposed(y) {
-    const N = this.N, h = this.h;
+    const N = this.N;
     for (let m = N - 2; m > 0; m--) {
-      let sum = y[m];
-      for (let i = m + 1; i < N; i++) sum -= h[i * N + m - 1] * y[i];
-      const j = this.order[m];
+      const sum = y[m] - dotAt(N - m - 1, this.l, m * N + m + 1, y, m + 1), j = this.order[m];
       y[m] = y[j]; y[j] = sum;
     }
     for (let i = 0; i < N; i++) y[i] /= this.d[i];

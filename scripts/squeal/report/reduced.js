@@ -31,61 +31,57 @@ function pencilAt(model, p) {
   return pencil;
 }
 
-// The square block of A on rows and columns first .. first + n - 1
-function block(model, A, first, n) {
-  const out = new Float64Array(n * n);
-  for (let j = 0; j < n; j++) out.set(A.subarray((first + j) * model.n + first, (first + j) * model.n + first + n), j * n);
+// Rows first .. first + n - 1 of A, all columns, column-major
+function rowsOf(model, A, first, n) {
+  const N = model.n, out = new Float64Array(n * N);
+  for (let j = 0; j < N; j++) out.set(A.subarray(j * N + first, j * N + first + n), j * n);
   return out;
 }
 
-// Factors of M on the vectors first .. first + n - 1, and M^-1 A of the other terms where M is the same at all values
-function massOf(model, pencil, first, n) {
-  const fixed = model.terms.every(term => term.kind !== "M" || !term.factors.length), key = `mass${first}`;
-  if (fixed && model[key]) return model[key];
-  const LU = block(model, pencil.M, first, n), mass = {LU, order: factorReal(n, LU), terms: null};
-  if (fixed) {
-    mass.terms = model.terms.map(({kind}, t) => {
-      if (kind === "M") return null;
-      const A = block(model, model.matrices[t], first, n);
-      solveReal(n, LU, mass.order, n, A);
-      return A;
-    });
-    model[key] = mass;
-  }
-  return mass;
+// A := M^-1 A, M factored
+function overMass(block, A) {
+  solveReal(block.n, block.LU, block.order, A.length / block.n, A);
+  return A;
 }
 
-// M^-1 K or M^-1 C, column-major
-function overMass(model, pencil, mass, kind, p, first, n) {
-  if (!mass.terms) {
-    const A = block(model, pencil[kind], first, n);
-    solveReal(n, mass.LU, mass.order, n, A);
-    return A;
-  }
-  const sum = new Float64Array(n * n);
-  model.terms.forEach((term, t) => {
-    if (term.kind !== kind) return;
-    const c = coefficient(term, p), A = mass.terms[t];
-    if (c !== 0) for (let i = 0; i < n * n; i++) sum[i] += c * A[i];
-  });
+// The vectors first .. first + n - 1: rows of the terms over their mass, M_bb^-1 A_b, once where M is the same at all values
+function blockOf(model, pencil, first, n) {
+  const fixed = model.terms.every(term => term.kind !== "M" || !term.factors.length), key = `block${first}`;
+  const block = model[key] ||= {first, n, K: new Float64Array(n * model.n), C: new Float64Array(n * model.n), forms: {}};
+  if (fixed && block.terms) return block;
+  block.LU = rowsOf(model, pencil.M, first, n).subarray(first * n, (first + n) * n).slice();
+  block.order = factorReal(n, block.LU);
+  block.M = overMass(block, rowsOf(model, pencil.M, first, n));
+  block.terms = fixed && model.terms.map(({kind}, t) => kind === "M" ? null : overMass(block, rowsOf(model, model.matrices[t], first, n)));
+  // vectors of a basis that is orthonormal in M have no mass in common
+  block.apart = block.M.every((value, k) => Math.abs(value) < 1e-12 || k >= first * n && k < (first + n) * n);
+  return block;
+}
+
+// M^-1 K or M^-1 C at p
+function sumOver(model, pencil, block, kind, p) {
+  const sum = block[kind];
+  if (!block.terms) { sum.set(overMass(block, rowsOf(model, pencil[kind], block.first, block.n))); return sum; }
+  sum.fill(0);
+  model.terms.forEach((term, t) => { if (term.kind === kind) addAt(sum.length, coefficient(term, p), block.terms[t], 0, sum, 0); });
   return sum;
 }
 
-// The Hessenberg form on the vectors first .. first + n - 1
+// The block with its Hessenberg form
 function formOf(model, pencil, p, first, n) {
-  const mass = massOf(model, pencil, first, n), K = overMass(model, pencil, mass, "K", p, first, n);
-  const N = pencil.damped ? 2 * n : n, h = model.high, key = `form${first}-${N}`, form = model[key] ||= new Hessenberg(N), a = form.h;
-  if (!pencil.damped) for (let j = 0; j < n; j++) for (let i = 0; i < n; i++) a[i * N + j] = K[j * n + i];
+  const block = blockOf(model, pencil, first, n), K = sumOver(model, pencil, block, "K", p), {damped} = pencil, o = first * n;
+  const N = damped ? 2 * n : n, h = model.high, form = block.forms[N] ||= new Hessenberg(N), a = form.h;
+  if (!damped) for (let j = 0; j < n; j++) for (let i = 0; i < n; i++) a[i * N + j] = K[o + j * n + i];
   else {
-    const C = overMass(model, pencil, mass, "C", p, first, n);
+    const C = sumOver(model, pencil, block, "C", p);
     a.fill(0);
     for (let j = 0; j < n; j++) {
       a[j * N + n + j] = h;
-      for (let i = 0; i < n; i++) { a[(n + i) * N + j] = -K[j * n + i] / h; a[(n + i) * N + n + j] = -C[j * n + i]; }
+      for (let i = 0; i < n; i++) { a[(n + i) * N + j] = -K[o + j * n + i] / h; a[(n + i) * N + n + j] = -C[o + j * n + i]; }
     }
   }
   form.reduce();
-  return {form, mass, n, h, damped: pencil.damped};
+  return {form, block, n, h, damped};
 }
 
 // lambda of the band or near it, im >= 0, each with its s: the eigenvalue of the form, lambda or kappa = -lambda^2. Of a pair of complex
@@ -121,51 +117,45 @@ function normalise(x) {
 
 const ENOUGH = 1e-8;  // of what rounding lets a vector grow by in a step of inverse iteration: less calls for another one
 
-// x and y of s by inverse iteration, of M^-1 Q; y is that of Q
-function vectorsOf({form, mass, n, damped}, [a, b]) {
-  const {N} = form, x = vector(N, b !== 0), y = vector(N, b !== 0);
-  for (let i = 0; i < N; i++) { x.re[i] = Math.cos(1 + i * i); y.re[i] = Math.sin(2 + i); }
+// x of s by inverse iteration, and w, M' times the left vector: both of M^-1 Q
+function vectorsOf({form, n, damped}, [a, b]) {
+  const {N} = form, x = vector(N, b !== 0), w = vector(N, b !== 0);
+  for (let i = 0; i < N; i++) { x.re[i] = Math.cos(1 + i * i); w.re[i] = Math.sin(2 + i); }
   normalise(x);
-  normalise(y);
+  normalise(w);
   form.shift(a, b);
   for (let turn = 0, grown = 0; turn < 2 && grown < ENOUGH; turn++) {
     form.solve(x.re, x.im);
-    form.solveTransposed(y.re, y.im);
-    grown = 2.2e-16 * Math.hypot(a, b) * Math.min(normalise(x), normalise(y));
+    form.solveTransposed(w.re, w.im);
+    grown = 2.2e-16 * Math.hypot(a, b) * Math.min(normalise(x), normalise(w));
   }
   for (const part of partsIn(x)) {
     form.back(x[part]);
-    form.backTransposed(y[part]);
-    if (damped) { x[part] = x[part].slice(0, n); y[part] = y[part].slice(n); }
-    solveTransposed(n, mass.LU, mass.order, y[part]);
+    form.backTransposed(w[part]);
+    if (damped) { x[part] = x[part].slice(0, n); w[part] = w[part].slice(n); }
   }
   normalise(x);
-  normalise(y);
-  return {x, y};
+  normalise(w);
+  return {x, w};
 }
 
-// A x, A real on rows of `to` and columns of `from` = [first, n]; transposed: A' x
-function times(A, stride, to, from, transposed, x) {
-  const y = vector(to[1], x.im);
+// A x with the m columns of A from `first` on, rows n; transposed: A' x
+function times(A, n, first, m, transposed, x) {
+  const y = vector(transposed ? m : n, x.im);
   for (const part of partsIn(x)) {
-    const v = x[part], w = y[part];
-    if (transposed) for (let j = 0; j < to[1]; j++) {
-      const o = (to[0] + j) * stride + from[0];
-      let sum = 0;
-      for (let i = 0; i < from[1]; i++) sum += A[o + i] * v[i];
-      w[j] = sum;
-    } else for (let j = 0; j < from[1]; j++) {
-      const o = (from[0] + j) * stride + to[0], f = v[j];
-      for (let i = 0; i < to[1]; i++) w[i] += A[o + i] * f;
-    }
+    const v = x[part], out = y[part];
+    for (let j = 0; j < m; j++)
+      if (transposed) out[j] = dotAt(n, A, (first + j) * n, v, 0); else addAt(n, v[j], A, (first + j) * n, out, 0);
   }
   return y;
 }
 
-// The parts K x, C x, M x, and what they are with lambda: Q x, or with derivative Q' x
-const partsOf = (model, pencil, to, from, transposed, x) => ["K", "C", "M"].map(kind =>
-  kind === "C" && !pencil.damped ? null : times(pencil[kind], model.n, to, from, transposed, x));
+// K x, C x, M x of rows of a block over its mass, on m columns: M x is x on the block's own, and nothing where it has no others
+const partsOf = (pencil, block, first, m, transposed, x) => ["K", "C", "M"].map(kind =>
+  kind === "C" && !pencil.damped ? null : kind !== "M" ? times(block[kind], block.n, first, m, transposed, x) :
+    first === block.first ? x : block.apart ? null : times(block.M, block.n, first, m, transposed, x));
 
+// What these are with lambda: Q x, or with derivative Q' x
 function united(parts, [a, b], derivative) {
   const weights = derivative ? [[0, 0], [1, 0], [2 * a, 2 * b]] : [[1, 0], [a, b], [a * a - b * b, 2 * a * b]];
   const y = vector(parts[0].re.length, true);
@@ -196,41 +186,40 @@ function rootOf([re, im], given) {
   return [Math.sqrt(0.5 * (size - re)), given[1] === 0 ? 0 : Math.sqrt(0.5 * (size + re))];
 }
 
-// One eigenvalue to all digits with its vectors: undamped kappa := kappa + y'(K - kappa M) x / (y'M x)
-function refine(model, pencil, own, {lambda, s}) {
-  const {x, y} = vectorsOf(own, s), all = [0, own.n], parts = partsOf(model, pencil, all, all, false, x);
+// One eigenvalue to all digits with its vectors: undamped kappa := kappa + w'(M^-1 K - kappa) x / w'x
+function refine(pencil, own, {lambda, s}) {
+  const {x, w} = vectorsOf(own, s), parts = partsOf(pencil, own.block, 0, own.n, false, x);
   if (pencil.damped) {
-    const change = quotient(dot(y, united(parts, s, false)), dot(y, united(parts, s, true)));
+    const change = quotient(dot(w, united(parts, s, false)), dot(w, united(parts, s, true)));
     if (Math.hypot(...change) < 1e-4 * Math.hypot(...s)) lambda = [s[0] - change[0], s[1] - change[1]];
   } else {
-    const mass = dot(y, parts[2]), [a, b] = quotient(dot(y, parts[0]), mass), size = Math.hypot(...s);
+    const mass = dot(w, x), [a, b] = quotient(dot(w, parts[0]), mass), size = Math.hypot(...s);
     if (Math.hypot(a - s[0], b - s[1]) < 1e-4 * size) s = s[1] === 0 ? [a, 0] : [a, b];
     lambda = rootOf(s, lambda);
   }
-  return {lambda, s, x, y, slope: pencil.damped ? dot(y, united(parts, lambda, true)) : dot(y, parts[2])};
+  return {lambda, s, x, w, slope: pencil.damped ? dot(w, united(parts, lambda, true)) : dot(w, x)};
 }
 
 // s' Q_zz^-1 r, by the form of Q_zz, over y' Q' x; undamped Q' = 2 lambda M
-function estimate(model, pencil, rest, {lambda, s, x, y, slope}) {
+function estimate(pencil, own, rest, {lambda, s, x, w, slope}) {
   if (!rest) return 0;
-  const {form, mass, n, h, damped} = rest, z = [model.n_used, n], own = [0, model.n_used];
-  const apply = (v, transposed) => {
-    const parts = partsOf(model, pencil, z, own, transposed, v);
+  const {form, n, h, damped} = rest;
+  const apply = (block, first, m, v, transposed) => {
+    const parts = partsOf(pencil, block, first, m, transposed, v);
     if (damped) return united(parts, lambda, false);
-    for (let i = 0; i < n; i++) {  // (K - kappa M) v
+    if (parts[2]) for (let i = 0; i < n; i++) {  // (K - kappa M) v
       const re = parts[2].re[i], im = v.im ? parts[2].im[i] : 0;
       parts[0].re[i] -= s[0] * re - s[1] * im;
       if (v.im) parts[0].im[i] -= s[0] * im + s[1] * re;
     }
     return parts[0];
   };
-  const r = apply(x, false), left = apply(y, true), v = vector(form.N, x.im), shift = damped ? lambda : s;
+  const r = apply(rest.block, 0, own.n, x, false), left = apply(own.block, own.n, n, w, true), v = vector(form.N, x.im);
   for (const part of partsIn(v)) {
-    solveReal(n, mass.LU, mass.order, 1, r[part]);
     for (let i = 0; i < n; i++) v[part][damped ? n + i : i] = damped ? -r[part][i] : r[part][i];
     form.forth(v[part]);
   }
-  form.shift(...shift);
+  form.shift(...(damped ? lambda : s));
   form.solve(v.re, v.im);
   for (const part of partsIn(v)) {
     form.back(v[part]);
@@ -244,12 +233,12 @@ function estimate(model, pencil, rest, {lambda, s, x, y, slope}) {
 // Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of the one `chosen`, by its place
 function modesAt(model, p, chosen = -1) {
   const pencil = pencilAt(model, p), own = formOf(model, pencil, p, 0, model.n_used), modes = [];
-  const found = candidates(model, own).map(mode => refine(model, pencil, own, mode));
+  const found = candidates(model, own).map(mode => refine(pencil, own, mode));
   const rest = model.n > model.n_used ? formOf(model, pencil, p, model.n_used, model.n - model.n_used) : null;
   for (const mode of found) {
     const {lambda: [a, b], x, s} = mode;
     if (b < model.low || b > model.high) continue;
-    const error = estimate(model, pencil, rest, mode), freq = b / (2 * Math.PI);
+    const error = estimate(pencil, own, rest, mode), freq = b / (2 * Math.PI);
     if (!pencil.damped && a > 0) {  // of kappa itself is the one that decays, of its conjugate the one that grows
       modes.push({freq, growth: -a, error, x});
       modes.push({freq, growth: a, error, x: {re: x.re, im: x.im?.map(value => -value) ?? null}});

@@ -242,6 +242,29 @@ PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscIn
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DenseSubtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[])
+{
+  const PetscReal minus = -1, one = 1;
+  PetscBLASInt    rows, columns, n, stride;
+
+  PetscFunctionBeginUser;
+  if (!A.rows || !A.columns || !m) PetscFunctionReturn(0);
+  PetscCall(PetscBLASIntCast(A.rows, &rows));
+  PetscCall(PetscBLASIntCast(A.columns, &columns));
+  PetscCall(PetscBLASIntCast(m, &n));
+  PetscCall(PetscBLASIntCast(A.stride, &stride));
+  PetscCallBLAS("BLASgemm", BLASgemm_(transposed ? "T" : "N", "N", &rows, &n, &columns, &minus, A.A, &stride, X,
+                                      &columns, &one, Y, &rows));
+  PetscFunctionReturn(0);
+}
+
+void DenseBlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[])
+{
+  for (PetscInt j = 0; j < block.columns; j++)
+    for (PetscInt i = 0; i < block.rows; i++)
+      entries[transposed ? i * block.columns + j : j * block.rows + i] = block.A[j * block.stride + i];
+}
+
 PetscErrorCode DenseEnergies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[])
 {
   PetscComplex *EX;

@@ -42,6 +42,10 @@ typedef struct {
 /* Y = op(A) X, X [m][columns], Y [m][rows] */
 PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscInt m, const PetscComplex X[],
                           PetscComplex Y[]);
+/* Y [m][rows] -= op(A) X, X [m][columns] */
+PetscErrorCode DenseSubtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[]);
+/* The entries of a block, or of its transpose, side by side */
+void           DenseBlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[]);
 /* x^H E x of m vectors X [m][n], E real and symmetric */
 PetscErrorCode DenseEnergies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[]);
 /* Real parts, then imaginary parts [2 n] of x [n], and back */

@@ -239,13 +239,17 @@ static PetscErrorCode SlideAdd(Pencil pencil, const FrictionGroup *g, PetscInt k
 static PetscErrorCode PenaltyAdd(Pencil pencil, const FrictionGroup *g)
 {
   const PetscInt kn[] = {g->q.kn, g->closed}, own = g->q.kn < 0 ? 1 : 0;
-  Mat            NN;
+  Mat            NN, WN;
   Vec            weights;
 
   PetscFunctionBeginUser;
   PetscCall(PenaltyCreateWeights(pencil, g, &weights));
-  PetscCall(TermsProduct(1, g->N, weights, g->N, &NN));
+  PetscCall(MatDuplicate(g->N, MAT_COPY_VALUES, &WN));
+  if (weights) PetscCall(MatDiagonalScale(WN, weights, NULL));
+  PetscCall(TermsProduct(1, g->N, NULL, WN, &NN));
   PetscCall(TermsAdd(&pencil->base, OPERATORS_STIFFNESS, NN, PETSC_TRUE, 1 - own + g->more, kn + own));
+  PetscCall(TermsSetFactors(&pencil->base, g->N, WN, g->interface, g->group));
+  PetscCall(MatDestroy(&WN));
   PetscCall(MatDestroy(&NN));
   PetscCall(VecDestroy(&weights));
   for (PetscInt k = 0; k < g->q.n_nodes; k++) PetscCall(SlideAdd(pencil, g, k));

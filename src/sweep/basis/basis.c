@@ -32,6 +32,7 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   PetscCall(PencilGetParameters(pencil, &basis->reduced.n_parameters, &basis->reduced.parameter, NULL));
   PetscCall(PencilGetTerms(pencil, &basis->reduced.n_terms, &basis->reduced.term));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.A));
+  PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.factors));
   PetscCall(PetscCalloc1(basis->reduced.n_terms, &basis->reduced.D));
   for (PetscInt t = 0; t < basis->reduced.n_terms; t++) {
     const OperatorsTerm *term = &basis->reduced.term[t];
@@ -51,25 +52,43 @@ PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
   PetscFunctionReturn(0);
 }
 
-/* One V' |diag A| V, [n][n] by columns, extended by the block of vectors first to n - 1: H = V' |diag A| block
-   gives the last columns, and, transposed, the last rows. A diagonal matrix is symmetric between any vectors. */
-static PetscErrorCode DiagonalExtend(Basis *basis, PetscInt t, BV block, PetscInt first, PetscInt n)
+/* H += V' |diag A_t| block, NULL at first */
+static PetscErrorCode DiagonalAdd(Basis *basis, PetscInt t, BV block, Mat *H)
 {
-  PetscReal      **reduced = &basis->reduced.D[t];
-  const EntryRows *rows    = &basis->space.term[basis->space.term[t].same].rows;
-  Mat              H;
+  const EntryRows *rows = &basis->space.term[basis->space.term[t].same].rows;
+  Mat              own;
   Vec              diagonal;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockGrow(first, n, reduced));
   PetscCall(MatCreateVecs(basis->reduced.term[t].A, &diagonal, NULL));
   PetscCall(MatGetDiagonal(basis->reduced.term[t].A, diagonal));
   PetscCall(VecAbs(diagonal));
-  PetscCall(EntryRowsProducts(rows, basis->space.V, diagonal, block, &H));
+  PetscCall(EntryRowsProducts(rows, basis->space.V, diagonal, block, &own));
+  PetscCall(VecDestroy(&diagonal));
+  if (*H) {
+    PetscCall(MatAXPY(*H, 1, own, SAME_NONZERO_PATTERN));
+    PetscCall(MatDestroy(&own));
+  } else {
+    *H = own;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* V' |diag A| V of term t and of all that share its D, [n][n] by columns, extended by the block of vectors first to n -
+   1: H = V' |diag A| block gives the last columns, and, transposed, the last rows. A diagonal matrix is symmetric
+   between any vectors. */
+static PetscErrorCode DiagonalExtend(Basis *basis, PetscInt t, BV block, PetscInt first, PetscInt n)
+{
+  PetscReal **reduced = &basis->reduced.D[t];
+  Mat         H       = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockGrow(first, n, reduced));
+  for (PetscInt s = t; s < basis->reduced.n_terms; s++)
+    if (RoundingTerm(&basis->reduced, s) == t) PetscCall(DiagonalAdd(basis, s, block, &H));
   PetscCall(BlockCopy(H, PETSC_FALSE, n, *reduced + first * n));
   PetscCall(BlockCopy(H, PETSC_TRUE, n, *reduced + first));
   PetscCall(MatDestroy(&H));
-  PetscCall(VecDestroy(&diagonal));
   PetscFunctionReturn(0);
 }
 
@@ -78,7 +97,12 @@ static void BasisFollow(Basis *basis)
 {
   Reduced *r = &basis->reduced;
 
-  for (PetscInt t = 0; t < r->n_terms; t++) r->A[t] = basis->space.term[t].small;
+  for (PetscInt t = 0; t < r->n_terms; t++) {
+    const SubspaceTerm *term = &basis->space.term[basis->space.term[t].same];
+
+    r->A[t]       = basis->space.term[t].small;
+    r->factors[t] = (ReducedFactors){term->rank, term->factor[0], term->factor[1]};
+  }
   r->n = basis->space.n;
 }
 
@@ -103,7 +127,8 @@ static PetscErrorCode DiagonalsExtend(Basis *basis, PetscInt first, PetscInt n)
   PetscFunctionBeginUser;
   PetscCall(BasisCopyBlock(basis, first, n, &block));
   for (PetscInt t = 0; t < r->n_terms; t++)
-    if (r->term[t].kind == OPERATORS_STIFFNESS) PetscCall(DiagonalExtend(basis, t, block, first, n));
+    if (r->term[t].kind == OPERATORS_STIFFNESS && RoundingTerm(r, t) == t)
+      PetscCall(DiagonalExtend(basis, t, block, first, n));
   PetscCall(BVDestroy(&block));
   PetscFunctionReturn(0);
 }
@@ -183,6 +208,7 @@ PetscErrorCode BasisDestroy(Basis *basis)
   PetscFunctionBeginUser;
   for (PetscInt t = 0; t < basis->reduced.n_terms && basis->reduced.D; t++) PetscCall(PetscFree(basis->reduced.D[t]));
   PetscCall(PetscFree(basis->reduced.A));
+  PetscCall(PetscFree(basis->reduced.factors));
   PetscCall(PetscFree(basis->reduced.D));
   PetscCall(SubspaceDestroy(&basis->space));
   PetscCall(MatDestroy(&basis->M));

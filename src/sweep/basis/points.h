@@ -31,6 +31,8 @@ PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, co
    collective. */
 PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const ReducedWindow *window,
                                const PetscReal p[], ReducedModes *modes);
+/* Errors of the modes of a point with the margin that they are handed on with. Not collective. */
+PetscErrorCode PointEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
 PetscErrorCode PointStoreDestroy(PointStore *store);
 /* Gives all ranks the modes of one of them, freeing what they had. Collective. */
 PetscErrorCode ReducedModesBroadcast(MPI_Comm comm, PetscMPIInt owner, ReducedModes *modes);

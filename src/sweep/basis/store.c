@@ -51,7 +51,7 @@ static PetscErrorCode PointStoreFind(const PointStore *store, PetscInt n_paramet
 }
 
 /* error = POINTS_MARGIN (error - noise) + noise, rad/s: the margin is on what the basis lacks, not on rounding. */
-static PetscErrorCode EstimateWithMargin(const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
+PetscErrorCode PointEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedEstimate(reduced, p, modes));
@@ -74,7 +74,7 @@ PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const 
   }
   if (!store || (at < 0 && store->n == STORE_MOST)) {
     PetscCall(ReducedSolve(reduced, p, window, modes));
-    PetscCall(EstimateWithMargin(reduced, p, modes));
+    PetscCall(PointEstimate(reduced, p, modes));
     PetscFunctionReturn(0);
   }
   if (at < 0) {
@@ -84,7 +84,7 @@ PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const 
     store->estimated[at] = 0;
     store->n++;
   }
-  if (store->estimated[at] != reduced->n) PetscCall(EstimateWithMargin(reduced, p, &store->modes[at]));
+  if (store->estimated[at] != reduced->n) PetscCall(PointEstimate(reduced, p, &store->modes[at]));
   store->estimated[at] = reduced->n;
   PetscCall(ReducedModesSelect(&store->modes[at], store->modes[at].n, NULL, modes));
   PetscFunctionReturn(0);

@@ -5,6 +5,7 @@
    The contact status of a point is that of its own sliding state (status.c).
 */
 #include "box.h"
+#include "base/algebra/dense.h"
 
 #define BOX_LOOKS  6    /* at other points after a full solution, of the statuses that there are */
 #define BOX_MANY   0.2  /* of rtol, for the basis; the rest is for the fewer vectors that many points are on */
@@ -90,13 +91,38 @@ static ReducedWindow WindowGuarded(const Box *box)
   return guarded;
 }
 
+/* Modes at p by the turned basis, in coordinates of the basis, without errors */
+static PetscErrorCode SolveTurned(const Box *box, const ReducedWindow *window, const PetscReal p[], ReducedModes *modes)
+{
+  const PetscInt n = box->turned.n_used;
+  PetscComplex  *turned;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolve(&box->turned, p, window, modes));
+  PetscCall(PetscMalloc1(modes->n * n, &turned));
+  for (int left = 0; left < 2; left++) {
+    PetscComplex *const x = left ? modes->y : modes->x;
+
+    PetscCall(PetscArraycpy(turned, x, modes->n * n));
+    PetscCall(DenseTimes(&(DenseBlock){box->turn, n, n, n}, PETSC_FALSE, modes->n, turned, x));
+  }
+  PetscCall(PetscFree(turned));
+  PetscFunctionReturn(0);
+}
+
 /* Errors on few vectors are those beside the basis, and its own */
 PetscErrorCode BoxSolve(const Box *box, PetscBool small, const PetscReal p[], ReducedModes *modes)
 {
   const ReducedWindow guarded = WindowGuarded(box);
 
   PetscFunctionBeginUser;
-  PetscCall(PointStoreSolve(NULL, small ? &box->small : &box->basis.reduced, &guarded, p, modes));
+  if (!small && box->turned.n_used) {
+    PetscCall(SolveTurned(box, &guarded, p, modes));
+    PetscCall(PointEstimate(&box->basis.reduced, p, modes));
+    for (PetscInt i = 0; i < modes->n; i++) modes->error[i] += box->turned.core.rtol * cabs(modes->lambda[i]);
+  } else {
+    PetscCall(PointStoreSolve(NULL, small ? &box->small : &box->basis.reduced, &guarded, p, modes));
+  }
   for (PetscInt i = 0; i < modes->n && small; i++) modes->error[i] += box->greedy.worst * cabs(modes->lambda[i]);
   PetscFunctionReturn(0);
 }
@@ -192,7 +218,10 @@ PetscErrorCode BoxForgetSmall(Reduced *small)
   for (PetscInt t = 0; t < small->n_terms && small->A; t++) {
     PetscCall(PetscFree(small->A[t]));
     PetscCall(PetscFree(small->D[t]));
+    PetscCall(PetscFree(small->factors[t].left));
+    PetscCall(PetscFree(small->factors[t].right));
   }
+  PetscCall(PetscFree(small->factors));
   PetscCall(PetscFree(small->A));
   PetscCall(PetscFree(small->D));
   *small = (Reduced){0};
@@ -204,6 +233,8 @@ PetscErrorCode BoxDestroy(Box *box)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(box->nominal));
   PetscCall(BoxForgetSmall(&box->small));
+  PetscCall(BoxForgetSmall(&box->turned));
+  PetscCall(PetscFree(box->turn));
   PetscCall(GreedyDestroy(&box->greedy));
   PetscCall(BasisDestroy(&box->basis));
   PetscCall(PencilDestroy(&box->pencil));

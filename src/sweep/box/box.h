@@ -39,6 +39,8 @@ typedef struct {
   Progress      progress;
   PetscBool     whole; /* the basis is the whole space: no error but rounding */
   Reduced       small; /* of fewer vectors, for many points; n_used is 0 where there is none */
+  Reduced       turned; /* the basis in directions that hold less and less, with a core; likewise */
+  PetscReal    *turn;   /* [n][n] these directions in the basis */
 } Box;
 
 /* The statuses at n points, the pencil that holds at all of them, and the basis where it is the whole space. `get`

@@ -119,7 +119,7 @@ static PetscErrorCode FormF(const Plane *plane, PetscComplex F[], PetscBool *sin
 {
   const Estimate *e = plane->e;
   const PetscInt  m = plane->m, n = e->n_v;
-  PetscComplex   *first[2], *r[2];
+  PetscComplex   *first[2], *r[2], *lambda;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(m * n, &first[0], m * n, &first[1], m * e->n_z, &r[0], m * e->n_z, &r[1]));
@@ -127,8 +127,11 @@ static PetscErrorCode FormF(const Plane *plane, PetscComplex F[], PetscBool *sin
     PetscCall(PetscArraycpy(first[0] + a * n, plane->X + a * plane->N, n));
     PetscCall(PetscArraycpy(first[1] + a * n, plane->Y + a * plane->N, n));
   }
-  PetscCall(EstimateCouple(e, plane->lambda, PETSC_FALSE, m, first[0], r[0]));
-  PetscCall(EstimateCouple(e, plane->lambda, PETSC_TRUE, m, first[1], r[1]));
+  PetscCall(PetscMalloc1(m, &lambda));
+  for (PetscInt i = 0; i < m; i++) lambda[i] = plane->lambda;
+  PetscCall(EstimateCouple(e, lambda, PETSC_FALSE, m, first[0], r[0]));
+  PetscCall(EstimateCouple(e, lambda, PETSC_TRUE, m, first[1], r[1]));
+  PetscCall(PetscFree(lambda));
   PetscCall(EstimateSolve(e, plane->lambda, m, r[0], singular));
   for (PetscInt i = 0; i < m; i++)
     for (PetscInt j = 0; j < m; j++) F[j * m + i] = DenseDot(e->n_z, r[1] + i * e->n_z, r[0] + j * e->n_z);

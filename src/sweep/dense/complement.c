@@ -11,31 +11,7 @@
       A := A_zz - A_zv T - T'^T (A_vz - A_vv T),   Q(h) := Q_zz(h) - Q_zv(h) T,   K = Q(h) - h C - h^2 M.
 */
 #include "estimate.h"
-#include <petscblaslapack.h>
-
-/* Y [m][rows] -= op(A) X, X [m][columns], of a block of a larger matrix, in place by its stride. */
-static PetscErrorCode Subtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[])
-{
-  const PetscReal minus = -1, one = 1;
-  PetscBLASInt    rows, columns, n, stride;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscBLASIntCast(A.rows, &rows));
-  PetscCall(PetscBLASIntCast(A.columns, &columns));
-  PetscCall(PetscBLASIntCast(m, &n));
-  PetscCall(PetscBLASIntCast(A.stride, &stride));
-  PetscCallBLAS("BLASgemm", BLASgemm_(transposed ? "T" : "N", "N", &rows, &n, &columns, &minus, A.A, &stride, X,
-                                      &columns, &one, Y, &rows));
-  PetscFunctionReturn(0);
-}
-
-/* The entries of a block, or of its transpose, side by side */
-static void BlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[])
-{
-  for (PetscInt j = 0; j < block.columns; j++)
-    for (PetscInt i = 0; i < block.rows; i++)
-      entries[transposed ? i * block.columns + j : j * block.rows + i] = block.A[j * block.stride + i];
-}
+#include "base/algebra/dense.h"
 
 /* A_zz of C or M on the new vectors */
 static PetscErrorCode ComplementMatrix(const Estimate *e, const PetscReal A[], PetscReal Z[])
@@ -45,11 +21,11 @@ static PetscErrorCode ComplementMatrix(const Estimate *e, const PetscReal A[], P
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(v * z, &coupling));
-  BlockGet((DenseBlock){A + v * n, v, z, n}, PETSC_FALSE, coupling);
-  PetscCall(Subtract((DenseBlock){A, v, v, n}, PETSC_FALSE, z, e->right, coupling));
-  BlockGet((DenseBlock){A + v * (n + 1), z, z, n}, PETSC_FALSE, Z);
-  PetscCall(Subtract((DenseBlock){A + v, z, v, n}, PETSC_FALSE, z, e->right, Z));
-  PetscCall(Subtract((DenseBlock){e->left, z, v, v}, PETSC_TRUE, z, coupling, Z));
+  DenseBlockGet((DenseBlock){A + v * n, v, z, n}, PETSC_FALSE, coupling);
+  PetscCall(DenseSubtract((DenseBlock){A, v, v, n}, PETSC_FALSE, z, e->right, coupling));
+  DenseBlockGet((DenseBlock){A + v * (n + 1), z, z, n}, PETSC_FALSE, Z);
+  PetscCall(DenseSubtract((DenseBlock){A + v, z, v, n}, PETSC_FALSE, z, e->right, Z));
+  PetscCall(DenseSubtract((DenseBlock){e->left, z, v, v}, PETSC_TRUE, z, coupling, Z));
   PetscCall(PetscFree(coupling));
   PetscFunctionReturn(0);
 }
@@ -65,9 +41,9 @@ static PetscErrorCode ComplementVectors(Estimate *e, const PetscReal Q[])
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(v * v, &LU, v, &pivot));
-  BlockGet((DenseBlock){Q, v, v, n}, PETSC_FALSE, LU);
-  BlockGet((DenseBlock){Q + v * n, v, z, n}, PETSC_FALSE, e->right);
-  BlockGet((DenseBlock){Q + v, z, v, n}, PETSC_TRUE, e->left);
+  DenseBlockGet((DenseBlock){Q, v, v, n}, PETSC_FALSE, LU);
+  DenseBlockGet((DenseBlock){Q + v * n, v, z, n}, PETSC_FALSE, e->right);
+  DenseBlockGet((DenseBlock){Q + v, z, v, n}, PETSC_TRUE, e->left);
   PetscCall(DenseFactor(v, LU, pivot, &singular));
   if (singular) { /* as they are */
     PetscCall(PetscArrayzero(e->right, v * z));
@@ -99,8 +75,8 @@ PetscErrorCode EstimateComplement(Estimate *e, PetscReal h)
   PetscCall(ComplementVectors(e, Q));
   PetscCall(ComplementMatrix(e, e->pencil.M, own->M));
   if (own->damped) PetscCall(ComplementMatrix(e, e->pencil.C, own->C));
-  BlockGet((DenseBlock){Q + v * (n + 1), z, z, n}, PETSC_FALSE, own->K);
-  PetscCall(Subtract((DenseBlock){Q + v, z, v, n}, PETSC_FALSE, z, e->right, own->K));
+  DenseBlockGet((DenseBlock){Q + v * (n + 1), z, z, n}, PETSC_FALSE, own->K);
+  PetscCall(DenseSubtract((DenseBlock){Q + v, z, v, n}, PETSC_FALSE, z, e->right, own->K));
   for (PetscInt i = 0; i < z * z; i++) own->K[i] -= h * h * own->M[i] + (own->damped ? h * own->C[i] : 0);
   PetscCall(PetscFree(Q));
   PetscFunctionReturn(0);

@@ -42,11 +42,10 @@
 #define EQUAL          1e-9 /* closer than this, relative, they always do */
 
 /* Qx [m][n] = Q(lambda) V x, or Q(lambda)^T V x, in coordinates of the whole basis */
-static PetscErrorCode PencilTimes(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
+static PetscErrorCode PencilTimes(const Estimate *e, const PetscComplex lambda[], PetscBool left, PetscInt m,
                                   const PetscComplex x[], PetscComplex Qx[])
 {
   const PetscReal   *matrix[] = {e->pencil.K, e->pencil.C, e->pencil.M};
-  const PetscComplex power[]  = {1, lambda, lambda * lambda};
   const PetscInt     n        = e->pencil.n;
   PetscComplex      *part;
 
@@ -56,7 +55,11 @@ static PetscErrorCode PencilTimes(const Estimate *e, PetscComplex lambda, PetscB
   for (int k = 0; k < 3; k++) {
     if (k == 1 && !e->pencil.damped) continue;
     PetscCall(DenseTimes(&(DenseBlock){matrix[k], n, e->n_v, n}, left, m, x, part));
-    for (PetscInt i = 0; i < m * n; i++) Qx[i] += power[k] * part[i];
+    for (PetscInt a = 0; a < m; a++) {
+      const PetscComplex power = k == 0 ? 1 : k == 1 ? lambda[a] : lambda[a] * lambda[a];
+
+      for (PetscInt i = a * n; i < (a + 1) * n; i++) Qx[i] += power * part[i];
+    }
   }
   PetscCall(PetscFree(part));
   PetscFunctionReturn(0);
@@ -64,22 +67,20 @@ static PetscErrorCode PencilTimes(const Estimate *e, PetscComplex lambda, PetscB
 
 /* r [m][n_z] = Z_l^T Q(lambda) V x, or Z_r^T Q^T V y: with Qx of the whole basis and Z_l = Z - V T' the rows of Z
    less T'^T times those of V. The right side takes T' (left), the left side T (right). */
-PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
+PetscErrorCode EstimateCouple(const Estimate *e, const PetscComplex lambda[], PetscBool left, PetscInt m,
                               const PetscComplex x[], PetscComplex r[])
 {
   const PetscInt n_v = e->n_v, n_z = e->n_z, n = e->pencil.n;
-  PetscComplex  *Qx;
+  PetscComplex  *Qx, *top;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m * n, &Qx));
+  PetscCall(PetscMalloc2(m * n, &Qx, m * n_v, &top));
   PetscCall(PencilTimes(e, lambda, left, m, x, Qx));
-  for (PetscInt a = 0; a < m; a++) {
-    PetscComplex *const part = r + a * n_z;
-
-    PetscCall(DenseTimes(&(DenseBlock){left ? e->right : e->left, n_z, n_v, n_v}, PETSC_TRUE, 1, Qx + a * n, part));
-    for (PetscInt i = 0; i < n_z; i++) part[i] = Qx[a * n + n_v + i] - part[i];
-  }
-  PetscCall(PetscFree(Qx));
+  for (PetscInt a = 0; a < m; a++) PetscCall(PetscArraycpy(top + a * n_v, Qx + a * n, n_v));
+  PetscCall(DenseTimes(&(DenseBlock){left ? e->right : e->left, n_z, n_v, n_v}, PETSC_TRUE, m, top, r));
+  for (PetscInt a = 0; a < m; a++)
+    for (PetscInt i = 0; i < n_z; i++) r[a * n_z + i] = Qx[a * n + n_v + i] - r[a * n_z + i];
+  PetscCall(PetscFree2(Qx, top));
   PetscFunctionReturn(0);
 }
 
@@ -167,26 +168,25 @@ static PetscReal Conjugated(PetscInt n, const PetscComplex a[], const PetscCompl
   return cabs(sum);
 }
 
-/* sharp = |s^T Q_zz^-1 r| of mode i, in the unit of kappa; f the same, but not below the mean of r and s each with
-   itself: the product of right and left may pass through zero where neither does; not finite where Q_zz is singular */
-static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, PetscReal *f, PetscReal *sharp)
+/* sharp = |s^T Q_zz^-1 r| of mode i with r and s [n_z], in the unit of kappa; f the same, but not below the mean of r
+   and s each with itself: the product of right and left may pass through zero where neither does; not finite where
+   Q_zz is singular */
+static PetscErrorCode CoupleMode(const Estimate *e, PetscInt i, const PetscComplex r[], const PetscComplex s[],
+                                 PetscReal *f, PetscReal *sharp)
 {
-  const ReducedModes *modes  = e->modes;
-  const PetscComplex  lambda = modes->lambda[i];
-  const PetscInt      n      = e->n_z;
-  PetscComplex       *r, *u, *s, *v;
-  PetscBool           singular;
+  const PetscInt n = e->n_z;
+  PetscComplex  *u, *v;
+  PetscBool      singular;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(2 * n, &r, 2 * n, &u));
-  s = r + n, v = u + n;
-  PetscCall(EstimateCouple(e, lambda, PETSC_FALSE, 1, modes->x + i * e->n_v, r));
-  PetscCall(EstimateCouple(e, lambda, PETSC_TRUE, 1, modes->y + i * e->n_v, s));
-  PetscCall(PetscArraycpy(u, r, 2 * n));
-  PetscCall(EstimateSolve(e, lambda, 2, u, &singular));
+  PetscCall(PetscMalloc1(2 * n, &u));
+  v = u + n;
+  PetscCall(PetscArraycpy(u, r, n));
+  PetscCall(PetscArraycpy(v, s, n));
+  PetscCall(EstimateSolve(e, e->modes->lambda[i], 2, u, &singular));
   *sharp = singular ? INFINITY : cabs(DenseDot(n, s, u));
   *f     = PetscMax(*sharp, PetscSqrtReal(Conjugated(n, r, u)) * PetscSqrtReal(Conjugated(n, s, v)));
-  PetscCall(PetscFree2(r, u));
+  PetscCall(PetscFree(u));
   PetscFunctionReturn(0);
 }
 
@@ -224,17 +224,24 @@ static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal c
    complement at lambda itself: the error is then of the size of lambda. */
 static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal change[])
 {
+  const PetscInt n = e->n_z;
+  PetscComplex  *r, *s;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(modes->n * n, &r, modes->n * n, &s));
+  PetscCall(EstimateCouple(e, modes->lambda, PETSC_FALSE, modes->n, modes->x, r));
+  PetscCall(EstimateCouple(e, modes->lambda, PETSC_TRUE, modes->n, modes->y, s));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscReal all = cabs(modes->lambda[i]) * cabs(modes->lambda[i]);
     PetscReal       f, sharp, kappa;
 
-    PetscCall(CoupleMode(e, i, &f, &sharp));
+    PetscCall(CoupleMode(e, i, r + i * n, s + i * n, &f, &sharp));
     kappa           = isfinite(sharp) ? KappaChange(modes, i, sharp) : all;
     modes->sharp[i] = LambdaChange(modes, i, kappa);
     modes->error[i] = LambdaChange(modes, i, isfinite(sharp) ? KappaChange(modes, i, f) : all);
     change[i]       = e->pencil.damped ? modes->sharp[i] : kappa;
   }
+  PetscCall(PetscFree2(r, s));
   PetscFunctionReturn(0);
 }
 
@@ -297,7 +304,7 @@ static PetscErrorCode AddFloor(const Estimate *e, const Reduced *reduced, const 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &E, modes->n, &mesh));
-  RoundingEnergy(reduced, p, E);
+  PetscCall(RoundingEnergy(reduced, p, E));
   PetscCall(RoundingProducts(n, E, modes->n, modes->x, modes->y, mesh));
   for (PetscInt i = 0; i < modes->n; i++) {
     const PetscReal own   = DensePencilNoise(&e->pencil, n, modes->x + i * n, modes->y + i * n);

@@ -18,8 +18,8 @@ typedef struct {
 PetscErrorCode EstimateComplement(Estimate *e, PetscReal h);
 
 /* estimate.c - r [m][n_z] = (Z - V T')^T Q(lambda) V x (left false) or (Z - V T)^T Q(lambda)^T V x of m vectors x
-   [m][n_v] */
-PetscErrorCode EstimateCouple(const Estimate *e, PetscComplex lambda, PetscBool left, PetscInt m,
+   [m][n_v], each with its own lambda [m] */
+PetscErrorCode EstimateCouple(const Estimate *e, const PetscComplex lambda[], PetscBool left, PetscInt m,
                               const PetscComplex x[], PetscComplex r[]);
 /* r := Q(lambda)^-1 r of the complement, [m][n_z]; singular where lambda is an eigenvalue of it */
 PetscErrorCode EstimateSolve(const Estimate *e, PetscComplex lambda, PetscInt m, PetscComplex r[], PetscBool *singular);

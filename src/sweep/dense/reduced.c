@@ -12,7 +12,9 @@
    A cluster whose matrix y_i^T D x_j is singular is defective, and is left as it is.
 */
 #include "eigen.h"
+#include <petscblaslapack.h>
 
+#define FACTORS_FEW 8   /* rows of a product cost as much as the term itself where there are n / 8 */
 #define PAIR       1e-7 /* relative difference of equal frequencies */
 #define SAME_VALUE 1e-9 /* relative difference of equal eigenvalues */
 /* Least pivot, relative, of the products y_i^T D x_j of a cluster that is not defective: below it their inverse
@@ -75,17 +77,60 @@ static void AddBlock(PetscInt n, PetscInt lda, PetscReal c, const PetscReal A[],
     for (PetscInt i = 0; i < n; i++) sum[j * n + i] += c * A[j * lda + i];
 }
 
+PetscInt ReducedFactorsRank(const Reduced *reduced, PetscInt t, PetscInt n)
+{
+  const PetscInt rank = reduced->factors ? reduced->factors[t].rank : 0;
+
+  return FACTORS_FEW * rank <= n ? rank : 0;
+}
+
+/* sum += L' R of all terms that go by their factors, `rank` rows together */
+static PetscErrorCode AddFactors(const Reduced *reduced, const PetscReal c[], PetscInt n, PetscInt rank,
+                                 PetscReal sum[])
+{
+  const PetscReal one = 1;
+  PetscReal      *L, *R;
+  PetscInt        at = 0;
+  PetscBLASInt    size, rows;
+
+  PetscFunctionBeginUser;
+  if (!rank) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n * rank, &L, n * rank, &R));
+  for (PetscInt t = 0; t < reduced->n_terms; t++) {
+    const PetscInt own = c[t] != 0 ? ReducedFactorsRank(reduced, t, n) : 0;
+
+    for (PetscInt j = 0; j < n && own; j++)
+      for (PetscInt i = 0; i < own; i++) {
+        L[j * rank + at + i] = c[t] * reduced->factors[t].left[j * own + i];
+        R[j * rank + at + i] = reduced->factors[t].right[j * own + i];
+      }
+    at += own;
+  }
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(rank, &rows));
+  PetscCallBLAS("BLASgemm", BLASgemm_("T", "N", &size, &size, &rows, &one, L, &rows, R, &rows, &one, sum, &size));
+  PetscCall(PetscFree2(L, R));
+  PetscFunctionReturn(0);
+}
+
 /* K(p) (or C, M) on the leading n x n block */
 static PetscErrorCode ReducedSum(const Reduced *reduced, OperatorsTermKind kind, const PetscReal p[], PetscInt n,
                                  PetscReal sum[])
 {
+  PetscInt   rank = 0;
+  PetscReal *c;
+
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, n * n));
+  PetscCall(PetscMalloc1(reduced->n_terms, &c));
   for (PetscInt t = 0; t < reduced->n_terms; t++) {
-    const PetscReal c = reduced->term[t].kind == kind ? OperatorsTermCoefficient(&reduced->term[t], p) : 0;
-
-    if (c != 0) AddBlock(n, reduced->n, c, reduced->A[t], sum);
+    c[t] = reduced->term[t].kind == kind ? OperatorsTermCoefficient(&reduced->term[t], p) : 0;
+    if (c[t] == 0) continue;
+    rank += ReducedFactorsRank(reduced, t, n);
+    if (!ReducedFactorsRank(reduced, t, n)) AddBlock(n, reduced->n, c[t], reduced->A[t], sum);
   }
+  PetscCall(AddFactors(reduced, c, n, rank, sum));
+  PetscCall(PetscFree(c));
   PetscFunctionReturn(0);
 }
 
@@ -268,9 +313,17 @@ static PetscErrorCode ModesFinish(const DensePencil *pencil, const PetscReal Ms[
 PetscErrorCode ReducedPencil(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
 {
   PetscFunctionBeginUser;
+  PetscCall(ReducedPencilLoose(reduced, p, n, pencil));
+  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedPencilLoose(const Reduced *reduced, const PetscReal p[], PetscInt n, DensePencil *pencil)
+{
+  PetscFunctionBeginUser;
   *pencil = (DensePencil){.n = n, .damped = ReducedIsDamped(reduced, p)};
   PetscCall(PetscMalloc3(n * n, &pencil->K, n * n, &pencil->C, n * n, &pencil->M));
-  PetscCall(ReducedSum(reduced, OPERATORS_STIFFNESS, p, n, pencil->K));
+  PetscCall(PetscArrayzero(pencil->K, n * n));
   PetscCall(ReducedSum(reduced, OPERATORS_DAMPING, p, n, pencil->C));
   PetscCall(ReducedSum(reduced, OPERATORS_MASS, p, n, pencil->M));
   PetscFunctionReturn(0);
@@ -283,7 +336,8 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
 {
   const PetscInt n = reduced->n_used;
   DensePencil    pencil;
-  PetscReal     *Ms, *E = NULL;
+  PetscReal     *Ms, *E   = NULL;
+  PetscBool      found    = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * n, &Ms));
@@ -291,8 +345,9 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(SumSymmetric(reduced, p, Ms, &pencil.symmetric));
   PetscCall(ReducedCheckMass(reduced, p, Ms));
   if (pencil.damped) PetscCall(PetscMalloc1(n * n, &E));
-  if (pencil.damped) RoundingEnergy(reduced, p, E);
-  PetscCall(DensePencilEigen(&pencil, E, window, modes));
+  if (pencil.damped) PetscCall(RoundingEnergy(reduced, p, E));
+  if (reduced->core.m) PetscCall(CondensedEigen(&pencil, &reduced->core, window, modes, &found));
+  if (!found) PetscCall(DensePencilEigen(&pencil, E, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));

@@ -7,6 +7,19 @@
 #include <squeal/modes.h>
 #include <complex.h>
 
+/* A_t = left' right, of few rows, on a basis */
+typedef struct {
+  PetscInt   rank;           /* rows, 0: it is no such product */
+  PetscReal *left, *right;   /* [n][rank] */
+} ReducedFactors;
+
+/* Leading vectors that eigenvalues are sought on first (condense.c), m = 0 for none: what the others add to one of them
+   is to be less than rtol */
+typedef struct {
+  PetscInt  m;
+  PetscReal rtol;
+} ReducedCore;
+
 /* V' A_t V of every term of the pencil. The leading n_used vectors make the model; the remaining ones, Z, only serve to
    estimate its error. */
 typedef struct {
@@ -15,9 +28,11 @@ typedef struct {
   const OperatorsTerm      *term;      /* coefficients (borrowed) */
   const OperatorsParameter *parameter; /* [n_parameters] names (borrowed), or NULL */
   PetscReal               **A;         /* [n_terms][n * n] */
+  ReducedFactors           *factors;   /* [n_terms] of those that are products of few rows, or NULL */
   PetscReal               **D;         /* [n_terms][n_used * n_used] V' |diag A_t| V of the stiffness terms, for what
-                                          rounding in A_t does; NULL, or NULL entries, where that is no more than
-                                          rounding in the dense matrices */
+                                          rounding in A_t does, with those of the same RoundingTerm(); NULL, or NULL
+                                          entries, where that is no more than rounding in the dense matrices */
+  ReducedCore               core;
   ModesLimit                limit;     /* what counts as unstable; no limit without */
 } Reduced;
 
@@ -56,8 +71,11 @@ PetscErrorCode ReducedModesCreate(PetscInt n, PetscInt size, ReducedModes *modes
 PetscErrorCode ReducedModesSelect(const ReducedModes *from, PetscInt n, const PetscInt list[], ReducedModes *to);
 PetscErrorCode ReducedModesDestroy(ReducedModes *modes);
 
-/* mass.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite; no
-   mass that depends on parameters: nothing to do */
+/* Rows of a term that goes by its factors on n vectors, where these are few beside n; else 0 */
+PetscInt ReducedFactorsRank(const Reduced *reduced, PetscInt t, PetscInt n);
+
+/* values.c - raises an error where Ms [n_used * n_used], the symmetric part of V' M V at p, is not positive definite;
+   no mass that depends on parameters: nothing to do */
 PetscErrorCode ReducedCheckMass(const Reduced *reduced, const PetscReal p[], const PetscReal Ms[]);
 
 /* Whether a damping term has a coefficient that is not zero */
@@ -70,13 +88,15 @@ void ReducedClusterJoin(PetscInt n, PetscInt i, PetscInt j, PetscInt cluster[]);
    vectors X, Y [m][n]; marks the modes that are zero within it */
 #define ROUNDING_SMALL 1e-3 /* beside the window: frequencies that may be zeros */
 #define ROUNDING_RIGID 100  /* kappa below this many times its rounding is zero */
-void           RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);
+PetscErrorCode RoundingEnergy(const Reduced *reduced, const PetscReal p[], PetscReal E[]);
+/* The first term whose D has that of term t, all with the same coefficient where pairs are closed */
+PetscInt       RoundingTerm(const Reduced *reduced, PetscInt t);
 PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[],
                                 const PetscComplex Y[], PetscReal product[]);
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes);
 
-/* frictionless.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
+/* values.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
    remains */
 PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
 

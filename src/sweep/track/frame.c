@@ -134,8 +134,8 @@ static PetscErrorCode ClusterDualise(ModeFrame *f, PetscInt k, const PetscInt me
   PetscFunctionReturn(0);
 }
 
-/* Dual bases of the cluster that begins with mode first */
-static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
+/* Bases of the plane of the cluster that begins with mode first, or, with W known, their duals */
+static PetscErrorCode ClusterBases(ModeFrame *f, PetscBool dual, PetscInt first)
 {
   PetscInt *member, k = 0;
 
@@ -143,23 +143,22 @@ static PetscErrorCode ClusterBases(ModeFrame *f, PetscInt first)
   PetscCall(PetscMalloc1(f->modes.n, &member));
   for (PetscInt i = first; i < f->modes.n; i++)
     if (f->cluster[i] == first) member[k++] = i;
-  if (k > 1 && !f->form.damped) {
+  if (dual) {
+    PetscCall(ClusterDualise(f, k, member));
+  } else if (k > 1 && !f->form.damped) {
     PetscCall(ClusterRefine(f, k, member));
   } else if (k > 1 && !f->modes.rigid[first]) {
     PetscCall(ClusterOrthonormalise(f, k, member, f->X));
     PetscCall(ClusterOrthonormalise(f, k, member, f->Y));
   }
-  for (PetscInt a = 0; a < k; a++)
-    PetscCall(StandardApply(&f->form, STANDARD_B, PETSC_TRUE, 1, f->Y + member[a] * f->N, f->W + member[a] * f->N));
-  PetscCall(ClusterDualise(f, k, member));
   PetscCall(PetscFree(member));
   PetscFunctionReturn(0);
 }
 
 /* A copy of the modes with X, Y, W [n][N] in the standard form: W = B^T Y, and w_i^T x_j = 1 for i = j, else 0
-   within clusters by construction and between them by the eigenproblem. branch = -1. refine: planes are improved by
-   inverse iteration (onset/plane.c). */
-PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, PetscBool refine,
+   within clusters by construction and between them by the eigenproblem. branch = -1. FRAME_REFINED: planes are improved
+   by inverse iteration (onset/plane.c). */
+PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, FrameUse use,
                                const ReducedModes *modes, ModeFrame **frame)
 {
   const PetscInt n = modes->n, size = reduced->n_used;
@@ -167,7 +166,7 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&f));
-  f->refine  = refine;
+  f->refine  = use == FRAME_REFINED ? PETSC_TRUE : PETSC_FALSE;
   f->limit   = reduced->limit;
   f->reduced = reduced;
   PetscCall(PetscMalloc1(reduced->n_parameters, &f->p));
@@ -175,7 +174,10 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
   f->form = (StandardForm){&f->pencil, size, form->damped, form->scale};
   f->N    = StandardSize(&f->form);
   PetscCall(ReducedModesSelect(modes, n, NULL, &f->modes));
-  PetscCall(ReducedPencil(reduced, p, size, &f->pencil));
+  if (use == FRAME_PRODUCTS)
+    PetscCall(ReducedPencilLoose(reduced, p, size, &f->pencil));
+  else
+    PetscCall(ReducedPencil(reduced, p, size, &f->pencil));
   PetscCall(PetscMalloc5(n, &f->cluster, n, &f->branch, n * f->N, &f->X, n * f->N, &f->Y, n * f->N, &f->W));
   FrameCluster(f);
   for (PetscInt i = 0; i < n; i++) {
@@ -183,8 +185,11 @@ PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], cons
     FrameVector(f, f->modes.x + i * size, i, PETSC_FALSE, f->X + i * f->N);
     FrameVector(f, f->modes.y + i * size, i, PETSC_TRUE, f->Y + i * f->N);
   }
-  for (PetscInt i = 0; i < n; i++)
-    if (f->cluster[i] == i) PetscCall(ClusterBases(f, i));
+  for (int dual = 0; dual < 2; dual++) {
+    if (dual) PetscCall(StandardApply(&f->form, STANDARD_B, PETSC_TRUE, n, f->Y, f->W));
+    for (PetscInt i = 0; i < n; i++)
+      if (f->cluster[i] == i) PetscCall(ClusterBases(f, dual ? PETSC_TRUE : PETSC_FALSE, i));
+  }
   *frame = f;
   PetscFunctionReturn(0);
 }

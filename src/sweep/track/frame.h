@@ -45,8 +45,11 @@ PetscErrorCode ModeSourceFollow(ModeSource *source, PetscReal value, PetscComple
 /* The same from modes that are known already */
 PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const ReducedModes *modes, ModeFrame **frame);
 
+/* Products of modes alone, for which K is not summed; all of the pencil; and planes that may be refined in it */
+typedef enum { FRAME_PRODUCTS, FRAME_PENCIL, FRAME_REFINED } FrameUse;
+
 /* frame.c - p [n_parameters]; damped and scale of the form are taken; the frame's value is left to the caller */
-PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, PetscBool refine,
+PetscErrorCode ModeFrameCreate(const Reduced *reduced, const PetscReal p[], const StandardForm *form, FrameUse use,
                                const ReducedModes *modes, ModeFrame **frame);
 PetscErrorCode ModeFrameDestroy(ModeFrame **frame);
 /* The other member of the pair lambda, -conj(lambda) of an undamped system in flutter, else -1 */

@@ -30,18 +30,24 @@ static PetscErrorCode StrengthFind(const ModeFrame *a, const ModeFrame *b, Match
 {
   const PetscInt na = match->na, nb = match->nb;
   PetscInt      *size;
-  PetscComplex  *sum;
+  PetscComplex  *sum, *there, *back;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(na * nb, &sum, nb, &size));
+  PetscCall(PetscMalloc2(na * nb, &there, na * nb, &back));
+  PetscCall(DenseComplexProducts(a->N, na, a->W, nb, b->X, there)); /* [nb][na] w_i^T x_j */
+  PetscCall(DenseComplexProducts(a->N, nb, b->W, na, a->X, back));  /* [na][nb] w_j^T x_i */
   for (PetscInt j = 0; j < nb; j++) size[j] = ModeFrameClusterSize(b, j);
-  for (PetscInt i = 0; i < na; i++) ModeFrameOverlap(b, a->W + i * a->N, a->X + i * a->N, sum + a->cluster[i] * nb);
+  for (PetscInt i = 0; i < na; i++)
+    for (PetscInt j = 0; j < nb; j++)
+      sum[a->cluster[i] * nb + b->cluster[j]] += there[j * na + i] * back[i * nb + j];
   for (PetscInt i = 0; i < na; i++) {
     const PetscInt own = ModeFrameClusterSize(a, i);
 
     for (PetscInt j = 0; j < nb; j++)
       match->strength[i * nb + j] = cabs(sum[a->cluster[i] * nb + b->cluster[j]]) / PetscMin(own, size[j]);
   }
+  PetscCall(PetscFree2(there, back));
   PetscCall(PetscFree2(sum, size));
   PetscFunctionReturn(0);
 }
@@ -114,10 +120,15 @@ static PetscErrorCode LonelyCheck(const ModeFrame *a, const ModeFrame *b, const 
   for (PetscInt i = 0; i < n; i++)
     if (!partners[component[i]]) need = PETSC_TRUE;
   if (!need) PetscFunctionReturn(0);
+  if (!window) {
+    for (PetscInt i = 0; i < n; i++)
+      if (!partners[component[i]]) certain[component[i]] = PETSC_TRUE;
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMalloc2(n * n, &H, n * n, &G));
   PetscCall(StandardProject(&b->form, n, a->X, a->Y, H, G));
   for (PetscInt i = 0; i < n; i++)
-    if (!partners[component[i]]) certain[component[i]] = window ? ModeHasLeft(a, i, window, H, G) : PETSC_TRUE;
+    if (!partners[component[i]]) certain[component[i]] = ModeHasLeft(a, i, window, H, G);
   PetscCall(PetscFree2(H, G));
   PetscFunctionReturn(0);
 }

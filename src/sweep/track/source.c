@@ -36,7 +36,7 @@ PetscErrorCode ModeSourceTake(ModeSource *source, PetscReal value, const Reduced
 {
   PetscFunctionBeginUser;
   SourceSetValue(source, value);
-  PetscCall(ModeFrameCreate(source->reduced, source->p, &source->form, PETSC_TRUE, modes, frame));
+  PetscCall(ModeFrameCreate(source->reduced, source->p, &source->form, FRAME_REFINED, modes, frame));
   (*frame)->value = value;
   PetscFunctionReturn(0);
 }

@@ -28,12 +28,13 @@ static PetscErrorCode PointsCompare(const Reduced *reduced, const PetscReal *con
                                     const BranchPoint *const point[2], const ReducedWindow *window, ModeFrame *frame[2],
                                     Match *match)
 {
-  StandardForm form = {.scale = ModesScale(point[0]->modes, point[1]->modes)};
+  const FrameUse use  = window ? FRAME_PENCIL : FRAME_PRODUCTS;
+  StandardForm   form = {.scale = ModesScale(point[0]->modes, point[1]->modes)};
 
   PetscFunctionBeginUser;
   form.damped = ReducedIsDamped(reduced, p[0]) || ReducedIsDamped(reduced, p[1]) ? PETSC_TRUE : PETSC_FALSE;
   for (int k = 0; k < 2; k++) {
-    PetscCall(ModeFrameCreate(reduced, p[k], &form, PETSC_FALSE, point[k]->modes, &frame[k]));
+    PetscCall(ModeFrameCreate(reduced, p[k], &form, use, point[k]->modes, &frame[k]));
     frame[k]->value = point[k]->value;
   }
   PetscCall(MatchCreate(frame[0], frame[1], window, match));
