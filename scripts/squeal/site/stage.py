@@ -13,7 +13,7 @@ GROUPS = (("Begin", ("options/tutorial.md", "options/own_brake.md", "scripts/imp
                          "include/theory.md", "include/glossary.md")),
           ("Checks and speed", ("tests/validation.md", "tests/validation_errors.md", "tests/validation_time.md",
                                 "tests/margins.md", "tests/margins_unit.md",
-                                "scripts/bench/README.md", "scripts/bench/modes.md",
+                                "scripts/bench/README.md", "scripts/bench/demands.md", "scripts/bench/modes.md",
                                 "scripts/bench/time.md", "scripts/study/README.md", "scripts/study/speed_error.md",
                                 "scripts/study/contact.md", "scripts/study/mesh.md", "scripts/study/paper.md",
                                 "scripts/study/reduced.md", "scripts/study/samples.md")),
