@@ -13,11 +13,11 @@
 #include "soundimpl.h"
 #include "base/text.h"
 
-#define PICOWATT    1e-12
-#define QUIETEST    20e-6 /* Pa */
+#define PICOWATT     1e-12
+#define QUIETEST     20e-6 /* Pa */
 #define SOUND_COLUMN 256
-#define REFERENCE   1000.   /* Hz */
-#define SILENCE     (-999.) /* dB; -inf has no place in a table */
+#define REFERENCE    1000.   /* Hz */
+#define SILENCE      (-999.) /* dB; -inf has no place in a table */
 
 static PetscReal WeightSize(PetscReal f)
 {

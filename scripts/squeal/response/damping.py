@@ -6,7 +6,9 @@ It follows from
 
     c H_j - p_j - q_j omega^2 - r_j omega^4 = omega^2 H_j,    p_j ... r_j from a_j and b_j,
 
-by least squares, weighted by 1 / |c - omega^2| of the round before. By half power |H|^2 summed over the outputs is half of the
+by least squares, weighted by 1 / |c - omega^2| of the round before. The same with a polynomial of two poles tells two modes in one
+peak, whose circle is up to twice too wide. Noise makes circles smaller: of 2 % of the peak their loss factors are up to 15 % low, and say
+nothing of materials. By half power |H|^2 summed over the outputs is half of the
 peak's at f_1 and f_2, and eta = (f_2^2 - f_1^2) / (2 f_r^2); other modes near by change that, and the circle less. Viscous damping
 with the ratio zeta has eta = 2 zeta at its frequency.
 
@@ -19,6 +21,7 @@ from typing import NamedTuple
 
 import numpy
 import scipy.optimize
+import scipy.signal
 
 from ..tables import BadInput, read_table
 from .frf_tables import Responses
@@ -26,7 +29,13 @@ from .frf_tables import Responses
 ROUNDS = 5
 WIDE = 1.0  # half-power widths on each side of a peak, at most, that its circle has
 LEAST = 7  # frequencies of a circle
-MISFIT = 0.02  # of circles, above which a peak is no single mode and says nothing of materials
+MISFIT = 1e-3  # of circles, above which a peak says nothing of materials: two modes may be in it, or noise
+NONE = 0.2  # above which it is no circle
+BETTER = 0.1  # of the misfit, at most, that two poles leave of two modes
+STANDS = 0.3  # share of its power by which a peak stands above what is about it
+ABOVE = 12  # deviations of noise by which its power does
+LEAST_SHARE = 1e-3  # of the largest singular value of shares: directions below are not told
+LEAST_PART = 1e-2  # of a part in such a direction
 SENSITIVITIES = {"mode": int, "parameter": str, "freq_hz_per_percent": float}
 MODES = {"mode": int, "freq_hz": float, "label": str}
 
@@ -38,37 +47,47 @@ class Peak(NamedTuple):
     half_power: float
     points: int
     misfit: float  # of the circles, relative
+    modes: int  # 2 where two poles fit better by far
 
 
-def crossing(freq, power, peak, step, half):
-    """Frequency at which the power falls to half, going from the peak by steps; NaN where it rises before."""
-    i = peak
-    while 0 <= i + step < len(freq) and power[i + step] <= power[i]:
-        i += step
+def crossing(freq, power, peak, step, stop):
+    """Frequency at which the power first falls to half, going from a peak by steps; NaN where another one, `stop`, comes before."""
+    half = power[peak] / 2
+    for i in range(peak + step, stop, step):
         if power[i] <= half:
             share = (power[i - step] - half) / (power[i - step] - power[i])
             return freq[i - step] + share * (freq[i] - freq[i - step])
     return numpy.nan
 
 
-def circle(omega, values):
-    """c and the relative misfit of all outputs, values [frequency][output]."""
+def circle(omega, values, poles=1):
+    """The poles c and the relative misfit of all outputs, values [frequency][output]."""
     square, n = omega**2, values.shape[1]
-    unit, weight = square.mean(), numpy.ones(len(omega))
-    x = square / unit
-    powers = ((x - 1) / abs(x - 1).max())[:, None]**numpy.arange(3)
+    unit, half, weight = square.mean(), numpy.ptp(square) / 2, numpy.ones(len(omega))
+    x = (square - unit) / half
+    powers = x[:, None]**numpy.arange(poles + 2)
     for _ in range(ROUNDS):
         rows, right = [], []
         for j in range(n):
-            block = numpy.zeros((len(x), 1 + 3 * n), complex)
-            block[:, 0], block[:, 1 + 3 * j:4 + 3 * j] = values[:, j], -powers
+            block = numpy.zeros((len(x), poles + len(powers[0]) * n), complex)
+            block[:, :poles] = values[:, j, None] * powers[:, :poles]
+            block[:, poles + len(powers[0]) * j:poles + len(powers[0]) * (j + 1)] = -powers
             rows.append(weight[:, None] * block)
-            right.append(weight * x * values[:, j])
+            right.append(-weight * powers[:, poles] * values[:, j])
         found = numpy.linalg.lstsq(numpy.vstack(rows), numpy.concatenate(right), rcond=None)[0]
-        c = found[0]
-        weight = 1 / abs(c - x)
-    fitted = powers @ found[1:].reshape(n, 3).T / (c - x)[:, None]
-    return c * unit, numpy.linalg.norm(fitted - values) / numpy.linalg.norm(values)
+        below = powers[:, :poles + 1] @ [*found[:poles], 1]
+        weight = 1 / abs(below)
+    fitted = powers @ found[poles:].reshape(n, -1).T / below[:, None]
+    roots = numpy.roots([1, *found[poles - 1::-1]])
+    return unit + half * roots, numpy.linalg.norm(fitted - values) / numpy.linalg.norm(values)
+
+
+def is_merged(omega, values, misfit):
+    """Whether a fit of two poles is better by far, and both lie within the frequencies and twice as wide a loss."""
+    square = omega**2
+    poles, less = circle(omega, values, 2)
+    inside = abs(poles - square.mean()) < numpy.ptp(square)
+    return bool(less < BETTER * misfit and inside.all())
 
 
 def peaks_of(response):
@@ -80,26 +99,49 @@ def peaks_of(response):
     return sorted(kept)
 
 
+def maxima(values, power):
+    """Maxima that stand above what is about them by a share of their power, and by what noise does not reach: its deviation in each of the
+    parts of a value is that of second differences, sqrt(6) of it, of which half are above 1.18 of their deviation."""
+    differences = numpy.sqrt((abs(numpy.diff(values, 2, axis=0))**2).sum(1) / values.shape[1])
+    noise = numpy.median(differences) / (1.18 * numpy.sqrt(6))
+    found, about = scipy.signal.find_peaks(power, prominence=0)
+    return [int(i) for i, above in zip(found, about["prominences"])
+            if above > max(STANDS * power[i], ABOVE * noise * numpy.sqrt(power[i]))]
+
+
 def all_peaks(response):
     """A mode at each maximum that falls to half its power on one side at least."""
     freq, values = response.freq, numpy.array(list(response.outputs.values())).T
+    largest = abs(values).max()
+    if not 0 < largest < numpy.inf or len(freq) < LEAST:
+        raise BadInput(f"the response has {len(freq)} frequencies and is at most {largest:g} m/N: there must be {LEAST} at least, "
+                       "with values that are finite and not all 0")
+    values = values / largest
     power = (abs(values)**2).sum(1)
-    values = values / numpy.sqrt(power.max())
-    for i in range(1, len(freq) - 1):
-        if not power[i - 1] < power[i] >= power[i + 1]:
-            continue
-        ends = [crossing(freq, power, i, step, power[i] / 2) for step in (-1, 1)]
+    tops = maxima(values, power)
+    for before, i, after in zip([-1, *tops], tops, [*tops[1:], len(freq)]):
+        ends = [crossing(freq, power, i, *way) for way in ((-1, before), (1, after))]
         half = (ends[1]**2 - ends[0]**2) / (2 * freq[i]**2)
         reach = [WIDE * abs(end - freq[i]) for end in ends]
-        if not any(numpy.isfinite(reach)):
-            continue
-        reach = numpy.nanmax(reach)
-        near = abs(freq - freq[i]) <= reach
-        if near.sum() < LEAST:
-            yield Peak(freq[i], numpy.nan, half, int(near.sum()), numpy.nan)
-            continue
-        c, misfit = circle(2 * numpy.pi * freq[near], values[near])
-        yield Peak(numpy.sqrt(abs(c.real)) / 2 / numpy.pi, c.imag / c.real, half, int(near.sum()), misfit)
+        if numpy.isfinite(reach).any():
+            yield fitted_peak(freq, values, i, half, numpy.nanmax(reach))
+
+
+def fitted_peak(freq, values, i, half, reach):
+    """The mode of a maximum."""
+    near = abs(freq - freq[i]) <= reach
+    n = int(near.sum())
+    if n < LEAST:
+        return Peak(float(freq[i]), numpy.nan, half, n, numpy.nan, 1)
+    omega = 2 * numpy.pi * freq[near]
+    (c,), misfit = circle(omega, values[near])
+    loss = c.imag / c.real
+    if misfit > NONE or c.real <= 0:
+        return Peak(float(freq[i]), numpy.nan, half, n, misfit, 1)
+    if loss <= 0:
+        raise BadInput(f"the peak at {freq[i]:.6g} Hz has the loss factor {loss:.3g}: its mode grows, or the response is that of "
+                       "exp(-i omega t): give its conjugate")
+    return Peak(numpy.sqrt(c.real) / 2 / numpy.pi, loss, half, n, misfit, 1 + is_merged(omega, values[near], misfit))
 
 
 def shares_of(folder):
@@ -122,21 +164,42 @@ def paired(peaks, modes, within):
         yield number if abs(modes[number]["freq_hz"] / peak.freq - 1) <= within else None
 
 
+def told(matrix):
+    """Which columns the rows tell: those without a part in a direction that they do not have."""
+    _, sizes, directions = numpy.linalg.svd(matrix)
+    rank = int((sizes > LEAST_SHARE * sizes.max(initial=0)).sum())
+    return numpy.linalg.norm(directions[rank:], axis=0) < LEAST_PART
+
+
 def materials(peaks, numbers, shares):
-    """Loss factor and standard deviation of each part, and the largest difference of a peak from what they make."""
+    """Loss factor and standard deviation of each part, NaN where the peaks do not tell it, and the largest difference of a peak from what
+    they make. A loss factor at its bound 0 has no deviation."""
     used = [(peak, shares[number]) for peak, number in zip(peaks, numbers)
-            if number in shares and peak.misfit <= MISFIT and peak.loss > 0]
+            if number in shares and peak.misfit <= MISFIT and peak.modes == 1 and peak.loss > 0]
     if not used:
-        raise BadInput(f"no peak with a misfit of {MISFIT:g} at most is near a mode with shares of energy: do both runs have the same "
-                       "band, and are the frequencies fine enough?")
+        raise BadInput(f"no peak of one mode with a misfit of {MISFIT:g} at most is near a mode with shares of energy: do both runs have "
+                       "the same band, are the frequencies fine enough, and is the response without noise?")
     parts = sorted({part for _, row in used for part in row})
     matrix = numpy.array([[row.get(part, 0) for part in parts] for _, row in used])
     right = numpy.array([peak.loss for peak, _ in used])
     found, rest = scipy.optimize.nnls(matrix, right)
-    freedom = len(used) - len(parts)
+    known, freedom = told(matrix), len(used) - len(parts)
     spread = rest / numpy.sqrt(freedom) if freedom > 0 else numpy.nan
     deviation = spread * numpy.sqrt(numpy.diag(numpy.linalg.pinv(matrix.T @ matrix)))
-    return list(zip(parts, found, deviation)), abs(matrix @ found - right).max()
+    return (list(zip(parts, numpy.where(known, found, numpy.nan), numpy.where(known & (found > 0), deviation, numpy.nan))), len(used),
+            abs(matrix @ found - right).max())
+
+
+def tell_materials(found, count, worst):
+    """Prints the loss factors of parts."""
+    for part, loss, deviation in found:
+        if numpy.isnan(loss):
+            print(f"{part}: not told by {count} peaks of one mode: give more, or parts together")
+        elif loss == 0 or deviation >= loss:
+            print(f"{part}: loss factor {loss:.4g}, not told from 0")
+        else:
+            print(f"{part}: loss factor {loss:.4g} " + (f"+- {deviation:.2g}" if deviation >= 0 else "with as many peaks as parts"))
+    print(f"they make the loss factor of each of {count} peaks to {worst:.2g}")
 
 
 def write(path, columns, rows):
@@ -158,15 +221,14 @@ def identify_damping(folder, modes_folder, output, within):
     rows = []
     for peak, number in zip(peaks, numbers):
         mode = ("", "") if number is None else (number, modes[number]["label"])
-        rows.append((float(peak.freq), float(peak.loss), float(peak.half_power), peak.points, float(peak.misfit), *mode))
+        rows.append((float(peak.freq), float(peak.loss), float(peak.half_power), peak.points, float(peak.misfit), peak.modes,
+                     *mode))
         print(f"{peak.freq:.6g} Hz: loss factor {peak.loss:.4g} by circles, misfit {peak.misfit:.2g}, {peak.half_power:.4g} by half power"
-              + ("" if number is None else f"; mode {number} {mode[1]}"))
-    write(output / "damping.csv", ("freq_hz", "loss_factor", "loss_factor_half_power", "points", "misfit", "mode", "label"), rows)
+              + (", TWO MODES in one peak" if peak.modes > 1 else "") + ("" if number is None else f"; mode {number} {mode[1]}"))
+    write(output / "damping.csv", ("freq_hz", "loss_factor", "loss_factor_half_power", "points", "misfit", "modes", "mode", "label"), rows)
     if modes:
-        found, worst = materials(peaks, numbers, shares)
-        for part, loss, deviation in found:
-            print(f"{part}: loss factor {loss:.4g} +- {deviation:.2g}")
-        print(f"they make each peak's loss factor to {worst:.2g}")
+        found, count, worst = materials(peaks, numbers, shares)
+        tell_materials(found, count, worst)
         write(output / "damping_parts.csv", ("part", "loss_factor", "standard_deviation"),
               [(part, float(loss), float(deviation)) for part, loss, deviation in found])
     return output / "damping.csv"

@@ -29,8 +29,18 @@ def conditions(path, names, points):
 
 
 def begins_of(values, growth):
-    """Where growth begins over rising values."""
-    return [begin_at(values, growth, k) for k in numpy.flatnonzero((growth[1:] > 0) & (growth[:-1] <= 0))]
+    """Where growth begins over rising values; growth -inf is not known."""
+    return [begin_at(values, growth, k) for k in numpy.flatnonzero((growth[1:] > 0) & (growth[:-1] <= 0) & numpy.isfinite(growth[:-1]))]
+
+
+def onset_of(values, growth, near):
+    """Of several the one nearest; beyond the values -inf or inf, nan where it is not known."""
+    begins, known = begins_of(values, growth), growth[numpy.isfinite(growth)]
+    if begins:
+        return min(begins, key=lambda m: abs(m - near))
+    if not len(known) or ((known[1:] > 0) & (known[:-1] <= 0)).any():
+        return math.nan
+    return -math.inf if known[0] > 0 else math.inf
 
 
 def begin_at(values, growth, k):
@@ -43,7 +53,7 @@ def begin_at(values, growth, k):
 
 
 def growth_near(rows, count, freq):
-    """The largest growth near a frequency at each condition; 0 where it is rounding."""
+    """The largest growth near a frequency at each condition; 0 where it is rounding, -inf where no mode is near."""
     most = numpy.full(count, -math.inf)
     for row in rows:
         if abs(row["freq_hz"] / freq - 1) < NEAR:
@@ -53,7 +63,7 @@ def growth_near(rows, count, freq):
 
 
 def draws_of(model, found, name, onset, count):
-    """Critical values of the draws about an onset with its standard deviation; nan where there is none within the values."""
+    """Critical values of the draws about an onset with its standard deviation; -inf or inf beyond the values, nan where not known."""
     deviation, value = onset.deviation(), onset.row["critical_value"]
     if not 0 < deviation < math.inf:
         return numpy.full(count, math.nan)
@@ -68,6 +78,4 @@ def draws_of(model, found, name, onset, count):
     if not rows:
         raise BadInput(f"{folder}/conditions.csv: has no row")
     growth = growth_near(rows, len(points), onset.row["freq_hz"]).reshape(count, -1)
-    begins = [begins_of(values, one) for one in growth]
-    near = [onset.at(one - found.t) for one in t]
-    return numpy.array([min(some, key=lambda m, x=x: abs(m - x)) if some else math.nan for some, x in zip(begins, near)])
+    return numpy.array([onset_of(values, one, onset.at(x - found.t)) for one, x in zip(growth, t)])

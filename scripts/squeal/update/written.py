@@ -114,9 +114,21 @@ def print_all(model, fit, prior):
 
 
 def drawn_interval(draws):
-    """How many draws have an onset, and its 95 % interval; nothing of fewer than 40."""
-    found = draws[numpy.isfinite(draws)] if draws is not None else ()
-    return (len(found), *map(float, numpy.quantile(found, (0.025, 0.975)))) if len(found) >= 40 else ("", "", "")
+    """Of how many draws the onset is known, also as beyond the values, and its 95 % interval; nothing of fewer than 40, and no end that is
+    beyond the values."""
+    known = draws[~numpy.isnan(draws)] if draws is not None else ()
+    if len(known) < 40:
+        return "", "", ""
+    ends = numpy.quantile(known, 0.025, method="lower"), numpy.quantile(known, 0.975, method="higher")
+    return (len(known), *(float(end) if math.isfinite(end) else "" for end in ends))
+
+
+def said_of_draws(draws, known, low, high):
+    """A line for the interval of draws."""
+    beyond, middle = int(numpy.isinf(draws).sum()), numpy.quantile(draws[~numpy.isnan(draws)], 0.5, method="nearest")
+    ends = [f"{end:.5g}" if end != "" else "beyond what was drawn" for end in (low, high)]
+    return (f"  of {len(draws)} draws: {middle:.5g}, 95 % from {ends[0]} to {ends[1]}" + (f"; {beyond} are beyond" if beyond else "")
+            + (f"; of {len(draws) - known} it is not known" if known < len(draws) else ""))
 
 
 def tell_onsets(name, onsets, output):
@@ -135,8 +147,7 @@ def tell_onsets(name, onsets, output):
             said = "but not for all parameters within their intervals"
         print(f"{one.row['kind'].replace('_', ' ')} at {name} = {value:.5g} {said}, {one.row['freq_hz']:.1f} Hz {one.row['label']}")
         if rows[-1][-3]:
-            print(f"  of {len(one.draws)} draws: {numpy.nanmedian(one.draws):.5g}, 95 % from {rows[-1][-2]:.5g} to {rows[-1][-1]:.5g}"
-                  + (f"; {len(one.draws) - rows[-1][-3]} have none near" if rows[-1][-3] < len(one.draws) else ""))
+            print(said_of_draws(one.draws, *rows[-1][-3:]))
     if not rows:
         print(f"no onset over {name}")
     write_rows(output / "update_onsets.csv", ONSETS, rows)

@@ -13,8 +13,8 @@
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
 /* mu of the slip speed |v_T| / dt (m/s) at the present v, and how it falls per length of w: d mu / d|w_T| = mu'(s) /
-   (dt weight), 1/m, since |w_T| = weight |v_T|. A
-   pair that is held has mu(0). k infinite: the pair has no compliance of its own, it is in W. */
+   (dt weight), 1/m, since |w_T| = weight |v_T|. A pair that is held has mu(0). k infinite: the pair has no compliance
+   of its own, it is in W. */
 CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
   PetscReal   slip;

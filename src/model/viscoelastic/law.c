@@ -42,7 +42,7 @@ static void ZenerEvaluate(const Viscoelastic *law, PetscComplex lambda, Viscoela
 }
 
 /* log E of one temperature and its slope by log w, at log w = x: the cubic of the segment that holds it */
-static void RowsEvaluate(const ViscoelasticTable *table, PetscReal x, PetscComplex *log, PetscComplex *slope)
+static void RowsEvaluate(const ViscoelasticTable *table, PetscReal x, PetscComplex *logE, PetscComplex *slope)
 {
   const ViscoelasticRow *row  = table->row;
   const PetscInt         last = table->n_rows - 1;
@@ -61,7 +61,7 @@ static void RowsEvaluate(const ViscoelasticTable *table, PetscReal x, PetscCompl
     value  = a + t * (p + t * (c + t * d));
     *slope = (p + t * (2 * c + 3 * t * d)) / h;
   }
-  *log   = clog(value);
+  *logE  = clog(value);
   *slope = *slope / value;
 }
 
@@ -84,16 +84,16 @@ static void TableEvaluate(const Viscoelastic *law, PetscComplex lambda, Viscoela
   const PetscReal          t = TablesAbout(law, about), size = cabs(lambda);
   const PetscReal          x    = size > 0 ? PetscLogReal(size) : about[0]->row[0].x;
   const PetscComplex       turn = I * (carg(lambda) - PETSC_PI / 2);
-  PetscComplex             log[2], slope[2], value, both;
+  PetscComplex             logE[2], slope[2], value, both;
 
-  for (int k = 0; k < 2; k++) RowsEvaluate(about[k], x, &log[k], &slope[k]);
-  value       = cexp((1 - t) * log[0] + t * log[1]);
+  for (int k = 0; k < 2; k++) RowsEvaluate(about[k], x, &logE[k], &slope[k]);
+  value       = cexp((1 - t) * logE[0] + t * logE[1]);
   both        = value * ((1 - t) * slope[0] + t * slope[1]);
   at->modulus = value + turn * both - law->young;
   at->slope   = size > 0 ? both / lambda : 0;
   at->young   = -1;
   if (about[1] == about[0]) return;
-  at->value[0] = (value + turn * both) * (log[1] - log[0]) + turn * value * (slope[1] - slope[0]);
+  at->value[0] = (value + turn * both) * (logE[1] - logE[0]) + turn * value * (slope[1] - slope[0]);
   at->value[0] /= about[1]->temperature - about[0]->temperature;
 }
 

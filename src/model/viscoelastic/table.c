@@ -127,7 +127,9 @@ static PetscErrorCode TableMake(MPI_Comm comm, const char name[], const TableVal
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(t->n, &table->row));
+  for (PetscInt i = 0; i < t->n; i++) n += t->value[N_TABLE_COLUMNS * i + COLUMN_TEMPERATURE] == table->temperature;
+  PetscCall(PetscMalloc1(n, &table->row));
+  n = 0;
   for (PetscInt i = 0; i < t->n; i++) {
     const PetscReal *v = &t->value[N_TABLE_COLUMNS * i], x = PetscLogReal(2 * PETSC_PI * v[0]);
 
