@@ -216,16 +216,15 @@ static PetscErrorCode SuperpositionDestroy(Frf frf, Superposition *s)
 /* What the force radiates, on the space with one step more */
 static PetscErrorCode SuperpositionHear(Frf frf, Superposition *s)
 {
-  FrfField before, field;
+  FrfSchur field[2];
 
   PetscFunctionBeginUser;
   if (!FrfHears(frf)) PetscFunctionReturn(0);
-  PetscCall(FrfFieldCreate(frf, &s->space, s->shift, s->b, &before));
+  PetscCall(FrfFieldCreate(&s->space, s->shift, s->b, &field[0]));
   PetscCall(ModesAnswersStep(&s->answers));
-  PetscCall(FrfFieldCreate(frf, &s->space, s->shift, s->b, &field));
-  PetscCall(FrfHearFields(frf, &s->space, &field, &before));
-  PetscCall(FrfFieldDestroy(&before));
-  PetscCall(FrfFieldDestroy(&field));
+  PetscCall(FrfFieldCreate(&s->space, s->shift, s->b, &field[1]));
+  PetscCall(FrfHearFields(frf, &s->space, field));
+  for (int k = 0; k < 2; k++) PetscCall(FrfSchurDestroy(&field[k]));
   PetscFunctionReturn(0);
 }
 

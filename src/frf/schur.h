@@ -53,16 +53,7 @@ PETSC_INTERN PetscErrorCode FrfSchurRespond(const FrfSchur *schur, PetscInt n, c
                                             PetscReal im[], PetscInt *pole);
 PETSC_INTERN PetscErrorCode FrfSchurDestroy(FrfSchur *schur);
 
-/* Coordinates of the answers on the n vectors of a space, [frequencies][n] */
-typedef struct {
-  PetscInt   n;
-  PetscReal *re, *im;
-} FrfField;
-
-/* tables/sound.c - these, of a force in the unknowns of the pencil; what they radiate, beside those of the space before
-   its last step. Collective. */
-PETSC_INTERN PetscErrorCode FrfFieldCreate(Frf frf, const ModesSpace *space, PetscReal shift, Vec force,
-                                           FrfField *field);
-PETSC_INTERN PetscErrorCode FrfFieldDestroy(FrfField *field);
-PETSC_INTERN PetscErrorCode FrfHearFields(Frf frf, const ModesSpace *space, const FrfField *field,
-                                          const FrfField *before);
+/* tables/sound.c - the response of all coordinates on the space, of a force in the unknowns of the pencil; what it
+   radiates, field[0] on the space before its last step and field[1] on that of now. Collective. */
+PETSC_INTERN PetscErrorCode FrfFieldCreate(const ModesSpace *space, PetscReal shift, Vec force, FrfSchur *field);
+PETSC_INTERN PetscErrorCode FrfHearFields(Frf frf, const ModesSpace *space, const FrfSchur field[2]);

@@ -101,10 +101,11 @@ PetscErrorCode SoundMeasureRow(Sound sound, PetscReal omega, const PetscReal vr[
   }
   PetscCall(PetscFree(pressure));
   for (PetscInt k = 0; k < n_row; k++)
-    PetscCheck(!PetscIsInfOrNanReal(row[k]), sound->comm, PETSC_ERR_USER_INPUT,
-               "the sound at %g Hz is not finite: see to -sound_energy, -sound_density, -sound_speed and the places of "
-               "-sound_microphones",
-               (double)freq);
+    PetscCheck(
+      !PetscIsInfOrNanReal(row[k]), sound->comm, PETSC_ERR_USER_INPUT,
+      "the sound at %g Hz is not finite: see to -sound_density, -sound_speed, the places of -sound_microphones, and "
+      "for modes -sound_energy",
+      (double)freq);
   PetscFunctionReturn(0);
 }
 

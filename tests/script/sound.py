@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 """scripts/sound on tones of known levels, beside the table of IEC 61672-1, and what it refuses."""
 
+import contextlib
 import csv
+import io
+import re
 import subprocess
 import sys
 import tempfile
 import wave
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -87,12 +91,10 @@ def weights(root):
     check(worst <= 0.05, f"A-weighting within {worst:.3f} dB of the table, which has one digit")
 
 
-def sphere(root):
-    """A breathing sphere of 720 triangles with the sphere's area, at ka 0.5 and at pi, where the air inside has a mode of its own."""
-    sys.path.insert(0, str(root / "scripts"))
-    from squeal.sound.boundary import Surface, radiate
+def ball(radius, n):
+    """Triangles of a ball, n along each edge of an icosahedron, with the area of the sphere."""
+    from squeal.sound.boundary import Surface
 
-    density, speed, radius, n = 1.204, 343.2, 0.05, 6
     golden = (1 + 5**0.5) / 2
     corners = np.array([[x, s * 1.0, t * golden] for x in (0,) for s in (-1, 1) for t in (-1, 1)])
     corners = np.concatenate([np.roll(corners, k, axis=1) for k in range(3)])
@@ -106,7 +108,17 @@ def sphere(root):
         triangles += [[at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]] for i in range(n) for j in range(n - i - 1)]
     triangles = np.array(triangles)
     triangles /= np.linalg.norm(triangles, axis=2)[..., None]
-    surface = Surface(radius * triangles / np.sqrt(Surface(triangles).area.sum() / (4 * np.pi)))
+    return radius * triangles / np.sqrt(Surface(triangles).area.sum() / (4 * np.pi))
+
+
+def sphere(root):
+    """A breathing sphere of 720 triangles with the sphere's area, at ka 0.5 and at pi, where the air inside has a mode of its own."""
+    sys.path.insert(0, str(root / "scripts"))
+    from squeal.sound.boundary import Surface, radiate
+
+    density, speed, radius, n = 1.204, 343.2, 0.05, 6
+    surface = Surface(ball(radius, n))
+    triangles = surface.area
     for ka in (0.5, np.pi):
         heard, power = radiate(surface, np.ones(len(triangles)), ka * speed / radius, [[0.5, 0, 0]], (density, speed))
         factor = 1j * ka / (1 + 1j * ka)
@@ -124,9 +136,11 @@ def cycles(root, folder):
     """Two harmonics of 1 and 0.5 Pa, a quarter of a period apart; a response of two frequencies."""
     rows(folder, "sound_cycle.csv",
          "point,harmonic,freq_hz,error_db,cutoff_error_db,power_w,power_db,front_re_pa,front_im_pa,front_db,front_dba",
-         "1,0,2000,0.1,,1,120,1.1180339887,0,92,93", "1,1,2000,,,1,120,1,0,91,92", "1,2,4000,,,1,120,0,0.5,85,86")
+         "1,0,2000,0.1,,1,120,1.1180339887,0,92,93", "1,1,2000,,,1,120,1,0,91,92", "1,2,4000,,,1,120,0,0.5,85,86",
+         "2,0,26000,,,1,120,1,0,91,80", "2,1,26000,,,1,120,1,0,91,80")
     done = sound(root, folder)
-    check(done.returncode == 0 and "cycle 1: 2000.0 Hz, 2 harmonics; front 93.0 dB(A)" in done.stdout,
+    words = "cycle 1: 2000.0 Hz, 2 harmonics; front 93.0 dB(A); power 120.0 dB; off by 0.1 dB by the steps"
+    check(done.returncode == 0 and words in done.stdout,
           f"a cycle: {done.stdout}{done.stderr}")
     with wave.open(str(folder / "cycle_front.wav")) as file:
         heard = np.frombuffer(file.readframes(file.getnframes()), "<i2") / 32767
@@ -139,21 +153,36 @@ def cycles(root, folder):
     check("2000.000 Hz    98.2 dB(A)" in done.stdout and "1000.000" not in done.stdout,
           f"the loudest frequency: {done.stdout}{done.stderr}")
     check((folder / "sound_frf.png").stat().st_size > 10000, "its picture")
-    for words, what in ((["--cycle", "2"], "has cycles 1 to 1"), (["--window", "0,1"], "--window does nothing with"),
+    for words, what in ((["--cycle", "3"], "has cycles 1 to 2"), (["--cycle", "2"], "too high to be heard"),
+                        (["--window", "0,1"], "--window does nothing with"),
                         (["--directivity", "disc"], "no such table"),
                         (["--boundary", "disc", "--most", "3"], "take --modes and --distance alone")):
         done = sound(root, folder, *words)
         check(done.returncode and what in done.stderr, f"{words}: {done.stderr.strip().splitlines()[-1]}")
 
 
-def directions(root):
-    """A breathing sphere is as loud in all directions, on circles about its middle."""
+def directions(root, folder):
+    """Places on circles; and a picture of a part that breathes, here a sphere: as loud in all directions."""
     sys.path.insert(0, str(root / "scripts"))
-    from squeal.sound.directivity import circles
+    from squeal.sound import directivity
+    from squeal.sound.boundary import Surface
 
-    angle, places = circles(np.array([0.1, 0, 0]), 0.5)
+    angle, places = directivity.circles(np.array([0.1, 0, 0]), 0.5)
     check(np.allclose(np.linalg.norm(places - [0.1, 0, 0], axis=2), 0.5) and np.allclose(places[1, 18], [0.1, 0, 0.5])
           and np.isclose(angle[18], np.pi / 2), "places on circles")
+    part = SimpleNamespace(surface=Surface(ball(0.05, 4)), air=(1.204, 343.2), normal_velocity=lambda *_: 1.0)
+    part.normal_velocity = lambda *_: np.ones(len(part.surface.area))
+    directivity.part_and_rows = lambda *_: (part, {3: {"freq_hz": 1000.0, "energy_j": 1e-3}})
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told):
+        path = directivity.draw_directivity(folder, "ball", [3], 0.5)
+    loudest, least = map(float, re.search(r"loudest ([\d.]+) dB.*least ([\d.]+) dB", told.getvalue()).groups())
+    check(loudest - least <= 0.1 and path.stat().st_size > 10000, f"a ball that breathes: {told.getvalue().strip()}")
+    try:
+        directivity.draw_directivity(folder, "ball", [3], 0.04)
+        check(False, "a circle inside the part")
+    except directivity.BadInput as error:
+        check("--distance 0.04 m" in str(error), f"a circle inside the part: {error}")
 
 
 def refused(root, folder):
@@ -179,8 +208,8 @@ def main():
     root = Path(__file__).resolve().parents[2]
     weights(root)
     sphere(root)
-    directions(root)
     with tempfile.TemporaryDirectory() as folder:
+        directions(root, Path(folder))
         tones(root, Path(folder) / "tones")
         cycles(root, Path(folder) / "cycles")
         refused(root, Path(folder))

@@ -19,12 +19,19 @@ def names_of(path, ending):
 def read_cycles(path):
     """Microphones, and rows of sound_cycle.csv by the number of the cycle; harmonic 0 is all together."""
     names = names_of(path, "_dba")
-    columns = {"point": int, "harmonic": int, "freq_hz": float, "power_db": float}
+    columns = {"point": int, "harmonic": int, "freq_hz": float, "power_db": float, "error_db": str, "cutoff_error_db": str}
     columns |= {f"{name}_{what}": float for name in names for what in ("re_pa", "im_pa", "db", "dba")}
     cycles = {}
     for row in read_table(path, columns):
         cycles.setdefault(row["point"], []).append(row)
     return names, cycles
+
+
+def errors_of(row):
+    """Words on the errors of a row's levels that are known."""
+    known = [f"{float(row[column]):.2g} dB by the {what}" for column, what in (("error_db", "steps"), ("cutoff_error_db", "cut-off"))
+             if row[column]]
+    return f"; off by {', '.join(known)}" if known else "; errors not known"
 
 
 def show_cycles(folder, number, most):
@@ -37,11 +44,15 @@ def show_cycles(folder, number, most):
         raise BadInput(f"--cycle {number}: {path} has cycles 1 to {max(cycles)}")
     for point, rows in list(cycles.items())[:most]:
         levels = "; ".join(f"{name} {rows[0][f'{name}_dba']:.1f} dB(A)" for name in names)
-        print(f"cycle {point}: {rows[0]['freq_hz']:.1f} Hz, {len(rows) - 1} harmonics; {levels}; power {rows[0]['power_db']:.1f} dB")
+        print(f"cycle {point}: {rows[0]['freq_hz']:.1f} Hz, {len(rows) - 1} harmonics; {levels}; power {rows[0]['power_db']:.1f} dB"
+              f"{errors_of(rows[0])}")
     time = numpy.arange(int(SECONDS * RATE)) / RATE
+    heard = [row for row in cycles[number][1:] if row["freq_hz"] < RATE / 2]
+    if not heard:
+        raise BadInput(f"--cycle {number}: its {cycles[number][0]['freq_hz']:.0f} Hz are too high to be heard")
     for name in names:
         pressure = sum(numpy.real(complex(row[f"{name}_re_pa"], row[f"{name}_im_pa"]) * numpy.exp(2j * numpy.pi * row["freq_hz"] * time))
-                       for row in cycles[number][1:] if row["freq_hz"] < RATE / 2)
+                       for row in heard)
         full = write_wave(folder / f"cycle_{name}.wav", pressure, 1 / RATE)
         print(f"cycle_{name}.wav: cycle {number}, {SECONDS:g} s, full scale {full:.3g} Pa")
     return path
