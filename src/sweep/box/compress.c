@@ -270,7 +270,7 @@ static PetscErrorCode CoreHolds(const Reduced *reduced, const PetscReal p[], con
 
   PetscFunctionBeginUser;
   PetscCall(ReducedPencil(reduced, p, reduced->n_used, &pencil));
-  PetscCall(CondensedEigen(&pencil, &reduced->core, window, &modes, holds));
+  PetscCall(CondensedEigen(&pencil, NULL, &reduced->core, window, &modes, holds));
   if (*holds) PetscCall(ReducedModesDestroy(&modes));
   PetscCall(DensePencilDestroy(&pencil));
   PetscFunctionReturn(0);

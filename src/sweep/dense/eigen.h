@@ -13,9 +13,10 @@ PetscErrorCode ReducedPencilLoose(const Reduced *reduced, const PetscReal p[], P
    rounding on the mesh is then not told */
 PetscErrorCode DensePencilEigen(const DensePencil *pencil, const PetscReal E[], const ReducedWindow *window,
                                 ReducedModes *modes);
-/* condense.c - the same by way of the core; `found` is false where that is not good enough for some mode */
-PetscErrorCode CondensedEigen(const DensePencil *pencil, const ReducedCore *core, const ReducedWindow *window,
-                              ReducedModes *modes, PetscBool *found);
+/* condense.c - the same by way of the core; `found` is false where that is not good enough for some mode, or the other
+   vectors may have modes of their own in the window */
+PetscErrorCode CondensedEigen(const DensePencil *pencil, const PetscReal E[], const ReducedCore *core,
+                              const ReducedWindow *window, ReducedModes *modes, PetscBool *found);
 /* What rounding in the leading n x n block of K does to kappa = -lambda^2 times y^T M x: eps sqrt(sum_i |K_ii| |x_i|^2
    sum_i |K_ii| |y_i|^2) */
 PetscReal DensePencilNoise(const DensePencil *pencil, PetscInt n, const PetscComplex x[], const PetscComplex y[]);

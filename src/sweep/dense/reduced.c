@@ -346,7 +346,7 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(ReducedCheckMass(reduced, p, Ms));
   if (pencil.damped) PetscCall(PetscMalloc1(n * n, &E));
   if (pencil.damped) PetscCall(RoundingEnergy(reduced, p, E));
-  if (reduced->core.m) PetscCall(CondensedEigen(&pencil, &reduced->core, window, modes, &found));
+  if (reduced->core.m) PetscCall(CondensedEigen(&pencil, E, &reduced->core, window, modes, &found));
   if (!found) PetscCall(DensePencilEigen(&pencil, E, window, modes));
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
