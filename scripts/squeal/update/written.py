@@ -126,6 +126,8 @@ def drawn_interval(draws):
 def said_of_draws(draws, known, low, high):
     """A line for the interval of draws."""
     beyond, middle = int(numpy.isinf(draws).sum()), numpy.quantile(draws[~numpy.isnan(draws)], 0.5, method="nearest")
+    if numpy.isinf(middle):
+        return f"  of {len(draws)} draws {beyond} have it beyond what was drawn, or another mode near that grows there"
     ends = [f"{end:.5g}" if end != "" else "beyond what was drawn" for end in (low, high)]
     return (f"  of {len(draws)} draws: {middle:.5g}, 95 % from {ends[0]} to {ends[1]}" + (f"; {beyond} are beyond" if beyond else "")
             + (f"; of {len(draws) - known} it is not known" if known < len(draws) else ""))
