@@ -7,6 +7,8 @@
 */
 #include "cycleimpl.h"
 
+#define FLOW_ROUNDING 1e-6 /* of friction */
+
 /* Loads and sliding from the time of the run on; raises the error where they go on to change: the flow must be
    autonomous. share = way of the run in a step over speed times dt, so that the way follows the speed and the step. */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
@@ -76,8 +78,38 @@ PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The state that x stands for; y = P eta + W q + W loads follows from it, and last = p: x has all that a step knows
-   of the past. */
+/* Whether a pair of forces p rests: within the cone of mu(0), and not with the friction of its slip speed s, m/s.
+   One that slides has |p_T| = mu(s_m) p_n with s_m the mean of its step, near s; one that sticks has s = 0 but for what
+   the residual, which has no rates, lets it creep. So the limit between them is mu(2 s), less rounding where mu is level
+   there. Slip is along -p_T. */
+static PetscBool PairRests(const FrictionLaw *law, const PetscReal p[3], const PetscReal v[2])
+{
+  const PetscReal size = hypot(p[1], p[2]), s = size > 0 ? -(p[1] * v[0] + p[2] * v[1]) / size : 0;
+
+  if (!(p[0] > 0) || size > FrictionMu(law, 0) * p[0]) return PETSC_FALSE;
+  return size < (1 - FLOW_ROUNDING) * FrictionMu(law, 2 * PetscMax(0, s)) * p[0] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Statuses of the pairs by x alone. Those of the period before, of another x, would make Phi no function of x where
+   friction varies: pairs that stick go on resting (compliance/step.c). Call after FlowPrepare(). */
+static void FlowSetStatuses(CycleFlow *f)
+{
+  const ReducedModel *model = f->model;
+  const PetscInt      m     = model->m;
+  ReducedState       *s     = &f->state;
+
+  for (PetscInt i = 0; i < model->n_pairs; i++) {
+    PetscReal v[2] = {f->way[i] / f->dt, 0};
+
+    ReducedBlockTimes(&(DenseBlock){&model->P[m * (3 * i + 1)], m, 2, m}, PETSC_TRUE, 1, s->rate, v);
+    s->status[i] = !(s->p[3 * i] > 0)                                  ? CONTACT_OPEN
+                   : PairRests(&model->friction[i], &s->p[3 * i], v) ? CONTACT_STICK
+                                                                       : CONTACT_SLIP;
+  }
+}
+
+/* The state that x stands for; y = P eta + W q + W loads follows from it, and last = p, and the statuses: x has all
+   that a step knows of the past. */
 static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
 {
   const ReducedModel *model = f->model;
@@ -99,6 +131,7 @@ static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
   ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_TRUE, 1, s->eta, s->y);
   ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->y);
   ReducedBlockTimes(&(DenseBlock){&model->W[N * n], n, model->n_loads, N}, PETSC_FALSE, 1, f->loads, s->y);
+  FlowSetStatuses(f);
   PetscFunctionReturn(0);
 }
 
