@@ -14,7 +14,8 @@
 #include "base/gather.h"
 #include "base/statistics/estimate.h"
 
-#define MAP_KIND 0.02 /* of a main line */
+#define MAP_KIND    0.02 /* of a main line */
+#define BASIN_BATCH 16   /* runs for each rank, after which they are kept and written */
 
 /* A run that has ended; job: point by point, n_disturbances of each */
 typedef struct {
@@ -75,12 +76,12 @@ static MapPoint BasinPlace(Map map, PetscInt job)
   return (MapPoint){.line = point / map->axis[0].n, .place = point % map->axis[0].n};
 }
 
-/* Jobs first .. first + n - 1 on the bodies of their lines, or on one for all, shared among the ranks; all on every
-   rank */
-static PetscErrorCode BasinsRun(Map map, MapBodies bodies[], PetscInt first, PetscInt n, BasinRun run[])
+/* Jobs first .. first + n - 1 on the bodies of their lines, bodies[0] of `line`, or on one for all, shared among the
+   ranks; all on every rank */
+static PetscErrorCode BasinsRun(Map map, PetscInt line, MapBodies bodies[], PetscInt first, PetscInt n, BasinRun run[])
 {
   const PetscInt each = map->n_disturbances * map->axis[0].n;
-  PetscInt       k, line = -1, n_own = 0, n_all;
+  PetscInt       k, last = -1, n_own = 0, n_all;
   PetscReal     *rate;
   BasinRun      *own, *all;
   MapMarch       march = NULL;
@@ -91,14 +92,14 @@ static PetscErrorCode BasinsRun(Map map, MapBodies bodies[], PetscInt first, Pet
   PetscCall(MapShareBegin(&map->share, map->comm));
   PetscCall(MapShareNext(&map->share, &k));
   while (k < n) {
-    const PetscInt at = map->lines_differ ? k / each : 0;
+    const PetscInt at = map->lines_differ ? (first + k) / each - line : 0;
 
-    if (at != line) {
+    if (at != last) {
       PetscCall(MapMarchDestroy(&march));
       PetscCall(MapMarchCreate(map, &bodies[at], map->dt, MAP_RTOL, &march));
       PetscCall(PetscFree(rate));
       PetscCall(PetscMalloc1(bodies[at].model.m, &rate));
-      line = at;
+      last = at;
     }
     own[n_own] = (BasinRun){first + k, BasinPlace(map, first + k)};
     DrawRates(map, first + k, &bodies[at].model, rate);
@@ -158,27 +159,55 @@ static PetscErrorCode BasinsJudge(Map map, BasinRun run[], ResultsTable table)
   PetscFunctionReturn(0);
 }
 
-/* Rows of n jobs, then those of their points */
-static PetscErrorCode BasinsWrite(Map map, PetscInt n, BasinRun run[], ResultsTable table[2])
+/* Rows of the jobs first .. end - 1, and those of the points that are complete with them; run [all] */
+static PetscErrorCode BasinsWrite(Map map, PetscInt first, PetscInt end, BasinRun run[], ResultsTable table[2])
 {
-  uint64_t state;
+  const PetscInt n = map->n_disturbances;
+  uint64_t       state;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt number = run[i].job % map->n_disturbances;
-
+  for (PetscInt i = first; i < end; i++) {
     map->disturbed[run[i].row.regime]++;
-    PetscCall(MapDisturbedAdd(map, table[0], number + 1, DrawEnergy(map, run[i].job, &state), &run[i].row));
+    PetscCall(MapDisturbedAdd(map, table[0], i % n + 1, DrawEnergy(map, i, &state), &run[i].row));
   }
-  for (PetscInt i = 0; i < n; i += map->n_disturbances) PetscCall(BasinsJudge(map, &run[i], table[1]));
+  for (PetscInt i = first / n; i < end / n; i++) PetscCall(BasinsJudge(map, &run[i * n], table[1]));
   for (int k = 0; k < 2; k++) PetscCall(ResultsTableCheck(table[k]));
+  PetscFunctionReturn(0);
+}
+
+/* Jobs from *first on to the end of some lines: a batch of them is kept once it is complete, so that a killed map loses
+   one batch. Bodies are made where something is left to run. */
+static PetscErrorCode BasinsLines(Map map, const PetscInt lines[2], MapBodies bodies[], BasinRun run[],
+                                  ResultsTable table[2], PetscInt *first)
+{
+  const PetscInt each = map->n_disturbances * map->axis[0].n, n_bodies = map->lines_differ ? lines[1] - lines[0] : 1;
+  const PetscInt all  = each * (map->n_axes > 1 ? map->axis[1].n : 1);
+  PetscBool      made = PETSC_FALSE;
+  PetscMPIInt    size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(map->comm, &size));
+  for (PetscInt n; *first < lines[1] * each; *first += n) {
+    n = all - *first;
+    PetscCall(MapResumeRuns(map, *first, sizeof(*run), &n, &run[*first]));
+    if (!n) {
+      for (PetscInt i = 0; i < n_bodies && !made; i++) PetscCall(MapBodiesGet(map, lines[0] + i, &bodies[i]));
+      for (PetscInt i = 0; i < n_bodies && !made; i++) bodies[i].n_hits = 0;
+      made = PETSC_TRUE;
+      n    = PetscMin(BASIN_BATCH * size, lines[1] * each - *first);
+      PetscCall(BasinsRun(map, lines[0], bodies, *first, n, &run[*first]));
+      PetscCall(MapKeepRuns(map, *first, sizeof(*run), n, &run[*first]));
+    }
+    PetscCall(BasinsWrite(map, *first, *first + n, run, table));
+  }
+  for (PetscInt i = 0; i < n_bodies && made; i++) PetscCall(MapBodiesDestroy(&bodies[i]));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MapBasins(Map map, Results results)
 {
   const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1, each = map->n_disturbances * map->axis[0].n;
-  PetscInt       batch;
+  PetscInt       batch, first = 0;
   PetscMPIInt    size;
   ResultsTable   table[2];
   MapBodies     *bodies;
@@ -188,19 +217,12 @@ PetscErrorCode MapBasins(Map map, Results results)
   if (!each) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Comm_size(map->comm, &size));
   PetscCall(MapCountBatch(map, each, 1, &batch));
-  PetscCall(PetscCalloc2(batch, &bodies, batch * each, &run));
+  PetscCall(PetscCalloc2(batch, &bodies, n_lines * each, &run));
   PetscCall(MapDisturbedOpen(results, &table[0]));
   PetscCall(MapBasinOpen(results, &table[1]));
   PetscCall(ProgressBegin(&map->progress, "disturbed runs", (n_lines * each + size - 1) / size));
-  for (PetscInt line = 0; line < n_lines; line += batch) {
-    const PetscInt n = PetscMin(batch, n_lines - line), n_bodies = map->lines_differ ? n : 1;
-
-    for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesCreate(map, line + i, 0, &bodies[i]));
-    for (PetscInt i = 0; i < n_bodies; i++) bodies[i].n_hits = 0;
-    PetscCall(BasinsRun(map, bodies, line * each, n * each, run));
-    PetscCall(BasinsWrite(map, n * each, run, table));
-    for (PetscInt i = 0; i < n_bodies; i++) PetscCall(MapBodiesDestroy(&bodies[i]));
-  }
+  for (PetscInt line = 0; line < n_lines; line += batch)
+    PetscCall(BasinsLines(map, (const PetscInt[]){line, PetscMin(line + batch, n_lines)}, bodies, run, table, &first));
   PetscCall(ProgressEnd(&map->progress));
   for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k]));
   PetscCall(PetscFree2(bodies, run));

@@ -26,6 +26,8 @@ PetscErrorCode MapJournalOpen(Map map, Results results)
   PetscCall(ChecksumAddInts(c, 4, (const PetscInt[]){sizeof(MapPoint), map->direction, map->n_axes, map->n_twins}));
   PetscCall(ChecksumAddReals(c, 4, (const PetscReal[]){map->dt, map->end, map->window, map->rtol}));
   PetscCall(ChecksumAddReals(c, 2, (const PetscReal[]){map->limit.ratio, map->limit.growth}));
+  PetscCall(ChecksumAddInts(c, 2, (const PetscInt[]){map->n_disturbances, map->seed}));
+  PetscCall(ChecksumAddReals(c, 2, (const PetscReal[]){map->disturbance, map->disturbance_least}));
   for (PetscInt k = 0; k < map->n_axes; k++) {
     PetscCall(ChecksumAddReals(c, map->axis[k].n, map->axis[k].value));
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++) PetscCall(ChecksumAddString(c, map->axis[k].moved[i].name));
@@ -110,6 +112,61 @@ PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoin
   PetscFunctionReturn(0);
 }
 
+/* A rank that could not write has ended to keep: then all have, since what follows is collective */
+static PetscErrorCode MapAgreeToKeep(Map map)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &map->restart, 1, MPIU_BOOL, MPI_LAND, map->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Disturbed runs and their number, all on every rank, of which rank 0 writes */
+PetscErrorCode MapKeepRuns(Map map, PetscInt first, size_t size, PetscInt n, void *run)
+{
+  JournalPack pack = {.write = PETSC_TRUE};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(MapAgreeToKeep(map));
+  if (!map->restart) PetscFunctionReturn(0);
+  InterruptSays("the runs so far are kept, with which the same command goes on");
+  PetscCallMPI(MPI_Comm_rank(map->comm, &rank));
+  if (rank) PetscFunctionReturn(0);
+  PetscCall(JournalPackMove(&pack, &n, sizeof(n)));
+  PetscCall(JournalPackMove(&pack, run, size * (size_t)n));
+  PetscCall(MapKeepPack(map, "runs", first, &pack));
+  PetscFunctionReturn(0);
+}
+
+/* They belong to bodies that are kept with them: none are taken where some were made anew. *n: room, then number */
+PetscErrorCode MapResumeRuns(Map map, PetscInt first, size_t size, PetscInt *n, void *run)
+{
+  const PetscInt room = *n;
+  JournalItem    item = {"runs", -1, NULL};
+  JournalPack    pack = {.good = PETSC_TRUE};
+  char           name[64];
+  PetscBool      taken;
+  Fault          fault;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(MapAgreeToKeep(map));
+  if (!map->restart || map->anew) PetscFunctionReturn(0);
+  PetscCall(MapFileName("runs", first, name));
+  PetscCall(JournalRead(&map->journal, name, 1, &item, &fault));
+  PetscCall(JournalWarn(&map->journal, map->comm, name, "these runs begin anew", &fault, &taken));
+  if (!taken) PetscFunctionReturn(0);
+  pack.word = item.values;
+  pack.n    = item.n;
+  PetscCall(JournalPackMove(&pack, n, sizeof(*n)));
+  PetscCheck(*n > 0 && *n <= room, map->comm, PETSC_ERR_PLIB, "%" PetscInt_FMT " kept runs are too many", *n);
+  PetscCall(JournalPackMove(&pack, run, size * (size_t)*n));
+  PetscCheck(pack.good, map->comm, PETSC_ERR_PLIB, "kept runs end too early");
+  PetscCall(JournalPackDestroy(&pack));
+  map->n_taken += *n;
+  PetscFunctionReturn(0);
+}
+
 /* Arrays of the bodies, allocated where they are read; dims: modes, pairs, loads, probes, ports, impulses, damped,
    weighed. The gaps are allocated with the friction, by one call, as ReducedModelDestroy() frees them. */
 static PetscErrorCode KeptBodiesMove(MapBodies *b, JournalPack *pack)
@@ -168,6 +225,7 @@ PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b, PetscBool *
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(b, sizeof(*b)));
   *good = PETSC_FALSE;
+  PetscCall(MapAgreeToKeep(map));
   if (!map->restart) PetscFunctionReturn(0);
   PetscCall(MapFileName("bodies", line, name));
   PetscCall(JournalRead(&map->journal, name, 1, &item, &fault));

@@ -105,8 +105,7 @@ static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Bodies that an earlier run has kept, or made and kept */
-static PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
+PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
 {
   PetscBool good;
 
@@ -114,6 +113,7 @@ static PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
   PetscCall(MapResumeBodies(map, line, bodies, &good));
   if (!good) PetscCall(MapBodiesCreate(map, line, 0, bodies));
   if (!good) PetscCall(MapKeepBodies(map, line, bodies));
+  if (!good) map->anew = PETSC_TRUE;
   map->m       = bodies->model.m;
   map->n_pairs = bodies->model.n_pairs;
   PetscFunctionReturn(0);
@@ -196,10 +196,10 @@ PetscErrorCode MapSolve(Map map, Results results)
   PetscCall(ProgressBegin(&map->progress, "points of the map", (n_rows + size - 1) / size));
   PetscCall(MapLines(map, table));
   PetscCall(ProgressEnd(&map->progress));
+  for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k])); /* before what may take longer */
   PetscCall(MapVerify(map, results));
   PetscCall(MapBasins(map, results));
   PetscCall(MapShareDestroy(&map->share));
-  for (int k = 0; k < 2; k++) PetscCall(ResultsTableClose(&table[k]));
   PetscCall(MapForget(map));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &map->n_resumed, 1, MPIU_INT, MPI_SUM, map->comm));
   PetscFunctionReturn(0);

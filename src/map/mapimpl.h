@@ -135,7 +135,9 @@ struct _p_Map {
   PetscBool   restart;
   const char *folder;
   Journal     journal;
+  PetscBool   anew;      /* bodies were made that no earlier run has kept */
   PetscInt    n_resumed; /* rows of this rank */
+  PetscInt    n_taken;   /* disturbed runs that an earlier run has kept */
 };
 
 /* quantities.c - what options set in it */
@@ -267,6 +269,12 @@ PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b
 PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
+/* disturbed runs from `first` on, n of some size each, alike on all ranks; n = 0 where none are kept. Collective */
+PETSC_INTERN PetscErrorCode MapKeepRuns(Map map, PetscInt first, size_t size, PetscInt n, void *run);
+PETSC_INTERN PetscErrorCode MapResumeRuns(Map map, PetscInt first, size_t size, PetscInt *n, void *run);
+
+/* map/map.c - bodies that an earlier run has kept, or made and kept. Collective */
+PETSC_INTERN PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies);
 
 /* point/force.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its
    relative standard error, as if they were independent; main line of forces dt apart, in records of n, Hz, NAN for

@@ -311,6 +311,9 @@ PetscErrorCode MapView(Map map, PetscViewer viewer)
   for (int k = 0; k < MAP_N_REGIMES && map->n_disturbances; k++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s %" PetscInt_FMT "%s", k ? "" : "  disturbed runs:", regimes[k],
                                      map->disturbed[k], k + 1 < MAP_N_REGIMES ? "," : "\n"));
+  if (map->n_taken)
+    PetscCall(
+      PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " of these runs kept by an earlier run\n", map->n_taken));
   for (int k = 0; k < MAP_N_CHECKS && map->n_verify; k++) PetscCall(MapViewError(map, (MapCheckRun)k, viewer));
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Judges disturbed runs of a map.
 
-    verify/basins.py squeal MAP BRANCH       beside the branch of limit cycles (cycle.csv of -analysis cycle) over the same parameter: none
-                                             squeals below its fold, all above its onset, some and not all between, whose rms is that
-                                             of the stable cycles to 2 % and whose main line theirs to 2e-3; probabilities and their
-                                             intervals by scipy; each row of map_basins.csv is that of its runs
+    verify/basins.py squeal MAP BRANCH       beside the branch of limit cycles (cycle.csv of -analysis cycle) over the same
+                                             parameter: none squeals below its fold, all above its onset, some and not all
+                                             between; rms of the stable cycles to 2 % and their main line to 2e-3, of SETTLED
+                                             runs at least, within the branch; probabilities and intervals by scipy; each row
+                                             of map_basins.csv is that of its runs
     verify/basins.py seeds MAP OTHER ENERGY  another seed has other runs, each of that energy (J)"""
 
 import csv
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy
 
 REST = "stable"
+SETTLED = 5  # runs whose loudness and main line are compared, at least
 
 
 def rows(folder, name):
@@ -28,11 +30,11 @@ def interval(k, n):
 
 
 def stable_cycle(branch, value):
-    """rms and main line of the stable cycle at a value, straight between its neighbours on the branch."""
+    """rms and main line of the stable cycle at a value, straight between its neighbours on the branch; none beyond its ends."""
     found = sorted((float(row["value"]), float(row["force_rms_n"]), float(row["freq_hz"])) for row in branch
                    if row["kind"] == "cycle" and float(row["multiplier_abs"]) < 1)
     x, level, line = map(numpy.array, zip(*found))
-    return numpy.interp(value, x, level), numpy.interp(value, x, line)
+    return [numpy.interp(value, x, y, left=numpy.nan, right=numpy.nan) for y in (level, line)]
 
 
 def told(runs, basins):
@@ -64,7 +66,10 @@ def squeal(folder, branch):
     print(f"fold {fold:.6g}, onset {onset:.6g}: " + ", ".join(f"{len(some)} of {len(group)} squeal {where}" for some, group, where in
           zip(loud, (below, between, above), ("below the fold", "between", "above the onset"))))
     good = below and above and not loud[0] and len(loud[2]) == len(above) and 0 < len(loud[1]) < len(between)
-    for run in (run for group in loud for run in group if run["status"] == "settled"):
+    settled = [run for group in loud for run in group if run["status"] == "settled"]
+    print(f"{len(settled)} settled runs beside the stable cycles")
+    good = good and len(settled) >= SETTLED
+    for run in settled:
         level, line = stable_cycle(branch, float(run["value"]))
         off = float(run["force_rms_n"]) / level - 1, float(run["freq_hz"]) / line - 1
         if not (abs(off[0]) < 0.02 and abs(off[1]) < 2e-3):

@@ -80,8 +80,8 @@ PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscRea
 
 /* Whether a pair of forces p rests: within the cone of mu(0), and not with the friction of its slip speed s, m/s.
    One that slides has |p_T| = mu(s_m) p_n with s_m the mean of its step, near s; one that sticks has s = 0 but for what
-   the residual, which has no rates, lets it creep. So the limit between them is mu(2 s), less rounding where mu is level
-   there. Slip is along -p_T. */
+   the residual, which has no rates, lets it creep. So the limit between them is mu(2 s), less rounding where mu is
+   level there. Slip is along -p_T. */
 static PetscBool PairRests(const FrictionLaw *law, const PetscReal p[3], const PetscReal v[2])
 {
   const PetscReal size = hypot(p[1], p[2]), s = size > 0 ? -(p[1] * v[0] + p[2] * v[1]) / size : 0;
@@ -102,9 +102,8 @@ static void FlowSetStatuses(CycleFlow *f)
     PetscReal v[2] = {f->way[i] / f->dt, 0};
 
     ReducedBlockTimes(&(DenseBlock){&model->P[m * (3 * i + 1)], m, 2, m}, PETSC_TRUE, 1, s->rate, v);
-    s->status[i] = !(s->p[3 * i] > 0)                                  ? CONTACT_OPEN
-                   : PairRests(&model->friction[i], &s->p[3 * i], v) ? CONTACT_STICK
-                                                                       : CONTACT_SLIP;
+    s->status[i] = PairRests(&model->friction[i], &s->p[3 * i], v) ? CONTACT_STICK : CONTACT_SLIP;
+    if (!(s->p[3 * i] > 0)) s->status[i] = CONTACT_OPEN;
   }
 }
 
