@@ -200,7 +200,7 @@ static PetscErrorCode KeptBodiesMove(MapBodies *b, JournalPack *pack)
 }
 
 /* Rank 0 alone writes: all have the same bodies. */
-PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *b)
+static PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *b)
 {
   JournalPack pack = {.write = PETSC_TRUE};
   PetscMPIInt rank;
@@ -215,7 +215,7 @@ PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *b)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b, PetscBool *good)
+static PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *b, PetscBool *good)
 {
   JournalItem item = {"bodies", -1, NULL};
   JournalPack pack = {.good = PETSC_TRUE};
@@ -248,5 +248,19 @@ PetscErrorCode MapForget(Map map)
   PetscCallMPI(MPI_Barrier(map->comm));
   PetscCallMPI(MPI_Comm_rank(map->comm, &rank));
   if (!rank) PathForget(map->folder, "map_restart_");
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
+{
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(MapResumeBodies(map, line, bodies, &good));
+  if (!good) PetscCall(MapBodiesCreate(map, line, 0, bodies));
+  if (!good) PetscCall(MapKeepBodies(map, line, bodies));
+  if (!good) map->anew = PETSC_TRUE;
+  map->m       = bodies->model.m;
+  map->n_pairs = bodies->model.n_pairs;
   PetscFunctionReturn(0);
 }

@@ -105,20 +105,6 @@ static PetscErrorCode MapShareChains(Map map, MapBodies bodies[], const PetscInt
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies)
-{
-  PetscBool good;
-
-  PetscFunctionBeginUser;
-  PetscCall(MapResumeBodies(map, line, bodies, &good));
-  if (!good) PetscCall(MapBodiesCreate(map, line, 0, bodies));
-  if (!good) PetscCall(MapKeepBodies(map, line, bodies));
-  if (!good) map->anew = PETSC_TRUE;
-  map->m       = bodies->model.m;
-  map->n_pairs = bodies->model.n_pairs;
-  PetscFunctionReturn(0);
-}
-
 /* All lines */
 static PetscErrorCode MapLines(Map map, ResultsTable table[2])
 {

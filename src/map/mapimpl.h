@@ -264,8 +264,6 @@ typedef struct {
    where there are none of this scene; takes their files away. Chains are not collective, and are taken with kept bodies
    only */
 PETSC_INTERN PetscErrorCode MapJournalOpen(Map map, Results results);
-PETSC_INTERN PetscErrorCode MapKeepBodies(Map map, PetscInt line, MapBodies *bodies);
-PETSC_INTERN PetscErrorCode MapResumeBodies(Map map, PetscInt line, MapBodies *bodies, PetscBool *good);
 PETSC_INTERN PetscErrorCode MapKeepChain(Map map, PetscInt chain, PetscInt n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapResumeChain(Map map, PetscInt chain, PetscInt *n_rows, MapPoint row[], MapKept *kept);
 PETSC_INTERN PetscErrorCode MapForget(Map map);
@@ -273,7 +271,7 @@ PETSC_INTERN PetscErrorCode MapForget(Map map);
 PETSC_INTERN PetscErrorCode MapKeepRuns(Map map, PetscInt first, size_t size, PetscInt n, void *run);
 PETSC_INTERN PetscErrorCode MapResumeRuns(Map map, PetscInt first, size_t size, PetscInt *n, void *run);
 
-/* map/map.c - bodies that an earlier run has kept, or made and kept. Collective */
+/* map/keep.c - bodies that an earlier run has kept, or made and kept. Collective */
 PETSC_INTERN PetscErrorCode MapBodiesGet(Map map, PetscInt line, MapBodies *bodies);
 
 /* point/force.c - pure: what n forces are like, f <= 0 being none; root of the mean square over n windows, and its
