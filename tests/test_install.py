@@ -32,7 +32,7 @@ sys.path.insert(0, str(SOURCE / "scripts"))
 from small_brake import SCENE as BRAKE
 from squeal.options import default_of, options_of
 
-FOR_SOURCES = {"run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
+FOR_SOURCES = {"margins", "run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
                "completion.bash", "README.md", "python.md", "correlate.md", "import.md", "site"}
 SCENE = BRAKE + """modes: {band: "500,9000", contact: all}
 """
