@@ -170,7 +170,7 @@ def directions(root, folder):
     angle, places = directivity.circles(np.array([0.1, 0, 0]), 0.5)
     check(np.allclose(np.linalg.norm(places - [0.1, 0, 0], axis=2), 0.5) and np.allclose(places[1, 18], [0.1, 0, 0.5])
           and np.isclose(angle[18], np.pi / 2), "places on circles")
-    part = SimpleNamespace(surface=Surface(ball(0.05, 4)), air=(1.204, 343.2), normal_velocity=lambda *_: 1.0)
+    part = SimpleNamespace(surface=Surface(ball(0.05, 3)), air=(1.204, 343.2), normal_velocity=lambda *_: 1.0)
     part.normal_velocity = lambda *_: np.ones(len(part.surface.area))
     directivity.part_and_rows = lambda *_: (part, {3: {"freq_hz": 1000.0, "energy_j": 1e-3}})
     told = io.StringIO()
