@@ -55,7 +55,7 @@ def draw(path, name, time, pressure, late):
     figure, (bands, lines, image) = plt.subplots(3, 1, figsize=(9, 10), layout="constrained")
     rows = third_octaves(pressure[late], step)
     bands.bar(range(len(rows)), [row[2] for row in rows], color=BLUE)
-    bands.set_xticks(range(len(rows)), [f"{row[0]:.3g}" if row[0] < 1000 else f"{row[0] / 1000:.3g}k" for row in rows])
+    bands.set_xticks(range(len(rows)), [f"{row[0]:.3g}" if row[0] < 1000 else f"{row[0] / 1000:.3g}k" for row in rows], rotation=60)
     bands.set_ylim(bottom=max(0, max((row[2] for row in rows), default=0) - DYNAMIC))
     bands.set_title(f"{name}: {level(pressure[late], step):.1f} dB(A) from {time[late][0]:.4g} to {time[late][-1]:.4g} s")
     bands.set_xlabel("third octave, Hz")
