@@ -220,6 +220,16 @@ def check_rig(top):
     check(done.returncode == 1 and "cannot write 'nowhere/rig.msh' of -rig_save" in done.stderr, f"rig: {done.stderr.strip()}")
 
 
+def check_modes_beside(top, name, what):
+    """Complex modes of a folder of results beside those of CalculiX on its deck of sliding contacts, each way, one of which grows."""
+    run(top, SOURCE / "scripts/export_ccx", name, "--sliding")
+    run(top / name, "ccx", "deck")
+    modes, theirs = modes_of(top / name), eigenvalues(top / name / "deck.dat")
+    worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
+    check(worst < CALCULIX and max(modes.real) > 1,
+          f"CalculiX: {what}, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+
+
 def check_sliding(top):
     """The deck of --sliding, in which CalculiX finds the modes of a disc and a pad that flutter."""
     if not shutil.which("ccx"):
@@ -227,12 +237,7 @@ def check_sliding(top):
     Mesh((6, 8, 1), 3, 5, 3, 2).write(top / "disc.msh")
     run(top, sys.argv[2], "-n", 1, sys.argv[1], *squeal_words(top / "disc.msh", 0.6, (0, 12000)), "-output_dir", "sliding",
         "-output_fields", 0)
-    run(top, SOURCE / "scripts/export_ccx", "sliding", "--sliding")
-    run(top / "sliding", "ccx", "deck")
-    modes, theirs = modes_of(top / "sliding"), eigenvalues(top / "sliding/deck.dat")
-    worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
-    check(worst < CALCULIX and max(modes.real) > 1,
-          f"CalculiX: --sliding, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+    check_modes_beside(top, "sliding", "--sliding")
     done = run_command([SOURCE / "scripts/export_ccx", "out", "--sliding", "-o", "s.inp", "--mesh", "pair.msh"], top)
     check(done.returncode == 0, "sliding: of boxes on each other too")
 
@@ -245,12 +250,7 @@ def check_two_sliding(top):
         "low:hex20:0,0,-0.024:0.04,0.04,-0.004:2,2,2", "high:hex20:0,0,0.004:0.04,0.04,0.024:2,2,2")
     (top / "two.yaml").write_text(TWO)
     squeal(top, "two.yaml", "two", "-output_fields", 0)
-    run(top, SOURCE / "scripts/export_ccx", "two", "--sliding")
-    run(top / "two", "ccx", "deck")
-    modes, theirs = modes_of(top / "two"), eigenvalues(top / "two/deck.dat")
-    worst = max(distances(modes, theirs).max(), distances(theirs, modes).max()) if len(modes) == len(theirs) else np.inf
-    check(worst < CALCULIX and max(modes.real) > 1,
-          f"CalculiX: --sliding of two contacts, {len(modes)} modes apart by {worst:.1e}, growth to {max(modes.real):.1f} 1/s")
+    check_modes_beside(top, "two", "--sliding of two contacts")
     for words, said in ((["-low_rub_surfaces", "plate_bottom,low_top"], "it must stay"),
                         (["-contacts", "high_rub", "-high_rub_law", "constraint"], "high_rub is none")):
         squeal(top, "two.yaml", "wrong", "-output_fields", 0, *words)
