@@ -65,6 +65,21 @@ def whole(path):
         part.unlink(missing_ok=True)
 
 
+def cell_of(value):
+    """A value as tables have it: nothing for a number that is not known."""
+    if isinstance(value, float):  # those of NumPy too
+        return "" if value != value else f"{value:.15g}"
+    return value
+
+
+def write_table(path, columns, rows):
+    """A table of CSV under its final name."""
+    with whole(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(columns)
+        table.writerows([cell_of(value) for value in row] for row in rows)
+
+
 def header(path):
     """Names of the columns; none where they cannot be read, which is for read_table() to say."""
     try:

@@ -16,14 +16,13 @@ Where e_kp is the share of part p in the strain energy of mode k, eta_k = sum_p 
 nonnegative least squares of that over the modes. e_kp = 2 (d f_k / d E_p) E_p / f_k, from modes_sensitivities.csv of an undamped run.
 """
 
-import csv
 from typing import NamedTuple
 
 import numpy
 import scipy.optimize
 import scipy.signal
 
-from ..tables import BadInput, read_table
+from ..tables import BadInput, read_table, write_table
 from .frf_tables import Responses
 
 ROUNDS = 5
@@ -202,14 +201,6 @@ def tell_materials(found, count, worst):
     print(f"they make the loss factor of each of {count} peaks to {worst:.2g}")
 
 
-def write(path, columns, rows):
-    with path.open("w", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(columns)
-        table.writerows([["" if isinstance(v, float) and numpy.isnan(v) else f"{v:.15g}" if isinstance(v, float) else v for v in row]
-                         for row in rows])
-
-
 def identify_damping(folder, modes_folder, output, within):
     """Writes damping.csv, and damping_parts.csv with modes; prints both, returns the first."""
     peaks = peaks_of(Responses(folder))
@@ -225,10 +216,11 @@ def identify_damping(folder, modes_folder, output, within):
                      *mode))
         print(f"{peak.freq:.6g} Hz: loss factor {peak.loss:.4g} by circles, misfit {peak.misfit:.2g}, {peak.half_power:.4g} by half power"
               + (", TWO MODES in one peak" if peak.modes > 1 else "") + ("" if number is None else f"; mode {number} {mode[1]}"))
-    write(output / "damping.csv", ("freq_hz", "loss_factor", "loss_factor_half_power", "points", "misfit", "modes", "mode", "label"), rows)
+    write_table(output / "damping.csv",
+                ("freq_hz", "loss_factor", "loss_factor_half_power", "points", "misfit", "modes", "mode", "label"), rows)
     if modes:
         found, count, worst = materials(peaks, numbers, shares)
         tell_materials(found, count, worst)
-        write(output / "damping_parts.csv", ("part", "loss_factor", "standard_deviation"),
+        write_table(output / "damping_parts.csv", ("part", "loss_factor", "standard_deviation"),
               [(part, float(loss), float(deviation)) for part, loss, deviation in found])
     return output / "damping.csv"

@@ -1,6 +1,5 @@
-"""Tables, a picture and a file to listen to, of what a microphone heard."""
+"""A picture and a file to listen to, of what a microphone heard."""
 
-import csv
 import wave
 
 import matplotlib.pyplot as plt
@@ -13,18 +12,6 @@ from .levels import level, main_line, shares, third_octaves, weighting, decibel
 RATE = 48000  # Hz, of the file
 DYNAMIC = 60  # dB that the spectrogram shows
 FRAME = 4e-3  # s of it: lines 250 Hz apart
-
-
-def write_table(path, header, rows):
-    """A table under its final name."""
-    with whole(path) as part, part.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(header)
-        table.writerows([f"{cell:.10g}" if isinstance(cell, float) else cell for cell in map(_number, row)] for row in rows)
-
-
-def _number(cell):
-    return float(cell) if isinstance(cell, (float, numpy.floating)) else cell
 
 
 def summary(name, pressure, step):

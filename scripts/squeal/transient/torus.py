@@ -5,12 +5,11 @@ what all lines so far leave of x being searched next; then each is sought again 
 so found to T^-4. A vibration is quasi-periodic where its lines are k f_1 + l f_2, k and l small, and f_2 / f_1 is no ratio of small
 numbers: f_1 is the strongest line, f_2 the strongest that is no multiple of it. Any k f_1 + l f_2 that make the same sums serve as well."""
 
-import csv
 from typing import NamedTuple
 
 import numpy
 
-from ..tables import BadInput
+from ..tables import write_table
 from .signal import equal_steps
 
 N_LINES = 12
@@ -131,11 +130,4 @@ def analyse(times, values):
 
 def write_lines(path, lines):
     """The table of the lines."""
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file, lineterminator="\n")
-            table.writerow(["k", "l", "freq_hz", "error_hz", "amplitude"])
-            for line in lines:
-                table.writerow([*(line.sums or ("nan", "nan")), *(f"{value:.12g}" for value in line[:3])])
-    except OSError as error:
-        raise BadInput(f"cannot write {path}: {error.strerror}") from None
+    write_table(path, ["k", "l", "freq_hz", "error_hz", "amplitude"], [(*(line.sums or ("nan", "nan")), *line[:3]) for line in lines])
