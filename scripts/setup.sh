@@ -70,11 +70,11 @@ compile()
   quietly ninja -C "$build" "$@"
 }
 
-# Warns when the program loads the reference BLAS: a choice of the administrator, hence not changed here
+# check_blas [PROGRAM]: warns when it loads the reference BLAS: a choice of the administrator, hence not changed here
 check_blas()
 {
   local blas
-  blas=$(ldd "$build/squeal" | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
+  blas=$(ldd "${1-$build/squeal}" | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
   case $(readlink -f "$blas") in
     */blas/libblas.so*)
       say "$blas is the reference BLAS, several times slower;" \

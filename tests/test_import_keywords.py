@@ -198,6 +198,9 @@ def not_taken(folder):
     options, listed = sections(folder, "deck.inp", body + steel + rest + table.format("0., 0.\n0.5, 1e-3\n0.4, 2e-3\n"))
     check("a table that falls is listed", options.get("i_law") == "constraint" and "i_pressure_law" not in options
           and sum("does not rise" in line for line in listed) == 1, (options, listed))
+    options, listed = sections(folder, "deck.inp", body + steel + rest + pair + "T, S\n")
+    check("a contact given both ways is one", "," not in options["contacts"]
+          and sum("other way round" in line for line in listed) == 1, (options, listed))
     tie = "*TIE, NAME=Glue, POSITION TOLERANCE=0.5, ADJUST=NO\nS, T\n"
     options, listed = sections(folder, "deck.inp", body + steel + rest + tie)
     check("TIE of nodes that are apart", options.get("ties") == "glue" and options["glue_surfaces"] == "s,t"

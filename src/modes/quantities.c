@@ -67,8 +67,8 @@ static const Quantity rows[] = {
   {"-modes_disc", "part whose shapes are named by nodal circles and diameters", NULL, QUANTITY_TEXT, MODES_AT(disc),
    .text = "disc", MODES_GIVEN(has_disc), .restart = PETSC_TRUE, .idle = ModesIdleDisc},
   {"-modes_contact",
-   "pairs that are closed: every one (all), those of the sliding state (static), or these where there are loads and no "
-   "-..._force (auto)",
+   "closed pairs: all, those of the sliding state (static), or as static where there are loads and no "
+   "-..._force, else as all (auto)",
    NULL, QUANTITY_WORD, MODES_AT(about), .words = contacts, .restart = PETSC_TRUE, .idle = ModesIdleContact},
   {MODES_DAMPING,
    "route of a damped solution: projection on undamped modes (project), PEP (pep), or PEP only where a projection is "

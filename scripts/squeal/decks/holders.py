@@ -198,8 +198,23 @@ def fit_rows(assembly, contact):
     return [], False
 
 
+def leave_mirrors(deck):
+    """Takes out contacts of two surfaces that an earlier one has the other way round, as symmetric contact is written."""
+    seen, mirrors = {}, []
+    for contact in deck.contacts:
+        sides = tuple(frozenset(map(tuple, deck.surfaces[name][0].tolist())) for name in (contact.slave, contact.master))
+        first = seen.get(sides[::-1])
+        if first:
+            deck.differ(contact.place, f"contact {contact.slave}, {contact.master}: the surfaces of the contact at {first.place} the other "
+                                       "way round, which stands for both")
+            mirrors.append(contact)
+        seen.setdefault(sides, contact)
+    deck.contacts = [contact for contact in deck.contacts if contact not in mirrors]
+
+
 def add_contacts(assembly):
     """Pairs of surfaces; what a deck does not say is a hint."""
+    leave_mirrors(assembly.deck)
     set_turning(assembly.deck)
     surfaces = assembly.deck.surfaces
     for contact in assembly.deck.contacts:

@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -21,12 +22,9 @@ def called(script):
     return "-".join(filter(None, ("squeal", folder if folder == "plot" else "", name.replace("_", "-"))))
 
 
-def compiled_program():
-    """Sets up and compiles as scripts/run does, with the kernels of OpenBLAS that it chooses; of an installed script the
-    program of the same prefix."""
-    if not (ROOT / "meson.build").is_file():
-        return ROOT.parents[1] / "bin/squeal"
-    command = ["bash", "-c", 'source "$0" && set_up squeal >&2 && echo "$build/squeal" && echo "${OPENBLAS_CORETYPE-}"',
+def prepared(functions):
+    """Path of the program of a checkout after functions of setup.sh, and sets the kernels of OpenBLAS that these choose."""
+    command = ["bash", "-c", f'source "$0" && {functions} >&2 && echo "$build/squeal" && echo "${{OPENBLAS_CORETYPE-}}"',
                ROOT / "scripts/setup.sh"]
     process = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if process.returncode:
@@ -38,10 +36,14 @@ def compiled_program():
 
 
 def chosen_program(path, said="--program"):
-    """The program that an option gives, or the compiled one where none is given."""
+    """The program that an option gives; else the one that is compiled as scripts/run does, or installed with this script. It has the
+    kernels of OpenBLAS that scripts/run chooses."""
     if path and not (path.is_file() and os.access(path, os.X_OK)):
         raise SystemExit(f"{said} {path}: {'is no program' if path.exists() else 'no such file'}; needed is squeal")
-    return (path or compiled_program()).resolve()
+    if not (ROOT / "meson.build").is_file():
+        return (path or ROOT.parents[1] / "bin/squeal").resolve()
+    found = prepared(f"check_blas {shlex.quote(str(path))}" if path else "set_up squeal")
+    return (path or found).resolve()
 
 
 def scene(*names, before=None):

@@ -62,7 +62,9 @@ def edges(values, logarithmic):
         return values[0] + (abs(values[0]) or 1) * numpy.array([-0.1, 0.1])
     middle = (x[1:] + x[:-1]) / 2
     limits = numpy.concatenate([[2 * x[0] - middle[0]], middle, [2 * x[-1] - middle[-1]]])
-    return numpy.exp(limits) if logarithmic else limits
+    if logarithmic:
+        return numpy.exp(limits)
+    return numpy.maximum(limits, 0) if min(values) >= 0 else limits  # what is never negative is not drawn so
 
 
 def draw_cells(axes, study, grid, field, **style):
