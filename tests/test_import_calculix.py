@@ -216,9 +216,7 @@ def stated(folder):
         check(f"{about}: material", np.allclose(found, (young, poisson, density), rtol=1e-12), found)
     lossy = PLAIN.replace("7.8E-9\n", "7.8E-9\n*DAMPING, STRUCTURAL=0.02\n").replace("*FREQUENCY\n6", "*FREQUENCY\n6, 1000., 4000.")
     options, _, _ = brought(folder, lossy)
-    check("structural damping", (options["e_loss_factor"], options["model_loss_frequency"]) == ("0.02", "2000"), options)
-    _, lines, _ = brought(folder, PLAIN.replace("7.8E-9\n", "7.8E-9\n*DAMPING, STRUCTURAL=0.02\n"))
-    check("structural damping without a band is said", sum("STRUCTURAL=0.02: no band" in line for line in lines) == 1, lines)
+    check("structural damping", options["e_loss_factor"] == "0.02" and "model_loss_frequency" not in options, options)
     law = GAP.replace("=LINEAR\n1.e5", "=EXPONENTIAL\n0.01, 3.\n*FRICTION, EXPONENTIAL DECAY\n0.5, 0.3, 0.002")
     options, _, _ = brought(folder, law)
     found = [options[f"i_{key}"] for key in ("pressure_law", "pressure_c0", "pressure_p0", "friction_law", "mu_static", "mu_kinetic")]

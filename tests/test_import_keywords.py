@@ -213,11 +213,18 @@ def not_taken(folder):
     for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only",
                   "deck.bdf:16: PELAS: only"):
         check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
+    text = text.replace("ENDDATA", "MAT1,9,2.1E5,,.3,7.8E-9,,,0.02\nPARAM,G,0.03\nENDDATA").replace("PSOLID,1,1,,2", "PSOLID,1,9,,2")
+    options, listed = sections(folder, "deck.bdf", text)
+    check("loss factors of Nastran", [f"{float(value):.15g}" for key, value in options.items()
+          if key.endswith("_loss_factor")] == ["0.05"], options)
     ansys = "D,1,UX,0,1.5\nD,P51X,UX,0\nF,5,FZ,1,2\nSFE,1,6,PRES,1,10,0,0,10\nSFE,1,1,PRES,1,3,0,0,0\nFINISH\n"
     text = decks_others.NBLOCK + decks_others.EBLOCK + "MP,EX,1,2.1E5\nMP,PRXY,1,0.3\nMP,DENS,1,7.8E-9\n" + ansys
     options, listed = sections(folder, "deck.cdb", text)
     for start in ("deck.cdb:20: D with", "deck.cdb:21: D P51X", "deck.cdb:22: F with", "deck.cdb:23: SFE: a pressure that varies"):
         check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
+    damped, _ = sections(folder, "deck.cdb", text.replace("FINISH", "MP,DMPS,1,0.02\nDMPSTR,0.01\nBETAD,1e-7\nMP,ALPD,1,3\nFINISH"))
+    check("damping of Ansys", [abs(float(value) / asked - 1) < 1e-14 for name, asked in (("loss_factor", 0.03), ("beta", 1e-7), ("alpha", 3))
+                               for key, value in lossy.items() if key.endswith(f"1_{name}")] == [True] * 3, lossy)
     check("not taken: two parts and what varies", "supports" not in options and options["loads"] == "pressed_pressure", options)
     name = next(iter(decks_others.Ansys.FILES))
     text = decks_others.Ansys.FILES[name].replace("ET,2,174", "ET,2,174\nKEYOPT,2,12,5")

@@ -54,10 +54,6 @@ def model_lines(deck, units, mesh, equations):
     rows = [f"mesh: {quoted(mesh)}"]
     if equations:
         rows.append(f"equations: {quoted(equations)}")
-    if any(deck.materials[section.material].loss for section in deck.sections if section.material):
-        low, high = (value / units.time for value in deck.modes[1:3])
-        middle = (low * high)**0.5 if low > 0 else high / 2
-        rows.append(f"loss_frequency: {middle:.6g}  # Hz, where loss factors are exact: the middle of the band")
     if deck.gravity is None and len(rows) == 1:
         return [f"model: {{{rows[0]}}}"]
     if deck.gravity is not None:
@@ -67,9 +63,20 @@ def model_lines(deck, units, mesh, equations):
     return ["model:", *(f"  {row}" for row in rows)]
 
 
+def loss_lines(deck, units):
+    """What loss factors need in analyses that have viscous damping alone."""
+    if not any(deck.materials[section.material].loss for section in deck.sections if section.material):
+        return []
+    low, high = (value / units.time for value in deck.modes[1:3]) if deck.modes else (0, 0)
+    middle = f"{(low * high)**0.5 if low > 0 else high / 2:.6g}, the middle of the band" if high > 0 else "?"
+    return ["# Loss factors hold at the frequency of each mode. Sweeps on a basis, samples, cycles, runs in time have them exact at one:",
+            f"#   model_loss_frequency: {middle}, Hz"]
+
+
 def scene_lines(deck, result, units, why, files):
     """All lines; files are the mesh, and the equations where there are some."""
-    lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "", *model_lines(deck, units, *files)]
+    lines = [f"# From {deck.path} ({deck.form}). Everything here is in SI.", f"# {why}", "", *model_lines(deck, units, *files),
+             *loss_lines(deck, units)]
     for kind in LISTS:
         entries = [entry for entry in result.entries if entry.kind == kind]
         if entries:

@@ -326,11 +326,6 @@ def do_complex(reader, _, card):
 def finish_steps(reader):
     """Whether modes are about the sliding state, as after a *STATIC that presses; where they are not, that is listed."""
     deck = reader.deck
-    for material in deck.materials.values():
-        if material.loss and not (deck.modes and deck.modes[2] > 0):
-            said = "no band tells the frequency; give `loss_factor` with `-model_loss_frequency`"
-            deck.note(material.places["LOSS"], f"*DAMPING, STRUCTURAL={material.loss:g}: {said}")
-            material.loss = 0.0
     pressed = deck.loads or deck.bolts or deck.gravity or reader.fits or any(any(support.values.values()) for support in deck.supports)
     if not (deck.contacts and pressed):
         deck.preload = None

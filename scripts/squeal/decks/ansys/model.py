@@ -10,15 +10,18 @@ from ..deck import Axes, Contact, Equation, Load, Material, Section, Support, Ti
 from ..mesh.faces import boundary_faces, faces_by_three
 from ..text import REAL
 
-KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE"}
+DAMPING = {"ALPHAD": ("alpha", "DAMPING"), "BETAD": ("beta", "DAMPING"), "DMPSTR": ("loss", "LOSS")}  # of all materials
+KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE", *DAMPING}
 FREEDOMS = "UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"
-LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "MU"}
+LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "DMPS",
+          "MU"}
 
 
 def read_model(deck, commands, mesh):
     values = read_constants(deck, commands)
     for number, constants in values.items():
         make_material(deck, number, constants)
+    add_damping(deck, commands)
     read_parts(deck, mesh)
     pending = {"D": support, "F": force, "SFE": pressure_on_face, "SF": pressure_on_nodes, "ACEL": gravity, "MODOPT": modes,
                "CMROTATE": turning, "CMSEL": select, "NSEL": select, "ALLSEL": select}
@@ -56,6 +59,18 @@ def read_constants(deck, commands):
     return found
 
 
+def add_damping(deck, commands):
+    """ALPHAD, BETAD and DMPSTR add to those of the materials; squeal's springs, contacts and points have none of it."""
+    for command in commands:
+        if command.words[0] not in DAMPING or not command.word(1) or not command.real(1):
+            continue
+        key, place = DAMPING[command.words[0]]
+        for material in deck.materials.values():
+            setattr(material, key, getattr(material, key) + command.real(1))
+            material.places.setdefault(place, command.place)
+        deck.differ(command.place, f"{command.words[0]} {command.word(1)}: of all parts; springs, points and contacts have none")
+
+
 def make_material(deck, number, constants):
     """Isotropic by EX, else by EX, EY, EZ; Poisson's ratios PR.. are those of squeal, NU.. the others: nu_21 = NUXY."""
     value = {label: number for label, (number, _) in constants.items()}
@@ -67,6 +82,8 @@ def make_material(deck, number, constants):
     if "ALPD" in constants or "BETD" in constants:
         material.places["DAMPING"] = (constants.get("ALPD") or constants["BETD"])[1]
     material.density, material.alpha, material.beta = value.get("DENS") or None, value.get("ALPD", 0.0), value.get("BETD", 0.0)
+    if "DMPS" in constants:
+        material.loss, material.places["LOSS"] = constants["DMPS"]
     if (material.density or 1) < 0:
         raise constants["DENS"][1].wrong("the density must not be negative")
     if "EX" not in value:

@@ -35,7 +35,7 @@ def read_method(deck, tables, chosen):
 
 
 def read_parameters(deck, tables, mesh):
-    """PARAM WTMASS is the factor from densities to those of mass; GRDPNT asks for output."""
+    """PARAM WTMASS is the factor from densities to those of mass, G a loss factor of all parts."""
     for table in named(tables, "PARAM"):
         for row in range(len(table)):
             name, value = table.words(row, 2)[:2]
@@ -48,8 +48,20 @@ def read_parameters(deck, tables, mesh):
                 mesh.mass_factor = factor
                 if factor != 1:
                     deck.differ(table.place(row), f"PARAM WTMASS {value}: densities are those of the materials times this")
+            elif name.upper() == "G":
+                for material in deck.materials.values():
+                    give_loss(material, table.one_real(row, 1, value), table.place(row))
+                deck.differ(table.place(row), f"PARAM G {value}: a loss factor of all parts; springs and contacts have none")
             else:
                 deck.note(table.place(row), f"PARAM {name}: not understood")
+
+
+def give_loss(material, loss, place):
+    """Adds to the loss factor of a material."""
+    if loss < 0:
+        raise place.wrong(f"the loss factor {loss:g} must not be negative")
+    material.loss += loss
+    material.places.setdefault("LOSS", place)
 
 
 def new_material(deck, table, row):
@@ -95,7 +107,7 @@ def read_materials(deck, tables):
             density_of(material, table, row, density)
             words = table.words(row, 8)
             if words[7]:
-                deck.note(table.place(row), f"MAT1: GE {words[7]} is a loss factor, `loss_factor` with `-model_loss_frequency`")
+                give_loss(material, table.one_real(row, 7, words[7]), table.place(row))
     for table in named(tables, "MAT11"):
         check_rows(table, 10, 16)
         for row, values in enumerate(table.real(1, 11).tolist()):
