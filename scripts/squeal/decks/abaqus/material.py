@@ -131,6 +131,26 @@ def do_damping(reader, _, card):
             raise card.place.wrong(f"*DAMPING, STRUCTURAL={material.loss:g} must not be negative")
 
 
+def do_global_damping(reader, _, card):
+    """Adds to the damping of all materials, also of those that come later; the last one counts, as steps replace it."""
+    if choice(card.options.get("FIELD", "ALL"), "ALL", "MECHANICAL", "ACOUSTIC") == "ACOUSTIC":
+        return
+    reader.global_damping = [real(card.options.get(word) or "0", card.place) for word in ("ALPHA", "BETA", "STRUCTURAL")], card.place
+
+
+def add_global_damping(reader):
+    """What *GLOBAL DAMPING says, as damping of parts."""
+    if not reader.global_damping:
+        return
+    (alpha, beta, loss), place = reader.global_damping
+    if loss < 0:
+        raise place.wrong(f"*GLOBAL DAMPING, STRUCTURAL={loss:g} must not be negative")
+    for material in reader.deck.materials.values():
+        material.alpha, material.beta, material.loss = material.alpha + alpha, material.beta + beta, material.loss + loss
+        material.places = {"DAMPING": place, "LOSS": place} | material.places
+    reader.deck.differ(place, "*GLOBAL DAMPING: of all parts; springs, points and contacts have none")
+
+
 def read_axes(_, scope, card):
     """Axes of a material: points a and b, rectangular also c, and a turn about one of the axes."""
     rows = numbers(card)
@@ -271,6 +291,6 @@ def finish_sections(deck):
     deck.sections = found
 
 
-CARDS = {"INITIAL CONDITIONS": do_temperature, "TEMPERATURE": do_temperature,
+CARDS = {"GLOBAL DAMPING": do_global_damping, "INITIAL CONDITIONS": do_temperature, "TEMPERATURE": do_temperature,
          "MATERIAL": do_material, "DENSITY": do_density, "ELASTIC": do_elastic, "DAMPING": do_damping,
          "DISTRIBUTION": do_distribution, "ORIENTATION": do_orientation, "SOLID SECTION": do_section, "SHELL SECTION": do_shell_section}

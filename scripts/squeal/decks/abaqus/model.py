@@ -3,7 +3,7 @@
 import numpy
 
 from .joined import leave_coupling
-from .material import first_row, numbers, other_rows
+from .material import add_global_damping, first_row, numbers, other_rows
 from .sets import reader_nodes, surface_of
 from .words import choice, label
 from ..deck import NOT_NEEDED, Contact, Equation, Support, Tie, Turning
@@ -326,6 +326,7 @@ def do_complex(reader, _, card):
 def finish_steps(reader):
     """Whether modes are about the sliding state, as after a *STATIC that presses; where they are not, that is listed."""
     deck = reader.deck
+    add_global_damping(reader)
     pressed = deck.loads or deck.bolts or deck.gravity or reader.fits or any(any(support.values.values()) for support in deck.supports)
     if not (deck.contacts and pressed):
         deck.preload = None

@@ -52,6 +52,7 @@ KNOWN = {"NODE": {"NSET", "SYSTEM", "INPUT"}, "ELEMENT": {"TYPE", "ELSET", "INPU
                           "TIED"},
          "CLEARANCE": {"MASTER", "SLAVE", "VALUE", "TABULAR"}, "CONTACT INTERFERENCE": {"SHRINK", "OP"},
          "SURFACE INTERACTION": {"NAME"}, "FRICTION": {"SLIP TOLERANCE", "ELASTIC SLIP"}, "SURFACE BEHAVIOR": {"PRESSURE-OVERCLOSURE"},
+         "GLOBAL DAMPING": {"ALPHA", "BETA", "FIELD", "STRUCTURAL"},
          "VISCOELASTIC": set(), "CHANGE FRICTION": {"INTERACTION"}, "CLOAD": {"OP"}, "DLOAD": {"OP"}, "DSLOAD": {"OP"},
          "MOTION": {"ROTATION", "TYPE"}, "STEP": {"NAME", "PERTURBATION", "INC", "NLGEOM"},
          "FREQUENCY": {"EIGENSOLVER", "STORAGE", "NORMALIZATION", "SOLVER"}, "STATIC": {"SOLVER"},
@@ -232,6 +233,7 @@ class Reader:
         self.supports = []  # (step, Support) as they come
         self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
+        self.global_damping = None  # alpha, beta, loss factor of *GLOBAL DAMPING, and its place
 
     def axes_at(self, node):
         """Axes that a node has of its own, or None."""
