@@ -44,9 +44,10 @@
    At the start nodal velocities and shapes v become Phi'M v; the modes must hold 90 % of v'M v. Impulses have no end of
    frequencies: only the modes receive them.
 
-   Limit: mean forces on a massless compliance keep what alternates from step to step. On
-   a stiff light body at a low cut-off the force is right in the mean of two steps: a block at rest under 9.81 N has
-   9.758 and 9.862 N in turn (0.5 %), with 6 modes below 1000 Hz.
+   Mean forces on a massless compliance keep what alternates from step to step. Where bodies are damped that is halved
+   in each step (step/relax.c), and moves nothing. Limit: on a stiff light body without damping, at a low cut-off, the
+   force is right in the mean of two steps: a block at rest under 9.81 N has 9.758 and 9.862 N in turn (0.5 %), with 6
+   modes below 1000 Hz.
 
    Steps are longer than a period of the cut-off in no run: ReducedIntegrate() refuses them, since contact cannot
    follow.

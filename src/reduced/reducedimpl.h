@@ -16,6 +16,13 @@
 /* quantities.c - rows of the options */
 extern const QuantityTable reduced_quantities;
 
+/* How the forces of a pair were relaxed in the last step (step/relax.c) */
+typedef struct {
+  ContactStatus status;  /* open: they were not */
+  PetscReal     ratio;   /* new normal force over the one before */
+  PetscReal     cone[2]; /* friction over the normal force */
+} ReducedRelaxed;
+
 struct _p_ReducedStepper {
   const ReducedModel *model;
   PetscReal           dt, rtol, w; /* s; -; frequency that balances the exponential, rad/s */
@@ -32,6 +39,7 @@ struct _p_ReducedStepper {
   PetscReal            *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
   PetscReal            *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
   PetscReal            *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
+  ReducedRelaxed       *relaxed;                 /* [n_pairs] */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
@@ -175,6 +183,12 @@ PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, P
    step */
 PETSC_INTERN PetscErrorCode ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[],
                                                PetscReal q[], PetscReal y[]);
+
+/* step/relax.c - takes out of the forces of a step what alternates; derivatives X [columns][size] before and next after
+   the last step */
+PETSC_INTERN void ReducedStepperRelax(ReducedStepper stepper, ReducedState *state);
+PETSC_INTERN void ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt columns, const PetscReal X[],
+                                             PetscReal next[]);
 
 /* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many
    numbers; the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */

@@ -351,6 +351,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
     report->damping = -report->damping;
     StepperShareDrag(s, state, report);
   }
+  ReducedStepperRelax(s, state);
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));
   PetscCall(PetscArraycpy(state->rate, &s->next[m], m));

@@ -271,7 +271,7 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, model->sparse ? 0 : n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
-  PetscCall(PetscCalloc3(n, &s->q, n, &s->dq, n, &s->slip));
+  PetscCall(PetscCalloc4(n, &s->q, n, &s->dq, n, &s->slip, model->n_pairs, &s->relaxed));
   PetscCall(StepperSetResponse(s));
   s->rank = n;
   if (model->sparse) {
@@ -304,7 +304,7 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree(s->combined));
   PetscCall(PetscFree5(s->x, s->next, s->product, s->free, s->slip0));
   PetscCall(PetscFree3(s->mean, s->r, s->port));
-  PetscCall(PetscFree3(s->q, s->dq, s->slip));
+  PetscCall(PetscFree4(s->q, s->dq, s->slip, s->relaxed));
   PetscCall(PetscFree(*stepper));
   PetscFunctionReturn(0);
 }
