@@ -9,8 +9,7 @@
 #include "base/text.h"
 
 /* Of materials whose stiffness depends on the frequency */
-static const char laws_text[] =
-  "; a contour integral on their basis counts the same; modes that do not oscillate are not sought";
+static const char laws_text[] = "; a contour integral counts the same, without modes that do not oscillate";
 
 #define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
 
@@ -42,7 +41,7 @@ static PetscBool Expected(Modes modes, const Window *window)
 static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, char text[], size_t size)
 {
   PetscInt rows, pairs, at_zero;
-  char     real[192] = "", other[160] = "", zeros[128] = "";
+  char     real[192] = "", other[160] = "", zeros[128] = "", count[256];
 
   PetscFunctionBeginUser;
   text[0] = '\0';
@@ -62,8 +61,11 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
     PetscCall(PetscStrncpy(other,
                            " without friction and damping, the others came into the band by friction, damping or spin",
                            sizeof(other)));
-  PetscCall(PetscSNPrintf(text, size, "%s%s; %" PetscInt_FMT " mode%s expected from the inertia count%s", zeros, real,
+  PetscCall(PetscSNPrintf(text, size, "%s%s", zeros, real));
+  if (window->route.project && window->route.counted && !other[0] && !text[0]) PetscFunctionReturn(0); /* it is told */
+  PetscCall(PetscSNPrintf(count, sizeof(count), "; %" PetscInt_FMT " mode%s expected from the inertia count%s",
                           window->known.expected, window->known.expected == 1 ? "" : "s", other));
+  PetscCall(WordsAdd(text, count, size));
   PetscFunctionReturn(0);
 }
 
@@ -71,10 +73,13 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
 static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
                                          size_t size)
 {
-  char undamped[192] = "the inertia count of the undamped modes is that of those found", more[64] = "", pole[160] = "";
+  char undamped[192], more[64] = "", pole[160] = "";
 
   PetscFunctionBeginUser;
-  if (!window->route.counted)
+  if (window->route.counted)
+    PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "the inertia count confirms all undamped modes, %" PetscInt_FMT,
+                            window->known.expected));
+  else
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
                             (double)window->route.worst));
   if (window->route.n_enlarged)
@@ -85,8 +90,8 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
                             "; modes within %.4g of %.4g 1/s, where overdamped ones gather, are not sought",
                             (double)(window->route.pole / 2), (double)-window->route.pole));
   PetscCall(PetscSNPrintf(text, size,
-                          "%s; damping brings none from beyond them%s%s, its strength there is %.2g, below 1%s%s",
-                          undamped, more, region, (double)window->route.beyond, rest, pole));
+                          "%s; damping brings no others%s (its strength beyond them%s is %.2g, below 1)%s%s", undamped,
+                          region, more, (double)window->route.beyond, rest, pole));
   PetscFunctionReturn(0);
 }
 
