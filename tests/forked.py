@@ -1,13 +1,20 @@
 """Runs a Python script of this repository in a child of this process. Modules that are imported here are not imported
-again, which is most of what a short script costs."""
+again, which is most of what a short script costs: what a child imports of installed packages is imported here after it,
+for the next one."""
 
+import contextlib
+import importlib
 import os
 import runpy
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import traceback
 from pathlib import Path
+
+PACKAGES = tuple({sysconfig.get_paths()["stdlib"], "/usr/lib/python3/dist-packages", *(path for path in sys.path if "-packages" in path)})
+ALONE = ("mpi4py", "petsc4py", "slepc4py")  # begin MPI as they are imported
 
 
 def run_command(words, folder=None):
@@ -22,15 +29,18 @@ def run_command(words, folder=None):
 def run_script(script, words=(), folder=None):
     """What subprocess.run() returns of a script with arguments `words` in a working folder."""
     words = [str(word) for word in words]
-    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err, tempfile.TemporaryFile("w+") as read:
         sys.stdout.flush()
         sys.stderr.flush()
         child = os.fork()
         if not child:
-            os._exit(_be(Path(script), words, folder, out, err))
+            os._exit(_be(Path(script), words, folder, out, err, read))
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-        for file in (out, err):
+        for file in (out, err, read):
             file.seek(0)
+        for name in read.read().split():
+            with contextlib.suppress(Exception):
+                importlib.import_module(name)
         return subprocess.CompletedProcess([str(script), *words], status, out.read(), err.read())
 
 
@@ -42,8 +52,9 @@ def run_well(script, *words):
     return done.stdout
 
 
-def _be(script, words, folder, out, err):
-    """Exit status of the script, which this process becomes."""
+def _be(script, words, folder, out, err, read):
+    """Exit status of the script, which this process becomes; names of modules that it imports, for its parent."""
+    before = set(sys.modules)
     try:
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         os.dup2(out.fileno(), 1)
@@ -62,5 +73,7 @@ def _be(script, words, folder, out, err):
         traceback.print_exc()
         return 1
     finally:
+        new = {name: getattr(module, "__file__", None) or "" for name, module in sys.modules.items() if name not in before}
+        print(*(name for name, file in new.items() if file.startswith(PACKAGES) and not name.startswith(ALONE)), file=read, flush=True)
         sys.stdout.flush()
         sys.stderr.flush()

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from runs import SOURCE, fail, killed_at, outcome_of, starter
 
-OPTIONS = "-map_values 0.3,0.5,0.6 -map_values_2 100,200 -ts_max_time 32e-3 -map_view".split()
+OPTIONS = "-map_values 0.3,0.5,0.6 -map_values_2 100,200 -ts_max_time 16e-3 -map_window 2e-3 -map_view".split()
 TABLES = "map.csv", "map_modes.csv"
 
 

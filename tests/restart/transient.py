@@ -106,7 +106,7 @@ def check_kills(runs, chance):
     n = changes(runs.path("undisturbed", "contact_pairs.csv"))
     if n < 100:
         fail(f"{runs.scene}: only {n} changes of status")
-    moments = kill_often(runs, "killed", chance, 5)
+    moments = kill_often(runs, "killed", chance, 3)
     runs.complete("killed", "-dynamics_checkpoint_interval", str(OFTEN), *go_on(runs, "killed"))
     compare(runs, "undisturbed", "killed")
     torn = sum(cut for _, cut in moments)

@@ -80,7 +80,7 @@ def write_table(path, names, rows):
         writer.writerows(rows)
 
 
-def write(folder, end=0.06, blow=True, ramp=0.0, opened=0, time=BLOW):
+def write(folder, end=0.052, blow=True, ramp=0.0, opened=0, time=BLOW):
     """A folder as -analysis transient leaves it; `opened` rows after the blow have a pair more open."""
     folder.mkdir(exist_ok=True)
     t = STEP * numpy.arange(int(end / STEP))
@@ -150,13 +150,13 @@ def test_windows(root):
 
 def test_rest(root):
     """The ramp of the load subtracted, and waited for. Breaks when either is not taken off, or is said to be when not."""
-    with_ramp, without = write(root / "ramp", ramp=1e-9), write(root / "alone", ramp=1e-9, blow=False)
+    with_ramp, without = write(root / "ramp", 0.02, ramp=1e-9), write(root / "alone", 0.02, ramp=1e-9, blow=False)
     response, said = respond(with_ramp, "--reference", without)
     require("less the run without the impulse" in said, "the reference is not named")
     check("subtracted", response)
     _, said = respond(with_ramp)
     require("TOO MUCH" in said, "a ramp that has not decayed is not told")
-    late, said = respond(write(root / "late", 0.11, ramp=1e-9, time=0.05), "--from", 0.049)
+    late, said = respond(write(root / "late", 0.07, ramp=1e-9, time=0.05), "--from", 0.049)
     require("TOO MUCH" not in said and "when the ramp has decayed" in said, "a ramp that has decayed is told")
     check("waited for", late)
 

@@ -26,7 +26,7 @@ static PetscErrorCode TestDivergence(int *failed)
   MapPoint   row = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedLinearise(&model, closed, sigma, omega));
+  PetscCall(ReducedLinearise(&model, closed, NULL, PETSC_FALSE, sigma, omega));
   MapModesJudge(4, sigma, omega, &fastest);
   MapModesTake(4, sigma, omega, &limit, &row);
   *failed += CheckClose("divergence: growth", fastest.growth, sqrt(3), 1e-14);
@@ -34,7 +34,7 @@ static PetscErrorCode TestDivergence(int *failed)
   *failed += CheckClose("index: growth over |lambda|", fastest.index, 1, 1e-15);
   *failed += CheckTrue("one mode grows", row.n_growing == 1 && row.omega[0] == 0, row.n_growing);
   law.parameter[0] = 1.5;
-  PetscCall(ReducedLinearise(&model, closed, sigma, omega));
+  PetscCall(ReducedLinearise(&model, closed, NULL, PETSC_FALSE, sigma, omega));
   MapModesJudge(4, sigma, omega, &fastest);
   *failed += CheckClose("without it nothing grows", fastest.growth, 0, 1e-14);
   PetscFunctionReturn(0);

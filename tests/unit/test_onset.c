@@ -163,9 +163,8 @@ static PetscErrorCode TestUndamped(int *failed)
   PetscFunctionReturn(0);
 }
 
-/* Breaks when: sigma is followed on another branch, the zero is not found to rounding, or every trial value costs a whole
-   eigenproblem. Reference: PHYSICS section 3,
-   destabilisation by uneven damping */
+/* Breaks when: sigma is followed on another branch, the zero is not found to rounding, or every trial value costs a
+   whole eigenproblem. Reference: PHYSICS section 3, destabilisation by uneven damping */
 static PetscErrorCode TestDamped(int *failed)
 {
   static const PetscReal cases[5][3] = {

@@ -111,7 +111,7 @@ static PetscErrorCode Distances(const Small *s, PetscReal dt, PetscReal *formula
   PetscFunctionBeginUser;
   PetscCall(StepEigen(s, dt, &n, &re, &im));
   PetscCall(ReducedLineariseSteps(&s->model, dt, closed, NULL, sigma[0], omega[0]));
-  PetscCall(ReducedLinearise(&s->model, closed, sigma[1], omega[1]));
+  PetscCall(ReducedLinearise(&s->model, closed, NULL, PETSC_FALSE, sigma[1], omega[1]));
   *formula = *smooth = 0;
   for (int i = 0; i < 2 * M_MODES; i++) {
     *formula = PetscMax(*formula, Nearest(sigma[0][i] + omega[0][i] * I, dt, n, re, im));

@@ -28,7 +28,7 @@ from scipy.optimize import brentq
 SLIDES_BACK = 1e-12  # of the limit, beyond which a mass that stops moves on
 PER_PERIOD = 400     # places at which events are looked for, of the shortest period
 SETTLED = 40         # cycles after which a motion repeats itself to 1e-8
-WATCHED = 3          # cycles of squeal
+WATCHED = 2          # cycles of squeal
 REST = 3e-3          # of the largest velocity: below it, for a two hundredth of a cycle, a mass is at rest
 P, K = 40.0, 1e4     # N, N/m; masses of 1 kg
 LINK = 5e3           # N/m between two masses

@@ -74,19 +74,18 @@ def ends(rows, low, high):
 
 
 def true_size(margin, own, low, high, points):
-    """How far from the scene's own values the nearest point is that grows, beside the box: the least of all points, each on
+    """How far from the scene's own values the nearest point is that grows, to 0.02, beside the box: the least of all points, each on
     its way to them."""
-    best = 1.0
     reach = numpy.max(numpy.where(points < own, (own - points) / (own - low), (points - own) / (high - own)), axis=1)
-    for part in numpy.linspace(0.02, 1, 50):
-        scaled = own + (points - own) * (part / reach)[:, None]
-        if (margin(scaled.T) < 0).any():
-            best = part
-            break
-    return best
+
+    def grows(part):
+        return (margin((own + (points - own) * (part / reach)[:, None]).T) < 0).any()
+
+    best = next((part for part in numpy.linspace(0.04, 1, 25) if grows(part)), None)
+    return 1.0 if best is None else best - 0.02 * grows(best - 0.02)
 
 
-def box(folder, margin, n_points):
+def box(folder, margin, n_points, n_faces):
     """The largest box, beside the true one; nothing inside grows; the dangerous point does."""
     rows, statement = read(folder / "quiet.csv"), read(folder / "quiet_statement.csv")[0]
     own = numpy.array([float(row["own"]) for row in rows])
@@ -95,8 +94,8 @@ def box(folder, margin, n_points):
     random = numpy.random.default_rng(1)
     inside = random.uniform(quiet_low, quiet_high, (n_points, len(own)))
     check("random points inside that grow", not (margin(inside.T) < 0).any(), f"of {n_points}")
-    faces = random.uniform(-1, 1, (n_points, len(own)))
-    faces[numpy.arange(n_points), random.integers(len(own), size=n_points)] = random.choice([-1, 1], n_points)
+    faces = random.uniform(-1, 1, (n_faces, len(own)))
+    faces[numpy.arange(n_faces), random.integers(len(own), size=n_faces)] = random.choice([-1, 1], n_faces)
     corners = numpy.array(numpy.meshgrid(*[[-1, 1]] * len(own))).reshape(len(own), -1).T
     points = numpy.vstack([corners, faces])
     size = true_size(margin, own, low, high, numpy.where(points < 0, own + points * (own - low), own + points * (high - own)))
@@ -158,7 +157,7 @@ def main(which, folder, matrices=None):
     statement = read(folder / "quiet_statement.csv")[0]
     n_points = GRID**2 if which == "ring" else N_RANDOM
     if statement["goal"] == "box":
-        box(folder, margin, n_points // 4 if which == "ring" else n_points // 10)
+        box(folder, margin, *((n_points // 4, 2 * GRID) if which == "ring" else (n_points // 10, n_points // 10)))
     else:
         parts(folder, margin, n_points // 2 if which == "ring" else n_points)
     return 1 if FAULTS else 0

@@ -12,7 +12,7 @@ N = 8
 NOISE = 1e-3
 YOUNG = 2e11
 NAMES = [f"b{k}_young" for k in range(1, N + 1)]
-SWEEP = "-analysis sweep -sweep_parameter contact_mu -sweep_values 0:1:11".split()
+SWEEP = "0:1:11"  # values of friction
 BRAKE = """model: {source: rig}
 parts: disc,pad,beam
 rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
@@ -156,18 +156,18 @@ class Brake(Bar):
         _, first, count = np.unique(self.places.round(9), axis=0, return_index=True, return_counts=True)
         self.sensors = self.places[np.random.default_rng(1).choice(first[count == 1], 20, replace=False)]
 
-    def onsets(self, values):
+    def onsets(self, values, sweep):
         """Friction, frequency of each lock-in."""
-        self.launch("brake.yaml", "sweep", values, *SWEEP)
+        self.launch("brake.yaml", "sweep", values, "-analysis", "sweep", "-sweep_parameter", "contact_mu", "-sweep_values", sweep)
         with (self.folder / "sweep/onsets.csv").open(newline="") as lines:
             return [(float(row["critical_value"]), float(row["freq_hz"])) for row in csv.DictReader(lines) if row["kind"] == "lock_in"]
 
-    def trial(self, values, rng):
+    def trial(self, values, rng, sweep=SWEEP):
         """Measures the brake with these moduli at low friction, updates, and has each stated onset beside the true one: rows of
         update_onsets.csv, with `off`, how far the truth is, in stated deviations."""
         self.measure(self.run("brake.yaml", "truth", {**values, "contact_mu": 0.2}), rng)
-        self.update("--parameters", ",".join(values), "--onset", "contact_mu=0:1:11", "-contact_mu", "0.2", scene="brake.yaml")
-        truths, found = self.onsets(values), []
+        self.update("--parameters", ",".join(values), "--onset", f"contact_mu={sweep}", "-contact_mu", "0.2", scene="brake.yaml")
+        truths, found = self.onsets(values, sweep), []
         with (self.folder / "update/update_onsets.csv").open(newline="") as lines:
             for row in csv.DictReader(lines):
                 near = [value for value, freq in truths if abs(freq / float(row["freq_hz"]) - 1) < 0.01]
