@@ -217,21 +217,18 @@ PetscErrorCode ContactVisit(Contact contact, const QuantityVisitor *visitor);
 PetscErrorCode ContactSetUp(Contact contact);
 
 /*@ ContactDampFriction - interfaces with friction that slide at a stated speed have friction damping in modes, as
-   Coulomb's law in
-    time has by itself: as -contact_friction_damping does, with the parameters of the operators that belong to it.
-    Before ContactSetUp(). Not collective. @*/
+   Coulomb's law in time has by itself: as -contact_friction_damping does, with the parameters of the operators that
+   belong to it. Before ContactSetUp(). Not collective. @*/
 PetscErrorCode ContactDampFriction(Contact contact);
 
 /*@ ContactSetUpTies - the part of ContactSetUp() that makes the links of the ties, for runs in time, whose pairs are
-   not those of the
-    mesh. Collective; after ModelSetUp(). @*/
+   not those of the mesh. Collective; after ModelSetUp(). @*/
 PetscErrorCode ContactSetUpTies(Contact contact);
 
-/*@ ContactCheckBodies - prints a line for each body that hangs together with no other one and is held by nothing, where
-   there are
-    others, with the nodes by which it lies on them; and for nodes that two bodies have in one place without sharing
-    them, where no tie, contact or bushing has both. With matrix terms, which may hold anything, none. Collective; after
-    ContactSetUp() or ContactSetUpTies(). @*/
+/*@ ContactCheckBodies - prints a line for each body that hangs together with no other one and is held by nothing,
+   where there are others, with the nodes by which it lies on them; and for nodes that two bodies have in one place
+   without sharing them, where no tie, contact or bushing has both. With matrix terms, which may hold anything, none.
+   Collective; after ContactSetUp() or ContactSetUpTies(). @*/
 PetscErrorCode ContactCheckBodies(Contact contact, PetscBool terms);
 
 /*@ ContactFindRow - the row of an option of interfaces, such as kn; NULL for none. Not collective. @*/
@@ -306,8 +303,7 @@ PetscErrorCode ContactFollow(Contact contact, const char set[], PetscReal distan
                              ContactFollower place[]);
 
 /*@ ContactPassForces - of forces on all nodes, N, as in ContactNodalForces(), complete at every copy, moves those on
-   nodes that
-    follow others to these, f_i += follow_i' f, but in directions that a support holds. Collective. @*/
+   nodes that follow others to these, f_i += follow_i' f, but in directions that a support holds. Collective. @*/
 PetscErrorCode ContactPassForces(Contact contact, Vec local);
 
 /*@

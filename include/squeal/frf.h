@@ -57,13 +57,11 @@ PetscErrorCode FrfCreate(MPI_Comm comm, Frf *frf);
 PetscErrorCode FrfSetOperators(Frf frf, Operators operators);
 
 /*@ FrfSetModes - the solver of the modes (referenced until FrfDestroy()). Without -modes_band and -modes_target its
-   band
-    becomes 0 to 1.5 times the highest frequency. Not collective. @*/
+   band becomes 0 to 1.5 times the highest frequency. Not collective. @*/
 PetscErrorCode FrfSetModes(Frf frf, Modes modes);
 
 /*@ FrfSetResults - the folder in which a direct response is kept as it grows, for one that goes on; statics: of which
-   the pencil has
-    the sliding state, or NULL (both referenced until FrfWrite()). Not collective. @*/
+   the pencil has the sliding state, or NULL (both referenced until FrfWrite()). Not collective. @*/
 PetscErrorCode FrfSetResults(Frf frf, Results results, Statics statics);
 
 /*@ FrfSetSound - microphones that hear the force (referenced until FrfWrite()); NULL has none. Not collective. @*/
@@ -104,8 +102,7 @@ PetscErrorCode FrfSolve(Frf frf);
 PetscErrorCode FrfGet(Frf frf, PetscInt *n, const PetscReal **freq_hz, PetscInt *n_outputs, const FrfOutput **output);
 
 /*@ FrfGetResponse - H of all outputs at frequency i, m/N [n_outputs] (borrowed), and its estimated error, the root of
-   the
-    sum of squares over the outputs, m/N. Not collective. @*/
+   the sum of squares over the outputs, m/N. Not collective. @*/
 PetscErrorCode FrfGetResponse(Frf frf, PetscInt i, const PetscReal **re, const PetscReal **im, PetscReal *error);
 
 /*@ FrfGetPeaks - the maxima (borrowed). Not collective. @*/

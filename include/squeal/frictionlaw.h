@@ -51,13 +51,11 @@ PetscBool FrictionExists(const FrictionLaw *law);
 PetscBool FrictionVaries(const FrictionLaw *law);
 
 /*@ FrictionNeedsSpeed - whether mu in steady sliding changes with the stated speed; not where the law is given about
-   it. Not
-    collective. @*/
+   it. Not collective. @*/
 PetscBool FrictionNeedsSpeed(const FrictionLaw *law);
 
-/*@ FrictionIsValid - whether all parameters are finite, coefficients not negative, and the others within their limits.
-   Not
-    collective. @*/
+/*@ FrictionIsValid - whether all parameters are finite, coefficients not negative, and the others within their
+   limits. Not collective. @*/
 PetscBool FrictionIsValid(const FrictionLaw *law);
 
 /*@ FrictionScale - multiplies the coefficients. Not collective. @*/

@@ -57,7 +57,7 @@
    from their own sliding states with half the step, with contact laws to 1e-12, and with 2.25 times the cut-off:
    differences of amplitude and frequency where both runs vibrate; what lies above the higher cut-off is not in them. A
    vibration that never repeats itself differs by more than its level does. The error of growth in the last of these
-   rows is by the inertia of all that the cut-off leaves out (ReducedLineariseInertia()).
+   rows is by the inertia of all that the cut-off leaves out (ReducedLinearise()).
 */
 #pragma once
 

@@ -126,8 +126,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, Model *model);
 
 /*@
    ModelSetFromOptions - reads the scene: mesh source, parts and materials, supports, springs, dashpots, bushings,
-   points, loads, motions, probes, circles.
-   Collective.
+   points, loads, motions, probes, circles. Collective.
 
    Options are the rows of src/model/quantities.c.
 
@@ -220,14 +219,12 @@ PetscErrorCode ModelAddLoad(Model model, PetscInt i, const PetscReal factor[2], 
 @*/
 PetscErrorCode ModelGetBodies(Model model, PetscInt *n_bodies, PetscInt **body);
 
-/*@ ModelMeasureBodies - boxes of n bodies of ModelGetBodies() from number `first` on, shape [n][6], m: upper ends, and
-   lower ones
-    with the other sign; all -PETSC_MAX_REAL where a body has no node. Collective. @*/
+/*@ ModelMeasureBodies - boxes of n bodies of ModelGetBodies() from number `first` on, shape [n][6], m: upper ends,
+   and lower ones with the other sign; all -PETSC_MAX_REAL where a body has no node. Collective. @*/
 PetscErrorCode ModelMeasureBodies(Model model, const PetscInt body[], PetscInt first, PetscInt n, PetscReal box[]);
 
 /*@ ModelNameBody - "part pad", "parts pad, beam"; "a piece of part pad about 0.01, 0.02, 0 m" where other bodies have
-   cells of that
-    part too. Collective. @*/
+   cells of that part too. Collective. @*/
 PetscErrorCode ModelNameBody(Model model, const PetscInt body[], PetscInt b, size_t size, char text[]);
 
 /*@ ModelGetSetNodes - local nodes of a named set, node [n], ascending, also those that other ranks own. Collective. The
@@ -310,14 +307,12 @@ PetscErrorCode ModelGetMotions(Model model, const PetscReal share[], PetscReal n
 PetscErrorCode ModelSumShared(Model model, Vec local);
 
 /*@ ModelDescribeDoubt - for a message that something does not come to an end: the part that a wave takes longest to
-   cross,
-    and what its units probably are; empty where none takes more than 50 periods of hz (Hz). Not collective; after
-    ModelSetUp(). @*/
+   cross, and what its units probably are; empty where none takes more than 50 periods of hz (Hz). Not collective;
+   after ModelSetUp(). @*/
 PetscErrorCode ModelDescribeDoubt(Model model, PetscReal hz, size_t size, char text[]);
 
 /*@ ModelAddChecksum - adds mesh, materials, supports, motions, springs and dashpots; with_partition: also which rank
-   has which
-    cells. Collective; after ModelSetUp(). @*/
+   has which cells. Collective; after ModelSetUp(). @*/
 PetscErrorCode ModelAddChecksum(Model model, PetscBool with_partition, Checksum checksum);
 
 /*@ ModelHasGravity - whether the acceleration of gravity is not zero. Not collective. @*/
@@ -326,9 +321,8 @@ PetscBool ModelHasGravity(Model model);
 /*@ ModelAddLoadsChecksum - adds the loads, and gravity. Collective. @*/
 PetscErrorCode ModelAddLoadsChecksum(Model model, Checksum checksum);
 
-/*@ ModelCheckMotion - raises PETSC_ERR_USER_INPUT for a motion that prescribes no direction of a node (n_held = 0), or
-   one
-    that another prescribes (n_twice > 0); counts of this rank. Collective. @*/
+/*@ ModelCheckMotion - raises PETSC_ERR_USER_INPUT for a motion that prescribes no direction of a node (n_held = 0),
+   or one that another prescribes (n_twice > 0); counts of this rank. Collective. @*/
 PetscErrorCode ModelCheckMotion(Model model, const PrescribedMotion *motion, PetscInt n_held, PetscInt n_twice);
 
 /*@ ModelDescribeMotion - such as "motion lift: head_top moved by 0, 0, 1e-06 m (z prescribed)". Not collective. @*/

@@ -121,9 +121,8 @@ PetscErrorCode OperatorsNameLaw(Operators operators, size_t size, char option[],
 /*@ OperatorsHaveDamping - whether there is a damping one among them. Not collective. @*/
 PetscErrorCode OperatorsHaveDamping(Operators operators, PetscBool *have);
 
-/*@ OperatorsLump - the mass matrix is lumped whatever the options say, as that of transients. Before OperatorsSetUp().
-   Not
-    collective. @*/
+/*@ OperatorsLump - the mass matrix is lumped whatever the options say, as that of transients. Before
+   OperatorsSetUp(). Not collective. @*/
 PetscErrorCode OperatorsLump(Operators operators);
 
 /*@ OperatorsOmitMatrices - leaves the matrices of a model out: there are parameters alone, which is all that kernels in
@@ -168,10 +167,9 @@ PetscErrorCode OperatorsCreatePoint(Operators operators, const PetscReal from[],
     Collective. @*/
 PetscErrorCode OperatorsCheckParameter(Operators operators, PetscInt parameter, PetscReal value);
 
-/*@ OperatorsCheckMoved - raises PETSC_ERR_USER_INPUT for n parameters that `option` would give other values than those
-   of
-    the scene, the same to all: where the stress of a spin depends on one of them, and where the spin of one part would
-    move but not that of a part with which it shares nodes. NULL for all parameters. Collective. @*/
+/*@ OperatorsCheckMoved - raises PETSC_ERR_USER_INPUT for n parameters that `option` would give other values than
+   those of the scene, the same to all: where the stress of a spin depends on one of them, and where the spin of one
+   part would move but not that of a part with which it shares nodes. NULL for all parameters. Collective. @*/
 PetscErrorCode OperatorsCheckMoved(Operators operators, const char option[], PetscInt n, const PetscInt parameter[]);
 
 /*@ OperatorsAddChecksum - adds what options choose, and matrices that are loaded. Collective; after OperatorsSetUp().
@@ -222,9 +220,8 @@ PetscErrorCode OperatorsGetJoint(Operators operators, const PetscReal p[], Petsc
                                  PetscReal viscosity[6], PetscReal *mass);
 
 /*@ OperatorsGetDependents - of points that are joined rigidly and of ties: all displacements u = Z q, and E' u = q,
-   which are
-    those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint are those
-    with Z'f = 0. Not collective. @*/
+   which are those of u that follow no others; NULL without such points and ties (borrowed). Forces of the constraint
+   are those with Z'f = 0. Not collective. @*/
 PetscErrorCode OperatorsGetDependents(Operators operators, Mat *Z, Mat *E);
 
 /*@ OperatorsInternalForces - K_e u_e of all elements at p and the forces of bushings and points, summed over ranks, N,
@@ -273,9 +270,8 @@ PetscErrorCode OperatorsTakeNodal(Operators operators, Vec local, Vec u);
 PetscErrorCode OperatorsApplyBodies(Operators operators, const PetscReal p[], Vec u, Vec f);
 
 /*@ OperatorsCreateGeometric - the stiffness int grad N_i . sigma . grad N_j dV times the 3 x 3 identity (N/m) of the
-   stress
-    sigma of displacements u (m, [nodes][3], local), and of bolts with their shares of OperatorsAddLoads() (NULL for
-    none), with the moduli of the point p, symmetric; tension stiffens. Collective. The caller destroys it. @*/
+   stress sigma of displacements u (m, [nodes][3], local), and of bolts with their shares of OperatorsAddLoads() (NULL
+   for none), with the moduli of the point p, symmetric; tension stiffens. Collective. The caller destroys it. @*/
 PetscErrorCode OperatorsCreateGeometric(Operators operators, const PetscReal p[], const PetscReal u[],
                                         const PetscReal share[], Mat *K);
 
@@ -296,8 +292,7 @@ PetscErrorCode OperatorsAddEntries(Operators operators, Vec u, PetscInt n, const
                                    const PetscReal value[]);
 
 /*@ OperatorsGetMesh - the mesh of the model, or the points of -operators_nodes as a mesh whose cells are points, NULL
-   where
-    there is neither (borrowed). Not collective; after OperatorsSetUp(). @*/
+   where there is neither (borrowed). Not collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsGetMesh(Operators operators, const Mesh **mesh);
 
 /*@ OperatorsGetNodal - displacements of a vector of all unknowns, or of none for NULL, at the nodes of that mesh, shape

@@ -156,8 +156,7 @@ PetscErrorCode OptionsFindGiven(const char option[], const char **value, PetscBo
 PetscErrorCode OptionsFindList(const char name[], size_t size, char text[]);
 
 /*@ ValueExplainUnit - what to write in place of a number with a unit, such as "210 GPa"; text is empty where it is no
-   such
-    number. Not collective. @*/
+   such number. Not collective. @*/
 PetscErrorCode ValueExplainUnit(const char value[], char text[], size_t size);
 
 /*@ OptionsFindLine - the line of an options file that gives an option, named without its dash; 0 for none. n is the

@@ -197,9 +197,8 @@ PetscReal OperatorsTermDerivative(const OperatorsTerm *term, const PetscReal p[]
     until PencilReleaseTerms()). Not collective; after OperatorsSetUp(). @*/
 PetscErrorCode OperatorsGetTerms(Operators operators, PetscInt *n, const OperatorsTerm **terms);
 
-/*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name as
-   one. Valid
-    after PencilReleaseTerms() too. Collective. @*/
+/*@ PencilGetCauses - the terms that may have a share in the growth of modes at the present point, those of one name
+   as one. Valid after PencilReleaseTerms() too. Collective. @*/
 PetscErrorCode PencilGetCauses(Pencil pencil, PetscInt *n, const PencilCause **causes);
 
 /* An eigenvalue sigma + i omega, rad/s, omega > 0, and its right vector xr + i xi, of all unknowns, x^H M x = 1; xi is
@@ -277,19 +276,17 @@ PetscErrorCode PencilMeasureForms(Pencil pencil, PetscComplex lambda, const Penc
 PetscErrorCode PencilMeasureDerivatives(Pencil pencil, PetscReal sigma, PetscReal omega, const PencilVectors *vectors,
                                         PetscComplex derivative[]);
 
-/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present point
-   are
-    formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no other
-    point will be asked for. Afterwards PencilSetParameters() and PencilGetTerms() raise PETSC_ERR_ARG_WRONGSTATE.
-    Matrices that were loaded stay. Collective. @*/
+/*@ PencilReleaseTerms - frees the terms of a model, those of the operators too, once all matrices at the present
+   point are formed, but for those that PencilGetCauses() lists: without material damping half of the memory, where no
+   other point will be asked for. Afterwards PencilSetParameters() and PencilGetTerms() raise
+   PETSC_ERR_ARG_WRONGSTATE. Matrices that were loaded stay. Collective. @*/
 PetscErrorCode PencilReleaseTerms(Pencil pencil);
 
 /*@ PencilReleaseSymmetric - frees K_even, which is also K of PencilGetFrictionless(), once it has been factored;
-   nothing
-    before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes it
-    again, as K - left' right. Where `half` is given, the upper half of K_even - shift M (MATSEQSBAIJ, shift in
-    (rad/s)^2), the pencil keeps a reference to it alone: K is freed as well, and both are made again from it.
-    Collective. @*/
+   nothing before PencilReleaseTerms(), or without K_even. What was got before is gone; the next call for either makes
+   it again, as K - left' right. Where `half` is given, the upper half of K_even - shift M (MATSEQSBAIJ, shift in
+   (rad/s)^2), the pencil keeps a reference to it alone: K is freed as well, and both are made again from it.
+   Collective. @*/
 PetscErrorCode PencilReleaseSymmetric(Pencil pencil, Mat half, PetscReal shift);
 
 /*@ PencilGetMatrices - the matrices with friction. Collective. @*/

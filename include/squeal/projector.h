@@ -53,9 +53,8 @@ typedef struct {
   PetscReal changed, most; /* steps since then with other numbers of pairs in `n`, and the most pairs that differ */
 } ContactSums;
 
-/*@ ContactSumsMark, ContactSumsCompare - keeps the numbers of pairs of each status, unless some are kept; tells after a
-   step
-    whether they differ from these, and by how many pairs. Not collective. @*/
+/*@ ContactSumsMark, ContactSumsCompare - keeps the numbers of pairs of each status, unless some are kept; tells after
+   a step whether they differ from these, and by how many pairs. Not collective. @*/
 void ContactSumsMark(ContactSums *sums);
 void ContactSumsCompare(ContactSums *sums);
 

@@ -173,8 +173,7 @@ const Quantity *QuantityFind(const QuantityTable *table, const char name[]);
 PetscErrorCode QuantitiesRead(MPI_Comm comm, const QuantityTable *table, void *owner);
 
 /*@ QuantitiesReadOf - the same of a thing that has a name, which stands before that of each option: -pad_mu of `pad`.
-   NULL for
-    none. Collective. @*/
+   NULL for none. Collective. @*/
 PetscErrorCode QuantitiesReadOf(MPI_Comm comm, const char name[], const QuantityTable *table, void *owner);
 
 /* A list of the scene, each name of which is the prefix of the options of a record */

@@ -160,31 +160,25 @@ void ReducedGetContactWork(const ReducedModel *model, const ReducedReport *repor
                            PetscReal *friction);
 
 /*@ ReducedContactFeeds - whether contact gave so much of the energy that the motion is that of the steps: more than a
-   tenth of
-    what others gave, J. Not collective. @*/
+   tenth of what others gave, J. Not collective. @*/
 PetscBool ReducedContactFeeds(PetscReal contact, PetscReal others);
 
 /*@ ReducedEnergy - kinetic energy of the modes, and strain energy of modes and residual, J. Not collective. @*/
 void ReducedEnergy(const ReducedModel *model, const ReducedState *state, PetscReal *kinetic, PetscReal *strain);
 
-/*@ ReducedLinearise - eigenvalues lambda [2 m] (rad/s) of the model about steady sliding, closed [n_pairs] telling the
-   pairs
-    that are closed, which all slide along t; a real one twice in a row is two. Not collective. @*/
-PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
-                                PetscReal omega[]);
+/*@
+   ReducedLinearise - eigenvalues lambda [2 m] (rad/s) of the model about steady sliding; a real one twice in a row is
+   two. Not collective.
 
-/*@ ReducedLineariseSliding - the same with what friction damps, as -contact_friction_damping does: with the normal
-   forces
-    lambda_n [n_pairs] (N) of the state, speed v and slope mu', a pair has mu lambda_n / v (N s/m) along b and mu'
-    lambda_n along t; NULL for none. Not collective. @*/
-PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                       PetscReal sigma[], PetscReal omega[]);
-
-/*@ ReducedLineariseInertia - as ReducedLineariseSliding() with the inertia of what the modes leave out, to first order
-   in Mx,
-    which the model must have (ReducedWeigh()). The difference is the error of the cut-off. Not collective. @*/
-PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                       PetscReal sigma[], PetscReal omega[]);
+   Input Parameters:
++  closed   - [n_pairs] the pairs that are closed, which all slide along t
+.  lambda_n - [n_pairs] normal forces of the state, N, with which friction damps as -contact_friction_damping does: with
+              speed v and slope mu' a pair has mu lambda_n / v (N s/m) along b and mu' lambda_n along t; NULL for none
+-  inertia  - with the inertia of what the modes leave out, to first order in Mx, which the model must have
+              (ReducedWeigh()): the difference is the error of the cut-off
+@*/
+PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                PetscBool inertia, PetscReal sigma[], PetscReal omega[]);
 
 /*@
    ReducedEquilibrium - the sliding state: 0 = -Omega^2 eta + P'p with every closed pair sliding along t, lambda_T = -mu
@@ -232,18 +226,17 @@ PetscErrorCode ReducedIsCompared(ReducedRun run, PetscBool *compared);
 PetscErrorCode ReducedSetRooms(ReducedRun reduced, Dynamics dynamics, Modes modes);
 
 /*@ ReducedPrepare - cut-off, step and times of the run, without reducing; raises the errors of ReducedIntegrate() for
-   what
-    cannot be. For rooms that run reduced models by themselves. Collective. @*/
+   what cannot be. For rooms that run reduced models by themselves. Collective. @*/
 PetscErrorCode ReducedPrepare(ReducedRun reduced, Results results);
 
-/*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the operators,
-   NULL for
-    the values of the scene; after ReducedPrepare(). The caller destroys it. Collective. @*/
-PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const PetscReal p[], ReducedRun *at);
+/*@ ReducedReduceAt - the bodies reduced below a cut-off (Hz, 0: that of `reduced`) with parameters p of the
+   operators, NULL for the values of the scene; after ReducedPrepare(). With `like`, which was reduced with others, in
+   as many modes, which resemble its own; else NULL. The caller destroys it. Collective. @*/
+PetscErrorCode ReducedReduceAt(ReducedRun reduced, PetscReal cutoff, const PetscReal p[], ReducedRun like,
+                               ReducedRun *at);
 
-/*@ ReducedWeigh - bodies that are reduced from now on have Mx too, the inertia of what the modes leave out, which costs
-   another
-    block of solutions each. Not collective, alike on all ranks. @*/
+/*@ ReducedWeigh - bodies that are reduced from now on have Mx too, the inertia of what the modes leave out, which
+   costs another block of solutions each. Not collective, alike on all ranks. @*/
 PetscErrorCode ReducedWeigh(ReducedRun reduced, PetscBool weighs);
 
 /*@ ReducedGetModel - the dense model (borrowed), alike on all ranks; friction may be changed. Not collective. @*/
@@ -252,9 +245,8 @@ PetscErrorCode ReducedGetModel(ReducedRun reduced, ReducedModel **model);
 /*@ ReducedGetRun - cut-off (Hz), step and end (s); NULL for what is not needed. Not collective. @*/
 PetscErrorCode ReducedGetRun(ReducedRun reduced, PetscReal *cutoff, PetscReal *dt, PetscReal *end);
 
-/*@ ReducedGetHits - the impulses, after ReducedPrepare(): their number, and of bodies that are reduced Phi'J [n][m], m
-   sqrt(kg)/s,
-    and when they are due, s (borrowed; NULL for what is not needed). Not collective. @*/
+/*@ ReducedGetHits - the impulses, after ReducedPrepare(): their number, and of bodies that are reduced Phi'J [n][m],
+   m sqrt(kg)/s, and when they are due, s (borrowed; NULL for what is not needed). Not collective. @*/
 PetscErrorCode ReducedGetHits(ReducedRun reduced, PetscInt *n, const PetscReal **hits, const PetscReal **due);
 
 /*@ ReducedAddChecksum - adds what runs must share that go on with each other, but for step and end. Collective. @*/

@@ -34,8 +34,7 @@ PetscErrorCode ResultsVisit(Results results, const QuantityVisitor *visitor);
 PetscErrorCode ResultsOpenDirectory(Results results);
 
 /*@ ResultsUnlock - lets another run write into the folder, also where this one has failed; ResultsDestroy() does so
-   too. Not
-    collective. @*/
+   too. Not collective. @*/
 void ResultsUnlock(Results results);
 
 /*@ ResultsGetDirectory - the folder (borrowed). Not collective. @*/

@@ -25,8 +25,7 @@ typedef struct {
 } SquealVersions;
 
 /*@ SquealGetVersions - e.g. "3.18.5"; of OpenBLAS also its kernels, by which results differ in rounding. Not
-   collective; MPI
-    must be up. @*/
+   collective; MPI must be up. @*/
 void SquealGetVersions(SquealVersions *versions);
 
 /*@
@@ -73,8 +72,7 @@ PetscErrorCode SquealGetStages(MPI_Comm comm, PetscInt *n, SquealStageCost cost[
 PetscErrorCode SquealGetPeak(MPI_Comm comm, double *megabytes);
 
 /*@ SquealViewStages - prints time (s, slowest rank) and memory (MB, sum of ranks) of each stage, and the most that
-   there
-    was. Collective. @*/
+   there was. Collective. @*/
 PetscErrorCode SquealViewStages(MPI_Comm comm, PetscViewer viewer);
 
 /*@ SquealFinalize - ends all ranks; returns the exit status of the program: 0 when error is 0, else 1. Collective; when

@@ -6,10 +6,9 @@
       Q(lambda) u = Q'(lambda) x,   Q(lambda)^T v = Q'(lambda)^T y,   lambda := lambda - v^T Q' x / (v^T Q' u),
 
    where v^T Q' x = v^T Q u, so that the step does not multiply by a stiff K; of T(lambda), with materials of the
-   frequency, as well. Convergence is cubic: three or four
-   complex factorisations of size n, where all eigenvalues with their vectors cost a hundred. Where a step changed
-   lambda by little its factors serve again: that is inverse iteration on Q(lambda) + (mu - lambda) Q'(lambda), which
-   differs from Q(mu) by the square of the change.
+   frequency, as well. Convergence is cubic: three or four complex factorisations of size n, where all eigenvalues
+   with their vectors cost a hundred. Where a step changed lambda by little its factors serve again: that is inverse
+   iteration on Q(lambda) + (mu - lambda) Q'(lambda), which differs from Q(mu) by the square of the change.
 */
 #include "pencil.h"
 #include "base/events.h"

@@ -41,15 +41,10 @@ PetscErrorCode DesignVisit(Design d, const QuantityVisitor *visitor)
 PetscErrorCode DesignSetRooms(Design d, Operators operators, const PetscReal p[], Modes modes, Statics statics)
 {
   PetscFunctionBeginUser;
-  d->operators     = operators;
-  d->box.comm      = d->comm;
-  d->box.operators = operators;
-  d->box.modes     = modes;
-  d->box.statics   = statics;
-  d->box.option    = "-design_rtol";
-  d->box.advice    = "raise -design_max_solutions or -design_rtol, or narrow the boxes";
-  PetscCall(PetscFree(d->box.nominal));
-  PetscCall(OperatorsCreatePoint(operators, p, &d->box.nominal));
+  d->operators  = operators;
+  d->box.option = "-design_rtol";
+  d->box.advice = "raise -design_max_solutions or -design_rtol, or narrow the boxes";
+  PetscCall(BoxSetRooms(&d->box, d->comm, operators, p, modes, statics));
   PetscFunctionReturn(0);
 }
 

@@ -41,13 +41,6 @@ static PetscErrorCode StepPencilCreate(Dynamics d, StepPencil *p)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode StepPencilDestroy(StepPencil *p)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree4(p->scale, p->x, p->kx, p->cx));
-  PetscFunctionReturn(0);
-}
-
 /* kx = M^-1/2 K M^-1/2 x and the same of C, for the vector x */
 static PetscErrorCode StepPencilApply(StepPencil *p, Vec x)
 {
@@ -213,6 +206,6 @@ PetscErrorCode DynamicsFindCriticalStep(Dynamics d)
   PetscCall(VecDestroy(&x));
   PetscCall(EPSDestroy(&eps));
   PetscCall(MatDestroy(&A));
-  PetscCall(StepPencilDestroy(&pencil));
+  PetscCall(PetscFree4(pencil.scale, pencil.x, pencil.kx, pencil.cx));
   PetscFunctionReturn(0);
 }

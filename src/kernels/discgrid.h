@@ -143,8 +143,7 @@ static inline void DiscGridBlended(const DiscGrid *d, int i, double t, double x[
   if (2 * t >= d->ntheta) x[1] = 0;
 }
 
-/* Node of ring line i = 0..nr on column line j = 0..ntheta-1; the patch begins at j = 0, the uniform
-   mesh at y = 0 */
+/* Node of ring line i = 0..nr on column line j = 0..ntheta-1; the patch begins at j = 0, the uniform mesh at y = 0 */
 static inline void DiscGridNode(const DiscGrid *d, int i, int j, double x[2])
 {
   double s = d->patch ? j - 0.5 * d->ny : j;

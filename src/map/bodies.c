@@ -45,7 +45,7 @@ PetscErrorCode MapBodiesCreate(Map map, PetscInt line, PetscReal cutoff, MapBodi
   for (PetscInt k = 1; k < map->n_axes; k++)
     for (PetscInt i = 0; i < map->axis[k].n_moved; i++)
       if (map->axis[k].moved[i].kind == REDUCED_BODY) p[map->axis[k].moved[i].index] = map->axis[k].value[line];
-  PetscCall(ReducedReduceAt(map->reduced, cutoff, p, &run));
+  PetscCall(ReducedReduceAt(map->reduced, cutoff, p, NULL, &run));
   PetscCall(MapBodiesTake(run, b));
   PetscCall(ReducedDestroy(&run));
   PetscCall(PetscFree(p));

@@ -113,9 +113,10 @@ typedef struct {
   const PetscReal *at; /* place, m */
 } ModelMeanWish;
 
-/* mean.c - the middle of a set, m; the sum of the mean motions of sets, each about its place, with its sign.
-   Collective. Errors: PETSC_ERR_USER_INPUT for a rotation of nodes on one line. */
-PETSC_INTERN PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3]);
+/* mean.c - the middle of a set, m, and its rows where b is given; the sum of the mean motions of sets, each about its
+   place, with its sign. Collective. Errors: PETSC_ERR_USER_INPUT for a rotation of nodes on one line. */
+PETSC_INTERN PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3],
+                                           PetscReal b[][3][6]);
 PETSC_INTERN PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wish[], ModelMean *mean);
 PETSC_INTERN PetscErrorCode MeanDestroy(ModelMean *mean);
 
@@ -143,8 +144,7 @@ PETSC_INTERN PetscErrorCode SpinView(const Spin *spin, PetscViewer viewer);
 /* material.c - raises an error for a cylinder's axis through the centre of a cell. Collective */
 PETSC_INTERN PetscErrorCode ModelCheckAxes(Model model);
 
-/* part.c - the loss factors as stiffness damping, or laws of the stiffness; an error for the
-   reverse */
+/* part.c - the loss factors as stiffness damping, or laws of the stiffness; an error for the reverse */
 PETSC_INTERN PetscErrorCode PartsAddLoss(Model model);
 
 /* part.c - checks the materials, and finds the part of each cell */

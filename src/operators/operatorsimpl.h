@@ -155,9 +155,8 @@ PETSC_INTERN PetscErrorCode OperatorsNeedSpin(Operators operators);
 /* joint.c - which local nodes belong to a part; the caller frees them */
 PETSC_INTERN PetscErrorCode OperatorsMarkPart(const Mesh *mesh, PetscInt part, PetscBool **on);
 
-/* joint.c, dependents.c, equations.c, place.c - raise an error for a point with mass, or joined rigidly, for a tie, for
-   equations, and for a superelement, on a part that spins.
-   Collective. */
+/* joint.c, dependents.c, equations.c, place.c - raise an error for a point with mass, or joined rigidly, for a tie,
+   for equations, and for a superelement, on a part that spins. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningTies(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningEquations(Operators operators, PetscInt part);
 PETSC_INTERN PetscErrorCode OperatorsCheckSpinningSuperelements(Operators operators, PetscInt part);

@@ -6,9 +6,8 @@
       "real", "path": null, "default": 1e-06, "required": false, "least": 0, "most": 1, "open": true, "choices": null, "analyses":
       ["sweep"], "where": [], "conditional": true, "restart": false, "varies": []}, ...]}
 
-   one option a line.
-   owner: the name in the scene that stands before the option. analyses, where: it is read by runs that are, or
-   do, one of them; conditional: and where other options want it. varies: analyses that may vary it.
+   one option a line. owner: the name in the scene that stands before the option. analyses, where: it is read by runs
+   that are, or do, one of them; conditional: and where other options want it. varies: analyses that may vary it.
 */
 #include "row.h"
 #include <string.h>

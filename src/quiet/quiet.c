@@ -35,15 +35,10 @@ PetscErrorCode QuietVisit(Quiet q, const QuantityVisitor *visitor)
 PetscErrorCode QuietSetRooms(Quiet q, Operators operators, const PetscReal p[], Modes modes, Statics statics)
 {
   PetscFunctionBeginUser;
-  q->operators     = operators;
-  q->box.comm      = q->comm;
-  q->box.operators = operators;
-  q->box.modes     = modes;
-  q->box.statics   = statics;
-  q->box.option    = "-quiet_rtol";
-  q->box.advice    = "raise -quiet_max_solutions or -quiet_rtol, or narrow the box";
-  PetscCall(PetscFree(q->box.nominal));
-  PetscCall(OperatorsCreatePoint(operators, p, &q->box.nominal));
+  q->operators  = operators;
+  q->box.option = "-quiet_rtol";
+  q->box.advice = "raise -quiet_max_solutions or -quiet_rtol, or narrow the box";
+  PetscCall(BoxSetRooms(&q->box, q->comm, operators, p, modes, statics));
   PetscFunctionReturn(0);
 }
 

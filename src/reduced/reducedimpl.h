@@ -273,7 +273,7 @@ PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *of
 PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
 
-/* warp.c - ReducedLineariseSliding() as steps of length dt (s) see the model */
+/* warp.c - ReducedLinearise() as steps of length dt (s) see the model */
 PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
                                                   const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[]);
 
@@ -286,11 +286,6 @@ PETSC_INTERN PetscErrorCode ReducedChoose(ReducedRun reduced);
 /* bodies/reduce.c - model and room for states and steps, from cut-off, step and run; frees these */
 PETSC_INTERN PetscErrorCode ReducedReduce(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
-
-/* The bodies of a run that was reduced with other parameters p [parameters], in as many modes, which resemble its own
-   and lie below `cutoff` (Hz). The caller destroys them. Collective */
-PETSC_INTERN PetscErrorCode ReducedReduceLike(ReducedRun reduced, PetscReal cutoff, const PetscReal p[],
-                                              ReducedRun *at);
 
 /* step/residual.c - HW and HC; q of the step with lambda [n_ports] on the ports on which it is not sought, and as much
    less on the chosen ones: a force that moves the same */

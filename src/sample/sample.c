@@ -124,15 +124,10 @@ PetscErrorCode SampleSetRooms(Sample s, Operators operators, const PetscReal p[]
   const OperatorsParameter *list;
 
   PetscFunctionBeginUser;
-  s->operators     = operators;
-  s->box.comm      = s->comm;
-  s->box.operators = operators;
-  s->box.modes     = modes;
-  s->box.statics   = statics;
-  s->box.option    = "-sample_rtol";
-  s->box.advice    = "raise -sample_max_solutions or -sample_rtol, or narrow the distributions";
-  PetscCall(PetscFree(s->box.nominal));
-  PetscCall(OperatorsCreatePoint(operators, p, &s->box.nominal));
+  s->operators  = operators;
+  s->box.option = "-sample_rtol";
+  s->box.advice = "raise -sample_max_solutions or -sample_rtol, or narrow the distributions";
+  PetscCall(BoxSetRooms(&s->box, s->comm, operators, p, modes, statics));
   PetscCall(OperatorsGetParameters(operators, &s->box.n_base, &list));
   PetscFunctionReturn(0);
 }

@@ -98,9 +98,8 @@ static PetscErrorCode PointsLink(Sweep sweep, const LinePoints *before, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* The record of each point, and the largest relative error of the places between, which belong to no point.
-   condition = 1 / |y^T D x| >= 1 is by what factor errors of the matrices count in lambda; infinite at a defective
-   pair. */
+/* The record of each point, and the largest relative error of the places between, which belong to no point. condition
+   = 1 / |y^T D x| >= 1 is by what factor errors of the matrices count in lambda; infinite at a defective pair. */
 static PetscErrorCode PointsKeep(Sweep sweep, const LinePoints *points)
 {
   PetscFunctionBeginUser;

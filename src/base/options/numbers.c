@@ -1,7 +1,6 @@
 /*
-   Numbers. PETSc reads `default`, `decide` and `mouse` as -2 and -1,
-   which are codes of its own functions and no numbers of a scene, and an integer that its type does not hold as another
-   one: both are refused.
+   Numbers. PETSc reads `default`, `decide` and `mouse` as -2 and -1, which are codes of its own functions and no
+   numbers of a scene, and an integer that its type does not hold as another one: both are refused.
 */
 #include <squeal/options.h>
 #include <stdlib.h>

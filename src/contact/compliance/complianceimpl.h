@@ -147,8 +147,7 @@ PETSC_INTERN PetscErrorCode ComplianceDualServes(ContactCompliance c, PetscBool 
 PETSC_INTERN PetscErrorCode ComplianceDualSolve(ContactCompliance c, PetscBool *solved);
 PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 
-/* krylov.c - a step of Newton's method at the laws of the closed pairs
-   into rhs, by GMRES; what memory.c keeps */
+/* krylov.c - a step of Newton's method at the laws of the closed pairs into rhs, by GMRES; what memory.c keeps */
 PETSC_INTERN PetscErrorCode ComplianceKrylovSolve(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceKrylovHold(ContactCompliance c, const PetscBool held[]);
 

@@ -3,8 +3,7 @@
    The matrices themselves follow from these and W by the same operations. As numbers: m; index[m]; frame of each pair
    (4 reals: e[2], mu, c); indices whose columns are kept, in the order they were made. 0 numbers: no base. Where a
    law in series is not linear, the closings at which its lines were laid come first [n]. Where W is a map, the
-   directions that have springs [3 n], the iterations
-   that tell when these are set anew, and the statuses [n]. */
+   directions that have springs [3 n], the iterations that tell when these are set anew, and the statuses [n]. */
 #include "complianceimpl.h"
 
 static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, PetscReal **values)

@@ -82,8 +82,7 @@ PetscErrorCode BodiesSetFromOptions(Bodies bodies);
 PETSC_INTERN PetscErrorCode BodiesVisit(Bodies b, const QuantityVisitor *visitor);
 
 /*@ BodiesSetUp - finds bodies swept along an angle or an axis, lays out the nodes, and makes the masses and kernels
-   from
-    the present values of the parameters of the operators. Collective. @*/
+   from the present values of the parameters of the operators. Collective. @*/
 PetscErrorCode BodiesSetUp(Bodies bodies, Operators operators);
 
 /*@ BodiesGetLayout - where the nodes stand, and their masses (borrowed). Not collective. @*/
@@ -93,15 +92,13 @@ PetscErrorCode BodiesGetLayout(Bodies bodies, const Layout **layout);
     component in the local basis. Same call on all ranks that have the node. @*/
 PetscErrorCode BodiesHold(Bodies bodies, PetscInt vertex, PetscInt j);
 
-/*@ BodiesSetPoints - what the masses of points and ties need, after the last BodiesHold(); contact [n_contact] are the
-   nodes
-    that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of them, or a
-    node that a motion drives; for a tie that has one of these, or one that a support holds. @*/
+/*@ BodiesSetPoints - what the masses of points and ties need, after the last BodiesHold(); contact [n_contact] are
+   the nodes that contact forces may act on. Collective. Errors: PETSC_ERR_SUP for a point with mass that has one of
+   them, or a node that a motion drives; for a tie that has one of these, or one that a support holds. @*/
 PetscErrorCode BodiesSetPoints(Bodies bodies, PetscInt n_contact, const PetscInt contact[]);
 
 /*@ BodiesMakeRigid - replaces what a state vector has at sets that are joined rigidly, and at nodes of ties, by the
-   motion next
-    to it that these allow, after BodiesSetPoints(). Collective. @*/
+   motion next to it that these allow, after BodiesSetPoints(). Collective. @*/
 PetscErrorCode BodiesMakeRigid(Bodies bodies, PetscReal x[]);
 
 /*@ BodiesAddInertia - adds the inertial forces of points, and those that hold rigid sets and ties together, to f, N,

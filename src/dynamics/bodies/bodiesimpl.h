@@ -221,9 +221,10 @@ PETSC_INTERN PetscReal PointKinetic(const Joint *point, const PetscReal q[6]);
 /* W, mass and inertia of a point */
 PETSC_INTERN void PointInertia(const Joint *point, PetscReal W[36]);
 
-/* points/rigid.c - matrices of a rigid point; forces in the place of those on its nodes, f [layout n] */
+/* points/rigid.c - matrices of a rigid point; of all of them forces in the place of those on their nodes, or motions,
+   x [layout n] */
 PETSC_INTERN PetscErrorCode RigidPointSetUp(Bodies bodies, BodyJoint *joint);
-PETSC_INTERN PetscErrorCode RigidPointsAdvance(Bodies bodies, PetscReal f[]);
+PETSC_INTERN PetscErrorCode RigidPointsApply(Bodies bodies, PetscBool forces, PetscReal x[]);
 
 /* What moves a local node besides its cells: bits */
 enum { BODIES_IN_CONTACT = 1, BODIES_AT_RIGID = 2, BODIES_AT_HEAVY = 4, BODIES_AT_SUPER = 8 };

@@ -1,7 +1,6 @@
 /*
-   Sums at the nodes that ranks share. Each rank sends what it has to all others that have the node, and each
-   adds up what it received and its own in the ascending order of the ranks: the copies stay bitwise equal without any
-   owner.
+   Sums at the nodes that ranks share. Each rank sends what it has to all others that have the node, and each adds up
+   what it received and its own in the ascending order of the ranks: the copies stay bitwise equal without any owner.
 */
 #include "bodiesimpl.h"
 

@@ -50,9 +50,8 @@ PETSC_INTERN PetscErrorCode ExternalSetFromOptions(External external);
 PETSC_INTERN PetscErrorCode ExternalVisit(External external, const QuantityVisitor *visitor);
 
 /*
-   ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold(),
-   where the model does not.
-   Collective; after BodiesSetUp().
+   ExternalSetUp - gathers the nodes of the loads, holds the directions of prescribed motions by BodiesHold(), where
+   the model does not. Collective; after BodiesSetUp().
 
    Errors: PETSC_ERR_USER_INPUT for an unknown set; for motions whose directions a swept body cannot express, that
    prescribe the same direction of a node twice or only what supports hold; for an impulse on a node that is held.

@@ -56,7 +56,7 @@ static PetscErrorCode MarchWeigh(MapMarch w, MapPoint *row)
   MapFastest fastest;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedLineariseInertia(&w->bodies->model, w->closed, w->lambda_n, w->sigma, w->omega));
+  PetscCall(ReducedLinearise(&w->bodies->model, w->closed, w->lambda_n, PETSC_TRUE, w->sigma, w->omega));
   MapModesJudge(2 * w->bodies->model.m, w->sigma, w->omega, &fastest);
   row->whole = fastest.growth;
   PetscFunctionReturn(0);

@@ -19,7 +19,7 @@ PetscErrorCode MapMarchLinearise(MapMarch w, const ContactStatus status[], MapFa
     w->closed[i]   = status[i] != CONTACT_OPEN ? PETSC_TRUE : PETSC_FALSE;
     w->lambda_n[i] = w->rest.p[3 * i];
   }
-  PetscCall(ReducedLineariseSliding(model, w->closed, w->lambda_n, w->sigma, w->omega));
+  PetscCall(ReducedLinearise(model, w->closed, w->lambda_n, PETSC_FALSE, w->sigma, w->omega));
   MapModesJudge(2 * model->m, w->sigma, w->omega, fastest);
   w->growth = fastest->growth;
   PetscCall(PetscArraycpy(w->known, w->closed, model->n_pairs));

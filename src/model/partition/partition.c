@@ -102,13 +102,6 @@ static PetscErrorCode CellGraphCreate(DM dm, const Clusters *clusters, CellGraph
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CellGraphDestroy(CellGraph *graph)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree5(graph->of_cell, graph->weight, graph->start, graph->neighbour, graph->n_faces));
-  PetscFunctionReturn(0);
-}
-
 /* Parts [n] of the vertices of the graph, balanced in weight, few faces between parts */
 static PetscErrorCode GraphPartition(const CellGraph *graph, PetscInt n_parts, PetscInt part[])
 {
@@ -227,7 +220,7 @@ PetscErrorCode PartitionMesh(Model model)
   PetscCall(MeshDistribute(&model->dm, clusters.n_cells, size, rank));
   PetscCall(MeshTabulate(model));
   PetscCall(PetscFree(rank));
-  PetscCall(CellGraphDestroy(&graph));
+  PetscCall(PetscFree5(graph.of_cell, graph.weight, graph.start, graph.neighbour, graph.n_faces));
   PetscCall(SlabsDestroy(&slabs));
   PetscCall(PetscFree2(clusters.of_cell, clusters.cost));
   PetscFunctionReturn(0);

@@ -195,7 +195,7 @@ static PetscErrorCode JointSetUp(Model model, Joint *joint)
     wish[k] = (ModelMeanWish){joint->name, joint->is_point ? "set" : k ? "b" : "a",       joint->set[k], turns,
                               k ? -1 : 1,  k && joint->has_at_b ? joint->at_b : joint->at};
     if (joint->has_at) continue;
-    PetscCall(MeanFindMiddle(model, &wish[k], middle));
+    PetscCall(MeanFindMiddle(model, &wish[k], middle, NULL));
     for (int d = 0; d < 3; d++) joint->at[d] += middle[d] / (PetscReal)n;
   }
   PetscCall(MeanCreate(model, n, wish, &joint->mean));

@@ -113,9 +113,8 @@ static PetscErrorCode MeanAddRows(Model model, MeanSet *m, const ModelMeanWish *
   PetscFunctionReturn(0);
 }
 
-/* Shares and moments of a set; then, where b is given, its rows about `at` */
-static PetscErrorCode MeanVisit(Model model, const ModelMeanWish *wish, const PetscReal at[3], PetscReal middle[3],
-                                PetscReal b[][3][6])
+/* Shares and moments of a set; then, where b is given, its rows about the place of the wish */
+PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3], PetscReal b[][3][6])
 {
   PetscReal second[6] = {0};
   MeanSet   m         = {0};
@@ -128,17 +127,10 @@ static PetscErrorCode MeanVisit(Model model, const ModelMeanWish *wish, const Pe
   PetscCall(MeanMoments(model, &m, second));
   PetscCall(MeanInvert(second, &m));
   PetscCall(PetscArraycpy(middle, m.middle, 3));
-  if (b) PetscCall(MeanAddRows(model, &m, wish, at, b));
+  if (b) PetscCall(MeanAddRows(model, &m, wish, wish->at, b));
   PetscCall(PetscFree(m.vertex));
   PetscCall(VecRestoreArrayRead(shares, &m.share));
   PetscCall(VecDestroy(&shares));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MeanFindMiddle(Model model, const ModelMeanWish *wish, PetscReal middle[3])
-{
-  PetscFunctionBeginUser;
-  PetscCall(MeanVisit(model, wish, NULL, middle, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -149,7 +141,7 @@ PetscErrorCode MeanCreate(Model model, PetscInt n_wishes, const ModelMeanWish wi
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &b));
-  for (PetscInt k = 0; k < n_wishes; k++) PetscCall(MeanVisit(model, &wish[k], wish[k].at, middle, b));
+  for (PetscInt k = 0; k < n_wishes; k++) PetscCall(MeanFindMiddle(model, &wish[k], middle, b));
   mean->n = 0;
   for (int fill = 0; fill < 2; fill++) {
     for (PetscInt v = 0, i = 0; v < n; v++) {

@@ -18,12 +18,6 @@
 #define DIRECTION_ZERO 1e-12 /* components of a direction below it are rounding */
 #define PAIR_TURNS     8     /* of the ends; two or three are the rule */
 
-/* One part, or all others */
-typedef struct {
-  PetscInt  part;
-  PetscBool within;
-} EffectParts;
-
 /* What no eigenvalue of a symmetric S [3][3] is below, but for rounding */
 static PetscReal LowestBound(const PetscReal S[9])
 {
@@ -148,9 +142,8 @@ PetscErrorCode EffectsListNodes(const Mesh *mesh, PetscInt **first, PetscInt **n
   PetscFunctionReturn(0);
 }
 
-/* EffectsFindBest(), of all parts, or where `of` is given of that or those asked for */
-static PetscErrorCode PartsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, const EffectParts *of,
-                                    EffectBest best[])
+PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, const EffectParts *of,
+                               EffectBest best[])
 {
   const PetscInt n_parts = e->mesh->n_parts;
   PetscMPIInt    size, bytes = (PetscMPIInt)((size_t)n_parts * sizeof(EffectBest));
@@ -167,13 +160,6 @@ static PetscErrorCode PartsFindBest(MPI_Comm comm, const ModeEffects *e, EffectK
     BestTurn(&best[k]);
   }
   PetscCall(PetscFree(all));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(PartsFindBest(comm, e, kind, NULL, best));
   PetscFunctionReturn(0);
 }
 
@@ -198,7 +184,7 @@ PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, P
   PetscFunctionBeginUser;
   *pair = (EffectPair){.part = {part, -1}};
   PetscCall(PetscMalloc1(n_parts, &best));
-  PetscCall(PartsFindBest(comm, e, kind, &(EffectParts){part, PETSC_TRUE}, best));
+  PetscCall(EffectsFindBest(comm, e, kind, &(EffectParts){part, PETSC_TRUE}, best));
   pair->end[0] = best[part];
   for (int turn = 0; turn < PAIR_TURNS && pair->end[0].found; turn++) {
     const int         moves = turn % 2 ? 0 : 1; /* this end, the other one is held */
@@ -206,7 +192,7 @@ PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, P
     PetscInt          k;
 
     PetscCall(PetscMemcpy(e->end, pair->end[1 - moves].vector, sizeof(e->end)));
-    PetscCall(PartsFindBest(comm, e, kind, &of, best));
+    PetscCall(EffectsFindBest(comm, e, kind, &of, best));
     k = PairChoose(best, n_parts, e->rounding);
     if (k < 0) break;
     if (turn > 0 && Vec3ComparePlaces(best[k].at, pair->end[moves].at) == 0 && k == pair->part[moves]) break;

@@ -96,7 +96,7 @@ static PetscErrorCode EffectsWriteRows(Modes modes, const ModeEffects *e, Effect
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &best, n, &pair));
-  PetscCall(EffectsFindBest(modes->comm, e, kind, best));
+  PetscCall(EffectsFindBest(modes->comm, e, kind, NULL, best));
   for (PetscInt k = 0; k < n; k++) pair[k] = (EffectPair){.end = {[1] = best[k]}, .part = {-1, k}};
   PetscCall(EffectsWriteAlike(e, kind, n, pair, table));
   PetscCall(PetscFree2(best, pair));

@@ -46,9 +46,17 @@ static inline void EffectAtNode(const ModeEffects *e, EffectKind kind, PetscInt 
     for (int b = 0; b < 3; b++) form[a][b] = e->factor[kind] * (y[a] * x[b] + y[b] * x[a]) / 2;
 }
 
-/* best.c - first and node as above, which the caller frees; among the nodes of each part; best [n_parts]. Collective */
+/* One part, or all others */
+typedef struct {
+  PetscInt  part;
+  PetscBool within;
+} EffectParts;
+
+/* best.c - first and node as above, which the caller frees; best [n_parts], among the nodes of each part or, where
+   `of` is given, of those that it asks for. Collective */
 PETSC_INTERN PetscErrorCode EffectsListNodes(const Mesh *mesh, PetscInt **first, PetscInt **nodes);
-PETSC_INTERN PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, EffectBest best[]);
+PETSC_INTERN PetscErrorCode EffectsFindBest(MPI_Comm comm, const ModeEffects *e, EffectKind kind, const EffectParts *of,
+                                            EffectBest best[]);
 /* The same between two nodes: from the best one of `part` to the ground, each end in turn moves to its best node, on
    `part` and on it too (`within`) or on others, until both stay. e->end is zero again. Collective */
 PETSC_INTERN PetscErrorCode EffectsFindPair(MPI_Comm comm, ModeEffects *e, EffectKind kind, PetscInt part,

@@ -45,13 +45,6 @@ static PetscErrorCode SharedLawsCreate(const DensePencil *whole, PetscReal share
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SharedLawsDestroy(SharedLaws *s)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(s->law, s->dense));
-  PetscFunctionReturn(0);
-}
-
 /* Whether a mode is rigid, which laws leave as it is */
 static PetscBool LambdaIsRigid(const Projection *p, PetscComplex lambda)
 {
@@ -75,7 +68,7 @@ static PetscErrorCode LawsFollow(const Projection *p, int steps, PetscReal detou
                                   &m->vectors[1][i * m->size], good));
       if (!(cimag(m->lambda[i]) > 0)) *good = PETSC_FALSE;
     }
-    PetscCall(SharedLawsDestroy(&shared));
+    PetscCall(PetscFree2(shared.law, shared.dense));
     if (*good && ProjectionHasTwice(m)) *good = PETSC_FALSE;
   }
   PetscCallMPI(MPI_Bcast(good, 1, MPIU_BOOL, 0, p->modes->comm));

@@ -4,9 +4,8 @@
 
       f = (p_F / |F|) f_F + (p_M / |M|) f_M    (N),
 
-   with f_F, f_M, F, M of the scene; <name>_tension (N) or <name>_shortening (m) of a bolt (bodies/bolt.c). What swings
-   has no part in it. No matrix of
-   the bodies depends on them: pencils do through the sliding state alone.
+   with f_F, f_M, F, M of the scene; <name>_tension (N) or <name>_shortening (m) of a bolt (bodies/bolt.c). What
+   swings has no part in it. No matrix of the bodies depends on them: pencils do through the sliding state alone.
 */
 #include "operators/operatorsimpl.h"
 #include "base/algebra/vec3.h"

@@ -22,13 +22,6 @@ static PetscErrorCode SumRowReserve(SumRow *row, PetscInt size)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SumRowDestroy(SumRow *row)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(row->column));
-  PetscFunctionReturn(0);
-}
-
 /* Distinct columns of row i of all terms that the sum has */
 static PetscErrorCode SumRowUnite(const Terms *terms, const PetscBool has[], PetscInt i, SumRow *row)
 {
@@ -102,7 +95,7 @@ static PetscErrorCode SumArraysCreate(const Terms *terms, const PetscBool has[],
     s->ia[i + 1] = s->ia[i] + row.n;
   }
   PetscCall(PetscArrayzero(s->a, s->ia[n])); /* the bound may be far above, and its memory stays untouched */
-  PetscCall(SumRowDestroy(&row));
+  PetscCall(PetscFree(row.column));
   *arrays = s;
   PetscFunctionReturn(0);
 }

@@ -1,7 +1,6 @@
 /*
-   The reduced model in the eigenvectors of the middle of a cell. With M0 of the middle and x = X1 of z = [h x;
-   lambda x], damped
-   damped
+   The reduced model in the eigenvectors of the middle of a cell. With M0 of the middle and x = X1 of
+   z = [h x; lambda x], damped
 
       A0 = [0 hI; -M0^-1 K / h, -M0^-1 C],   E = -G (dK x_l + lambda_l dC x_l),   B' = G dM lambda_l x_l,
 

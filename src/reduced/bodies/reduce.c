@@ -80,8 +80,8 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
 
 /* The bodies below a cut-off with parameters p, in the modes that resemble those of `like`, or in all. The rooms
    are borrowed from r; factors of the residual are freed, since nothing is lifted to the mesh from there. */
-static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
-                                         ReducedRun *other)
+PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
+                               ReducedRun *other)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedCreate(r->comm, other));
@@ -97,19 +97,5 @@ static PetscErrorCode ReducedReduceOther(ReducedRun r, PetscReal cutoff, const P
   if (p) PetscCall(OperatorsCreatePoint(r->run.operators, p, &(*other)->request.p));
   PetscCall(ReducedReduce(*other));
   if (!(*other)->reduction.model.sparse) PetscCall(ShiftInvertDestroy(&(*other)->reduction.inverse));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *at)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedReduceOther(r, cutoff, p, NULL, at));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedReduceLike(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun *at)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedReduceOther(r, cutoff, p, r, at));
   PetscFunctionReturn(0);
 }

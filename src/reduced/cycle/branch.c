@@ -82,7 +82,7 @@ static PetscErrorCode BranchTurn(LimitCycle c, PetscReal step, BranchWay *w)
   if (PetscMax(PetscAbsReal(t->value), PetscAbsReal(w->here.tangent.value)) < BRANCH_UPRIGHT * c->shooting.span)
     PetscFunctionReturn(0);
   PetscCall(ShootingFindFold(&c->shooting, &w->here, step, t->value, &w->fold, &error));
-  if (error >= 0) PetscCall(CycleTakeFold(c, &w->fold, error));
+  if (error >= 0) PetscCall(CycleTake(c, &w->fold.cycle, &w->fold.tangent, error));
   PetscFunctionReturn(0);
 }
 
@@ -134,7 +134,7 @@ static PetscErrorCode BranchWalk(LimitCycle c, BranchWay *w)
     w->step = step;
     PetscCall(BranchStep(c, step, w, &taken));
     if (taken && !w->end) PetscCall(BranchTurn(c, step, w));
-    if (taken && c->n_points < w->most) PetscCall(CycleTake(c, &w->next.cycle));
+    if (taken && c->n_points < w->most) PetscCall(CycleTake(c, &w->next.cycle, NULL, -1));
     BranchGoOn(c, taken, w);
     if (!taken) continue;
     w->here = w->next;

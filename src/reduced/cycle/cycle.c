@@ -129,7 +129,7 @@ static PetscErrorCode CycleAddPoint(LimitCycle c, CyclePoint **point)
 }
 
 /* A cycle, or with `along` a fold of which the parameter is known to `error` */
-static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along, PetscReal error)
+PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at, const ShootingTangent *along, PetscReal error)
 {
   CyclePoint *point;
 
@@ -148,20 +148,6 @@ static PetscErrorCode CycleAdd(LimitCycle c, const ShootingCycle *at, const Shoo
   if (c->higher) PetscCall(CycleHigherLook(c->higher, at, along, point));
   if (!point->has_finer || (point->wants_higher && !point->has_higher)) point->value_error = -1; /* a part is unknown */
   PetscCall(CycleWrite(c));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CycleTake(LimitCycle c, const ShootingCycle *at)
-{
-  PetscFunctionBeginUser;
-  PetscCall(CycleAdd(c, at, NULL, -1));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CycleTakeFold(LimitCycle c, const ShootingPlace *fold, PetscReal error)
-{
-  PetscFunctionBeginUser;
-  PetscCall(CycleAdd(c, &fold->cycle, &fold->tangent, error));
   PetscFunctionReturn(0);
 }
 
@@ -195,7 +181,7 @@ static PetscErrorCode CycleFind(LimitCycle c, ShootingCycle *at)
   PetscCall(ShootingSolve(&c->shooting, at));
   PetscCall(CycleCheckFound(c, at));
   if (c->verify_cutoff) PetscCall(CycleHigherCreate(c, &c->higher));
-  PetscCall(CycleTake(c, at));
+  PetscCall(CycleTake(c, at, NULL, -1));
   c->rms = c->point[0].found.rms;
   if (c->parameter[0]) PetscCall(CycleFollow(c, at, NULL));
   PetscFunctionReturn(0);
@@ -211,7 +197,7 @@ static PetscErrorCode CycleFindOnset(LimitCycle c, ShootingCycle *at)
   PetscCall(CycleSetParameter(c));
   PetscCall(CycleBegin(c, at, &growing));
   if (c->verify_cutoff) PetscCall(CycleHigherCreate(c, &c->higher));
-  PetscCall(CycleTake(c, at));
+  PetscCall(CycleTake(c, at, NULL, -1));
   c->rms = c->point[0].found.rms / c->amplitude;
   PetscCall(CycleFollow(c, at, &growing));
   PetscCall(PetscFree(growing.x));

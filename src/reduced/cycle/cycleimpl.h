@@ -163,11 +163,11 @@ PETSC_INTERN PetscErrorCode CycleSetSizes(LimitCycle cycle, const PetscReal size
 PETSC_INTERN PetscErrorCode CycleBegin(LimitCycle cycle, ShootingCycle *at, ShootingTangent *growing);
 
 /* cycle.c - the parameter in the flow, and models over it; how shooting goes about it; the cycle in numbers, with its
-   stability and error, becomes a row */
+   stability and error, becomes a row; `along`: of a fold, whose parameter is known to `error`, or NULL and -1 */
 PETSC_INTERN PetscErrorCode CycleSetParameter(LimitCycle cycle);
 PETSC_INTERN PetscErrorCode CycleSetShooting(LimitCycle cycle, PetscReal period);
-PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at);
-PETSC_INTERN PetscErrorCode CycleTakeFold(LimitCycle cycle, const ShootingPlace *fold, PetscReal error);
+PETSC_INTERN PetscErrorCode CycleTake(LimitCycle cycle, const ShootingCycle *at, const ShootingTangent *along,
+                                      PetscReal error);
 
 /* refine.c - the same cycle with other steps, for its errors; of a fold, whose parameter is a result, the one at the
    same distance `along` the branch */

@@ -146,7 +146,7 @@ static PetscErrorCode FamilyReduce(CycleFamily *f, PetscReal t, PetscReal *part[
   PetscFunctionBeginUser;
   PetscCall(ReducedParameterGetRise(f->parameter, value, &rise));
   f->p[f->parameter->index] = value;
-  PetscCall(ReducedReduceLike(f->scene, rise * f->scene->request.cutoff, f->p, &at));
+  PetscCall(ReducedReduceAt(f->scene, rise * f->scene->request.cutoff, f->p, f->scene, &at));
   f->p[f->parameter->index] = was;
   same                      = !at->reduction.model.C == !f->scene->reduction.model.C ? PETSC_TRUE : PETSC_FALSE;
   PetscCheck(same, f->scene->comm, PETSC_ERR_USER_INPUT,

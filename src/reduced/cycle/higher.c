@@ -51,7 +51,7 @@ PetscErrorCode CycleHigherCreate(LimitCycle c, CycleHigher *higher)
   h        = *higher;
   h->m     = c->reduced->reduction.model.m;
   h->below = &c->flow;
-  PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->request.cutoff, c->p, &h->bodies));
+  PetscCall(ReducedReduceAt(c->reduced, REDUCED_HIGHER * c->reduced->request.cutoff, c->p, NULL, &h->bodies));
   h->bodies->motion.state.time = c->reduced->motion.state.time; /* loads and sliding are those of then */
   PetscCall(PetscMalloc1(h->bodies->reduction.model.m * h->m, &h->T));
   PetscCall(BlockGram(h->bodies->reduction.MPhi, c->reduced->reduction.Phi, h->T));

@@ -130,7 +130,7 @@ PetscErrorCode ReducedCompare(ReducedRun r)
   PetscFunctionBeginUser;
   if (r->result.not_compared) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(n, &sigma, n, &omega));
-  PetscCall(ReducedLineariseSliding(&r->reduction.model, r->result.closed, r->result.lambda_n, sigma, omega));
+  PetscCall(ReducedLinearise(&r->reduction.model, r->result.closed, r->result.lambda_n, PETSC_FALSE, sigma, omega));
   for (PetscInt i = 0; i < r->result.n_compared; i++)
     CompareMatch(n, sigma, omega, r->result.compared[i].mesh, r->result.compared[i].reduced);
   PetscCall(

@@ -96,8 +96,8 @@ PetscErrorCode ReducedWeighGrowth(ReducedRun r, PetscReal *off)
     lambda_n[i] = rest.p[3 * i];
   }
   if (found) {
-    PetscCall(ReducedLineariseSliding(&r->reduction.model, closed, lambda_n, z[0][0], z[0][1]));
-    PetscCall(ReducedLineariseInertia(&r->reduction.model, closed, lambda_n, z[1][0], z[1][1]));
+    PetscCall(ReducedLinearise(&r->reduction.model, closed, lambda_n, PETSC_FALSE, z[0][0], z[0][1]));
+    PetscCall(ReducedLinearise(&r->reduction.model, closed, lambda_n, PETSC_TRUE, z[1][0], z[1][1]));
     PetscCall(InertiaTake(r, z));
   }
   if (InertiaWorst(r)) *off = InertiaWorst(r)->off;

@@ -241,17 +241,8 @@ static PetscErrorCode ClosedFill(ClosedPairs *c, const PetscReal lambda_n[], Pet
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], PetscReal sigma[],
-                                PetscReal omega[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(ReducedLineariseSliding(model, closed, NULL, sigma, omega));
-  PetscFunctionReturn(0);
-}
-
-/* Eigenvalues with the inertia of what the modes leave out, or without */
-static PetscErrorCode LineariseAbout(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                     PetscBool inertia, PetscReal sigma[], PetscReal omega[])
+PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
+                                PetscBool inertia, PetscReal sigma[], PetscReal omega[])
 {
   const PetscInt m = model->m;
   PetscReal     *K, *C;
@@ -265,22 +256,6 @@ static PetscErrorCode LineariseAbout(const ReducedModel *model, const PetscBool 
   PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, NULL));
   PetscCall(PetscFree2(K, C));
   PetscCall(ClosedDestroy(&c));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedLineariseSliding(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                       PetscReal sigma[], PetscReal omega[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(LineariseAbout(model, closed, lambda_n, PETSC_FALSE, sigma, omega));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReducedLineariseInertia(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
-                                       PetscReal sigma[], PetscReal omega[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(LineariseAbout(model, closed, lambda_n, PETSC_TRUE, sigma, omega));
   PetscFunctionReturn(0);
 }
 

@@ -52,7 +52,7 @@ PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, co
   PetscFunctionBeginUser;
   PetscCall(ReducedModelCopy(model, &warped));
   WarpModel(dt, model, &warped);
-  PetscCall(ReducedLineariseSliding(&warped, closed, lambda_n, sigma, omega));
+  PetscCall(ReducedLinearise(&warped, closed, lambda_n, PETSC_FALSE, sigma, omega));
   for (PetscInt i = 0; i < 2 * model->m; i++) {
     const double complex s = 2 / dt * catanh(0.5 * dt * (sigma[i] + omega[i] * I));
 

@@ -32,7 +32,7 @@ static PetscErrorCode VerifyRun(ReducedRun r, PetscReal cutoff, PetscInt every, 
   ReducedRun   o;
 
   PetscFunctionBeginUser;
-  PetscCall(ReducedReduceAt(r, cutoff, r->request.p, other));
+  PetscCall(ReducedReduceAt(r, cutoff, r->request.p, NULL, other));
   o            = *other;
   o->motion.dt = r->motion.dt / (PetscReal)every;
   PetscCall(ReducedStart(o));

@@ -3,9 +3,8 @@
 
       x = (eta, rate, lambda, q)     [2 m + 3 n_pairs (+ 3 n_pairs where the residual is damped)]
 
-   all that a step knows of the past (y_n, from which slip counts, is P eta + W q and what loads add) beside which pairs
-   rest, changes at t_n
-   make
+   all that a step knows of the past (y_n, from which slip counts, is P eta + W q and what loads add) beside which
+   pairs rest, changes at t_n make
 
       dv = D dx          motions of the pairs without lambda_{n+1}, less those from which slip counts
       dlambda_{n+1}      as the laws answer dv (ContactComplianceTangent())

@@ -107,24 +107,21 @@ typedef enum { SHOOTING_ALONG, SHOOTING_SPLITS, SHOOTING_NO_DERIVATIVE } Shootin
     told by `converged`; then x is where the iteration stopped, which may be further off than the guess. @*/
 PETSC_INTERN PetscErrorCode ShootingSolve(const Shooting *s, ShootingCycle *cycle);
 
-/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps, by Newton's matrix, and what
-   the flow
-    says of that matrix. Not collective. @*/
+/*@ ShootingGetPhase - how a cycle that has converged changes with the place of its steps, by Newton's matrix, and
+   what the flow says of that matrix. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetPhase(const Shooting *s, const ShootingCycle *cycle, ShootingPhase *phase);
 
 /*@ ShootingGetStability - multipliers of a cycle that has converged. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetStability(const Shooting *s, const ShootingCycle *cycle,
                                                  ShootingStability *stability);
 
-/*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none, then
-   p
-    grows) goes on; where there is none the tangent stays. Not collective. @*/
+/*@ ShootingGetTangent - direction of the branch at a cycle, along which the tangent before (of length 0 for none,
+   then p grows) goes on; where there is none the tangent stays. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingGetTangent(const Shooting *s, const ShootingCycle *cycle, ShootingTangent *tangent,
                                                ShootingDirection *direction);
 
 /*@ ShootingAdvance - the cycle at a distance along a branch, in place of `cycle`, which stays what it was where there
-   is
-    none (converged is then false). Folds are passed. Not collective. @*/
+   is none (converged is then false). Folds are passed. Not collective. @*/
 PETSC_INTERN PetscErrorCode ShootingAdvance(const Shooting *s, PetscReal step, const ShootingTangent *tangent,
                                             ShootingCycle *cycle);
 

@@ -105,14 +105,6 @@ static PetscErrorCode ManyRowsExtend(ManyBasis *b, PetscInt first)
   PetscFunctionReturn(0);
 }
 
-/* The unknowns of the equilibrium found last */
-static PetscErrorCode EquilibriumTake(const ManyBasis *b, Vec q)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PencilRestrict(b->bodies, b->statics->u, q));
-  PetscFunctionReturn(0);
-}
-
 /* V'loads of the vectors from the first on */
 static PetscErrorCode ManyLoadsExtend(ManyBasis *b, PetscInt first)
 {
@@ -142,7 +134,7 @@ PetscErrorCode ManyBasisAdd(ManyBasis *b)
   PetscFunctionBeginUser;
   PetscCall(BlockCreate(b->space.V, 1, &block));
   PetscCall(BVGetColumn(block, 0, &q));
-  PetscCall(EquilibriumTake(b, q));
+  PetscCall(PencilRestrict(b->bodies, b->statics->u, q));
   if (b->scale == 0) PetscCall(VecNorm(q, NORM_2, &b->scale));
   PetscCall(VecScale(q, 1 / b->scale));
   PetscCall(BVRestoreColumn(block, 0, &q));
@@ -167,7 +159,7 @@ PetscErrorCode ManyBasisCreate(Statics statics, ManyBasis *b, PetscBool *good)
   PetscCall(BlockCreate(b->space.V, MANY_LOADS, &b->loads));
   PetscCall(PetscCalloc1(MANY_LOADS * MANY_VECTORS, &b->loaded));
   PetscCall(BVCreateVec(b->space.V, &q));
-  PetscCall(EquilibriumTake(b, q));
+  PetscCall(PencilRestrict(b->bodies, b->statics->u, q));
   PetscCall(BodiesAgree(b, q, good));
   PetscCall(VecDestroy(&q));
   PetscFunctionReturn(0);

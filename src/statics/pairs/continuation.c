@@ -1,14 +1,13 @@
 /*
-   What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise: with
-   Coulomb's law by continuation in a regularisation of friction (soften.c), which begins as soon as more pairs become
-   wrong from one iteration to the next, since going round costs more; where it fails the active set is asked to its
-   end; statuses of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer change per
-   iteration; then all friction coefficients are raised from 0 in steps, each begun from the equilibrium before it, with
-   half the step after a failure.
-   Equilibrium without friction is a convex problem. An equilibrium whose system has a determinant of the wrong sign
-   (small.c, refactor.c) is none that can be reached from there, hence a failure too: on the way forces grow beyond
-   any bound, the bodies jam. So they do where the last equilibrium's pairs would have such a system with the whole
-   friction.
+   What the active set does not settle is either proven to have no equilibrium (certificate.c) or tried otherwise:
+   with Coulomb's law by continuation in a regularisation of friction (soften.c), which begins as soon as more pairs
+   become wrong from one iteration to the next, since going round costs more; where it fails the active set is asked
+   to its end; statuses of sliding pairs, and of all without friction, are found by pivoting (pivot.c); then fewer
+   change per iteration; then all friction coefficients are raised from 0 in steps, each begun from the equilibrium
+   before it, with half the step after a failure. Equilibrium without friction is a convex problem. An equilibrium
+   whose system has a determinant of the wrong sign (small.c, refactor.c) is none that can be reached from there,
+   hence a failure too: on the way forces grow beyond any bound, the bodies jam. So they do where the last
+   equilibrium's pairs would have such a system with the whole friction.
 */
 #include "statics/staticsimpl.h"
 

@@ -39,13 +39,6 @@ typedef struct {
   PetscReal  residual, scale;
 } Kept;
 
-static PetscErrorCode KeptCreate(const Active *a, Kept *kept)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(a->rows->n, &kept->l, a->rows->n, &kept->w));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode Keep(const Active *a, PetscReal residual, Kept *kept)
 {
   PetscFunctionBeginUser;
@@ -62,13 +55,6 @@ static PetscErrorCode GoBack(Active *a, const Kept *kept)
   PetscCall(PetscArraycpy(a->l, kept->l, a->rows->n));
   PetscCall(PetscArraycpy(a->w, kept->w, a->rows->n));
   a->scale = kept->scale;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode KeptDestroy(Kept *kept)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(kept->l, kept->w));
   PetscFunctionReturn(0);
 }
 
@@ -181,7 +167,7 @@ static PetscErrorCode SoftenIterate(Active *a, PetscReal soft, PetscBool balance
   PetscFunctionBeginUser;
   *converged = PETSC_FALSE;
   SoftenSet(a, soft);
-  PetscCall(KeptCreate(a, &from));
+  PetscCall(PetscMalloc2(a->rows->n, &from.l, a->rows->n, &from.w));
   if (balanced) PetscCall(SoftenMeasure(a, &residual));
   for (PetscInt it = 0; it < a->max_it && drag <= MOST_DRAG && !*converged; it++, a->n_it++) {
     PetscCall(Keep(a, residual, &from));
@@ -195,7 +181,7 @@ static PetscErrorCode SoftenIterate(Active *a, PetscReal soft, PetscBool balance
     PetscCall(SoftenEnough(a, soft, &enough));
     *converged = residual <= enough ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(KeptDestroy(&from));
+  PetscCall(PetscFree2(from.l, from.w));
   PetscFunctionReturn(0);
 }
 
@@ -231,11 +217,11 @@ PetscErrorCode ActiveSoften(Active *a, ActiveOutcome *outcome)
   Kept      kept;
 
   PetscFunctionBeginUser;
-  PetscCall(KeptCreate(a, &kept));
+  PetscCall(PetscMalloc2(a->rows->n, &kept.l, a->rows->n, &kept.w));
   PetscCall(SoftenIterate(a, SOFTEST, PETSC_FALSE, &converged));
   PetscCall(SoftenLower(a, &kept, &converged));
   SoftenSet(a, 0);
-  PetscCall(KeptDestroy(&kept));
+  PetscCall(PetscFree2(kept.l, kept.w));
   if (converged) PetscCall(ActiveIterate(a, PETSC_FALSE, outcome));
   PetscFunctionReturn(0);
 }

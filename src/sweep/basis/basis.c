@@ -45,13 +45,6 @@ PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block)
-{
-  PetscFunctionBeginUser;
-  PetscCall(BlockCreate(basis->space.V, n, block));
-  PetscFunctionReturn(0);
-}
-
 /* H += V' |diag A_t| block, NULL at first */
 static PetscErrorCode DiagonalAdd(Basis *basis, PetscInt t, BV block, Mat *H)
 {
@@ -111,7 +104,7 @@ static void BasisFollow(Basis *basis)
 static PetscErrorCode BasisCopyBlock(Basis *basis, PetscInt first, PetscInt n, BV *block)
 {
   PetscFunctionBeginUser;
-  PetscCall(BasisCreateBlock(basis, n - first, block));
+  PetscCall(BlockCreate(basis->space.V, n - first, block));
   PetscCall(BVSetActiveColumns(basis->space.V, first, n));
   PetscCall(BVCopy(basis->space.V, *block));
   PetscCall(BVSetActiveColumns(basis->space.V, 0, n));

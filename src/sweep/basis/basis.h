@@ -20,8 +20,6 @@ typedef struct {
 } Basis;
 
 PetscErrorCode BasisCreate(MPI_Comm comm, Pencil pencil, Basis *basis);
-/* Block of n columns in the unknowns of the pencil, to fill and to hand to BasisAdd() */
-PetscErrorCode BasisCreateBlock(const Basis *basis, PetscInt n, BV *block);
 /* fill.c - block of the vectors of the first n modes of the eigensolver: n_parts = 1 the real parts of right ones, 4
    real and imaginary parts of right and left ones, as far as there are any */
 PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, PetscInt n_parts, BV *block);

@@ -124,7 +124,7 @@ static PetscErrorCode BlockAppend(const Basis *basis, PetscInt m, BV *side, Pets
   if (*side)
     PetscCall(BVResize(*side, *n + m, PETSC_TRUE));
   else
-    PetscCall(BasisCreateBlock(basis, m, side));
+    PetscCall(BlockCreate(basis->space.V, m, side));
   PetscCall(BVSetActiveColumns(*side, *n, *n + m));
   *n += m;
   PetscFunctionReturn(0);
@@ -218,7 +218,7 @@ PetscErrorCode CorrectionApply(const Correction *c, CorrectionDrop drop, Basis *
   *n_added = 0;
   if (!n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
-  PetscCall(BasisCreateBlock(basis, n, &Z));
+  PetscCall(BlockCreate(basis->space.V, n, &Z));
   for (int i = 0; i < 2; i++)
     if (block->side[i]) PetscCall(BVSetActiveColumns(block->side[i], 0, block->n[i]));
   PetscCall(ResidualsSolve(&c->factor, block->side, Z));

@@ -12,6 +12,7 @@
 */
 #include "basis.h"
 #include "base/algebra/dense.h"
+#include "solver/block/orthonormal.h"
 #include "solver/factor/shiftinvert.h"
 #include <slepceps.h>
 
@@ -29,7 +30,7 @@ PetscErrorCode BasisCreateModes(const Basis *basis, Modes modes, PetscInt n, Pet
   PetscInt m = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(BasisCreateBlock(basis, n_parts * n, block));
+  PetscCall(BlockCreate(basis->space.V, n_parts * n, block));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(ModesGetVectors(modes, i, &part[0], &part[1], &part[2], &part[3]));
     for (int k = 0; k < n_parts; k++) {
@@ -80,7 +81,7 @@ PetscErrorCode BasisLabelModes(const Basis *basis, Modes solver, const PetscReal
   PetscCall(PetscMalloc2(4 * n * modes->size, &columns, 4 * n, &shape));
   DenseSplit(n * modes->size, modes->x, columns); /* xr, xi, yr, yi, [4 n][size] */
   DenseSplit(n * modes->size, modes->y, columns + 2 * n * modes->size);
-  PetscCall(BasisCreateBlock(basis, 4 * n, &block));
+  PetscCall(BlockCreate(basis->space.V, 4 * n, &block));
   PetscCall(BasisLift(basis, modes->size, 4 * n, columns, block));
   for (PetscInt i = 0; i < 4 * n; i++) {
     PetscCall(BVCreateVec(block, &shape[i]));
@@ -117,7 +118,7 @@ PetscErrorCode BasisFillWhole(Basis *basis, PetscBool *whole)
   *whole = PETSC_FALSE;
   PetscCall(MatGetSize(basis->M, &n, NULL));
   if (n > WHOLE) PetscFunctionReturn(0);
-  PetscCall(BasisCreateBlock(basis, n, &block));
+  PetscCall(BlockCreate(basis->space.V, n, &block));
   PetscCall(MatGetOwnershipRange(basis->M, &first, &last));
   PetscCall(BVGetMat(block, &unit));
   PetscCall(MatZeroEntries(unit));
@@ -195,7 +196,7 @@ PetscErrorCode BasisFillReal(Basis *basis, PetscBool friction, PetscInt n_modes,
   PetscCall(ShiftInvertCreate(&real, shift, PETSC_FALSE, progress, &si));
   PetscCall(RealSolve(&real, n_modes, &si, &eps));
   PetscCall(EPSGetDimensions(eps, &n_modes, NULL, NULL));
-  PetscCall(BasisCreateBlock(basis, n_modes, &block));
+  PetscCall(BlockCreate(basis->space.V, n_modes, &block));
   for (PetscInt i = 0; i < n_modes; i++) {
     PetscCall(BVGetColumn(block, i, &q));
     PetscCall(EPSGetEigenvector(eps, i, q, NULL));

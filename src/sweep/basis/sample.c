@@ -82,9 +82,8 @@ PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *mod
   PetscFunctionReturn(0);
 }
 
-/* Whether the basis has as many frictionless modes at p as the full problem; both -1, and so equal, where that
-   cannot be counted. The dense count is taken from rank 0, as an eigenvalue on the edge may fall either way by
-   rounding. */
+/* Whether the basis has as many frictionless modes at p as the full problem; both -1, and so equal, where that cannot
+   be counted. The dense count is taken from rank 0, as an eigenvalue on the edge may fall either way by rounding. */
 static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBool *complete)
 {
   PetscInt full, by_basis;

@@ -14,6 +14,19 @@
 #define BOX_GUARD                                                                                                      \
   0.03 /* as basis/greedy.c holds modes beyond the band, so that branches are followed across its ends */
 
+PetscErrorCode BoxSetRooms(Box *box, MPI_Comm comm, Operators operators, const PetscReal p[], Modes modes,
+                           Statics statics)
+{
+  PetscFunctionBeginUser;
+  box->comm      = comm;
+  box->operators = operators;
+  box->modes     = modes;
+  box->statics   = statics;
+  PetscCall(PetscFree(box->nominal));
+  PetscCall(OperatorsCreatePoint(operators, p, &box->nominal));
+  PetscFunctionReturn(0);
+}
+
 /* Room for samples is that of the full solutions and of the points that are only looked at */
 static PetscErrorCode BoxBeginGreedy(Box *box)
 {

@@ -15,7 +15,7 @@ typedef struct {
   Operators   operators;
   Modes       modes;
   Statics     statics; /* about whose sliding state at each point the pencil is, or NULL: all pairs are closed */
-  PetscReal  *nominal; /* [n_base] allocated by the caller, freed by BoxDestroy(); [n_parameters] from BoxSetUp() on */
+  PetscReal  *nominal; /* [n_base]; [n_parameters] from BoxSetUp() on */
   PetscReal   rtol;
   const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
   PetscInt    max_solutions, n_groups;
@@ -43,6 +43,9 @@ typedef struct {
   PetscReal    *turn;   /* [n][n] these directions in the basis */
 } Box;
 
+/* Sets these, with the nominal point p, NULL for that of the scene. Collective. */
+PETSC_INTERN PetscErrorCode BoxSetRooms(Box *box, MPI_Comm comm, Operators operators, const PetscReal p[], Modes modes,
+                                        Statics statics);
 /* The statuses at n points, the pencil that holds at all of them, and the basis where it is the whole space. `get`
    tells all parameters p [n_base] of a point. Collective.
    Errors: PETSC_ERR_SUP where sliding states make the pencil not affine. */

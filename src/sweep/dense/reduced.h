@@ -96,8 +96,7 @@ PetscErrorCode RoundingProducts(PetscInt n, const PetscReal E[], PetscInt m, con
 PetscErrorCode RoundingMarkRigid(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                  ReducedModes *modes);
 
-/* values.c - sets to zero in p[] what friction and damping are proportional to; false where some of either
-   remains */
+/* values.c - sets to zero in p[] what friction and damping are proportional to; false where some of either remains */
 PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
 
 /* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see

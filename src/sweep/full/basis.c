@@ -47,10 +47,9 @@ static void TakeCoordinates(PetscInt size, const PetscScalar H[], const PetscInt
     x[r] = CMPLX(H[column[0] * size + r], column[1] < 0 ? 0 : H[column[1] * size + r]);
 }
 
-/* V = [V0, Q], orthonormal in the plain dot product, of n0 vectors and what the columns hold beyond them, which
-   they are replaced by; H [.][size] are their coordinates, size that of V: columns = V H. The columns of H were
-   made with room for n0 + m rows and are moved together to size rows, from the first on, each to the left of where
-   it was. */
+/* V = [V0, Q], orthonormal in the plain dot product, of n0 vectors and what the columns hold beyond them, which they
+   are replaced by; H [.][size] are their coordinates, size that of V: columns = V H. The columns of H were made with
+   room for n0 + m rows and are moved together to size rows, from the first on, each to the left of where it was. */
 static PetscErrorCode BasisJoin(BV V0, PetscInt n0, BV block, BV *V, PetscScalar **H, PetscInt *size)
 {
   PetscInt     m, n;

@@ -1,7 +1,6 @@
 /*
-   Bushings and points: forces B'(k q + c q') of the six motions q = B u (model.h) at all nodes of their sets, one
-   sum over ranks in each step. q in m and rad, k in N/m and N m/rad, c in N s/m and N m s/rad, B without unit and
-   in 1/m.
+   Bushings and points: forces B'(k q + c q') of the six motions q = B u (model.h) at all nodes of their sets, one sum
+   over ranks in each step. q in m and rad, k in N/m and N m/rad, c in N s/m and N m s/rad, B without unit and in 1/m.
 */
 #include "dynamics/bodies/bodiesimpl.h"
 

@@ -174,7 +174,7 @@ PetscErrorCode BodiesAddInertia(Bodies b, PetscReal f[])
   const PetscInt n = 6 * b->n_heavy;
 
   PetscFunctionBeginUser;
-  PetscCall(RigidPointsAdvance(b, f));
+  PetscCall(RigidPointsApply(b, PETSC_TRUE, f));
   PetscCall(TiedApply(b, PETSC_TRUE, f));
   PetscCall(SuperAddInertia(b, f));
   if (!n) PetscFunctionReturn(0);

@@ -91,7 +91,7 @@ PetscErrorCode RigidPointSetUp(Bodies b, BodyJoint *joint)
 
 /* Of all rigid points: forces f become D R W R'f with their mobility W; motions x become R W R'D x, the nearest rigid
    ones */
-static PetscErrorCode RigidPointsApply(Bodies b, PetscBool forces, PetscReal x[])
+PetscErrorCode RigidPointsApply(Bodies b, PetscBool forces, PetscReal x[])
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < b->n_joints; m++) {
@@ -104,13 +104,6 @@ static PetscErrorCode RigidPointsApply(Bodies b, PetscBool forces, PetscReal x[]
     for (int k = 0; k < 36; k++) q[k / 6] += W[k] * sum[k % 6];
     RigidPut(b, joint, forces, q, x);
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode RigidPointsAdvance(Bodies b, PetscReal f[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(RigidPointsApply(b, PETSC_TRUE, f));
   PetscFunctionReturn(0);
 }
 

@@ -12,9 +12,8 @@ typedef struct {
 } GmshVolumes;
 
 /* volumes.c - interpolated DMPlex of the cells, whose coordinates stand at the points that bear a node: vertices, and
-   edges, faces and cells of elements of second order; fills volumes->point. What is wrong goes to the error of rank 0,
-   but for cells that do not fit to each other: their error is raised, with the name of the file.
-   Collective. */
+   edges, faces and cells of elements of second order; fills volumes->point. What is wrong goes to the error of rank
+   0, but for cells that do not fit to each other: their error is raised, with the name of the file. Collective. */
 PETSC_INTERN PetscErrorCode VolumesCreateMesh(MPI_Comm comm, const char file[], const GmshVolumes *volumes,
                                               ReaderError *error, DM *dm);
 

@@ -9,10 +9,9 @@
       S = (Y^T M X)^-1 Y^T K X,   m = tr S / k,   g = -d,   d = tr (S - m I)^2 / k
 
    is ((kappa_1 - kappa_2) / 2)^2 for k = 2, and the same for two such pairs at once (a doublet that locks in with a
-   doublet, k = 4). At lock-in omega = sqrt(m).
-   Damped: g = sigma of the mode, which is simple. Divergence: g = -kappa = -y^T K x / (y^T M x).
-   With a limit L(|lambda|) of what counts as unstable the onset is where sigma = L: g = -d - 4 L^2 (m + L^2),
-   sigma - L, -kappa - L^2; with damping a real eigenvalue is simple there, and g = sigma - L too.
+   doublet, k = 4). At lock-in omega = sqrt(m). Damped: g = sigma of the mode, which is simple. Divergence: g = -kappa
+   = -y^T K x / (y^T M x). With a limit L(|lambda|) of what counts as unstable the onset is where sigma = L: g = -d -
+   4 L^2 (m + L^2), sigma - L, -kappa - L^2; with damping a real eigenvalue is simple there, and g = sigma - L too.
 
    The zero is bracketed by the points of the event and found by Brent's method (R. P. Brent, Algorithms for
    Minimization without Derivatives, Prentice-Hall 1973, chapter 4). At each trial value the mode, or the plane, is the
