@@ -23,8 +23,10 @@ RUNS = {
                 "-contact_friction_damping", "-modes_band", "3000,6000", "-modes_filters", "-output_fields", "0"],
     "transient": [*IN_TIME, "-dynamics_filters", "filters", "-dynamics_filters_modes", "1,2,3",
                   "-ts_max_time", "8e-3", "-dynamics_snapshot_interval", "0.5e-3"],
-    "vibration": ["-options_file", SOURCE / "options/small_brake_map.yaml", "-map_values", "0.3,0.6", "-map_values_2", "100,200"],
-    "cycle": ["-options_file", SOURCE / "options/small_brake_cycle.yaml", "-cycle_range", "0.40,0.44", "-cycle_verify", "false"],
+    "vibration": ["-options_file", SOURCE / "options/small_brake_map.yaml", "-map_values", "0.3,0.6", "-map_values_2", "100,200",
+                  "-ts_max_time", "32e-3"],
+    "cycle": ["-options_file", SOURCE / "options/small_brake_cycle.yaml", "-cycle_range", "0.41,0.43", "-cycle_verify", "false",
+              "-dynamics_cutoff", "9e3"],
 }
 
 
