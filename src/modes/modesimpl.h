@@ -58,6 +58,8 @@ typedef enum { ABOUT_AUTO, ABOUT_ALL, ABOUT_STATIC } ModesAbout;
 
 #define MODES_DAMPING "-modes_damping"
 
+#define MODES_DAMPED_MOST 0.87 /* damping ratio from which on modes are not sought where damping is strong */
+
 /* What a choice saved, in words */
 enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
 
@@ -162,6 +164,7 @@ typedef struct {
   PetscInt  n_basis;                   /* vectors of a projection */
   PetscReal beyond;                    /* measure of damping there, or negative */
   PetscInt  n_enlarged;                /* further vectors there, since damping is strong */
+  PetscInt  n_about;                   /* complex shifts there, since it is stronger than that; or 0 */
   PetscReal pole;                      /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
   char      why[128];                   /* why not by projection; empty where it was not tried */
   PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
@@ -333,6 +336,10 @@ PETSC_INTERN PetscErrorCode ModesSolveWindow(Modes modes, const PencilMatrices *
    one */
 PETSC_INTERN PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Window *window);
 PETSC_INTERN PetscErrorCode ShiftsSolve(Modes modes, const PencilMatrices *pencil, Window *window, ShiftInvert *si);
+/* The lower end of part k of n of a band, rad/s; adds the spectra of the solver, above that seam, to those of the parts
+   before */
+PETSC_INTERN PetscReal      ShiftsSeam(const Window *window, PetscInt n, PetscInt k);
+PETSC_INTERN PetscErrorCode ShiftsAppend(Modes modes, PetscReal seam, Spectrum *right, Spectrum *left);
 
 /* left.c - left partners of the right eigenvalues; complete = the window holds the same ones in both; biorthogonal
    left vectors in clusters, work[3] in the pencil's unknowns */

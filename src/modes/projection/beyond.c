@@ -27,6 +27,7 @@
 #define ENLARGE_STAYS   0.8 /* of the last radius: more blocks help no more */
 #define ENLARGE_WEAK    0.8 /* radius that will do then */
 #define ENLARGE_MISFIT  0.3 /* of the fit: with more of it alpha and beta are an average that no part has */
+#define ENLARGE_HOPELESS 4  /* radius that another beta does not help: sqrt(r^2 / (1 + r^2)) with half of it for r */
 #define ENLARGE_ROUNDS  16
 #define ENLARGE_MOST    400 /* columns that it adds: the dense problem has twice as many */
 #define BEYOND_STEPS    3
@@ -271,7 +272,8 @@ PetscErrorCode ProjectionEnlarge(Projection *p, PetscReal *rho)
     PetscCall(BeyondDestroy(p, &space));
     PetscCall(PetscInfo(p->space.V, "%" PetscInt_FMT " vectors, %" PetscInt_FMT " of them new: measure was %.3g\n",
                         p->space.n, added, (double)*rho));
-    if (stays && added && !tried) {
+    if (stays && (tried || *rho > ENLARGE_HOPELESS)) break;
+    if (stays && added) {
       PetscCall(BeyondBalance(p, rho));
       tried = PETSC_TRUE;
     }

@@ -48,6 +48,18 @@ static void SideMeasure(const Projection *p, PetscBool left, const ComplexColumn
   }
 }
 
+/* The eigenvalues of what SideKeep() leaves */
+static PetscErrorCode SideLambdas(const ComplexColumns *c, const PetscReal tolerance[], PetscComplex **lambda)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(c->m, lambda));
+  for (PetscInt i = 0; i < c->m; i++)
+    if (isfinite(tolerance[c->column[i]])) (*lambda)[n++] = c->lambda[i];
+  PetscFunctionReturn(0);
+}
+
 /* Leaves the columns with a finite tolerance */
 static PetscErrorCode SideKeep(BV residuals, PetscReal tolerance[])
 {
@@ -66,7 +78,7 @@ static PetscErrorCode SideKeep(BV residuals, PetscReal tolerance[])
 
 /* Residuals of one side that are still too large, with what may remain of them; NULL where all have settled */
 static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, ProjectionModes *modes, BV *residuals,
-                                    PetscReal **tolerance)
+                                    PetscReal **tolerance, PetscComplex **lambda)
 {
   const PencilMatrices side = {.K      = ProjectionMatrix(p, SUBSPACE_K, left),
                                .C      = ProjectionMatrix(p, SUBSPACE_C, left),
@@ -84,6 +96,7 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
   PetscFunctionBeginUser;
   *residuals = NULL;
   *tolerance = NULL;
+  *lambda    = NULL;
   PetscCall(SideCollect(modes, left, p->limit[left], &columns));
   if (columns.m) {
     PetscCall(BlockCreate(p->space.V, columns.n_columns, residuals));
@@ -99,6 +112,7 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
     PetscCall(BVRestoreMat(*residuals, &R));
     PetscCall(BVRestoreMat(vectors, &X));
     PetscCall(BVDestroy(&vectors));
+    PetscCall(SideLambdas(&columns, *tolerance, lambda));
     PetscCall(SideKeep(*residuals, *tolerance));
   }
   PetscCall(ComplexColumnsDestroy(&columns));
@@ -107,19 +121,24 @@ static PetscErrorCode SideResiduals(const Projection *p, PetscBool left, Project
 
 PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns)
 {
-  BV         block[2]     = {NULL, NULL};
-  PetscReal *tolerance[2] = {NULL, NULL};
+  BV            block[2]     = {NULL, NULL};
+  PetscReal    *tolerance[2] = {NULL, NULL};
+  PetscComplex *lambda[2]    = {NULL, NULL};
 
   PetscFunctionBeginUser;
   *n_columns = 0;
   if (!modes->n) PetscFunctionReturn(0);
   PetscCall(EventBegin(EVENT_CORRECT));
-  PetscCall(SideResiduals(p, PETSC_FALSE, modes, &block[0], &tolerance[0]));
-  if (p->modes->left) PetscCall(SideResiduals(p, PETSC_TRUE, modes, &block[1], &tolerance[1]));
-  PetscCall(ProjectionExtend(p, block, tolerance, n_columns));
+  PetscCall(SideResiduals(p, PETSC_FALSE, modes, &block[0], &tolerance[0], &lambda[0]));
+  if (p->modes->left) PetscCall(SideResiduals(p, PETSC_TRUE, modes, &block[1], &tolerance[1], &lambda[1]));
+  if (p->about)
+    PetscCall(ProjectionExtendAbout(p, block, tolerance, lambda, n_columns));
+  else
+    PetscCall(ProjectionExtend(p, block, tolerance, n_columns));
   for (int side = 0; side < 2; side++) {
     PetscCall(BVDestroy(&block[side]));
     PetscCall(PetscFree(tolerance[side]));
+    PetscCall(PetscFree(lambda[side]));
   }
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);

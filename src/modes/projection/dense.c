@@ -28,6 +28,19 @@ PetscReal ProjectionPole(const Projection *p)
   return 1 / p->beta;
 }
 
+/* The same with factors at complex shifts: rigid modes, and what oscillates with no more growth or decay than is asked
+   for, and less damping than MODES_DAMPED_MOST */
+static PetscBool LambdaIsSought(const Projection *p, PetscComplex lambda)
+{
+  const Window   *w     = p->window;
+  const PetscReal omega = cimag(lambda), sigma = creal(lambda);
+
+  if (w->known.rigid && cabs(lambda) <= w->known.scale) return w->count || w->edge[0] == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (omega <= w->known.scale || -sigma > MODES_DAMPED_MOST * cabs(lambda)) return PETSC_FALSE;
+  if (w->count) return PETSC_TRUE;
+  return omega >= w->edge[0] && omega <= w->edge[1] && PetscAbsReal(sigma) <= w->growth ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Whether the window claims a mode and the basis can have it: of the modes nearest to a target those within reach, of a
    band those between its edges, away from the pole, with no more growth or decay than is asked for, or else, where they
    oscillate within the window or C = alpha M + beta K, with an undamped frequency root(kappa) in the band, which V
@@ -38,6 +51,7 @@ PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
   const PetscReal    omega = cimag(lambda);
   const PetscComplex kappa = ProjectionKappa(p, lambda);
 
+  if (p->about) return LambdaIsSought(p, lambda);
   if (w->count) return cabs(kappa - p->si.shift) <= p->reach ? PETSC_TRUE : PETSC_FALSE;
   if (omega < w->edge[0] || omega > w->edge[1]) return PETSC_FALSE;
   if ((PetscAbsReal(creal(lambda)) <= w->growth && !AtPole(p, lambda)) || p->reach == PETSC_MAX_REAL) return PETSC_TRUE;

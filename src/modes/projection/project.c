@@ -9,12 +9,12 @@
    and V is extended by P^-1 r and P^-T s of all modes together until every backward error is at rounding level: a step
    of shift-and-invert subspace iteration each (M. E. Hochstenbach, G. L. G. Sleijpen, Linear Algebra Appl. 358, 2003).
    The error of an eigenvalue is the product of those of its two vectors, hence left vectors need less. Where rounding
-   lies is not known beforehand: corrections that no longer add a direction to V have settled, too, within
-   PROJECT_ROUNDING.
+   lies is not known beforehand: corrections that no longer add a direction to V have settled, too (settle.c).
 
    No mode is missing: the undamped modes are complete as right and left ones agree (or by inertia), and damping brings
    none from beyond them where its measure is below one. Where it is above DAMPING_WEAK the basis takes in what makes it
-   so (projection/beyond.c); where that does not do the route is that of damped.c.
+   so (projection/beyond.c); where that does not do, factors at complex shifts take the place of P
+   (projection/strong.c), and where these do not the route is that of damped.c.
 */
 #include "projection.h"
 #include "base/process/memory.h"
@@ -22,10 +22,8 @@
 
 #define DAMPING_WEAK     0.9
 #define PROJECT_ATTEMPTS 3 /* with ever more undamped modes */
-#define PROJECT_ROUNDS   8
 #define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT     1e-11
-#define PROJECT_ROUNDING 10   /* times these, where corrections add nothing to the basis any more */
 #define PROJECT_ROOM     2.5  /* columns of the basis beside undamped vectors */
 #define PROJECT_DISTINCT 1e-9 /* undamped vectors that differ by less are one */
 #define PROJECT_LOOSE    1e-3 /* V'MV - I may be as large as this: the dense pencil has it */
@@ -94,89 +92,6 @@ static PetscErrorCode SpectraDestroy(Modes modes)
   PetscFunctionReturn(0);
 }
 
-/* The largest backward errors of right and left vectors */
-static void WorstErrors(const ProjectionModes *found, PetscReal worst[2])
-{
-  worst[0] = worst[1] = 0;
-  for (PetscInt i = 0; i < found->n; i++)
-    for (int side = 0; side < 2; side++) worst[side] = PetscMax(worst[side], found->backward[side][i]);
-}
-
-/* Whether the modes have no more digits than these on a basis that corrections left as it was */
-static PetscBool AtRounding(const Projection *p, const ProjectionModes *found, PetscInt size_before)
-{
-  PetscReal worst[2];
-
-  WorstErrors(found, worst);
-  return found->size == size_before && worst[0] <= PROJECT_ROUNDING * p->limit[0] &&
-             worst[1] <= PROJECT_ROUNDING * p->limit[1]
-           ? PETSC_TRUE
-           : PETSC_FALSE;
-}
-
-/* With -info */
-static PetscErrorCode InfoRound(const Projection *p, const ProjectionModes *found, PetscInt n_columns)
-{
-  PetscReal worst[2];
-
-  PetscFunctionBeginUser;
-  WorstErrors(found, worst);
-  PetscCall(PetscInfo(p->space.V,
-                      "%" PetscInt_FMT " modes on %" PetscInt_FMT
-                      " vectors: backward errors %.1e right, %.1e left, %" PetscInt_FMT
-                      " corrections; measure %.3g, |kappa - s| %.4g of %.4g\n",
-                      found->n, found->size, (double)worst[0], (double)worst[1], n_columns,
-                      (double)p->window->route.beyond, (double)found->lambda_reach, (double)p->reach));
-  PetscFunctionReturn(0);
-}
-
-/* The modes on the present basis: followed from what they were, or all anew */
-static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionModes *found)
-{
-  ProjectionModes before   = *found;
-  PetscBool       followed = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  if (!anew) PetscCall(ProjectionFollow(p, &before, found, &followed));
-  if (anew || !followed) PetscCall(ProjectionEigen(p, found));
-  if ((anew || !followed) && p->pencil->n_laws) PetscCall(ProjectionLawsSolve(p, found));
-  if (!anew) PetscCall(ProjectionModesDestroy(&before));
-  PetscFunctionReturn(0);
-}
-
-/* Corrects the modes until all have settled; settled = they have, and the window is covered */
-static PetscErrorCode Iterate(Projection *p, ProjectionModes *found, PetscBool *settled)
-{
-  PetscInt n_columns = 1, size = 0;
-
-  PetscFunctionBeginUser;
-  *settled = PETSC_FALSE;
-  for (int round = 0; round < PROJECT_ROUNDS && n_columns; round++, size = found->size) {
-    PetscCall(FindModes(p, round ? PETSC_FALSE : PETSC_TRUE, found));
-    if (found->lambda_reach > p->reach) break;
-    PetscCall(ProjectionCorrect(p, found, &n_columns));
-    PetscCall(InfoRound(p, found, n_columns));
-    if (AtRounding(p, found, size)) n_columns = 0;
-  }
-  *settled = n_columns ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-/* The modes of the window in place of the undamped ones */
-static PetscErrorCode PutModes(Projection *p, const ProjectionModes *found)
-{
-  Modes modes = p->modes;
-
-  PetscFunctionBeginUser;
-  PetscCall(SpectraDestroy(modes));
-  PetscCall(ProjectionLift(p, found, PETSC_FALSE, &modes->right));
-  PetscCall(WindowSelect(p->window, &modes->right));
-  if (!modes->left) PetscFunctionReturn(0);
-  PetscCall(ProjectionLift(p, found, PETSC_TRUE, &modes->left_spectrum));
-  PetscCall(WindowSelect(p->window, &modes->left_spectrum));
-  PetscFunctionReturn(0);
-}
-
 /* Where damping leaves the vectors as they are */
 static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
 {
@@ -223,7 +138,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   const PetscReal most  = modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1;
   ProjectionModes found;
   PetscBool       settled, lost = PETSC_FALSE;
-  PetscInt        missing = 0, n_modal;
+  PetscInt        missing = 0, n_modal, n_undamped = CountInBand(window, &modes->right);
 
   PetscFunctionBeginUser;
   p->limit[0] = PROJECT_RIGHT;
@@ -235,16 +150,22 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   n_modal = p->space.n;
   if (window->route.beyond > most) PetscCall(ProjectionEnlarge(p, &window->route.beyond));
   window->route.n_enlarged = p->space.n - n_modal;
-  if (window->route.beyond > most) *why = why_strong;
-  if (*why) PetscFunctionReturn(0);
+  if (window->route.beyond > most) {
+    *why = p->pencil->n_laws ? why_strong : NULL;
+    PetscCall(ModalBlocksDestroy(modal));
+    window->route.n_enlarged = 0;
+    if (!*why) PetscCall(SubspaceTruncate(&p->space, n_modal));
+    if (!*why) PetscCall(ProjectionSolveStrong(p, n_undamped, window, why));
+    PetscFunctionReturn(0);
+  }
   if (p->reach < PETSC_MAX_REAL) PetscCall(ProjectionStart(p, modal));
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
-  PetscCall(Iterate(p, &found, &settled));
+  PetscCall(ProjectionIterate(p, &found, &settled));
   window->route.laws = p->pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
   if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing, &lost));
   if (missing) *why = why_missing;
   if (lost) *why = why_edge;
-  if (settled) PetscCall(PutModes(p, &found));
+  if (settled) PetscCall(ProjectionPut(p, &found));
   window->route.n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
   PetscCall(ProjectionModesDestroy(&found));

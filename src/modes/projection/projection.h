@@ -26,6 +26,7 @@ typedef struct {
   PetscReal             reach;       /* all undamped kappa with |kappa - s| below this are in V */
   PetscReal             norms[3];    /* of K, C, M, Frobenius */
   PetscReal             limit[2];    /* backward errors of settled right and left vectors */
+  struct ComplexShift  *about;       /* factors at a complex shift, which take the place of those of P; or NULL */
   PetscReal             finer;       /* times the drop of corrections: less than 1 once all of them were dropped */
   Subspace              space;
 } Projection;
@@ -110,6 +111,20 @@ PETSC_INTERN PetscErrorCode ProjectionFollow(const Projection *p, const Projecti
    may be NULL */
 PETSC_INTERN PetscErrorCode ProjectionExtend(Projection *p, BV residuals[2], PetscReal *const tolerance[2],
                                              PetscInt *n_columns);
+/* projection/about.c - the same by factors p->about at a complex shift; columns of residuals are real and imaginary
+   parts in turn, lambda [pairs] their eigenvalues. n_solves = how many */
+PETSC_INTERN PetscErrorCode ProjectionExtendAbout(Projection *p, BV residuals[2], PetscReal *const tolerance[2],
+                                                  PetscComplex *const lambda[2], PetscInt *n_solves);
+/* Adds to the basis what steps of these factors towards lambda make of random vectors */
+PETSC_INTERN PetscErrorCode ProjectionSearchAbout(Projection *p, PetscComplex lambda, unsigned long seed);
+/* projection/strong.c - the modes of the window by such factors, in parts, from the undamped vectors in the basis; why
+   is set where they do not settle. n_undamped: undamped modes of the window */
+PETSC_INTERN PetscErrorCode ProjectionSolveStrong(Projection *p, PetscInt n_undamped, Window *window,
+                                                  const char **why);
+/* projection/settle.c - corrects the modes until all have settled; settled = they have, and the window is covered */
+PETSC_INTERN PetscErrorCode ProjectionIterate(Projection *p, ProjectionModes *found, PetscBool *settled);
+/* The modes of the window in place of the spectra of the solver */
+PETSC_INTERN PetscErrorCode ProjectionPut(Projection *p, const ProjectionModes *found);
 /* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the
    limits to the basis: n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);

@@ -95,6 +95,22 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
   PetscFunctionReturn(0);
 }
 
+/* The same where damping is so strong that complex shifts were needed */
+static PetscErrorCode DescribeStrong(const Window *window, const char region[], const char rest[], char text[],
+                                     size_t size)
+{
+  const PetscInt n = window->route.n_about;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(
+    text, size,
+    "damping is strong (%.2g beyond the undamped modes); about %" PetscInt_FMT " complex shift%s the undamped modes and "
+    "searches from random vectors lead to these%s, all eigenvalues of the dense problems, and to no others%s; modes that "
+    "are damped by more than %.2g of critical damping are not sought",
+    (double)window->route.beyond, n, n == 1 ? "" : "s", region, rest, MODES_DAMPED_MOST));
+  PetscFunctionReturn(0);
+}
+
 /* Why a damped solution was not done by projection */
 static PetscErrorCode DescribeRoute(const Window *window, PetscBool dense, char text[], size_t size)
 {
@@ -132,6 +148,8 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
   else if (window->route.proven)
     PetscCall(
       PetscSNPrintf(text, size, "proven by the inertia count, %" PetscInt_FMT " in the band", window->known.expected));
+  else if (window->route.project && window->route.n_about)
+    PetscCall(DescribeStrong(window, region, frictionless, text, size));
   else if (window->route.project && (modes->left || window->route.counted))
     PetscCall(DescribeProjection(window, region, frictionless, text, size));
   else if (modes->left && modes->dense)

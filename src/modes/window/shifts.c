@@ -36,7 +36,7 @@ PetscErrorCode ShiftsChoose(Modes modes, const PencilMatrices *pencil, const Win
 }
 
 /* The lower end of part k, rad/s */
-static PetscReal ShiftsSeam(const Window *window, PetscInt n, PetscInt k)
+PetscReal ShiftsSeam(const Window *window, PetscInt n, PetscInt k)
 {
   return window->low + k * (window->high - window->low) / n;
 }
@@ -79,7 +79,7 @@ static PetscInt ShiftsBelow(const Spectrum *s, PetscReal omega)
 }
 
 /* Adds the modes just found above the seam, in rad/s, to those of the parts before */
-static PetscErrorCode ShiftsAppend(Modes modes, PetscReal seam, Spectrum *right, Spectrum *left)
+PetscErrorCode ShiftsAppend(Modes modes, PetscReal seam, Spectrum *right, Spectrum *left)
 {
   const PetscReal cut   = right->n || seam > 0 ? ShiftsCut(right, seam) : 0;
   const PetscInt  lower = ShiftsBelow(right, cut), upper = ShiftsBelow(&modes->right, cut);
