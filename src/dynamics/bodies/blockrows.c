@@ -64,6 +64,17 @@ STENCIL_INLINE void BlockRowsApplyBoth(const BlockRows *rows, PetscInt i, const 
   for (int j = 0; j < 3; j++) y[4 * i + j] += BlockRowsSum(&sum[j]);
 }
 
+VERSIONS
+void BlockRowsMultiply(const BlockRows *rows, PetscInt begin, PetscInt end, const PetscReal x[], PetscReal y[])
+{
+  for (PetscInt i = begin; i < end; i++) {
+    StencilLanes product;
+
+    BlockRowsApply(rows, i, x, &product);
+    for (int j = 0; j < 3; j++) y[3 * i + j] = product[j];
+  }
+}
+
 /* Twice the energies, and the powers of damping, by components; the last number of each is void */
 typedef struct {
   StencilLanes kinetic, strain, damping_old, damping;

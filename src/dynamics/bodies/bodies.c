@@ -54,7 +54,7 @@ static PetscErrorCode BodiesSetUpDamping(Bodies b)
   for (PetscInt i = 0; i < b->n_joints; i++)
     for (int j = 0; j < 6; j++)
       if (b->joint[i].like->viscosity[j] != 0) b->damped = PETSC_TRUE;
-  if (b->super.all.C) b->damped = PETSC_TRUE;
+  if (b->super.all.C || b->n_branches) b->damped = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->damped, 1, MPIU_BOOL, MPI_LOR, b->comm));
   if (b->damped) PetscCall(PetscCalloc1(b->layout.n, &b->layout.damping));
   PetscFunctionReturn(0);
@@ -105,6 +105,7 @@ PetscErrorCode BodiesSetUp(Bodies b, Operators operators)
   PetscCall(BodiesLayOut(b));
   PetscCall(SuperLayOut(b));
   PetscCall(GeneralSetUp(b));
+  PetscCall(BranchesSetUp(b));
   PetscCall(PointsSetUp(b));
   PetscCall(JointsSetUpRows(b));
   PetscCall(BodiesSetMasses(b));
@@ -151,8 +152,10 @@ PetscErrorCode BodiesAdvance(Bodies b, const BodiesStep *step, BodiesSums *sums)
 
   PetscFunctionBeginUser;
   PetscCall(BodiesAdvanceKernels(b, PETSC_TRUE, &w));
+  BranchesAdvance(b, PETSC_TRUE, &w);
   PetscCall(SharedBegin(&b->share, &b->layout, w.f));
   PetscCall(BodiesAdvanceKernels(b, PETSC_FALSE, &w));
+  BranchesAdvance(b, PETSC_FALSE, &w);
   PetscCall(EventBegin(EVENT_EXCHANGE));
   PetscCall(SharedEnd(&b->share, &b->layout, w.f));
   PetscCall(EventEnd(EVENT_EXCHANGE));
@@ -178,6 +181,7 @@ PetscErrorCode BodiesApply(Bodies b, const PetscReal x[], PetscReal kx[], PetscR
   PetscCall(PetscArrayzero(k, b->layout.n));
   if (cx) PetscCall(PetscArrayzero(cx, b->layout.n));
   for (int early = 1; early >= 0; early--) PetscCall(BodiesAdvanceKernels(b, (PetscBool)early, &w));
+  BranchesAddStiffness(b, x, k);
   for (int i = 0; i < 2; i++) {
     PetscReal *y = i ? cx : kx;
 
@@ -216,6 +220,14 @@ PetscErrorCode BodiesSetState(Bodies b, const PetscReal u[], const PetscReal v[]
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BodiesGetMemory(Bodies b, PetscInt *n, PetscReal **forces)
+{
+  PetscFunctionBeginUser;
+  *n      = b->n_branch_forces;
+  *forces = b->branch_forces;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesAddChecksum(Bodies b, Checksum c)
 {
   PetscFunctionBeginUser;
@@ -238,6 +250,7 @@ PetscErrorCode BodiesDestroy(Bodies *bodies)
   PetscCall(JointsDestroyRows(b));
   PetscCall(TiedDestroy(&b->tied));
   PetscCall(SuperDestroy(b));
+  PetscCall(BranchesDestroy(b));
   PetscCall(PetscFree(b->frame));
   PetscCall(PetscFree(b->body));
   PetscCall(PetscFree2(b->layout.at, b->layout.step));

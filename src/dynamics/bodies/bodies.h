@@ -1,6 +1,6 @@
 /*
    Bodies (private to dynamics/) - where the nodes stand in the state vectors, their lumped masses, and the internal
-   forces: f = -K u - C v of parts, springs and dashpots.
+   forces: f = -K u - C v of parts, springs and dashpots, and those of Maxwell branches (branches.c).
 
    Layout: a state vector is a local array of n numbers on every rank. Vertex i (from 0, all local ones, copies of other
    ranks' nodes included) has its components at at[i], at[i] + step[i], at[i] + 2 step[i], along the orthonormal
@@ -23,7 +23,7 @@ typedef struct {
   PetscReal       *part, *total; /* [n] masses of this rank's cells alone, and complete ones, kg */
   PetscReal       *minv;         /* [n] 1 / total, 0 in held directions and padding */
   PetscInt         apart, n_apart; /* where unknowns of superelements that no node has stand, on every rank */
-  PetscReal       *damping;      /* [n] C v of the last BodiesAdvance(), N; NULL without damping */
+  PetscReal       *damping;      /* [n] C v and branches of the last BodiesAdvance(), N; NULL without damping */
 } Layout;
 
 /* A call of BodiesAdvance(), with state vectors */
@@ -110,13 +110,18 @@ PetscErrorCode BodiesAddInertia(Bodies bodies, PetscReal f[]);
     included; x itself without. Complete at every copy. Collective. @*/
 PetscErrorCode BodiesApplyRoot(Bodies bodies, const PetscReal scale[], PetscReal x[]);
 
-/*@ BodiesApply - kx = K x and cx = C x (NULL where not needed), complete at shared nodes. Collective. @*/
+/*@ BodiesApply - kx = K x, with Maxwell branches as springs, and cx = C x (NULL where not needed), complete at shared
+    nodes. Collective. @*/
 PetscErrorCode BodiesApply(Bodies bodies, const PetscReal x[], PetscReal kx[], PetscReal cx[]);
 
 /*@ BodiesSetState - ku = K u of this rank's cells alone, N, element by element relative to the first node of each,
     springs, bushings and points included, and the damping forces of v for the sums of the next BodiesAdvance().
     Collective. @*/
 PetscErrorCode BodiesSetState(Bodies bodies, const PetscReal u[], const PetscReal v[], PetscReal ku[]);
+
+/*@ BodiesGetMemory - the forces of Maxwell branches of this rank's cells [n], N (borrowed), which the next step needs.
+    Not collective. @*/
+PetscErrorCode BodiesGetMemory(Bodies bodies, PetscInt *n, PetscReal **forces);
 
 /*@ BodiesAdvance - ku += dt K v, then f = -ku - C v, complete at shared nodes; the sums use ku before. dt = 0 leaves
     ku as it is (first step). The exchange of shared nodes overlaps with the work on the others. Collective. @*/

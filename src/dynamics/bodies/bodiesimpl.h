@@ -54,6 +54,22 @@ typedef struct {
   PetscReal *value;  /* [start[n]][9], one more number at the end */
 } BlockRows;
 
+/* Some cells, and the rows of their nodes */
+typedef struct {
+  PetscInt  n, n_nodes, *of_vertex; /* [n_vertices] row, -1 of nodes elsewhere */
+  PetscInt *cell;                   /* [n] */
+} BodiesRowCells;
+
+/* The Maxwell branches of a part; of its nodes the first n_early are shared with other ranks */
+typedef struct {
+  PetscInt   part, n_branches, n, n_early;
+  PetscReal  stiff[VISCOELASTIC_BRANCHES], time[VISCOELASTIC_BRANCHES]; /* E_j / E; tau_j, s */
+  PetscInt  *vertex;                                                    /* [n] local node */
+  BlockRows  rows;                                                      /* of the static modulus, all of them */
+  PetscReal *motion, *product; /* [n][3] work, one number more at the end of motion */
+  PetscReal *force;            /* [n_branches][n][3] q of this rank's cells, N */
+} MaxwellPart;
+
 /* All bodies that are not swept, node after node from `begin` on; the first n_early nodes are shared with other ranks
    */
 typedef struct {
@@ -145,6 +161,9 @@ struct _p_Bodies {
   PetscReal   *reaction;     /* X of the points with mass, [6 n_heavy][6 n_heavy] */
   Tied         tied;
   Super        super;
+  PetscInt     n_branches, n_branch_forces;
+  MaxwellPart *branch;        /* [n_branches] */
+  PetscReal   *branch_forces; /* [n_branch_forces] of all of them */
   Shared       share;
   PetscBool    damped;  /* there is damping on some rank */
   PetscReal   *work[2]; /* [layout.n] each, for BodiesApply() and BodiesSetState() */
@@ -163,7 +182,7 @@ typedef struct {
 typedef struct {
   PetscInt  part, n_nodes;
   PetscInt  vertex[ELEMENT_MAX_NODES];                      /* local, from 0 */
-  PetscReal alpha, beta;                                    /* 1/s, s */
+  PetscReal alpha, beta, branches;                          /* 1/s, s; moduli of Maxwell branches beside Young's */
   PetscReal mass[ELEMENT_MAX_NODES];                        /* lumped, kg */
   PetscReal stiffness[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS]; /* N/m, [3 n_nodes][3 n_nodes], Cartesian */
 } BodiesCell;
@@ -193,6 +212,25 @@ PETSC_INTERN PetscErrorCode SweptDestroy(SweptBody *swept);
 PETSC_INTERN PetscErrorCode GeneralSetUp(Bodies bodies);
 PETSC_INTERN PetscErrorCode GeneralDestroy(General *general);
 PETSC_INTERN PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWork *work);
+
+/* Rows of 3 x 3 blocks for the nodes of some cells: with all nodes that share one with each, or `upper` with those that
+   are not before it. Adds scale times the stiffness of a cell, N/m. y = rows begin .. end - 1 times x, of whole rows,
+   x [n][3] and a number more */
+PETSC_INTERN PetscErrorCode BlockRowsCreate(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper,
+                                            BlockRows *rows);
+PETSC_INTERN PetscErrorCode BlockRowsAdd(const BodiesRowCells *cells, const BodiesCell *cell, PetscReal scale,
+                                         BlockRows *rows);
+PETSC_INTERN void BlockRowsMultiply(const BlockRows *rows, PetscInt begin, PetscInt end, const PetscReal x[],
+                                    PetscReal y[]);
+PETSC_INTERN PetscErrorCode BlockRowsDestroy(BlockRows *rows);
+
+/* branches.c - sum of E_j / E of a part; forces at the end of a step, after those of the kernels; kx += what the
+   branches are to fast motions */
+PETSC_INTERN PetscReal      BranchesStiffness(const Part *part);
+PETSC_INTERN PetscErrorCode BranchesSetUp(Bodies bodies);
+PETSC_INTERN void           BranchesAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
+PETSC_INTERN void           BranchesAddStiffness(Bodies bodies, const PetscReal x[], PetscReal kx[]);
+PETSC_INTERN PetscErrorCode BranchesDestroy(Bodies bodies);
 
 /* points/spring.c */
 PETSC_INTERN PetscErrorCode PointsSetUp(Bodies bodies);

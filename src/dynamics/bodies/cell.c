@@ -21,6 +21,7 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
   part          = &scene->parts[cell->part];
   cell->alpha   = part->alpha;
   cell->beta    = part->beta;
+  cell->branches = BranchesStiffness(part);
   PetscCall(ModelGetElasticity(bodies->model, c, part->young, part->density, &material));
   PetscCall(ElementMatrices(element, x, &material, cell->stiffness, me));
   ElementLump(element, me, cell->mass);

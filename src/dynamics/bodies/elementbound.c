@@ -1,7 +1,8 @@
 /*
    Bound of the largest omega^2 from single elements (B. M. Irons and G. Treharne, 1971): with K and M sums over cells,
    max x'Kx / x'Mx <= max over cells of the same quotient; with C_e = alpha M_e + beta K_e the quotient of K_e + s C_e
-   is (1 + s beta) lambda_e + s alpha. Springs and dashpots add at most (k + s c) / m of a node,
+   is (1 + s beta) lambda_e + s alpha, and with Maxwell branches as springs beside it (1 + sum_j E_j / E + s beta)
+   lambda_e + s alpha. Springs and dashpots add at most (k + s c) / m of a node,
    bushings and points the trace of diag(k + s c) B M^-1 B', superelements likewise one (points/superelement.c).
 */
 #include "bodiesimpl.h"
@@ -100,10 +101,10 @@ static PetscErrorCode BoundOfCells(Bodies b, PetscReal s, PetscReal *largest)
     if (BoundIsRepeated(n_nodes, vertex, first, swept) || BoundIsHeld(b, n_nodes, vertex)) continue;
     PetscCall(BodiesGetCell(b, c, &cell));
     /* most cells are below the largest so far, and need no eigenvalues */
-    PetscCall(BoundIsBelow(&cell, (*largest - s * cell.alpha) / (1 + s * cell.beta), &below));
+    PetscCall(BoundIsBelow(&cell, (*largest - s * cell.alpha) / (1 + cell.branches + s * cell.beta), &below));
     if (below) continue;
     PetscCall(BoundOfCell(&cell, &lambda));
-    *largest = PetscMax(*largest, (1 + s * cell.beta) * lambda + s * cell.alpha);
+    *largest = PetscMax(*largest, (1 + cell.branches + s * cell.beta) * lambda + s * cell.alpha);
   }
   PetscCall(PetscFree2(first, swept));
   PetscFunctionReturn(0);

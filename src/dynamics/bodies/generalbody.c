@@ -6,13 +6,7 @@
 #include "bodiesimpl.h"
 #include <stdint.h>
 
-/* The cells of these bodies, and places of their nodes in `general` */
-typedef struct {
-  PetscInt  n, *of_vertex; /* [n_vertices] node, -1 of nodes elsewhere */
-  PetscInt *cell;          /* [n] cells with such nodes */
-} GeneralCells;
-
-static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
+static PetscErrorCode GeneralFindCells(Bodies b, BodiesRowCells *cells)
 {
   const General *g    = &b->general;
   const Mesh    *mesh = b->mesh;
@@ -21,6 +15,7 @@ static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
   PetscCall(PetscMalloc2(b->layout.n_vertices, &cells->of_vertex, mesh->n_cells, &cells->cell));
   for (PetscInt v = 0; v < b->layout.n_vertices; v++) cells->of_vertex[v] = -1;
   for (PetscInt i = 0; i < g->n; i++) cells->of_vertex[g->vertex[i]] = i;
+  cells->n_nodes = g->n;
   for (PetscInt c = 0; c < mesh->n_cells; c++)
     if (cells->of_vertex[mesh->cell_node[mesh->cell_first[c]]] >= 0) cells->cell[cells->n++] = c;
   PetscFunctionReturn(0);
@@ -28,11 +23,12 @@ static PetscErrorCode GeneralFindCells(Bodies b, GeneralCells *cells)
 
 /* Goes through the pairs of nodes of each cell: at[row] is raised by one for each, and tells its place in `column`
    where that is not NULL */
-static void NeighboursTake(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt at[], PetscInt column[])
+static void NeighboursTake(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper, PetscInt at[],
+                           PetscInt column[])
 {
   for (PetscInt i = 0; i < cells->n; i++) {
-    const PetscInt  n_nodes = b->mesh->element[cells->cell[i]]->n_nodes;
-    const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[i]]];
+    const PetscInt  n_nodes = mesh->element[cells->cell[i]]->n_nodes;
+    const PetscInt *vertex  = &mesh->cell_node[mesh->cell_first[cells->cell[i]]];
 
     for (PetscInt k = 0; k < n_nodes * n_nodes; k++) {
       const PetscInt row = cells->of_vertex[vertex[k / n_nodes]], other = cells->of_vertex[vertex[k % n_nodes]];
@@ -46,35 +42,34 @@ static void NeighboursTake(Bodies b, const GeneralCells *cells, PetscBool upper,
 
 /* Neighbours of all rows, once for each cell that they share: those of a row end before column[end[row]]. Counted
    first, then filled, the running ends being the places of the next entries. */
-static PetscErrorCode NeighboursCreate(Bodies b, const GeneralCells *cells, PetscBool upper, PetscInt **end,
-                                       PetscInt **column)
+static PetscErrorCode NeighboursCreate(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper,
+                                       PetscInt **end, PetscInt **column)
 {
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(b->general.n + 1, end));
-  NeighboursTake(b, cells, upper, *end, NULL);
-  for (PetscInt row = 0; row <= b->general.n; row++) {
+  PetscCall(PetscCalloc1(cells->n_nodes + 1, end));
+  NeighboursTake(cells, mesh, upper, *end, NULL);
+  for (PetscInt row = 0; row <= cells->n_nodes; row++) {
     const PetscInt count = (*end)[row];
 
     (*end)[row] = n;
     n += count;
   }
   PetscCall(PetscMalloc1(n, column));
-  NeighboursTake(b, cells, upper, *end, *column);
+  NeighboursTake(cells, mesh, upper, *end, *column);
   PetscFunctionReturn(0);
 }
 
-/* Rows with all nodes that share a cell with each, or `upper` with those that are not before it */
-static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, PetscBool upper, BlockRows *rows)
+PetscErrorCode BlockRowsCreate(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper, BlockRows *rows)
 {
   PetscInt *end, *all;
 
   PetscFunctionBeginUser;
-  rows->n     = b->general.n;
+  rows->n     = cells->n_nodes;
   rows->upper = upper;
   PetscCall(PetscCalloc1(rows->n + 1, &rows->start));
-  PetscCall(NeighboursCreate(b, cells, upper, &end, &all));
+  PetscCall(NeighboursCreate(cells, mesh, upper, &end, &all));
   for (PetscInt row = 0; row < rows->n; row++) {
     const PetscInt begin = row ? end[row - 1] : 0;
     PetscInt       n     = end[row] - begin;
@@ -91,9 +86,8 @@ static PetscErrorCode BlockRowsCreate(Bodies b, const GeneralCells *cells, Petsc
   PetscFunctionReturn(0);
 }
 
-/* Adds scale times the stiffness of a cell, [3 n_nodes][3 n_nodes] by rows, N/m; columns are found by bisection.
-   value [9] of a block by rows. */
-static PetscErrorCode BlockRowsAdd(const GeneralCells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
+/* Columns are found by bisection; value [9] of a block by rows */
+PetscErrorCode BlockRowsAdd(const BodiesRowCells *cells, const BodiesCell *cell, PetscReal scale, BlockRows *rows)
 {
   const PetscInt n = cell->n_nodes;
 
@@ -113,7 +107,7 @@ static PetscErrorCode BlockRowsAdd(const GeneralCells *cells, const BodiesCell *
 
 /* Stiffness, masses (kg), alpha M (kg/s) and beta (s) of all cells; beta is -1 where no cell was yet, and -2 where
    cells differ */
-static PetscErrorCode GeneralSum(Bodies b, const GeneralCells *cells)
+static PetscErrorCode GeneralSum(Bodies b, const BodiesRowCells *cells)
 {
   General *g = &b->general;
 
@@ -137,7 +131,8 @@ static PetscErrorCode GeneralSum(Bodies b, const GeneralCells *cells)
 }
 
 /* Whether a node of the cell has cells of different beta */
-static PetscBool GeneralIsMixed(const General *g, const GeneralCells *cells, PetscInt n_nodes, const PetscInt vertex[])
+static PetscBool GeneralIsMixed(const General *g, const BodiesRowCells *cells, PetscInt n_nodes,
+                                const PetscInt vertex[])
 {
   for (PetscInt a = 0; a < n_nodes; a++)
     if (g->beta[cells->of_vertex[vertex[a]]] == -2) return PETSC_TRUE;
@@ -163,7 +158,7 @@ static PetscErrorCode BlockRowsKeepMixed(const General *g, BlockRows *rows)
 }
 
 /* Blocks of the second term of C for the nodes of which the cells have different beta */
-static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
+static PetscErrorCode GeneralSumDamping(Bodies b, const BodiesRowCells *cells)
 {
   General *g     = &b->general;
   PetscInt mixed = 0;
@@ -174,7 +169,7 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
     PetscCall(PetscCalloc1(g->n + 1, &g->damping.start));
     PetscFunctionReturn(0);
   }
-  PetscCall(BlockRowsCreate(b, cells, PETSC_FALSE, &g->damping));
+  PetscCall(BlockRowsCreate(cells, b->mesh, PETSC_FALSE, &g->damping));
   for (PetscInt c = 0; c < cells->n; c++) {
     const PetscInt  n_nodes = b->mesh->element[cells->cell[c]]->n_nodes;
     const PetscInt *vertex  = &b->mesh->cell_node[b->mesh->cell_first[cells->cell[c]]];
@@ -193,30 +188,34 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const GeneralCells *cells)
 PetscErrorCode GeneralSetUp(Bodies b)
 {
   General     *g     = &b->general;
-  GeneralCells cells = {0};
+  BodiesRowCells cells = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(g->n, &g->mass, g->n, &g->alpha, g->n, &g->beta, 4 * g->n + 4, &g->room));
   g->product = g->room;
   while ((uintptr_t)g->product % sizeof(StencilLanes)) g->product++;
   PetscCall(GeneralFindCells(b, &cells));
-  PetscCall(BlockRowsCreate(b, &cells, PETSC_TRUE, &g->stiffness));
+  PetscCall(BlockRowsCreate(&cells, b->mesh, PETSC_TRUE, &g->stiffness));
   PetscCall(GeneralSum(b, &cells));
   PetscCall(GeneralSumDamping(b, &cells));
   PetscCall(PetscFree2(cells.of_vertex, cells.cell));
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BlockRowsDestroy(BlockRows *rows)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(rows->start));
+  PetscCall(PetscFree(rows->column));
+  PetscCall(PetscFree(rows->value));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode GeneralDestroy(General *general)
 {
-  BlockRows *rows[] = {&general->stiffness, &general->damping};
-
   PetscFunctionBeginUser;
-  for (int i = 0; i < 2; i++) {
-    PetscCall(PetscFree(rows[i]->start));
-    PetscCall(PetscFree(rows[i]->column));
-    PetscCall(PetscFree(rows[i]->value));
-  }
+  PetscCall(BlockRowsDestroy(&general->stiffness));
+  PetscCall(BlockRowsDestroy(&general->damping));
   PetscCall(PetscFree(general->vertex));
   PetscCall(PetscFree4(general->mass, general->alpha, general->beta, general->room));
   PetscFunctionReturn(0);

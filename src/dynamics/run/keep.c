@@ -23,6 +23,7 @@ typedef enum {
   SCALARS = N_VECTORS,
   KU,
   DAMPING,
+  BRANCHES,
   PROJECTOR,
   EXTERNAL,
   HISTORY,
@@ -79,16 +80,18 @@ static PetscErrorCode DynamicsListItems(Dynamics d, KeptScalars *scalars, PetscS
                                         JournalItem item[N_ITEMS])
 {
   const PetscInt n       = d->layout->n;
-  PetscReal     *damping = d->layout->damping, *external;
-  PetscInt       n_external;
+  PetscReal     *damping = d->layout->damping, *external, *branches;
+  PetscInt       n_external, n_branches;
 
   PetscFunctionBeginUser;
   PetscCall(ExternalGetMemory(d->external, &n_external, &external));
+  PetscCall(BodiesGetMemory(d->bodies, &n_branches, &branches));
   item[SCALARS]   = (JournalItem){"scalars", N_REALS(KeptScalars), (PetscReal *)scalars};
   item[U]         = (JournalItem){"displacements", n, a[U]};
   item[V]         = (JournalItem){"velocities", n, a[V]};
   item[KU]        = (JournalItem){"stiffness forces", n, d->ku};
   item[DAMPING]   = (JournalItem){"damping forces", damping ? n : 0, damping};
+  item[BRANCHES]  = (JournalItem){"branches", n_branches, branches};
   item[FORCE]     = (JournalItem){"forces", a[FORCE] ? n : 0, a[FORCE]};
   item[FORCE_OLD] = (JournalItem){"forces before", a[FORCE_OLD] ? n : 0, a[FORCE_OLD]};
   item[PROJECTOR] = (JournalItem){"contact", 0, NULL};
