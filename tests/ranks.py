@@ -40,7 +40,7 @@ def groups_of(case):
 
 def thin(case):
     """By day, where a run begins much sooner on one rank, that is done on several ranks by one of twelve bad inputs that ask for no
-    numbers of ranks, and by one of three groups of runs that no check compares across ranks. Of two ranks and three, three do, of
+    numbers of ranks, and by one of five groups of runs that no check compares across ranks. Of two ranks and three, three do, of
     which one has neighbours on both sides: in groups whose runs on two ranks are all on three as well."""
     runs, first = case["run"], next(iter(case["run"]))
     across = {check.get("run", first) for check in case.get("check", []) if "across_ranks" in check}
@@ -50,7 +50,7 @@ def thin(case):
     for k, name in enumerate(name for name in bad if not runs[name]["own"]):
         runs[name]["ranks"] = runs[name]["ranks"] if k % 12 == 0 else [1]
     for k, names in enumerate(names for names in groups if not names <= set(bad)):
-        for name in names if k % 3 else ():
+        for name in names if k % 5 else ():
             runs[name]["ranks"] = runs[name]["ranks"][:1]
     for names in every:
         if all(3 in runs[name]["ranks"] for name in names if 2 in runs[name]["ranks"]):

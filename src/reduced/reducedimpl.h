@@ -187,8 +187,8 @@ PETSC_INTERN PetscErrorCode ReducedStepRespond(ReducedStepper stepper, const Red
 /* step/relax.c - takes out of the forces of a step what alternates; derivatives X [columns][size] before and next after
    the last step */
 PETSC_INTERN void ReducedStepperRelax(ReducedStepper stepper, ReducedState *state);
-PETSC_INTERN void ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt columns, const PetscReal X[],
-                                             PetscReal next[]);
+PETSC_INTERN void ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt size, PetscInt columns,
+                                             const PetscReal X[], PetscReal next[]);
 
 /* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many
    numbers; the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */

@@ -59,14 +59,15 @@ static void RelaxColumn(const ReducedRelaxed *r, PetscBool spring, const PetscRe
     next[d] = r->ratio * next[d] + r->cone[d - 1] * (next[0] - r->ratio * normal);
 }
 
-void ReducedStepperRelaxTangent(ReducedStepper s, PetscInt columns, const PetscReal X[], PetscReal next[])
+void ReducedStepperRelaxTangent(ReducedStepper s, PetscInt size, PetscInt columns, const PetscReal X[],
+                                PetscReal next[])
 {
   const ReducedModel *model = s->model;
-  const PetscInt      n = ReducedTangentSize(model), pairs = 3 * model->n_pairs;
+  const PetscInt      pairs = 3 * model->n_pairs;
 
   for (PetscInt j = 0; j < columns && model->Cm; j++)
     for (PetscInt i = 0; i < model->n_pairs; i++) {
-      const PetscInt at = n * j + 2 * model->m + 3 * i;
+      const PetscInt at = size * j + 2 * model->m + 3 * i;
 
       if (s->relaxed[i].status != CONTACT_OPEN)
         RelaxColumn(&s->relaxed[i], model->spring ? PETSC_TRUE : PETSC_FALSE, &X[at], &X[at + pairs], &next[at],

@@ -118,7 +118,7 @@ PetscErrorCode ReducedTangentApply(ReducedTangent t, PetscInt columns, PetscReal
   if (pairs) PetscCall(ContactComplianceTangent(t->stepper->laws, columns, t->dv, t->dlambda));
   ReducedTimes(&(DenseBlock){t->A, t->n, t->n, t->n}, &x, t->next);
   if (pairs && k) BLASgemm_("N", "N", &n, &k, &pairs, &one, t->B, &n, t->dlambda, &pairs, &one, t->next, &n);
-  ReducedStepperRelaxTangent(t->stepper, columns, X, t->next);
+  ReducedStepperRelaxTangent(t->stepper, t->n, columns, X, t->next);
   PetscCall(PetscArraycpy(X, t->next, t->n * columns));
   PetscFunctionReturn(0);
 }
