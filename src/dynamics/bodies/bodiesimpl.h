@@ -224,9 +224,12 @@ PETSC_INTERN void BlockRowsMultiply(const BlockRows *rows, PetscInt begin, Petsc
                                     PetscReal y[]);
 PETSC_INTERN PetscErrorCode BlockRowsDestroy(BlockRows *rows);
 
-/* branches.c - sum of E_j / E of a part; forces at the end of a step, after those of the kernels; kx += what the
+/* cell.c - branches of a material, of which Zener's law of order 1 is one; sum of their E_j / E */
+PETSC_INTERN PetscInt  BranchesCount(const Viscoelastic *law);
+PETSC_INTERN PetscReal BranchesStiffness(const Part *part);
+
+/* branches.c - forces at the end of a step, after those of the kernels; kx += what the
    branches are to fast motions */
-PETSC_INTERN PetscReal      BranchesStiffness(const Part *part);
 PETSC_INTERN PetscErrorCode BranchesSetUp(Bodies bodies);
 PETSC_INTERN void           BranchesAdvance(Bodies bodies, PetscBool early, BodiesWork *work);
 PETSC_INTERN void           BranchesAddStiffness(Bodies bodies, const PetscReal x[], PetscReal kx[]);

@@ -16,25 +16,16 @@
 */
 #include "bodiesimpl.h"
 
-/* The branches of a material; Zener's law of order 1 is one */
+/* The branches of a material */
 static PetscInt BranchesOf(const Viscoelastic *law, PetscReal stiff[], PetscReal time[])
 {
-  const PetscInt n = law->kind == VISCOELASTIC_PRONY ? law->n / 2 : law->kind == VISCOELASTIC_ZENER ? 1 : 0;
+  const PetscInt n = BranchesCount(law);
 
   for (PetscInt j = 0; j < n; j++) {
     stiff[j] = law->value[j] / law->young;
     time[j]  = law->value[n + j];
   }
   return n;
-}
-
-PetscReal BranchesStiffness(const Part *part)
-{
-  PetscReal      stiff[VISCOELASTIC_BRANCHES], time[VISCOELASTIC_BRANCHES], sum = 0;
-  const PetscInt n = BranchesOf(&part->law, stiff, time);
-
-  for (PetscInt j = 0; j < n; j++) sum += stiff[j];
-  return sum;
 }
 
 /* The nodes of a part, shared ones first, and its cells */
