@@ -296,9 +296,10 @@ static PetscErrorCode ChainDampFriction(Chain *chain)
 static PetscErrorCode ChainAssemble(Chain *chain)
 {
   const PetscBool transient = ChainIsInTime(chain);
-  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE;
+  PetscBool       pairs = PETSC_TRUE, reduced = PETSC_FALSE, matrices = PETSC_TRUE, areas;
 
   PetscFunctionBeginUser;
+  PetscCall(ScopeNeedsAreas(chain->model ? chain->contact : NULL, &areas));
   if (transient) PetscCall(DynamicsNeedsPairs(chain->dynamics, &pairs));
   if (transient) PetscCall(ReducedIsAsked(chain->reduced, &reduced));
   if (reduced) PetscCall(OperatorsLump(chain->operators));
@@ -312,7 +313,7 @@ static PetscErrorCode ChainAssemble(Chain *chain)
     PetscCall(ChainSayUnits(chain));
     PetscCall(SquealStageEnd(SQUEAL_MODEL));
     PetscCall(SquealStageBegin(SQUEAL_CONTACT));
-    if (pairs)
+    if (pairs || areas)
       PetscCall(ContactSetUp(chain->contact));
     else
       PetscCall(ContactSetUpTies(chain->contact));

@@ -219,3 +219,16 @@ PetscErrorCode ScopeView(const Scope *s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  not used by -analysis %s: %s\n", AnalysisNames[s->analysis], text));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ScopeNeedsAreas(Contact contact, PetscBool *areas)
+{
+  const ContactInterface *c;
+  PetscInt                n = 0;
+
+  PetscFunctionBeginUser;
+  *areas = PETSC_FALSE;
+  if (contact) PetscCall(ContactGetInterfaces(contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++)
+    if (FrictionNeedsPressure(&c[i].friction)) *areas = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}

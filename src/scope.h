@@ -36,5 +36,8 @@ PETSC_INTERN PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *scope);
 /* All that the run does. Collective. */
 PETSC_INTERN PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *scope, QuantityRun *run);
 
+/* Whether friction of any contact asks for the areas of pairs, in time too. Not collective. */
+PETSC_INTERN PetscErrorCode ScopeNeedsAreas(Contact contact, PetscBool *areas);
+
 /* Says which things of the model the run does not use. Collective. */
 PETSC_INTERN PetscErrorCode ScopeView(const Scope *scope, PetscViewer viewer);

@@ -23,7 +23,7 @@ VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc
 # What could vary in that scene, were it given
 ABSENT = re.compile(r"(^|_)(spin|\w+_(total|per_area)|moment|tension|shortening|pressure|pressure_(c0|p0|k|m)|kn|kt|"
                     r"rotation|wear_(rate|rate_master|time)|loss_factor|prony_(modulus|time)|zener_(modulus|time|order)|table_temperature|"
-                    r"mu_(static|kinetic|decay_speed|viscous|stribeck_speed))$")
+                    r"mu_(static|kinetic|decay_speed|viscous|stribeck_speed|factor))$")
 
 
 def text_of(folder):

@@ -2,6 +2,8 @@
    FrictionLaw - the friction coefficient mu(s) of a contact over the slip speed s >= 0 (m/s), as one value: its kind,
    its parameters, and the stated sliding speed. Passed whole and copied; every analysis asks it for mu(s) and mu'(s),
    none knows its parameters by name. A new law is a file in src/contact/law/ and a row in law.c there.
+
+   mu of a table depends on the pressure p (Pa) too: who asks a law that needs it sets it before (FrictionPressed()).
 */
 #pragma once
 
@@ -9,10 +11,20 @@
 
 #define FRICTION_PARAMETERS 4 /* of a law, at most */
 
+/* mu over speed and pressure, both ascending from 0 */
 typedef struct {
-  PetscInt64 kind;  /* place in the table of laws; 0: Coulomb's */
-  PetscReal  speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
-  PetscReal  parameter[FRICTION_PARAMETERS];
+  PetscInt         n_speeds, n_pressures; /* 0 of other laws */
+  const PetscReal *speed, *pressure;      /* m/s, Pa; one block with mu, which the contact owns and copies borrow */
+  const PetscReal *mu;                    /* [n_speeds][n_pressures] */
+} FrictionTable;
+
+typedef struct {
+  PetscInt64    kind;  /* place in the table of laws; 0: Coulomb's */
+  PetscReal     speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
+  PetscReal     parameter[FRICTION_PARAMETERS];
+  PetscReal     area;     /* of a pair, m^2, whose forces tell pressures; 0 of a contact as a whole */
+  PetscReal     pressure; /* at which mu is asked, Pa; of a law that needs it */
+  FrictionTable table;
 } FrictionLaw;
 
 /* A parameter of a law: its option, without the name of the contact, and what depends on it */
@@ -33,13 +45,35 @@ typedef struct {
 /*@ FrictionAt - the same law with another stated speed, m/s. Not collective. @*/
 FrictionLaw FrictionAt(const FrictionLaw *law, PetscReal speed);
 
+/*@ FrictionOfPair - that of a pair, of its stated speed (m/s) and area (m^2). Not collective. @*/
+FrictionLaw FrictionOfPair(const FrictionLaw *law, PetscReal speed, PetscReal area);
+
+/*@ FrictionNeedsPressure - whether mu changes with the pressure. FrictionPressed - the law of a pair at the pressure of
+    a force, N; 0 for none. Not collective. @*/
+PetscBool   FrictionNeedsPressure(const FrictionLaw *law);
+FrictionLaw FrictionPressed(const FrictionLaw *law, PetscReal force);
+
+/*@ FrictionRise - p d mu / dp at the slip speed s and the pressure p of the law: without unit. Not collective. @*/
+PetscReal FrictionRise(const FrictionLaw *law, PetscReal s);
+
+/*@ FrictionCovers - whether the law tells mu at the slip speed s and its pressure: a table does up to its last ones.
+    Not collective. @*/
+PetscBool FrictionCovers(const FrictionLaw *law, PetscReal s);
+
+/*@ FrictionComplain - raises PETSC_ERR_USER_INPUT for a pair of the contact `name` (NULL: of any) that slides at s
+    (m/s) under p (Pa) at the time t (s, negative: at rest), where its table ends. Collective. @*/
+PetscErrorCode FrictionComplain(MPI_Comm comm, const char name[], const FrictionLaw *law, PetscReal t, PetscReal s,
+                                PetscReal p);
+
 /*@ FrictionMu, FrictionSlope - mu(s), and mu'(s) in s/m, at the slip speed s >= 0 (m/s). Not collective. @*/
 PetscReal FrictionMu(const FrictionLaw *law, PetscReal s);
 PetscReal FrictionSlope(const FrictionLaw *law, PetscReal s);
 
-/*@ FrictionSteady, FrictionSteadySlope - the same at the stated speed v. Not collective. @*/
+/*@ FrictionSteady, FrictionSteadySlope - the same at the stated speed v. FrictionSteadyTangent - of the friction mu(p)
+    p there its change over that of p, mu + p d mu / dp. Not collective. @*/
 PetscReal FrictionSteady(const FrictionLaw *law);
 PetscReal FrictionSteadySlope(const FrictionLaw *law);
+PetscReal FrictionSteadyTangent(const FrictionLaw *law);
 
 /*@ FrictionDerive - derivatives at the stated speed. Not collective. @*/
 void FrictionDerive(const FrictionLaw *law, FrictionDerivative *derivative);
@@ -95,3 +129,6 @@ PetscErrorCode FrictionView(const FrictionLaw *law, PetscViewer viewer);
 
 /*@ FrictionAddChecksum - adds kind and parameters. Not collective. @*/
 PetscErrorCode FrictionAddChecksum(const FrictionLaw *law, Checksum checksum);
+
+/*@ FrictionDestroy - frees what a law owns. Not collective. @*/
+PetscErrorCode FrictionDestroy(FrictionLaw *law);

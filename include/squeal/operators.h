@@ -189,10 +189,10 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
 PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], PetscInt interface, PetscReal *mu,
                                      PressureLaw *law);
 
-/*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed, or where it rests at none. Not
-    collective. @*/
+/*@ OperatorsGetPairMu - friction coefficient of a pair at p, at its sliding speed, or where it rests at none, and at
+    its normal force (N). Not collective. @*/
 PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscBool rests,
-                                  PetscReal *mu);
+                                  PetscReal force, PetscReal *mu);
 
 /* How fast a pair wears: depth W = rate speed time p^exponent, m; share: part of it of the slave */
 typedef struct {

@@ -44,9 +44,20 @@ def stribeck_words(text, si):
             f"{figures(si('mu_stribeck_speed', 'm/s'), 4)} m/s{f', and {figures(viscous, 4)} s/m viscous' if viscous else ''}")
 
 
+def table_mu(_, __):
+    raise BadInput("friction_law table: the friction coefficient changes with the pressure, which a deck cannot say")
+
+
+def table_words(text, _):
+    factor = text("mu_factor")
+    return (f"friction coefficient of the table {text('mu_file')} over slip speed and pressure"
+            f"{f', times {factor}' if factor not in ('0', '1') else ''}")
+
+
 LAWS = {
     "coulomb": Law("mu", ("mu",), lambda p, _: p["mu"], coulomb_words, fixed=True),
     "static_kinetic": Law("mu_static", ("mu_static", "mu_kinetic", "mu_decay_speed"), static_kinetic_mu, static_kinetic_words),
+    "table": Law("mu_file", ("mu_factor",), table_mu, table_words),
     "stribeck": Law("mu_static", ("mu_static", "mu_kinetic", "mu_viscous", "mu_stribeck_speed"), stribeck_mu, stribeck_words),
 }
 

@@ -290,6 +290,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(PetscFree((*contact)->interfaces[i].slave));
     PetscCall(PetscFree((*contact)->interfaces[i].master));
     PetscCall(PressureDestroy(&(*contact)->interfaces[i].pressure));
+    PetscCall(FrictionDestroy(&(*contact)->interfaces[i].friction));
     PetscCall(PetscFree((*contact)->interfaces[i].gaps));
     PetscCall(ContactSurfaceDestroy(&(*contact)->surface[i]));
     PetscCall(PetscFree((*contact)->sides[i]));

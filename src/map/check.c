@@ -27,6 +27,10 @@ PetscErrorCode MapCheck(Map map)
     PetscCheck(c[i].slides, map->comm, PETSC_ERR_USER_INPUT,
                "contact %s: a map is about sliding; say along what by -%s_slip and -%s_speed", c[i].name, c[i].name,
                c[i].name);
+  for (PetscInt i = 0; i < n; i++)
+    PetscCheck(!FrictionNeedsPressure(&c[i].friction), map->comm, PETSC_ERR_SUP,
+               "contact %s: -%s_friction_law table is for single transients and cycles, not for maps", c[i].name,
+               c[i].name);
   PetscCheck(scene->n_loads > 0, map->comm, PETSC_ERR_USER_INPUT, "-analysis map needs -loads that press the contact");
   PetscFunctionReturn(0);
 }

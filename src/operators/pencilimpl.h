@@ -105,6 +105,14 @@ PETSC_INTERN PetscErrorCode PencilCheckSliding(Pencil pencil);
    where that force alone tells its stiffness */
 PETSC_INTERN PetscErrorCode PencilCheckPressure(Pencil pencil, const PetscReal p[]);
 
+/* frictiontable.c - what a pair of this rank has in the terms of node k of its interface: its part L_k; where mu
+   depends on the pressure mu, mu', or mu + p d mu / dp, over the factor of the law */
+typedef enum { FRICTION_VALUE, FRICTION_SLOPE, FRICTION_TANGENT } FrictionPart;
+PETSC_INTERN PetscReal PencilFrictionShare(Pencil pencil, PetscInt interface, PetscInt k, PetscInt pair,
+                                           FrictionPart part);
+/* Raises the error for a point at which friction of a table would be another one */
+PETSC_INTERN PetscErrorCode PencilCheckTable(Pencil pencil, PetscInt interface, const PetscReal p[]);
+
 /* constraint.c - null spaces of the closed pairs that obey the exact constraint; terms between them, where they are not
    there yet */
 PETSC_INTERN PetscErrorCode PencilCreateNullSpaces(Pencil pencil);

@@ -251,9 +251,11 @@ PETSC_INTERN PetscErrorCode StagesSolve(Statics statics);
 /* solve.c - all pairs closed, those of Coulomb's law without slip */
 PETSC_INTERN void StaticsCloseAll(Statics statics);
 /* rows.c - pairs and rows, normal ones only for pressing without friction, with the interfaces that slide in a stage
-   (NULL: as they are told); friction coefficients and stiffnesses of the interfaces at p */
+   (NULL: as they are told); friction coefficients and stiffnesses of the interfaces at p; of a pair at its force */
 PETSC_INTERN PetscErrorCode PairRowsCreate(Operators operators, PetscBool pressing, const Stage *stage, PairRows *rows);
 PETSC_INTERN PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows);
+PETSC_INTERN PetscErrorCode PairRowsSetFriction(Operators operators, const PetscReal p[], PetscInt pair,
+                                                PetscReal force, PairRows *rows);
 PETSC_INTERN void           PairRowsSetClosing(PairRows *rows, PetscInt pair, PetscReal kappa, PetscReal closing);
 /* wear/law.c - whether a pair's law is not linear; its closing (m) at a force (N), of which worn in the step, the slope
    (N/m) where closing and force belong together, and the force at a closing, wear of a step included */
@@ -339,7 +341,8 @@ PETSC_INTERN PetscErrorCode ActiveSolve(Active *active, ActiveOutcome *outcome);
 
 /* pressure.c - the same with pressure laws, at which Newton's method aims by tangents */
 PETSC_INTERN PetscErrorCode PressuresSolve(Active *active, ActiveOutcome *outcome);
-
+/* rubbing.c - the same with friction coefficients that depend on the pressure */
+PETSC_INTERN PetscErrorCode RubbingSolve(Active *active, ActiveOutcome *outcome);
 /* equilibrium.c - room and what messages need; displacements of the forces alone, and of the rows; pairs that obey all
    laws, or the error that says why there are none; the end */
 PETSC_INTERN PetscErrorCode EquilibriumBegin(Statics statics, Active *active);

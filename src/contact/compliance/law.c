@@ -13,22 +13,21 @@
 #define MOTION_NOISE 4 /* roundings of v by its terms */
 
 /* mu of the slip speed |v_T| / dt (m/s) at the present v, and how it falls per length of w: d mu / d|w_T| = mu'(s) /
-   (dt weight), 1/m, since |w_T| = weight |v_T|. A pair that is held has mu(0). k infinite: the pair has no compliance
-   of its own, it is in W. */
+   (dt weight), 1/m, since |w_T| = weight |v_T|; of the pressure at the present l. A pair that is held has mu(0). k
+   infinite: the pair has no compliance of its own, it is in W. */
 CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal weight, PetscReal w[3])
 {
-  PetscReal   slip;
+  FrictionLaw law;
+  PetscReal   slip = 0;
   CoulombPair pair = {.d = 3, .mu = c->mu[p], .k = INFINITY};
 
   for (PetscInt i = 0; i < 3; i++) w[i] = -weight * c->v[3 * p + i];
   if (!c->varies[p]) return pair;
-  if (c->hold[p] == HOLD_RESTS) {
-    pair.mu = FrictionMu(&c->friction[p], 0);
-    return pair;
-  }
-  slip      = hypot(c->v[3 * p + 1], c->v[3 * p + 2]) / c->dt;
-  pair.mu   = FrictionMu(&c->friction[p], slip);
-  pair.fall = pair.mu > 0 ? FrictionSlope(&c->friction[p], slip) / (c->dt * weight) : 0;
+  law = FrictionPressed(&c->friction[p], c->kappa[p] * c->l[3 * p]);
+  if (c->hold[p] != HOLD_RESTS) slip = hypot(c->v[3 * p + 1], c->v[3 * p + 2]) / c->dt;
+  pair.mu   = FrictionMu(&law, slip);
+  pair.rise = FrictionRise(&law, slip);
+  if (c->hold[p] != HOLD_RESTS) pair.fall = pair.mu > 0 ? FrictionSlope(&law, slip) / (c->dt * weight) : 0;
   return pair;
 }
 

@@ -7,10 +7,11 @@
 #include "coulombs.h"
 #include "statickinetic.h"
 #include "stribeck.h"
+#include "tabled.h"
 #include "base/text.h"
 #include <string.h>
 
-static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law, &stribeck_law};
+static const FrictionKind *const kinds[] = {&coulombs_law, &static_kinetic_law, &stribeck_law, &tabled_law};
 
 /* of rubber on dry concrete; what is above it is more often a number in per cent */
 #define LARGEST_MU 1.5
@@ -27,6 +28,56 @@ FrictionLaw FrictionAt(const FrictionLaw *law, PetscReal speed)
 
   at.speed = speed;
   return at;
+}
+
+FrictionLaw FrictionOfPair(const FrictionLaw *law, PetscReal speed, PetscReal area)
+{
+  FrictionLaw own = FrictionAt(law, speed);
+
+  own.area = area;
+  return own;
+}
+
+PetscBool FrictionNeedsPressure(const FrictionLaw *law)
+{
+  return KindOf(law)->rise ? PETSC_TRUE : PETSC_FALSE;
+}
+
+FrictionLaw FrictionPressed(const FrictionLaw *law, PetscReal force)
+{
+  FrictionLaw at = *law;
+
+  at.pressure = force > 0 && law->area > 0 ? force / law->area : 0;
+  return at;
+}
+
+PetscReal FrictionRise(const FrictionLaw *law, PetscReal s)
+{
+  return KindOf(law)->rise ? KindOf(law)->rise(law, s) : 0;
+}
+
+PetscBool FrictionCovers(const FrictionLaw *law, PetscReal s)
+{
+  const FrictionTable *t = &law->table;
+
+  return !t->n_speeds || (s <= t->speed[t->n_speeds - 1] && law->pressure <= t->pressure[t->n_pressures - 1])
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+PetscErrorCode FrictionComplain(MPI_Comm comm, const char name[], const FrictionLaw *law, PetscReal t, PetscReal s,
+                                PetscReal p)
+{
+  const FrictionTable *table    = &law->table;
+  char                 when[64] = "";
+
+  PetscFunctionBeginUser;
+  if (t >= 0) PetscCall(PetscSNPrintf(when, sizeof(when), " at %.6g s", (double)t));
+  SETERRQ(comm, PETSC_ERR_USER_INPUT,
+          "contact%s%s: a pair slides at %.6g m/s under %.6g Pa%s, and the table of friction ends at %.6g m/s and %.6g "
+          "Pa; give a larger one",
+          name ? " " : "", name ? name : "", (double)s, (double)p, when, (double)table->speed[table->n_speeds - 1],
+          (double)table->pressure[table->n_pressures - 1]);
 }
 
 PetscReal FrictionMu(const FrictionLaw *law, PetscReal s)
@@ -47,6 +98,11 @@ PetscReal FrictionSteady(const FrictionLaw *law)
 PetscReal FrictionSteadySlope(const FrictionLaw *law)
 {
   return FrictionSlope(law, law->speed);
+}
+
+PetscReal FrictionSteadyTangent(const FrictionLaw *law)
+{
+  return FrictionSteady(law) + FrictionRise(law, law->speed);
 }
 
 void FrictionDerive(const FrictionLaw *law, FrictionDerivative *derivative)
@@ -108,11 +164,12 @@ static PetscBool KindHas(const FrictionKind *kind, const char name[])
 
 /* Shows the rows of one law, a law of that kind their owner; of laws that were not chosen those that no other has
    shown, with the reason why nobody reads them */
-static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, FrictionLaw *law,
+static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, FrictionOptions *read,
                                 const QuantityVisitor *visitor)
 {
+  const FrictionLaw  *law  = &read->law;
   const FrictionKind *kind = KindOf(law);
-  Quantity            row[FRICTION_PARAMETERS];
+  Quantity            row[FRICTION_PARAMETERS + 1];
   PetscInt            n_rows = 0;
   char                title[160], why[160];
 
@@ -124,18 +181,28 @@ static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, F
     for (PetscInt k = 0; k < law->kind && kind != chosen && !shown; k++) shown = KindHas(kinds[k], own);
     if (!shown) row[n_rows++] = kind->parameter[j].row;
   }
+  if (kind->file) row[n_rows++] = *kind->file;
   PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -@friction_law %s", chosen->name));
-  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name, law,
-                            kind == chosen ? NULL : why));
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name,
+                            read, kind == chosen ? NULL : why));
   PetscFunctionReturn(0);
 }
 
+/* A law of a kind with the defaults of its parameters */
+static FrictionOptions KindBegin(PetscInt k)
+{
+  FrictionOptions begun = {.law = {.kind = k}};
+
+  for (PetscInt j = 0; j < kinds[k]->n; j++) begun.law.parameter[j] = kinds[k]->parameter[j].row.initial;
+  return begun;
+}
+
 /* Shows all laws, of the chosen kind its parameters, which the visitor may change, as the kind */
-static PetscErrorCode KindsVisit(const char name[], FrictionLaw *law, const QuantityVisitor *visitor)
+static PetscErrorCode KindsVisit(const char name[], FrictionOptions *read, const QuantityVisitor *visitor)
 {
   const char    *word[N_KINDS + 1] = {NULL};
-  int            chosen            = (int)law->kind;
+  int            chosen            = (int)read->law.kind;
   const Quantity row               = {"-friction_law",
                                       "how friction depends on the slip speed",
                                       NULL,
@@ -148,18 +215,18 @@ static PetscErrorCode KindsVisit(const char name[], FrictionLaw *law, const Quan
   for (PetscInt k = 0; k < N_KINDS; k++) word[k] = kinds[k]->name;
   PetscCall(QuantitiesVisit(visitor, &(QuantityTable){"Friction of contact", "frictionlaw.h", 1, &row, .in = 0}, name,
                             &chosen, NULL));
-  if (law->kind != chosen) *law = (FrictionLaw){.kind = chosen};
+  if (read->law.kind != chosen) *read = KindBegin(chosen);
   for (PetscInt k = 0; k < N_KINDS; k++) {
-    FrictionLaw other = {.kind = k};
+    FrictionOptions other = KindBegin(k);
 
-    PetscCall(KindVisit(name, kinds[chosen], k == chosen ? law : &other, visitor));
+    PetscCall(KindVisit(name, kinds[chosen], k == chosen ? read : &other, visitor));
   }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode FrictionVisit(const FrictionLaw *law, const char name[], const QuantityVisitor *visitor)
 {
-  FrictionLaw copy = *law;
+  FrictionOptions copy = {.law = *law};
 
   PetscFunctionBeginUser;
   PetscCall(KindsVisit(name, &copy, visitor));
@@ -173,10 +240,10 @@ static PetscErrorCode KindsDrop(MPI_Comm comm, const char name[], const Friction
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < N_KINDS; k++)
-    for (PetscInt j = 0; j < kinds[k]->n; j++) {
-      const char *const own = kinds[k]->parameter[j].row.name;
+    for (PetscInt j = 0; j < kinds[k]->n + (kinds[k]->file ? 1 : 0); j++) {
+      const char *const own = j < kinds[k]->n ? kinds[k]->parameter[j].row.name : kinds[k]->file->name;
 
-      if (KindHas(KindOf(chosen), own)) continue;
+      if (KindHas(KindOf(chosen), own) || kinds[k] == KindOf(chosen)) continue;
       PetscCall(TextAdd(names, own + 1, sizeof(names)));
       PetscCall(TextAdd(names, " ", sizeof(names)));
     }
@@ -204,10 +271,13 @@ static PetscErrorCode LawCheck(MPI_Comm comm, const char name[], const FrictionL
 
 PetscErrorCode FrictionSetFromOptions(MPI_Comm comm, const char name[], FrictionLaw *law)
 {
+  FrictionOptions read = KindBegin(0);
+
   PetscFunctionBeginUser;
-  *law = (FrictionLaw){.kind = 0};
-  PetscCall(KindsVisit(name, law, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
+  PetscCall(KindsVisit(name, &read, &(QuantityVisitor){QuantitiesReadVisited, &comm}));
+  *law = read.law;
   PetscCall(KindsDrop(comm, name, law));
+  if (KindOf(law)->file) PetscCall(FrictionReadTable(comm, name, read.file, law));
   PetscCall(LawCheck(comm, name, law));
   PetscFunctionReturn(0);
 }
@@ -224,12 +294,21 @@ PetscErrorCode FrictionCheckNotNegative(MPI_Comm comm, const char name[], const 
   PetscFunctionReturn(0);
 }
 
+/* The largest coefficient of a table, 1 without */
+static double TableLargest(const FrictionTable *t)
+{
+  double largest = 0;
+
+  for (PetscInt i = 0; i < t->n_speeds * t->n_pressures; i++) largest = PetscMax(largest, (double)t->mu[i]);
+  return t->n_speeds ? largest : 1;
+}
+
 PetscErrorCode FrictionWarnLarge(MPI_Comm comm, const char name[], const FrictionLaw *law)
 {
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < KindOf(law)->n; j++) {
     const FrictionParameter *q  = &KindOf(law)->parameter[j];
-    const double             mu = (double)law->parameter[j];
+    const double             mu = (double)law->parameter[j] * TableLargest(&law->table);
 
     if (q->coefficient && !q->row.unit && PetscAbsReal(mu) > LARGEST_MU)
       PetscCall(PetscFPrintf(comm, stderr, "squeal: warning: -%s_%s %.6g is above %g; in per cent? %.6g %% are %.6g\n",
@@ -251,6 +330,9 @@ PetscErrorCode FrictionView(const FrictionLaw *law, PetscViewer viewer)
                                      q->row.unit ? " " : "", q->row.unit ? q->row.unit : ""));
     comma = ", ";
   }
+  if (law->table.n_speeds)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " of a table of %" PetscInt_FMT " speeds and %" PetscInt_FMT " pressures",
+                                     law->table.n_speeds, law->table.n_pressures));
   PetscFunctionReturn(0);
 }
 
@@ -261,5 +343,18 @@ PetscErrorCode FrictionAddChecksum(const FrictionLaw *law, Checksum checksum)
   PetscFunctionBeginUser;
   PetscCall(ChecksumAddInts(checksum, 1, &kind));
   PetscCall(ChecksumAddReals(checksum, KindOf(law)->n, law->parameter));
+  PetscCall(ChecksumAddReals(checksum, law->table.n_speeds, law->table.speed));
+  PetscCall(ChecksumAddReals(checksum, law->table.n_pressures, law->table.pressure));
+  PetscCall(ChecksumAddReals(checksum, law->table.n_speeds * law->table.n_pressures, law->table.mu));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FrictionDestroy(FrictionLaw *law)
+{
+  void *block = (void *)law->table.speed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(block));
+  law->table = (FrictionTable){.n_speeds = 0};
   PetscFunctionReturn(0);
 }

@@ -8,10 +8,6 @@
 
    The guess goes on with the forces of the last steps as a constant, a line or a parabola in time, whichever would have
    guessed the last step best (record.c).
-
-   The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}. To
-   v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two
-   differ by one step where a ramp changes it.
 */
 #include "base/algebra/vec3.h"
 #include "base/algebra/versions.h"
@@ -93,28 +89,6 @@ static void PairSetDrift(const ContactProjector p, const ContactStep *step, cons
     return;
   }
   pair->drift[1] = pair->speed * RampValue(&sliding->ramp, step->time + 0.5 * step->dt);
-}
-
-/* Friction coefficient at the slip speed at t_n: s_n = s_{n-1/2} + (s_{n-1/2} - s_{n-3/2}) / 2 = 1.5 s_{n-1/2} - 0.5
-   s_{n-3/2}, not below 0. It is explicit: the slip that the step finds does not enter, so that mu is one number in
-   Gauss-Seidel and its cones stay convex. A pair without a slip before has s_n = s_{n-1/2}. */
-static void PairSetFriction(const ContactProjector p, PetscReal t, ProjectorPair *pair)
-{
-  const ContactInterface *c = &p->contact->interfaces[pair->interface];
-  FrictionLaw             law;
-  const ContactSliding   *s      = &p->sliding[pair->interface];
-  const PetscReal         factor = SlidingFrictionStays(s) ? 1 : RampValue(&s->friction, t);
-  PetscReal               q[3], last;
-
-  pair->mu = factor * FrictionSteady(&c->friction);
-  if (!FrictionVaries(&c->friction)) return;
-  PairVelocity(pair, p->nodes.before, q);
-  last       = pair->slip;
-  pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
-  if (last < 0) last = pair->slip;
-  pair->slip_before = last;
-  law               = FrictionAt(&c->friction, pair->speed);
-  pair->mu          = factor * FrictionMu(&law, PetscMax(0, 1.5 * pair->slip - 0.5 * last));
 }
 
 /*
@@ -369,6 +343,7 @@ INTO_VERSIONS void PairPrepare(ContactProjector p, PetscInt k, const ContactStep
 
 static VERSIONS void PairsPrepareAll(ContactProjector p, const ContactStep *step)
 {
+  p->beyond[0] = -1;
   for (PetscInt k = 0; k < p->n_pairs; k++) PairPrepare(p, k, step);
 }
 

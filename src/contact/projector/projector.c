@@ -12,7 +12,7 @@
 
 /* Numbers of which all ranks get the sums with the forces: ranks that need a search, whose forces did not converge, are
    no numbers, whose mortar faces are distorted; then pairs of each status of each interface */
-enum { HEAD_SEARCH, HEAD_FAILED, HEAD_NAN, HEAD_DISTORTED, HEAD_PAIRS };
+enum { HEAD_SEARCH, HEAD_FAILED, HEAD_NAN, HEAD_DISTORTED, HEAD_BEYOND, HEAD_PAIRS };
 
 PetscErrorCode ContactProjectorCreate(Contact contact, ContactProjector *projector)
 {
@@ -176,6 +176,7 @@ static PetscErrorCode PairsProject(ContactProjector p, const ContactStep *step, 
   PetscFunctionBeginUser;
   if (!p->share.solves) PetscFunctionReturn(0);
   PetscCall(PairsPrepare(p, step));
+  head[HEAD_BEYOND] = p->beyond[0] >= 0 ? 1 : 0;
   PetscCall(PairsSolve(p, &convergence));
   PairsRecord(p, step, &convergence, &head[HEAD_PAIRS]);
   if (ProjectorTravels(p)) {
@@ -204,6 +205,20 @@ static PetscErrorCode ProjectorAdvance(ContactProjector p, PetscBool search_next
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a table of friction that ends before the motion. Collective. */
+static PetscErrorCode ProjectorCheckTables(ContactProjector p, const PetscReal head[])
+{
+  PetscReal at[3] = {-1, 0, 0};
+
+  PetscFunctionBeginUser;
+  if (head[HEAD_BEYOND] == 0) PetscFunctionReturn(0);
+  if (p->share.solves) PetscCall(PetscArraycpy(at, p->beyond, 3));
+  PetscCall(ShareWorst(&p->share, 3, at));
+  PetscCall(FrictionComplain(p->share.comm, p->contact->interfaces[(PetscInt)at[0]].name,
+                             &p->contact->interfaces[(PetscInt)at[0]].friction, p->last.time, at[1], at[2]));
+  PetscFunctionReturn(0);
+}
+
 /* Raises the error for forces that did not converge, or are no numbers; of the ranks that say so. Collective. */
 static PetscErrorCode ProjectorComplain(ContactProjector p, const PetscReal head[])
 {
@@ -213,6 +228,7 @@ static PetscErrorCode ProjectorComplain(ContactProjector p, const PetscReal head
   PetscFunctionBeginUser;
   PetscCheck(head[HEAD_NAN] == 0, p->share.comm, PETSC_ERR_FP,
              "velocities at the contact surfaces are no numbers at %.6g s", time);
+  PetscCall(ProjectorCheckTables(p, head));
   if (head[HEAD_FAILED] == 0) PetscFunctionReturn(0);
   PetscCall(ShareWorst(&p->share, 4, p->worst));
   PetscCall(ShareWorst(&p->share, 1, sweeps));

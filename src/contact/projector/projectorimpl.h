@@ -87,6 +87,7 @@ typedef struct {
   PetscBool     no_slip;      /* friction needs the sliding velocity, which has no part in the surface here */
   PetscReal     mu, slip;     /* slip speed of v_{n-1/2}, m/s, -1 where it is not known: for mu */
   PetscReal     slip_before;  /* that of v_{n-3/2}, as far as it is known */
+  PetscReal     area;         /* of the pair at rest, m^2, which tells the pressure; 0 where nobody asks */
   PetscReal     p[3], q[3];   /* impulse on the slave, N s; relative velocity with the offset, m/s */
   ContactStatus status;
   /* nodes of the facet, or of the mean of the master, four at least: those of a triangle have a fourth of weight 0 */
@@ -116,7 +117,7 @@ typedef struct {
 } ContactSlips;
 
 #define SHARE_FIELDS 3                                    /* sent at once, at most */
-#define SHARE_HEAD   (4 + CONTACT_N_STATUS * CONTACT_MAX) /* numbers of which all ranks get the sums, at most */
+#define SHARE_HEAD   (5 + CONTACT_N_STATUS * CONTACT_MAX) /* numbers of which all ranks get the sums, at most */
 
 /* Who has which node, and the exchange between owners and the ranks that have pairs */
 typedef struct {
@@ -221,12 +222,16 @@ struct _p_ContactProjector {
   ContactSums      sums[CONTACT_MAX];  /* of this rank's pairs; their numbers and those of steps of all ranks */
   ContactSlips     slips[CONTACT_MAX]; /* of the last step */
   PetscReal        worst[4];           /* residual of the last step, and the place of its slave */
+  PetscReal        beyond[3]; /* interface, speed, m/s, pressure, Pa, beyond a table of friction; -1: none */
   /* on all ranks */
   PetscReal   sweeps_before; /* the step made */
   ContactStep last;          /* that */
   PetscBool   under_way;     /* its head has not been looked at */
   PetscBool   search_next;   /* all nodes are active, and the next step begins with a search */
 };
+
+/* sliding.c - the friction coefficient of a pair at t */
+PETSC_INTERN void PairSetFriction(ContactProjector projector, PetscReal t, ProjectorPair *pair);
 
 /* sliding.c - options of the sliding of interface i, after its own ones */
 PETSC_INTERN PetscErrorCode SlidingSetUp(MPI_Comm comm, const ContactInterface *c, ContactSliding *sliding);

@@ -7,6 +7,10 @@
       turning     the master, and the frame in which its nodes are described, is at x -> Q (x - c) + c, Q the rotation
                   by |w| R(t) about w, or at x -> x - V s R(t)
    Lengths in m, angles in rad, times in s.
+
+   The friction coefficient is that of the slip speed at t_n, on the line through those of v_{n-1/2} and v_{n-3/2}. To
+   v_{n-1/2} it adds the sliding velocity of the step at hand, at t_{n+1/2} or the mean of t_n to t_{n+1}: the two
+   differ by one step where a ramp changes it. The pressure is that on the line through the last two forces.
 */
 #include "projectorimpl.h"
 #include "base/algebra/vec3.h"
@@ -185,4 +189,42 @@ PetscErrorCode SlidingView(const ContactInterface *c, const ContactSliding *slid
     PetscCall(PetscViewerASCIIPrintf(viewer, "  its friction: %s\n", words));
   }
   PetscFunctionReturn(0);
+}
+
+/* Pressure of a pair at t_n, on the line through its last two forces, Pa */
+static PetscReal PairPressure(const ProjectorPair *pair)
+{
+  PetscReal force[2] = {0, 0};
+
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 3; d++) force[k] += pair->lambda[k][d] * pair->e[0][d];
+  return pair->area > 0 ? PetscMax(0, 2 * force[0] - force[1]) / pair->area : 0;
+}
+
+/* Friction coefficient at the slip speed and the pressure at t_n: s_n = s_{n-1/2} + (s_{n-1/2} - s_{n-3/2}) / 2 = 1.5
+   s_{n-1/2} - 0.5 s_{n-3/2}, not below 0. It is explicit: what the step finds does not enter, so that mu is one number
+   in Gauss-Seidel and its cones stay convex. A pair without a slip before has s_n = s_{n-1/2}. */
+void PairSetFriction(ContactProjector p, PetscReal t, ProjectorPair *pair)
+{
+  const ContactInterface *c = &p->contact->interfaces[pair->interface];
+  FrictionLaw             law;
+  const ContactSliding   *sliding = &p->sliding[pair->interface];
+  const PetscReal         factor  = SlidingFrictionStays(sliding) ? 1 : RampValue(&sliding->friction, t);
+  PetscReal               q[3], last, s;
+
+  pair->mu = factor * FrictionSteady(&c->friction);
+  if (!FrictionVaries(&c->friction)) return;
+  PairVelocity(pair, p->nodes.before, q);
+  last       = pair->slip;
+  pair->slip = hypot(q[1] + pair->drift[1], q[2] + pair->drift[2]);
+  if (last < 0) last = pair->slip;
+  pair->slip_before = last;
+  law               = FrictionAt(&c->friction, pair->speed);
+  law.pressure      = FrictionNeedsPressure(&law) ? PairPressure(pair) : 0;
+  s                 = PetscMax(0, 1.5 * pair->slip - 0.5 * last);
+  pair->mu          = factor * FrictionMu(&law, s);
+  if (law.pressure == 0 || FrictionCovers(&law, s)) return;
+  p->beyond[0] = (PetscReal)pair->interface;
+  p->beyond[1] = s;
+  p->beyond[2] = law.pressure;
 }

@@ -95,6 +95,7 @@ static PetscErrorCode StartCheck(ContactProjector p, PetscReal slack, StartFault
 typedef struct {
   PetscInt     interface, number, place; /* place: ProjectorPair */
   PetscReal    force[3];                 /* on the slave, N */
+  PetscReal    area;                     /* m^2 */
   ContactState state;
 } Given;
 
@@ -107,20 +108,29 @@ static int GivenCompare(const void *left, const void *right)
   return (a->place > b->place) - (a->place < b->place);
 }
 
-/* The pairs of all ranks, on all ranks */
+/* Whether friction of any contact asks for the pressure */
+static PetscBool StartNeedsPressure(const ContactProjector p)
+{
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    if (FrictionNeedsPressure(&p->contact->interfaces[i].friction)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The pairs of all ranks, on all ranks; without forces where there are no states */
 static PetscErrorCode GivenGather(ContactProjector p, const ContactState states[], PetscInt *n, Given **all)
 {
-  const Contact  contact = p->contact;
-  const PetscInt n_local = states ? contact->n_pairs : 0;
-  Given         *local;
+  const Contact      contact = p->contact;
+  const ContactState none    = {.status = CONTACT_OPEN};
+  const PetscInt     n_local = states || StartNeedsPressure(p) ? contact->n_pairs : 0;
+  Given             *local;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n_local, &local));
   for (PetscInt k = 0; k < n_local; k++) {
     const ContactPair  *pair = &contact->pairs[k];
-    const ContactState *s    = &states[k];
+    const ContactState *s    = states ? &states[k] : &none;
 
-    local[k] = (Given){pair->interface, pair->vertex, .state = *s};
+    local[k] = (Given){pair->interface, pair->vertex, .area = pair->area, .state = *s};
     if (p->mortar[pair->interface]) local[k].place = contact->feet[k].place;
     for (int d = 0; d < 3; d++)
       local[k].force[d] = s->lambda_n * pair->n[d] - s->lambda_t[0] * pair->t[d] - s->lambda_t[1] * pair->b[d];
@@ -154,11 +164,35 @@ static PetscErrorCode BorderCheck(ContactProjector p, PetscInt lost)
   PetscFunctionReturn(0);
 }
 
+/* Raises the error for a slave that has no pair at rest, whose area would tell its pressure */
+static PetscErrorCode AreaCheck(ContactProjector p, PetscInt strange)
+{
+  PetscReal x[4] = {-1, 0, 0, 0};
+
+  PetscFunctionBeginUser;
+  if (strange >= 0) {
+    x[0] = (PetscReal)p->interface[strange];
+    for (int d = 0; d < 3; d++) x[1 + d] = p->slave_x[3 * strange + d];
+  }
+  PetscCall(ShareWorst(&p->share, 4, x));
+  for (PetscInt i = 0; i < p->n_interfaces; i++)
+    PetscCheck(!p->sliding[i].turning || !FrictionNeedsPressure(&p->contact->interfaces[i].friction), p->share.comm,
+               PETSC_ERR_SUP, "contact %s: friction of a table needs pairs that stay; take -%s_kinematics prescribed",
+               p->contact->interfaces[i].name, p->contact->interfaces[i].name);
+  if (x[0] < 0) PetscFunctionReturn(0);
+  SETERRQ(p->share.comm, PETSC_ERR_USER_INPUT,
+          "contact %s: the node of %s at %.6g, %.6g, %.6g m has no pair at rest, whose area would tell the pressure for "
+          "-%s_friction_law table; raise -%s_tolerance",
+          p->contact->interfaces[(PetscInt)x[0]].name, p->contact->interfaces[(PetscInt)x[0]].slave, (double)x[1],
+          (double)x[2], (double)x[3], p->contact->interfaces[(PetscInt)x[0]].name,
+          p->contact->interfaces[(PetscInt)x[0]].name);
+}
+
 /* Forces of the slaves that face a facet. They are given on the ground, and kept in the frame of the master */
 static PetscErrorCode StartForces(ContactProjector p, const ContactState states[])
 {
   Given   *all;
-  PetscInt n, lost = -1;
+  PetscInt n, lost = -1, strange = -1;
 
   PetscFunctionBeginUser;
   PetscCall(GivenGather(p, states, &n, &all));
@@ -168,8 +202,11 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
     ProjectorPair *pair   = &p->pair[k];
 
     for (int i = 0; i < 3 * PROJECTOR_PAST; i++) pair->lambda[i / 3][i % 3] = 0;
+    pair->area = given ? given->area : 0;
+    if (!given && pair->facet >= 0 && FrictionNeedsPressure(&p->contact->interfaces[pair->interface].friction))
+      strange = k;
     if (given && pair->facet < 0 && given->state.lambda_n > 0) lost = k;
-    if (!given || pair->facet < 0) continue;
+    if (!given || pair->facet < 0 || !states) continue;
     for (int d = 0; d < 3; d++) {
       const PetscReal *D = p->frame[pair->interface].D[d];
 
@@ -182,6 +219,7 @@ static PetscErrorCode StartForces(ContactProjector p, const ContactState states[
   }
   PetscCall(PetscFree(all));
   PetscCall(BorderCheck(p, lost));
+  PetscCall(AreaCheck(p, strange));
   PetscFunctionReturn(0);
 }
 

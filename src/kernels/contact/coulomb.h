@@ -26,7 +26,8 @@
    p has d (e'q - |q0|) e more.
 
    Where mu falls with the length of slip, fall = d mu / d|s| (1/m), p has fall l_n e (e's - |s|) more, of which |s| is
-   that at the present l, w: |q| - mu l_n.
+   that at the present l, w: |q| - mu l_n. Where it changes with the force, rise = l_n d mu / d l_n, friction at other
+   forces is (mu + rise) l_n less rise times the present force.
 */
 #pragma once
 
@@ -41,6 +42,7 @@ typedef struct {
   double shift;    /* where a tangent to the pressure law begins, beyond g0, m; 0 where that is linear */
   double slip0[2]; /* w_t, w_b from which slip counts, m */
   double fall;     /* d mu / d|s| at the present slip, 1/m */
+  double rise;     /* l_n d mu / d l_n at the present force */
   double soft;     /* slip over friction before it gives way, 0 for Coulomb's law itself; none with a fall */
   double pull;     /* force over gap of an open pair, 0 for the laws themselves */
   double drag;     /* slope of friction along the slip from the present slip on, below 1: 0 for the laws themselves */
@@ -90,13 +92,13 @@ static inline void CoulombSlipRows(const CoulombPair *pair, const double l[], co
   const double length = CoulombTrial(pair, l, w, q), cone = pair->mu * fmax(0, l[0]);
   const double alpha = cone == 0 ? 0 : length > cone ? cone / length : 1;
   const double fall = pair->fall * fmax(0, l[0]), rho = CoulombShare(pair), keep = 1 - rho * pair->soft;
-  const double along = 1 / (1 - pair->drag * keep);
+  const double along = 1 / (1 - pair->drag * keep), slope = pair->mu + pair->rise, normal = fmax(0, l[0]);
 
   for (int i = 0; i < 2 && length > 0; i++) e[i] = q[i] / length;
   for (int i = 0; i < 2; i++) {
-    law->P[1 + i][0] = -pair->mu * e[i] * law->P[0][0] * along;
-    law->p0[1 + i] =
-      -(pair->mu * law->p0[0] - pair->drag * length) * along * e[i] + fall * fmax(0, length - cone) * e[i];
+    law->P[1 + i][0] = -slope * e[i] * law->P[0][0] * along;
+    law->p0[1 + i]   = -(slope * law->p0[0] - pair->rise * normal - pair->drag * length) * along * e[i] +
+                     fall * fmax(0, length - cone) * e[i];
     law->q0[1 + i] = pair->slip0[i];
     for (int j = 0; j < 2; j++) {
       const double ee = e[i] * e[j], turn = alpha * ((i == j) - ee) + pair->drag * ee;

@@ -266,17 +266,23 @@ static PetscErrorCode NullSpaceCreate(Pencil pencil, PetscInt n, const ContactPa
   PetscFunctionReturn(0);
 }
 
-/* Zl_i of each speed of one interface: part_p = L_k(v_p), 0 for pairs of other interfaces */
+/* Zl_i of each speed of one interface: part_p = L_k(v_p), or what mu of the pair is there, 0 for pairs of other
+   interfaces */
 static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair **list, PetscInt interface)
 {
   const InterfaceParameters *q = &pencil->operators->interface[interface];
+  const ContactPair         *pairs;
   PetscReal                 *part;
+  PetscInt                   n_pairs, n_all;
 
   PetscFunctionBeginUser;
+  PetscCall(ContactGetPairs(pencil->operators->contact, &n_pairs, &n_all, &pairs));
   PetscCall(PetscMalloc1(n + 1, &part));
   for (PetscInt k = 0; k < q->n_nodes; k++) {
     for (PetscInt p = 0; p < n; p++)
-      part[p] = list[p]->interface == interface ? FrictionNodeShare(q, k, list[p]->speed) : 0;
+      part[p] = list[p]->interface != interface
+                  ? 0
+                  : PencilFrictionShare(pencil, interface, k, (PetscInt)(list[p] - pairs), FRICTION_TANGENT);
     PetscCall(NullSpaceCreate(pencil, n, list, part, &pencil->left[pencil->n_left]));
     pencil->left_interface[pencil->n_left] = interface;
     pencil->left_mu[pencil->n_left++]      = &q->node[k];

@@ -94,11 +94,13 @@ static PetscErrorCode DampingSetWeights(Pencil pencil, const FrictionGroup *g, P
   PetscCall(VecGetOwnershipRange(across, &row, NULL));
   PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
   for (PetscInt i = 0; i < g->n; i++) {
-    const PetscReal own   = pairs[g->pair[i]].speed,
-                    share = FrictionNodeShare(&g->q, k, own) * pencil->force[g->pair[i]] / g->total;
+    const PetscInt  p   = g->pair[i];
+    const PetscReal own = pairs[p].speed, force = pencil->force[p] / g->total;
+    const PetscReal mu    = PencilFrictionShare(pencil, g->interface, k, p, FRICTION_VALUE);
+    const PetscReal slope = PencilFrictionShare(pencil, g->interface, k, p, FRICTION_SLOPE);
 
-    PetscCall(VecSetValue(across, row + i, share * speed / own, INSERT_VALUES));
-    PetscCall(VecSetValue(along, row + i, share, INSERT_VALUES));
+    PetscCall(VecSetValue(across, row + i, mu * force * speed / own, INSERT_VALUES));
+    PetscCall(VecSetValue(along, row + i, slope * force, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(across));
   PetscCall(VecAssemblyEnd(across));
@@ -138,7 +140,7 @@ static PetscErrorCode DampingAdd(Pencil pencil, const FrictionGroup *g, PetscInt
   PetscCall(VecDuplicate(across, &along));
   PetscCall(DampingSetWeights(pencil, g, k, across, along));
   PetscCall(DampingAddProduct(pencil, g, g->T, along, 2 + g->more, slope));
-  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_TRUE));
+  PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], !FrictionNeedsPressure(&g->c->friction)));
   PetscCall(TermsSetCause(&pencil->base, "falling friction", NULL, g->c->name));
   PetscCall(DampingAddProduct(pencil, g, g->B, across, 3 + g->more, mu));
   PetscCall(TermsSetFriction(&pencil->base, 0, &g->q.node[k], PETSC_FALSE));
@@ -191,20 +193,18 @@ static PetscErrorCode PenaltyCreateWeights(Pencil pencil, const FrictionGroup *g
 /* The same times their part at speed k of several; NULL where all are 1 */
 static PetscErrorCode SlideCreateWeights(Pencil pencil, const FrictionGroup *g, PetscInt k, Vec *weights)
 {
-  const ContactPair *pairs;
-  PetscReal          weight;
-  PetscInt           n, n_all, row;
+  PetscReal weight;
+  PetscInt  row;
 
   PetscFunctionBeginUser;
   PetscCall(PenaltyCreateWeights(pencil, g, weights));
-  if (g->q.n_nodes == 1) PetscFunctionReturn(0);
-  PetscCall(ContactGetPairs(pencil->operators->contact, &n, &n_all, &pairs));
+  if (g->q.n_nodes == 1 && !FrictionNeedsPressure(&g->c->friction)) PetscFunctionReturn(0);
   if (!*weights) PetscCall(MatCreateVecs(g->N, NULL, weights));
   PetscCall(VecGetOwnershipRange(*weights, &row, NULL));
   for (PetscInt i = 0; i < g->n; i++) {
     PetscCall(PairWeight(pencil, g, g->pair[i], &weight));
-    PetscCall(
-      VecSetValue(*weights, row + i, FrictionNodeShare(&g->q, k, pairs[g->pair[i]].speed) * weight, INSERT_VALUES));
+    weight *= PencilFrictionShare(pencil, g->interface, k, g->pair[i], FRICTION_TANGENT);
+    PetscCall(VecSetValue(*weights, row + i, weight, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(*weights));
   PetscCall(VecAssemblyEnd(*weights));
@@ -355,6 +355,11 @@ PetscErrorCode PencilCheckSliding(Pencil pencil)
                c[i].name, c[i].name, c[i].name);
     PetscCheck(!c[i].damping || c[i].force > 0 || pencil->has_forces, pencil->comm, PETSC_ERR_USER_INPUT,
                "-%s_friction_damping needs a positive -%s_force (N), or -modes_contact static", c[i].name, c[i].name);
+    PetscCheck(!FrictionNeedsPressure(&c[i].friction) || c[i].force > 0 || pencil->has_forces, pencil->comm,
+               PETSC_ERR_USER_INPUT,
+               "contact %s: friction of a table is that at a pressure: give -%s_force (N), or -loads and "
+               "-modes_contact static",
+               c[i].name, c[i].name);
     PetscCall(FrictionCheckDamps(pencil->comm, &c[i]));
     PetscCheck(c[i].law == CONTACT_CONSTRAINT || PressureIsLinear(&c[i].pressure) || c[i].force > 0 ||
                  pencil->has_forces,
@@ -372,8 +377,10 @@ PetscErrorCode PencilCheckPressure(Pencil pencil, const PetscReal p[])
   PetscInt                n;
 
   PetscFunctionBeginUser;
-  if (!pencil->operators->model || pencil->has_forces) PetscFunctionReturn(0);
+  if (!pencil->operators->model) PetscFunctionReturn(0);
   PetscCall(ContactGetInterfaces(pencil->operators->contact, &n, &c));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PencilCheckTable(pencil, i, p));
+  if (pencil->has_forces) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt force = pencil->operators->interface[i].force;
 

@@ -137,14 +137,15 @@ PetscErrorCode OperatorsGetInterface(Operators operators, const PetscReal p[], P
 
 /* mu of a pair at p: its speed goes with that of the interface, v = V v_0 / V_0. */
 PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], const ContactPair *pair, PetscBool rests,
-                                  PetscReal *mu)
+                                  PetscReal force, PetscReal *mu)
 {
   const PetscReal stated = operators->interface[pair->interface].stated;
   FrictionLaw     law;
 
   PetscFunctionBeginUser;
   PetscCall(InterfaceGetLaw(operators, p, pair->interface, &law));
-  law.speed = stated > 0 ? law.speed * pair->speed / stated : 0;
+  law = FrictionOfPair(&law, stated > 0 ? law.speed * pair->speed / stated : 0, pair->area);
+  law = FrictionPressed(&law, force);
   *mu       = rests ? FrictionMu(&law, 0) : FrictionSteady(&law);
   PetscFunctionReturn(0);
 }
@@ -332,6 +333,11 @@ static PetscErrorCode InterfaceSetNodes(Operators o, PetscInt interface, const C
     .law = c->friction, .speed = FrictionNeedsSpeed(&c->friction) ? q->speed : -1, .ratio = range[1]};
   q->node[0].law.speed = q->stated * range[1];
   PetscCall(PetscArraycpy(q->node[0].parameter, q->law, FRICTION_PARAMETERS));
+  if (FrictionNeedsPressure(&c->friction)) { /* a factor of what each pair has */
+    q->node[0].law   = (FrictionLaw){.kind = 0, .parameter = {c->friction.parameter[0]}};
+    q->node[0].speed = -1;
+    PetscFunctionReturn(0);
+  }
   if (FrictionNeedsSpeed(&c->friction) && range[1] - range[0] > PETSC_SMALL * range[1])
     PetscCall(NodesChoose(o, c, range, q));
   PetscFunctionReturn(0);

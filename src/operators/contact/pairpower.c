@@ -122,13 +122,14 @@ static PetscErrorCode ForcesCreate(Pencil pencil, PetscComplex lambda, const Vec
 }
 
 /* mu of a pair at the present point */
-static PetscReal PairFriction(Pencil pencil, const ContactPair *pair)
+static PetscReal PairFriction(Pencil pencil, PetscInt interface, PetscInt pair)
 {
-  const InterfaceParameters *q  = &pencil->operators->interface[pair->interface];
+  const InterfaceParameters *q  = &pencil->operators->interface[interface];
   PetscReal                  mu = 0;
 
   for (PetscInt k = 0; k < q->n_nodes; k++)
-    mu += FrictionNodeShare(q, k, pair->speed) * FrictionFactorValue(&q->node[k], PETSC_FALSE, pencil->parameters.p);
+    mu += PencilFrictionShare(pencil, interface, k, pair, FRICTION_TANGENT) *
+          FrictionFactorValue(&q->node[k], PETSC_FALSE, pencil->parameters.p);
   return mu;
 }
 
@@ -164,7 +165,7 @@ static PetscErrorCode ExactAddPowers(Pencil pencil, PetscInt n, const PetscInt l
     const ContactPair *own = &pair[list[i]];
     const PetscReal im = slip[0][i] * PairNormal(own, first, force[1]) - slip[1][i] * PairNormal(own, first, force[0]);
 
-    powers[list[i] * PENCIL_N_POWERS + PENCIL_FRICTION] += PairFriction(pencil, own) * im;
+    powers[list[i] * PENCIL_N_POWERS + PENCIL_FRICTION] += PairFriction(pencil, own->interface, list[i]) * im;
   }
   for (int k = 0; k < 2; k++) {
     PetscCall(VecRestoreArrayRead(Tx[k], &slip[k]));

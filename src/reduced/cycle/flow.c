@@ -84,10 +84,11 @@ PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscRea
    level there. Slip is along -p_T. */
 static PetscBool PairRests(const FrictionLaw *law, const PetscReal p[3], const PetscReal v[2])
 {
-  const PetscReal size = hypot(p[1], p[2]), s = size > 0 ? -(p[1] * v[0] + p[2] * v[1]) / size : 0;
+  const PetscReal   size = hypot(p[1], p[2]), s = size > 0 ? -(p[1] * v[0] + p[2] * v[1]) / size : 0;
+  const FrictionLaw here = FrictionPressed(law, p[0]);
 
-  if (!(p[0] > 0) || size > FrictionMu(law, 0) * p[0]) return PETSC_FALSE;
-  return size < (1 - FLOW_ROUNDING) * FrictionMu(law, 2 * PetscMax(0, s)) * p[0] ? PETSC_TRUE : PETSC_FALSE;
+  if (!(p[0] > 0) || size > FrictionMu(&here, 0) * p[0]) return PETSC_FALSE;
+  return size < (1 - FLOW_ROUNDING) * FrictionMu(&here, 2 * PetscMax(0, s)) * p[0] ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Statuses of the pairs by x alone. Those of the period before, of another x, would make Phi no function of x where

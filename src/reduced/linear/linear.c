@@ -1,8 +1,8 @@
 /*
    The reduced model about steady sliding: pairs that are closed stay so and slide along t, so that their forces are
-   lambda = e lambda_n with e = (1, -mu, 0) on the slave, and their gaps N y do not change. With N, E the matrices of
-   these and S = (N W E)^-1 N P, N W E plus 1 / k_n of a law in series at its force, without damping lambda_n = -S
-   eta. With damping, to first order in that of the residual,
+   lambda = e lambda_n with e = (1, -mu, 0) on the slave (mu + p d mu / dp where it depends on the pressure p), and
+   their gaps N y do not change. With N, E the matrices of these and S = (N W E)^-1 N P, N W E plus 1 / k_n of a law in
+   series at its force, without damping lambda_n = -S eta. With damping, to first order in that of the residual,
 
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
@@ -21,11 +21,26 @@
 /* The closed pairs, and work */
 typedef struct {
   const ReducedModel *model;
+  const PetscReal    *lambda_n; /* [n_pairs] N, or NULL */
   PetscInt            n, *pair; /* [n] */
   PetscReal          *A;        /* [n][n] LU factors of N W E */
   PetscBLASInt       *pivot;
   PetscReal          *S, *T; /* [m][n] */
 } ClosedPairs;
+
+/* The law of closed pair j at its pressure */
+static FrictionLaw ClosedFriction(const ClosedPairs *c, PetscInt j)
+{
+  return FrictionPressed(&c->model->friction[c->pair[j]], c->lambda_n ? c->lambda_n[c->pair[j]] : 0);
+}
+
+/* Change of friction over that of the normal force in steady sliding: mu, where it knows no pressure */
+static PetscReal ClosedMu(const ClosedPairs *c, PetscInt j)
+{
+  const FrictionLaw law = ClosedFriction(c, j);
+
+  return FrictionSteadyTangent(&law);
+}
 
 /* 1 / k_n, m/N, at the pair's force, N, or at none */
 static PetscReal ClosedYield(const ClosedPairs *c, PetscInt i, const PetscReal lambda_n[])
@@ -45,7 +60,7 @@ static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool cl
   PetscBool      singular;
 
   PetscFunctionBeginUser;
-  *c = (ClosedPairs){.model = model};
+  *c = (ClosedPairs){.model = model, .lambda_n = lambda_n};
   PetscCall(PetscMalloc1(model->n_pairs, &c->pair));
   for (PetscInt i = 0; i < model->n_pairs; i++)
     if (closed[i]) c->pair[n++] = i;
@@ -55,7 +70,7 @@ static PetscErrorCode ClosedCreate(const ReducedModel *model, const PetscBool cl
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal *w = &model->W[3 * c->pair[i] + N * (3 * c->pair[j])];
 
-      c->A[i + n * j] = w[0] - FrictionSteady(&model->friction[c->pair[j]]) * w[N];
+      c->A[i + n * j] = w[0] - ClosedMu(c, j) * w[N];
     }
   for (PetscInt i = 0; i < n && model->spring; i++) c->A[i + n * i] += ClosedYield(c, i, lambda_n);
   if (!n) PetscFunctionReturn(0);
@@ -91,7 +106,7 @@ static void ClosedAdd(const ClosedPairs *c, PetscReal scale, const PetscReal Q[]
   const PetscInt m = c->model->m;
 
   for (PetscInt i = 0; i < c->n; i++) {
-    const PetscReal *q = &Q[m * 3 * c->pair[i]], mu = FrictionSteady(&c->model->friction[c->pair[i]]);
+    const PetscReal *q = &Q[m * 3 * c->pair[i]], mu = ClosedMu(c, i);
 
     for (PetscInt k = 0; k < m; k++)
       for (PetscInt l = 0; l < m; l++) K[l + m * k] += scale * (q[l] - mu * q[m + l]) * S[i + c->n * k];
@@ -109,7 +124,7 @@ static PetscErrorCode ClosedSolveForm(ClosedPairs *c, const PetscReal X[], Petsc
       for (PetscInt j = 0; j < n; j++) {
         const PetscReal *x = &X[3 * c->pair[i] + N * 3 * c->pair[j]];
 
-        Y[i + n * k] -= (x[0] - FrictionSteady(&c->model->friction[c->pair[j]]) * x[N]) * c->S[j + n * k];
+        Y[i + n * k] -= (x[0] - ClosedMu(c, j) * x[N]) * c->S[j + n * k];
       }
     }
   }
@@ -186,7 +201,7 @@ static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d
   for (PetscInt k = 0; k < m; k++) L[k] = R[k] = model->P[k + m * port];
   for (PetscInt j = 0; j < n; j++) {
     const PetscInt   other = 3 * c->pair[j];
-    const PetscReal *P = &model->P[m * other], mu = FrictionSteady(&model->friction[c->pair[j]]);
+    const PetscReal *P = &model->P[m * other], mu = ClosedMu(c, j);
     const PetscReal  w = model->W[port + N * other] - mu * model->W[port + N * (other + 1)];
 
     for (PetscInt k = 0; k < m; k++) {
@@ -204,14 +219,12 @@ static PetscErrorCode ClosedAddDamper(ClosedPairs *c, PetscInt port, PetscReal d
    and mu' lambda_n along t; mu' < 0 feeds. */
 static PetscErrorCode ClosedAddFriction(ClosedPairs *c, const PetscReal lambda_n[], PetscReal C[])
 {
-  const ReducedModel *model = c->model;
-
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->n; i++) {
-    const PetscInt     p      = c->pair[i];
-    const FrictionLaw *law    = &model->friction[p];
-    const PetscReal    along  = FrictionSteadySlope(law) * lambda_n[p];
-    const PetscReal    across = law->speed > 0 ? FrictionSteady(law) * lambda_n[p] / law->speed : 0;
+    const PetscInt    p      = c->pair[i];
+    const FrictionLaw law    = ClosedFriction(c, i);
+    const PetscReal   along  = FrictionSteadySlope(&law) * lambda_n[p];
+    const PetscReal   across = law.speed > 0 ? FrictionSteady(&law) * lambda_n[p] / law.speed : 0;
 
     if (along != 0) PetscCall(ClosedAddDamper(c, 3 * p + 1, along, C));
     if (across != 0) PetscCall(ClosedAddDamper(c, 3 * p + 2, across, C));
@@ -278,7 +291,7 @@ static void ClosedSetMode(const ClosedPairs *c, const PetscReal z[], ReducedStat
 
     for (PetscInt k = 0; k < m; k++) lambda += c->T[i + c->n * k] * z[m + k] - c->S[i + c->n * k] * z[k];
     mode->p[port]     = lambda;
-    mode->p[port + 1] = -FrictionSteady(&c->model->friction[c->pair[i]]) * lambda;
+    mode->p[port + 1] = -ClosedMu(c, i) * lambda;
     mode->q[port]     = mode->p[port];
     mode->q[port + 1] = mode->p[port + 1];
   }

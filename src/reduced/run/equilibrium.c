@@ -6,7 +6,7 @@
 
    with the set of closed pairs that has no tension and no penetration. A law in series with a pair is a line, c = o + s
    lambda_n: o adds to the gap, s to the diagonal; lines of laws that are not linear are laid anew until they are
-   tangents. */
+   tangents. So is mu where it depends on the pressure, until it is that of the forces found. */
 #include "reduced/reducedimpl.h"
 
 #define EQUILIBRIUM_MAX_IT  100
@@ -22,6 +22,7 @@ typedef struct {
   PetscInt            n, *pair; /* closed ones */
   SpringLine         *line;     /* [n_pairs] */
   SpringPoint        *point;    /* [n_pairs] */
+  PetscReal          *mu;       /* [n_pairs] */
   PetscReal          *at;       /* [n_pairs] closings at which they are tangents, m */
   PetscReal          *A, *x;    /* [m + n]^2, [m + n] */
   PetscBLASInt       *pivot;
@@ -43,7 +44,7 @@ static void SlidingSystemFill(SlidingSystem *s)
   }
   for (PetscInt j = 0; j < s->n; j++) {
     const PetscInt   port = 3 * s->pair[j];
-    const PetscReal *P = &model->P[m * port], mu = FrictionSteady(&model->friction[s->pair[j]]);
+    const PetscReal *P = &model->P[m * port], mu = s->mu[s->pair[j]];
 
     s->x[m + j] = -model->gap[s->pair[j]] - s->line[s->pair[j]].closing;
     for (PetscInt l = 0; l < model->n_loads; l++) s->x[m + j] -= model->W[port + N * (first + l)] * s->loads[l];
@@ -72,7 +73,7 @@ static void SlidingSystemTake(const SlidingSystem *s, ReducedState *state)
   for (PetscInt l = 0; l < model->n_loads; l++) state->p[first + l] = s->loads[l];
   for (PetscInt j = 0; j < s->n; j++) {
     state->p[3 * s->pair[j]]     = s->x[model->m + j];
-    state->p[3 * s->pair[j] + 1] = -FrictionSteady(&model->friction[s->pair[j]]) * s->x[model->m + j];
+    state->p[3 * s->pair[j] + 1] = -s->mu[s->pair[j]] * s->x[model->m + j];
   }
   for (PetscInt i = 0; i < first; i++) state->y[i] = ReducedPortDisplacement(model, state->eta, state->p, i);
 }
@@ -115,12 +116,25 @@ static PetscErrorCode SlidingSystemSolve(SlidingSystem *s, ReducedState *state, 
   PetscFunctionReturn(0);
 }
 
+/* mu at the forces found; settled where it was */
+static void SlidingSystemRub(SlidingSystem *s, const ReducedState *state, PetscBool *settled)
+{
+  for (PetscInt i = 0; i < s->model->n_pairs; i++) {
+    const FrictionLaw law = FrictionPressed(&s->model->friction[i], state->p[3 * i]);
+    const PetscReal   mu  = FrictionSteady(&law);
+
+    if (PetscAbsReal(mu - s->mu[i]) > EQUILIBRIUM_SETTLED * PetscAbsReal(mu)) *settled = PETSC_FALSE;
+    s->mu[i] = mu;
+  }
+}
+
 /* Lines laid anew at the forces and closings found; settled where all had them already, to EQUILIBRIUM_SETTLED */
 static void SlidingSystemLay(SlidingSystem *s, const ReducedState *state, PetscBool *settled)
 {
   const ReducedModel *model = s->model;
 
   *settled = PETSC_TRUE;
+  SlidingSystemRub(s, state, settled);
   if (!model->spring) return;
   for (PetscInt i = 0; i < model->n_pairs; i++)
     s->point[i] = (SpringPoint){PetscMax(0, state->p[3 * i]), -model->gap[i] - state->y[3 * i]};
@@ -138,6 +152,7 @@ static void SlidingSystemBegin(SlidingSystem *s, ReducedState *state)
     s->pair[i]       = i;
     state->status[i] = CONTACT_SLIP;
     s->at[i]         = model->spring ? SpringOnset(&model->spring[i]) : 0;
+    s->mu[i]         = FrictionSteady(&model->friction[i]);
     s->line[i]       = model->spring ? SpringTangent(&model->spring[i], s->at[i]) : (SpringLine){0, 0};
   }
 }
@@ -151,6 +166,7 @@ PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loa
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc7(n, &s.pair, n, &s.line, n, &s.point, n, &s.at, most * most, &s.A, most, &s.x, most, &s.pivot));
+  PetscCall(PetscMalloc1(n, &s.mu));
   SlidingSystemBegin(&s, state);
   *found = PETSC_TRUE;
   for (PetscInt it = 0; it < EQUILIBRIUM_MAX_IT && *found && !settled; it++) {
@@ -162,6 +178,7 @@ PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loa
   PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
   PetscCall(PetscArraycpy(state->q, state->p, 3 * model->n_pairs));
   state->time = 0;
+  PetscCall(PetscFree(s.mu));
   PetscCall(PetscFree7(s.pair, s.line, s.point, s.at, s.A, s.x, s.pivot));
   PetscFunctionReturn(0);
 }

@@ -80,7 +80,7 @@ PetscErrorCode ReducedSetPairs(ReducedRun r)
                "contact %s: bodies interpenetrate by %.6g m at %.6g, %.6g, %.6g m at the start", c->name,
                (double)-pair->gap, (double)pair->x[0], (double)pair->x[1], (double)pair->x[2]);
     r->reduction.model.gap[i]      = PetscMax(0, pair->gap);
-    r->reduction.model.friction[i] = FrictionAt(&c->friction, pair->speed);
+    r->reduction.model.friction[i] = FrictionOfPair(&c->friction, pair->speed, pair->area);
     r->motion.pairs[i].gap         = r->reduction.model.gap[i];
     if (!r->request.springs) continue;
     PetscCall(OperatorsGetInterface(r->run.operators, r->request.p, pair->interface, &mu, &law));
@@ -151,8 +151,9 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &judged));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal *slip = r->motion.pairs[i].slip;
-    const PetscReal  mu   = FrictionMu(&r->reduction.model.friction[i], hypot(slip[0], slip[1]) / dt);
+    const PetscReal  *slip = r->motion.pairs[i].slip, speed = hypot(slip[0], slip[1]) / dt;
+    const FrictionLaw law  = FrictionPressed(&r->reduction.model.friction[i], r->motion.pairs[i].lambda_n);
+    const PetscReal   mu   = FrictionMu(&law, speed);
 
     judged[i] = (ContactJudged){
       &r->motion.pairs[i], mu, StateClosing(r, i), r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),

@@ -101,7 +101,7 @@ PetscErrorCode ReducedSetFriction(ReducedRun r, PetscReal t, PetscBool *changed)
 
     PetscCall(ContactProjectorGetFriction(r->run.projector, pair->interface, t, &factor, &varies));
     if (!varies) continue;
-    *friction = FrictionAt(&r->run.interfaces[pair->interface].friction, pair->speed);
+    *friction = FrictionOfPair(&r->run.interfaces[pair->interface].friction, pair->speed, pair->area);
     FrictionScale(friction, factor);
     *changed = PETSC_TRUE;
   }

@@ -26,6 +26,7 @@ static void RelaxPair(ReducedStepper s, ReducedState *state, PetscInt pair)
   const ReducedModel *model = s->model;
   PetscReal          *p     = &state->p[3 * pair], l[3];
   ReducedRelaxed     *r     = &s->relaxed[pair];
+  FrictionLaw         law;
 
   for (PetscInt d = 0; d < 3; d++) l[d] = p[d] - RELAX_SHARE * RelaxChange(s, state, 3 * pair + d);
   if (model->spring) l[0] = p[0];
@@ -33,7 +34,8 @@ static void RelaxPair(ReducedStepper s, ReducedState *state, PetscInt pair)
   r->ratio = l[0] / p[0];
   for (int d = 1; d < 3 && state->status[pair] == CONTACT_SLIP; d++) l[d] = r->ratio * p[d];
   r->status = state->status[pair];
-  if (r->status == CONTACT_STICK && hypot(l[1], l[2]) > FrictionMu(&model->friction[pair], 0) * l[0])
+  law       = FrictionPressed(&model->friction[pair], l[0]);
+  if (r->status == CONTACT_STICK && hypot(l[1], l[2]) > FrictionMu(&law, 0) * l[0])
     r->status = CONTACT_OPEN;
   for (int d = 0; d < 3 && r->status != CONTACT_OPEN; d++) p[d] = l[d];
   for (int d = 0; d < 2; d++) r->cone[d] = p[1 + d] / p[0];

@@ -157,13 +157,30 @@ static PetscErrorCode StepperSetFree(ReducedStepper s, const ReducedDrive *drive
     PetscCall(SparseTimes(model->sparse, s->q, s->r, NULL));
     for (PetscInt i = 0; i < n; i++) s->free[i] += s->r[i];
   }
-  if (!s->sparse) ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
+  if (!s->sparse && model->Cm) ReducedBlockTimes(&(DenseBlock){model->W, n, n, N}, PETSC_FALSE, 1, s->q, s->free);
   ReducedBlockTimes(&(DenseBlock){ReducedColumn(model, n), n, model->n_loads, N}, PETSC_FALSE, 1, &state->p[n],
                     s->free);
   for (PetscInt i = 0; i < n && model->n_motions; i++) s->free[i] += ReducedMotionWay(model, &state->p[n], i);
   for (PetscInt i = 0; i < model->n_pairs; i++) {
     s->slip0[2 * i]     = state->y[3 * i + 1] - drive->sliding[i];
     s->slip0[2 * i + 1] = state->y[3 * i + 2];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Raises the error for a closed pair beyond the table of its friction */
+static PetscErrorCode StepperCheckTables(ReducedStepper s, const ReducedState *state)
+{
+  const PetscReal *slip;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceGetSlip(s->laws, &slip));
+  for (PetscInt i = 0; i < s->model->n_pairs; i++) {
+    const PetscReal   speed = hypot(slip[3 * i + 1], slip[3 * i + 2]) / s->dt;
+    const FrictionLaw law   = FrictionPressed(&s->model->friction[i], state->p[3 * i]);
+
+    if (law.pressure > 0 && !FrictionCovers(&law, speed))
+      PetscCall(FrictionComplain(PETSC_COMM_SELF, NULL, &law, state->time + s->dt, speed, law.pressure));
   }
   PetscFunctionReturn(0);
 }
@@ -191,6 +208,7 @@ static PetscErrorCode StepperSolveLaws(ReducedStepper s, ReducedState *state, Re
              (double)FrictionSteady(&s->model->friction[PetscMax(0, solved.worst)]));
   PetscCall(ContactComplianceGetStatus(s->laws, &status));
   PetscCall(PetscArraycpy(state->status, status, n));
+  PetscCall(StepperCheckTables(s, state));
   PetscCall(ContactComplianceGetSlip(s->laws, &slip));
   PetscCall(PetscArraycpy(s->slip, slip, 3 * n));
   report->residual = solved.residual;

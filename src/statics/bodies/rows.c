@@ -88,6 +88,20 @@ void PairRowsSetClosing(PairRows *rows, PetscInt p, PetscReal kappa, PetscReal c
   rows->law[p].k     = force > 0 || !curved ? PairSlope(rows, p, c, force) / kappa : INFINITY;
 }
 
+PetscErrorCode PairRowsSetFriction(Operators operators, const PetscReal p[], PetscInt k, PetscReal force,
+                                   PairRows *rows)
+{
+  const PetscInt i = rows->pair[k].interface;
+  PetscReal      mu;
+
+  PetscFunctionBeginUser;
+  PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k],
+                               (PetscBool)(rows->interface[i].slides && !rows->slides[i]), force, &mu));
+  rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
+  rows->slide[k]  = rows->slides[i] ? mu : 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscReal kappa, PairRows *rows)
 {
   PetscReal unused;
@@ -96,14 +110,8 @@ PetscErrorCode PairRowsSetLaws(Operators operators, const PetscReal p[], PetscRe
   for (PetscInt i = 0; i < rows->n_interfaces; i++)
     PetscCall(OperatorsGetInterface(operators, p, i, &unused, &rows->pressure[i]));
   for (PetscInt k = 0; k < rows->n_pairs; k++) {
-    const PetscInt i = rows->pair[k].interface;
-    PetscReal      mu;
-
-    PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k],
-                                 (PetscBool)(rows->interface[i].slides && !rows->slides[i]), &mu));
     PairRowsSetClosing(rows, k, kappa, PressureOnset(&rows->pressure[rows->pair[k].interface]));
-    rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
-    rows->slide[k]  = rows->slides[rows->pair[k].interface] ? mu : 0;
+    PetscCall(PairRowsSetFriction(operators, p, k, 0, rows));
   }
   PetscFunctionReturn(0);
 }

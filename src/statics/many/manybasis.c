@@ -197,6 +197,10 @@ static PetscErrorCode LawsTake(const ManyBasis *b, const PetscReal p[], ManyPoin
   PetscReal *local;
 
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < rows->n_interfaces; i++)
+    PetscCheck(!FrictionNeedsPressure(&rows->interface[i].friction), rows->comm, PETSC_ERR_SUP,
+               "contact %s: -%s_friction_law table is for single states, not for those of many points",
+               rows->interface[i].name, rows->interface[i].name);
   PetscCall(PairRowsSetLaws(b->statics->operators, p, 1, rows));
   PetscCall(PetscMalloc1(rows->n_pairs, &local));
   for (PetscInt i = 0; i < rows->n_pairs; i++) local[i] = rows->law[i].k;

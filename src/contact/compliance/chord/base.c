@@ -180,7 +180,7 @@ static void ChordTurnFrames(ContactCompliance c)
     const PetscReal   length = CoulombTrial(&pair, &c->l[3 * p], w, f->e), cone = pair.mu * c->l[3 * p];
 
     for (int d = 0; d < 2; d++) f->e[d] = length > 0 ? f->e[d] / length : 1 - d;
-    f->mu = pair.mu;
+    f->mu = pair.mu + pair.rise;
     f->c  = c->status[p] == CONTACT_STICK ? 0 : COMPLIANCE_WEAK;
     if (c->status[p] == CONTACT_SLIP && cone > 0)
       f->c = PetscMin(COMPLIANCE_WEAK, PetscSqrtReal(v[1] * v[1] + v[2] * v[2]) / cone);
