@@ -204,32 +204,48 @@ static PetscErrorCode OmegaUnite(CorrectionBlock *block, PetscReal omega[])
   PetscFunctionReturn(0);
 }
 
-/* Collective. One solve for all columns of both sides, then one orthogonalisation; the blocks of residuals are
-   freed before the vectors of the basis grow, which is the largest memory of a sweep. */
-PetscErrorCode CorrectionApply(const Correction *c, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
-                               PetscInt *n_added)
+/* Z = solutions for all columns of both sides, which are freed before the vectors of the basis grow: the largest memory
+   of a sweep */
+PetscErrorCode CorrectionSolve(const Correction *c, const Basis *basis, CorrectionBlock *block, BV *Z)
 {
-  const PetscInt n = block->n[0] + block->n[1];
-  PetscInt       n_left;
-  PetscReal     *omega;
-  BV             Z;
-
   PetscFunctionBeginUser;
-  *n_added = 0;
-  if (!n) PetscFunctionReturn(0);
-  PetscCall(EventBegin(EVENT_CORRECT));
-  PetscCall(BlockCreate(basis->space.V, n, &Z));
+  PetscCall(BlockCreate(basis->space.V, block->n[0] + block->n[1], Z));
   for (int i = 0; i < 2; i++)
     if (block->side[i]) PetscCall(BVSetActiveColumns(block->side[i], 0, block->n[i]));
-  PetscCall(ResidualsSolve(&c->factor, block->side, Z));
+  PetscCall(ResidualsSolve(&c->factor, block->side, *Z));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CorrectionAppend(const Correction *c, CorrectionDrop drop, Basis *basis, CorrectionBlock *block, BV Z,
+                                PetscInt *n_added)
+{
+  PetscReal *omega;
+  PetscInt   n_left;
+
+  PetscFunctionBeginUser;
   for (int i = 0; i < 2; i++) PetscCall(BVDestroy(&block->side[i]));
-  PetscCall(PetscMalloc1(n, &omega));
+  PetscCall(PetscMalloc1(block->n[0] + block->n[1], &omega));
   PetscCall(OmegaUnite(block, omega));
   block->n[0] = block->n[1] = 0;
   if (drop.energy > 0) PetscCall(CorrectionCompress(c, drop.energy, basis, omega, Z));
   PetscCall(BVGetActiveColumns(Z, NULL, &n_left));
   if (n_left) PetscCall(BasisAdd(basis, Z, drop.energy > 0 ? 0 : drop.length, n_added));
   PetscCall(PetscFree(omega));
+  PetscFunctionReturn(0);
+}
+
+/* Collective. One solve for all, then one orthogonalisation */
+PetscErrorCode CorrectionApply(const Correction *c, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
+                               PetscInt *n_added)
+{
+  BV Z;
+
+  PetscFunctionBeginUser;
+  *n_added = 0;
+  if (!(block->n[0] + block->n[1])) PetscFunctionReturn(0);
+  PetscCall(EventBegin(EVENT_CORRECT));
+  PetscCall(CorrectionSolve(c, basis, block, &Z));
+  PetscCall(CorrectionAppend(c, drop, basis, block, Z, n_added));
   PetscCall(BVDestroy(&Z));
   PetscCall(EventEnd(EVENT_CORRECT));
   PetscFunctionReturn(0);

@@ -45,6 +45,11 @@ PetscErrorCode CorrectionCollect(const Correction *correction, const ReducedMode
 PetscErrorCode CorrectionApply(const Correction *correction, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
                                PetscInt *n_added);
 
+/* Its two steps: Z = P^-1 and P^-T of both sides, in as many columns; and what these hold beyond the basis into it */
+PetscErrorCode CorrectionSolve(const Correction *correction, const Basis *basis, CorrectionBlock *block, BV *Z);
+PetscErrorCode CorrectionAppend(const Correction *correction, CorrectionDrop drop, Basis *basis, CorrectionBlock *block,
+                                BV Z, PetscInt *n_added);
+
 /* Leaves out the modes that the step before has settled: known there, with an error below the tolerance */
 PetscErrorCode CorrectionDropSettled(const ReducedModes *before, PetscReal tolerance, ReducedModes *modes);
 

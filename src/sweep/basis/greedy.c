@@ -16,7 +16,9 @@
    too: its corrections end at rtol.
 
    Over a box of many parameters corrections are many and much alike. Of each block of them those directions are kept
-   that hold energy, in the norm K + h^2 M (correct.c).
+   that hold energy, in the norm K + h^2 M (correct.c); what is left out is a part of the stated errors. Pairs that open
+   and close are taken in behind the first point (pairs.c). Looks go on until some in a row find no more than was
+   stated, and by how much others did widens what is stated.
 */
 #include "greedywork.h"
 
@@ -27,6 +29,7 @@
    second order in that of the vectors, |z|^2 <= 1e-6 rtol. */
 #define GREEDY_DROP 1e-3
 #define LAZY_BATCH  4 /* on any number of ranks */
+#define LOOK_SURE   3 /* looks one after the other that find no more than was stated, over a box */
 
 /* Distance of point i from the nearest full solution, in parts of the extent: sqrt(sum_k ((a_k - b_k) /
    scale_k)^2), along a range measured in ratios (scale < 0) with log(a_k / b_k). No unit. */
@@ -170,19 +173,41 @@ static PetscErrorCode PointsStatuses(const GreedyWork *run, PetscInt *n)
   PetscFunctionReturn(0);
 }
 
-/* Where to look: at the point farthest from all others; of two then at the middle, for right and for left vectors; then
-   at the last full solution itself, whose corrections ended at rtol and left short vectors out; NULL for nowhere
-   more */
+/* The point of the largest estimate among those not looked at; -1 for none */
+static PetscInt LookWorst(const GreedyWork *run)
+{
+  PetscInt worst = -1;
+
+  for (PetscInt i = 0; i < run->n; i++)
+    if ((worst < 0 || run->estimate[i] > run->estimate[worst]) && PointDistance(run, i) > 0) worst = i;
+  return worst;
+}
+
+/* Where to look: at the point farthest from all others, over a box every other time at that of the largest estimate; of
+   two then at the middle, for right and for left vectors; then at the last full solution itself, whose corrections
+   ended at rtol and left short vectors out; NULL for nowhere more */
 static const PetscReal *LookNext(const GreedyWork *run, PetscInt look, const PetscReal middle[], PetscBool *own)
 {
   PetscReal farthest;
   PetscInt  i = PointFarthest(run, &farthest);
 
+  if (farthest > 0 && run->greedy->most_looks && look % 2 == 0) i = LookWorst(run);
   if (farthest > 0) return &run->points[i * run->basis->reduced.n_parameters];
   if (run->n == 2 && look < 3) return middle;
   if (*own) return NULL;
   *own = PETSC_TRUE;
   return run->greedy->sample[run->first].p;
+}
+
+/* Whether there are looks enough: `n` of them, and over a box the last LOOK_SURE ones without an error beyond what was
+   stated; or one that tells that the model is not good enough */
+static PetscBool LooksEnough(const GreedyWork *run, PetscInt look, PetscInt n, PetscInt n_sure, PetscReal worst)
+{
+  const Greedy *g = run->greedy;
+
+  if (!g->most_looks) return look >= n ? PETSC_TRUE : PETSC_FALSE;
+  if (POINTS_MARGIN * worst > g->goal * g->rtol || look >= LOOK_MOST) return PETSC_TRUE;
+  return look >= n && n_sure >= LOOK_SURE ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Looks at the points farthest from all others with the factors of the last full solution, where pairs open and
@@ -193,8 +218,8 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   Greedy *const        g         = run->greedy;
   const PetscInt       n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
   const CorrectionDrop drop = run->drop;
-  PetscReal            worst, *middle;
-  PetscInt             n_added, n_statuses;
+  PetscReal            worst = 0, surprise = 0, beyond = 0, *middle;
+  PetscInt             n_added, n_statuses, n_sure = 0;
   PetscBool            own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -202,10 +227,12 @@ static PetscErrorCode PointsLook(GreedyWork *run)
   PetscCall(PointsStatuses(run, &n_statuses));
   if (run->n == 2) PointsMiddle(run, middle);
   g->looked  = PETSC_TRUE;
-  run->first = n_samples - 1;
+  run->first = g->most_looks ? 0 : n_samples - 1; /* over a box those solved in full are known */
   run->drop  = (CorrectionDrop){PetscMin(drop.length, LOOK_DROP), drop.energy};
   if (g->most_looks) n_statuses = PetscMin(n_statuses, g->most_looks);
-  for (int look = 0; look < PetscMax(GREEDY_LOOKS, n_statuses); look++) {
+  if (g->most_looks) run->surprise = &surprise;
+  run->basis->reduced.beyond = 0;
+  for (int look = 0; !LooksEnough(run, look, PetscMax(GREEDY_LOOKS, n_statuses), n_sure, worst); look++) {
     const PetscReal *p     = LookNext(run, look, middle, &own);
     ReducedModes     modes = {0};
 
@@ -214,11 +241,15 @@ static PetscErrorCode PointsLook(GreedyWork *run)
     PetscCall(FactorKeep(run, p));
     PetscCall(StepApply(run, p, &modes, &n_added, &worst));
     PetscCall(ReducedModesDestroy(&modes));
+    n_sure = surprise <= 1 ? n_sure + 1 : 0;
+    beyond = PetscMax(beyond, surprise);
     PetscCall(SampleAdd(run, p, PETSC_FALSE, 0, worst)); /* for the distances */
   }
-  run->sides = CORRECT_BOTH;
-  run->first = 0;
-  run->drop  = drop;
+  run->basis->reduced.beyond = beyond > 1 ? beyond : 0;
+  run->sides    = CORRECT_BOTH;
+  run->surprise = NULL;
+  run->first    = 0;
+  run->drop     = drop;
   for (PetscInt j = n_samples; j < g->n_samples; j++) PetscCall(PetscFree(g->sample[j].p));
   g->n_samples = n_samples;
   PetscCall(PetscFree(middle));
@@ -261,11 +292,14 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
       PetscCall(PointNext(&run, &next));
     }
     if (next < 0 || greedy->n_samples >= greedy->max_samples) break;
-    if (greedy->n_samples)
+    if (greedy->n_samples) {
       PetscCall(SampleCorrect(&run, &points[next * n_parameters], &greedy->last));
-    else
+    } else {
       PetscCall(SampleKrylov(&run, points, NAN));
-    greedy->looked = PETSC_FALSE;
+      if (greedy->lazy) PetscCall(PairsTake(&run, points));
+    }
+    greedy->looked        = PETSC_FALSE;
+    basis->reduced.beyond = 0; /* of the model before */
     if (greedy->keep) PetscCall(greedy->keep(greedy->keep_ctx));
     PetscCall(PointNext(&run, &next));
   }

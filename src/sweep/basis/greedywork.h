@@ -18,6 +18,7 @@ typedef struct {
   PetscReal       *scale;    /* [n_parameters] */
   CorrectionDrop   drop;
   CorrectionSides  sides;
+  PetscReal       *surprise; /* how far a step finds errors beyond what was stated; NULL: not asked for */
   PetscInt         first;      /* sample from which on distances are measured */
   Correction      *correction; /* the greedy's */
   ShiftInvert      counter;    /* where the factors of the correction do not serve */
@@ -35,6 +36,10 @@ PetscErrorCode SampleCorrect(GreedyWork *run, const PetscReal p[], PetscReal *fi
    they tell about the model before */
 PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added,
                          PetscReal *worst);
+/* The factors at p in place of those before */
+PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[]);
+/* pairs.c - takes what a change of contact status does at p into the model */
+PetscErrorCode PairsTake(GreedyWork *run, const PetscReal p[]);
 /* The pencil at p with the factors of the last point that has any */
 PetscErrorCode FactorKeep(GreedyWork *run, const PetscReal p[]);
 /* How often p has been looked at, or, factored, corrected with factors of its own */

@@ -27,7 +27,7 @@ PetscMPIInt PointGroupsOwner(const PointGroups *groups, PetscInt i);
 /* Modes with estimated errors at n points [n][n_parameters], alike on all ranks. Collective. */
 PetscErrorCode PointsSolve(const PointGroups *groups, const Reduced *reduced, const ReducedWindow *window, PetscInt n,
                            const PetscReal points[], ReducedModes modes[]);
-/* store.c - one point with estimated errors, taken from the store (may be NULL) where it has it, which keeps it. Not
+/* One point with estimated errors, taken from the store (may be NULL) where it has it, which keeps it. Not
    collective. */
 PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const ReducedWindow *window,
                                const PetscReal p[], ReducedModes *modes);

@@ -61,12 +61,30 @@ PetscErrorCode SampleKrylov(GreedyWork *run, const PetscReal p[], PetscReal esti
   PetscFunctionReturn(0);
 }
 
+/* The largest error of a mode in the window beside what was stated before; that of rank 0 on all */
+static PetscErrorCode SurpriseTake(const GreedyWork *run, const ReducedModes *stated, const ReducedModes *modes,
+                                   PetscReal *surprise)
+{
+  const ReducedWindow *w = &run->greedy->window;
+
+  PetscFunctionBeginUser;
+  *surprise = 0;
+  for (PetscInt i = 0; i < modes->n; i++) {
+    const PetscReal omega = cimag(modes->lambda[i]), least = PETSC_SMALL * cabs(modes->lambda[i]);
+
+    if (!modes->rigid[i] && omega >= w->low && omega <= w->high)
+      *surprise = PetscMax(*surprise, modes->error[i] / PetscMax(stated->error[i], least));
+  }
+  PetscCallMPI(MPI_Bcast(surprise, 1, MPIU_REAL, 0, run->basis->comm));
+  PetscFunctionReturn(0);
+}
+
 /* One correction of what the basis gives at p: solve, drop what is settled, residuals, block solve, more vectors,
    estimate. worst = largest relative error before the new vectors are part of the model, which they tell: n_used
    does not change here. */
 PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added, PetscReal *worst)
 {
-  ReducedModes    before = *modes;
+  ReducedModes    before = *modes, stated = {0};
   CorrectionBlock block  = {0};
 
   PetscFunctionBeginUser;
@@ -74,11 +92,17 @@ PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *mod
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes)); /* control flow must be alike on all ranks */
   PetscCall(CorrectionDropSettled(&before, SETTLED * run->greedy->safe * run->greedy->rtol, modes));
   PetscCall(ReducedModesDestroy(&before));
+  if (run->surprise) {
+    PetscCall(ReducedModesSelect(modes, modes->n, NULL, &stated));
+    PetscCall(PointEstimate(&run->basis->reduced, p, &stated));
+  }
   PetscCall(CorrectionCollect(run->correction, modes, run->sides, run->basis, &block));
   PetscCall(CorrectionApply(run->correction, run->drop, run->basis, &block, n_added));
   PetscCall(ReducedEstimate(&run->basis->reduced, p, modes));
   PetscCall(ReducedModesBroadcast(run->basis->comm, 0, modes));
   *worst = ReducedModesWorst(modes, &run->greedy->window, PETSC_FALSE);
+  if (run->surprise) PetscCall(SurpriseTake(run, &stated, modes, run->surprise));
+  PetscCall(ReducedModesDestroy(&stated));
   PetscFunctionReturn(0);
 }
 
@@ -101,8 +125,7 @@ static PetscErrorCode SampleCount(GreedyWork *run, const PetscReal p[], PetscBoo
   PetscFunctionReturn(0);
 }
 
-/* The factors at p in place of those before */
-static PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
+PetscErrorCode FactorMake(GreedyWork *run, const PetscReal p[])
 {
   PetscFunctionBeginUser;
   PetscCall(CorrectionFactor(run->basis->pencil, p, &run->greedy->window, run->greedy->progress, run->correction));

@@ -47,7 +47,7 @@ static PetscErrorCode BoxBeginGreedy(Box *box)
   g->most_looks  = BOX_LOOKS;
   g->lazy        = PETSC_TRUE;
   g->energy      = BOX_ENERGY * g->safe * box->rtol;
-  PetscCall(PetscCalloc1(g->max_samples + 2 + BOX_LOOKS, &g->sample));
+  PetscCall(PetscCalloc1(g->max_samples + 2 + LOOK_MOST, &g->sample));
   PetscFunctionReturn(0);
 }
 
@@ -71,6 +71,7 @@ PetscErrorCode BoxSetUp(Box *box, PetscInt n, StaticsPoint get, void *ctx)
   PetscCall(BoxBeginGreedy(box));
   PetscCall(BasisFillWhole(&box->basis, &box->whole));
   if (box->whole) box->window.rtol = PETSC_MAX_REAL;
+  if (!box->whole) box->basis.reduced.left_out = box->greedy.energy;
   PetscFunctionReturn(0);
 }
 

@@ -220,6 +220,13 @@ static PetscReal LambdaChange(const ReducedModes *modes, PetscInt i, PetscReal c
   return modes->rigid[i] || change > size * size ? PetscSqrtReal(change) : change / (2 * size);
 }
 
+PetscReal ReducedLeftOut(const Reduced *reduced, const ReducedModes *modes, PetscInt i)
+{
+  const PetscReal size = cabs(modes->lambda[i]);
+
+  return modes->rigid[i] ? 0 : LambdaChange(modes, i, KappaChange(modes, i, reduced->left_out * size * size));
+}
+
 /* change [modes] of each mode alone in the unit of s, error of lambda. A singular Q_zz means a mode of the
    complement at lambda itself: the error is then of the size of lambda. */
 static PetscErrorCode Alone(const Estimate *e, ReducedModes *modes, PetscReal change[])

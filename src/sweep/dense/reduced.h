@@ -33,6 +33,8 @@ typedef struct {
                                           rounding in A_t does, with those of the same RoundingTerm(); NULL, or NULL
                                           entries, where that is no more than rounding in the dense matrices */
   ReducedCore               core;
+  PetscReal                 beyond;    /* how far errors that were looked for exceeded what was stated; 0 for not */
+  PetscReal                 left_out;  /* of |kappa|, what directions may be worth that neither V nor Z was given */
   ModesLimit                limit;     /* what counts as unstable; no limit without */
 } Reduced;
 
@@ -53,7 +55,7 @@ typedef struct {
                             0 if defective */
   PetscReal    *error;   /* [n] estimated error of lambda, rad/s; 0 until ReducedEstimate() */
   PetscReal    *sharp;   /* [n] the same to first order: error is more where right and left residuals cancel in it */
-  PetscReal    *noise;   /* [n] the part of the error that is rounding: no better basis lowers it */
+  PetscReal    *noise;   /* [n] the part of the error that no better basis lowers: rounding, compression */
   PetscBool    *rigid;   /* [n] zero within rounding */
 } ReducedModes;
 
@@ -102,6 +104,8 @@ PetscBool ReducedFrictionless(const Reduced *reduced, PetscReal p[]);
 /* estimate.c - errors of all modes from the part Z of the basis that the model does not use, close ones together (see
    the file), and a floor for rounding, which alone remains without Z */
 PetscErrorCode ReducedEstimate(const Reduced *reduced, const PetscReal p[], ReducedModes *modes);
+/* What left_out is to mode i, rad/s */
+PetscReal ReducedLeftOut(const Reduced *reduced, const ReducedModes *modes, PetscInt i);
 /* Takes out what has a larger |sigma| than the window and is not known to its rtol */
 PetscErrorCode ReducedDropInexact(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                                   ReducedModes *modes);
