@@ -74,7 +74,7 @@ compile()
 check_blas()
 {
   local blas
-  blas=$(ldd "${1-$build/squeal}" | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
+  blas=$(ldd "${1-$build/squeal}" 2>/dev/null | sed -n 's/.*libblas\.so[^ ]* => \([^ ]*\).*/\1/p')
   case $(readlink -f "$blas") in
     */blas/libblas.so*)
       say "$blas is the reference BLAS, several times slower;" \

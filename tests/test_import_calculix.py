@@ -218,6 +218,10 @@ def stated(folder):
     options, _, _ = brought(folder, lossy)
     twice = lossy.replace("*END STEP", "*GLOBAL DAMPING, ALPHA=5., STRUCTURAL=0.01\n*END STEP", 1)
     more, _, _ = brought(folder, twice)
+    later = twice + "*STEP\n*DYNAMIC\n1.\n*GLOBAL DAMPING, ALPHA=50.\n*END STEP\n"
+    other, lines, _ = brought(folder, later)
+    check("global damping of a step without modes", other["e_alpha"] == more["e_alpha"] and
+          sum("of a step without modes" in line for line in lines) == 1, (other, lines))
     check("global damping", abs(float(more["e_loss_factor"]) - 0.03) < 1e-15 and float(more["e_alpha"]) == 5, more)
     check("structural damping", options["e_loss_factor"] == "0.02" and "model_loss_frequency" not in options, options)
     law = GAP.replace("=LINEAR\n1.e5", "=EXPONENTIAL\n0.01, 3.\n*FRICTION, EXPONENTIAL DECAY\n0.5, 0.3, 0.002")

@@ -198,6 +198,17 @@ def not_taken(folder):
     options, listed = sections(folder, "deck.inp", body + steel + rest + table.format("0., 0.\n0.5, 1e-3\n0.4, 2e-3\n"))
     check("a table that falls is listed", options.get("i_law") == "constraint" and "i_pressure_law" not in options
           and sum("does not rise" in line for line in listed) == 1, (options, listed))
+    soft = steel.replace("*SOLID", "*DAMPING, STRUCTURAL=0.02\n*VISCOELASTIC, TIME=PRONY\n0.5, 0.5, 1e-3\n*SOLID")
+    options, listed = sections(folder, "deck.inp", body + soft)
+    check("a loss factor beside a law is listed", not any(key.endswith("loss_factor") for key in options)
+          and any(key.endswith("prony_modulus") for key in options) and sum("loss factor 0.02 beside" in line for line in listed) == 1,
+          (options, listed))
+    other = "*SURFACE INTERACTION, NAME=J\n*FRICTION\n0.6\n*CONTACT PAIR, INTERACTION=J\nT, S\n"
+    _, listed = sections(folder, "deck.inp", body + steel + rest + pair + other)
+    check("another friction the other way round is said", sum("is NOT taken" in line for line in listed) == 1, listed)
+    options, listed = sections(folder, "deck.inp", body + steel + rest + pair.replace("=I\n", "=I, TIED\n") + "T, S\n")
+    check("a tie given both ways is one", options.get("ties") == "i" and sum("other way round" in line for line in listed) == 1,
+          (options, listed))
     options, listed = sections(folder, "deck.inp", body + steel + rest + pair + "T, S\n")
     check("a contact given both ways is one", "," not in options["contacts"]
           and sum("other way round" in line for line in listed) == 1, (options, listed))
@@ -213,7 +224,8 @@ def not_taken(folder):
     for start in ("deck.bdf:11: PSOLID 1: integration", "deck.bdf:13: CELAS2: only", "deck.bdf:14: PBUSH: only",
                   "deck.bdf:16: PELAS: only"):
         check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
-    text = text.replace("ENDDATA", "MAT1,9,2.1E5,,.3,7.8E-9,,,0.02\nPARAM,G,0.03\nENDDATA").replace("PSOLID,1,1,,2", "PSOLID,1,9,,2")
+    lossy = "MAT1,9,2.1E5,,.3,7.8E-9,,,0.02\nPARAM,G,0.05\nPARAM,G,0.03\nENDDATA"
+    text = text.replace("ENDDATA", lossy).replace("PSOLID,1,1,,2", "PSOLID,1,9,,2")
     options, listed = sections(folder, "deck.bdf", text)
     check("loss factors of Nastran", [f"{float(value):.15g}" for key, value in options.items()
           if key.endswith("_loss_factor")] == ["0.05"], options)
@@ -222,7 +234,8 @@ def not_taken(folder):
     options, listed = sections(folder, "deck.cdb", text)
     for start in ("deck.cdb:20: D with", "deck.cdb:21: D P51X", "deck.cdb:22: F with", "deck.cdb:23: SFE: a pressure that varies"):
         check(f"listed: {start}", sum(line.startswith(start) for line in listed) == 1, listed)
-    lossy, _ = sections(folder, "deck.cdb", text.replace("FINISH", "MP,DMPS,1,0.02\nDMPSTR,0.01\nBETAD,1e-7\nMP,ALPD,1,3\nFINISH"))
+    damped = "MP,DMPS,1,0.02\nDMPSTR,0.01\nBETAD,3e-7\nBETAD,1e-7\nMP,ALPD,1,3\nFINISH"
+    lossy, _ = sections(folder, "deck.cdb", text.replace("FINISH", damped))
     for key, asked in (("loss_factor", 0.03), ("beta", 1e-7), ("alpha", 3)):
         found = [float(value) for name, value in lossy.items() if name.endswith(f"1_{key}")]
         check(f"damping of Ansys: {key}", len(found) == 1 and abs(found[0] / asked - 1) < 1e-14, lossy)

@@ -266,8 +266,18 @@ def part_entry(name, section, material):
     return entry
 
 
+def leave_losses(deck):
+    """A material with a law of its modulus over frequency has no loss factor beside it."""
+    for material in deck.materials.values():
+        if material.loss and material.law:
+            deck.note(material.places["LOSS"], f"material {material.name}: loss factor {material.loss:g} beside a modulus over frequency, "
+                                               "which has its own: not taken")
+            material.loss = 0.0
+
+
 def assemble(deck, size):
     """The result of a deck."""
+    leave_losses(deck)
     merged = merge_ties(deck, size)
     for block in deck.blocks:
         block.nodes = merged[block.nodes]

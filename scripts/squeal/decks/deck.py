@@ -65,6 +65,14 @@ class Material:
     places: dict = field(default_factory=dict)
 
 
+def give_loss(material, loss, place):
+    """Adds to the loss factor of a material."""
+    if not loss >= 0:
+        raise place.wrong(f"the loss factor {loss:g} must not be negative")
+    material.loss += loss
+    material.places.setdefault("LOSS", place)
+
+
 @dataclass
 class Section:
     """Cells of one material: a part of the scene."""

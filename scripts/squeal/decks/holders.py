@@ -198,23 +198,28 @@ def fit_rows(assembly, contact):
     return [], False
 
 
-def leave_mirrors(deck):
-    """Takes out contacts of two surfaces that an earlier one has the other way round, as symmetric contact is written."""
-    seen, mirrors = {}, []
-    for contact in deck.contacts:
-        sides = tuple(frozenset(map(tuple, deck.surfaces[name][0].tolist())) for name in (contact.slave, contact.master))
+LAW = "mu", "stiffness", "points", "exponential", "decay"  # of a contact
+
+
+def leave_mirrors(deck, pairs, noun):
+    """Contacts or ties but those of two surfaces that an earlier one has the other way round, as symmetric contact is written."""
+    seen, kept = {}, []
+    for pair in pairs:
+        sides = tuple(frozenset(map(tuple, deck.surfaces[name][0].tolist())) for name in (pair.slave, pair.master))
         first = seen.get(sides[::-1])
-        if first:
-            deck.differ(contact.place, f"contact {contact.slave}, {contact.master}: the surfaces of the contact at {first.place} the other "
-                                       "way round, which stands for both")
-            mirrors.append(contact)
-        seen.setdefault(sides, contact)
-    deck.contacts = [contact for contact in deck.contacts if contact not in mirrors]
+        if not first:
+            seen.setdefault(sides, pair)
+            kept.append(pair)
+            continue
+        same = all(getattr(pair, name, None) == getattr(first, name, None) for name in LAW)
+        deck.differ(pair.place, f"{noun} {pair.slave}, {pair.master}: the surfaces of the {noun} at {first.place} the other way round, "
+                                f"which stands for both{'' if same else '; its own friction or stiffness is NOT taken'}")
+    return kept
 
 
 def add_contacts(assembly):
     """Pairs of surfaces; what a deck does not say is a hint."""
-    leave_mirrors(assembly.deck)
+    assembly.deck.contacts = leave_mirrors(assembly.deck, assembly.deck.contacts, "contact")
     set_turning(assembly.deck)
     surfaces = assembly.deck.surfaces
     for contact in assembly.deck.contacts:
@@ -262,7 +267,7 @@ def add_contacts(assembly):
 def add_ties(assembly):
     """Surfaces of meshes that do not match, glued."""
     deck, surfaces = assembly.deck, assembly.deck.surfaces
-    for tie in deck.ties:
+    for tie in leave_mirrors(deck, deck.ties, "tie"):
         empty = [name for name in (tie.slave, tie.master) if not len(surfaces[name][0])]
         if empty:
             deck.note(tie.place, f"{tie.words}: {empty[0]} has no faces; NOT TIED: the bodies stay apart")

@@ -68,9 +68,9 @@ def loss_lines(deck, units):
     if not any(deck.materials[section.material].loss for section in deck.sections if section.material):
         return []
     low, high = (value / units.time for value in deck.modes[1:3]) if deck.modes else (0, 0)
-    middle = f"{(low * high)**0.5 if low > 0 else high / 2:.6g}, the middle of the band" if high > 0 else "?"
+    middle = f"{(low * high)**0.5 if low > 0 else high / 2:.6g}   # Hz, the middle of the band" if high > 0 else "?   # Hz"
     return ["# Loss factors hold at the frequency of each mode. Sweeps on a basis, samples, cycles, runs in time have them exact at one:",
-            f"#   model_loss_frequency: {middle}, Hz"]
+            f"#   model_loss_frequency: {middle}"]
 
 
 def scene_lines(deck, result, units, why, files):

@@ -5,7 +5,7 @@ import numpy
 from ...tables import BadInput
 from .sets import reader_cells
 from .words import choice, label
-from ..deck import Axes, Material, Section
+from ..deck import Axes, Material, Section, give_loss
 from ..elastic import engineering
 from ..mesh.shells import set_thickness
 from ..text import REAL, real
@@ -125,30 +125,29 @@ def do_damping(reader, _, card):
     material.alpha = real(card.options.get("ALPHA") or "0", card.place)
     material.beta = real(card.options.get("BETA") or "0", card.place)
     if "STRUCTURAL" in card.options:
-        material.loss = real(card.options.pop("STRUCTURAL") or "0", card.place)
-        material.places["LOSS"] = card.place
-        if material.loss < 0:
-            raise card.place.wrong(f"*DAMPING, STRUCTURAL={material.loss:g} must not be negative")
+        material.loss = 0.0
+        give_loss(material, real(card.options.pop("STRUCTURAL") or "0", card.place), card.place)
 
 
 def do_global_damping(reader, _, card):
-    """Adds to the damping of all materials, also of those that come later; the last one counts, as steps replace it."""
-    if choice(card.options.get("FIELD", "ALL"), "ALL", "MECHANICAL", "ACOUSTIC") == "ACOUSTIC":
-        return
-    reader.global_damping = [real(card.options.get(word) or "0", card.place) for word in ("ALPHA", "BETA", "STRUCTURAL")], card.place
+    """Kept with the step that it stands in."""
+    if choice(card.options.get("FIELD", "ALL"), "ALL", "MECHANICAL", "ACOUSTIC") != "ACOUSTIC":
+        values = [real(card.options.get(word) or "0", card.place) for word in ("ALPHA", "BETA", "STRUCTURAL")]
+        reader.global_damping.append((reader.steps, values, card.place))
 
 
 def add_global_damping(reader):
-    """What *GLOBAL DAMPING says, as damping of parts."""
-    if not reader.global_damping:
-        return
-    (alpha, beta, loss), place = reader.global_damping
-    if loss < 0:
-        raise place.wrong(f"*GLOBAL DAMPING, STRUCTURAL={loss:g} must not be negative")
-    for material in reader.deck.materials.values():
-        material.alpha, material.beta, material.loss = material.alpha + alpha, material.beta + beta, material.loss + loss
-        material.places = {"DAMPING": place, "LOSS": place} | material.places
-    reader.deck.differ(place, "*GLOBAL DAMPING: of all parts; springs, points and contacts have none")
+    """What *GLOBAL DAMPING says in the step of the modes, as damping of all parts; what other steps say is listed."""
+    of_modes = [row for row in reader.global_damping if row[0] == reader.modes_step][-1:]
+    for row in reader.global_damping:
+        if row not in of_modes:
+            reader.deck.note(row[2], "*GLOBAL DAMPING: of a step without modes, or replaced in its step: not taken")
+    for _, (alpha, beta, loss), place in of_modes:
+        for material in reader.deck.materials.values():
+            material.alpha, material.beta = material.alpha + alpha, material.beta + beta
+            material.places.setdefault("DAMPING", place)
+            give_loss(material, loss, place)
+        reader.deck.differ(place, "*GLOBAL DAMPING: of all parts; springs, points and contacts have none")
 
 
 def read_axes(_, scope, card):

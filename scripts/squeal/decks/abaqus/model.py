@@ -311,6 +311,7 @@ def factor_of(reader, card):
 def do_frequency(reader, _, card):
     rows = numbers(card)
     row = (rows[0][1] if rows else []) + [0, 0, 0]
+    reader.modes_step = reader.steps
     reader.deck.modes, reader.deck.preload = (row[0], row[1], row[2], card.place), reader.preload
 
 
@@ -321,6 +322,7 @@ def do_complex(reader, _, card):
         reader.deck.note(card.place, f"*COMPLEX FREQUENCY: modes of squeal are complex, {NOT_NEEDED}")
     if not reader.deck.modes:
         do_frequency(reader, _, card)
+    reader.modes_step = reader.steps
 
 
 def finish_steps(reader):

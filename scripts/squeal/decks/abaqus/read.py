@@ -233,7 +233,7 @@ class Reader:
         self.supports = []  # (step, Support) as they come
         self.temperature, self.amplitudes, self.period = None, {}, 1.0  # (value, place); name -> [n][2]; of the last *STATIC
         self.preload = self.damping = None  # places of the last *STATIC, and of friction damping
-        self.global_damping = None  # alpha, beta, loss factor of *GLOBAL DAMPING, and its place
+        self.global_damping, self.modes_step = [], None  # step, (alpha, beta, loss factor), place; the step of the modes
 
     def axes_at(self, node):
         """Axes that a node has of its own, or None."""

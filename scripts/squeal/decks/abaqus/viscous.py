@@ -33,7 +33,7 @@ def finish(reader):
 def said(deck, place, alike):
     """What becomes of shear and bulk."""
     deck.differ(place, "*VISCOELASTIC: as a law of Young's modulus, at a constant Poisson's ratio" + (
-        "" if alike else "; shear and bulk relax otherwise there") + "; modes and frequency responses have it, all else refuses it")
+        "" if alike else "; shear and bulk relax otherwise there"))
 
 
 def prony(deck, material, rows, place, instant):

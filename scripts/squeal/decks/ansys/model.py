@@ -6,11 +6,11 @@ from .blocks import DATABASE
 from .joined import pilot
 from .mesh import FACES
 from ..axes import aligned
-from ..deck import Axes, Contact, Equation, Load, Material, Section, Support, Tie, Turning
+from ..deck import Axes, Contact, Equation, Load, Material, Section, Support, Tie, Turning, give_loss
 from ..mesh.faces import boundary_faces, faces_by_three
 from ..text import REAL
 
-DAMPING = {"ALPHAD": ("alpha", "DAMPING"), "BETAD": ("beta", "DAMPING"), "DMPSTR": ("loss", "LOSS")}  # of all materials
+DAMPING = {"ALPHAD": "alpha", "BETAD": "beta", "DMPSTR": "loss"}  # of all materials
 KNOWN = {"MP", "MPDATA", "D", "F", "SF", "SFE", "ACEL", "MODOPT", "CMROTATE", *DAMPING}
 FREEDOMS = "UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"
 LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY", "GYZ", "GXZ", "DENS", "ALPD", "BETD", "DMPS",
@@ -60,15 +60,18 @@ def read_constants(deck, commands):
 
 
 def add_damping(deck, commands):
-    """ALPHAD, BETAD and DMPSTR add to those of the materials; squeal's springs, contacts and points have none of it."""
-    for command in commands:
-        if command.words[0] not in DAMPING or not command.word(1) or not command.real(1):
-            continue
-        key, place = DAMPING[command.words[0]]
-        for material in deck.materials.values():
-            setattr(material, key, getattr(material, key) + command.real(1))
-            material.places.setdefault(place, command.place)
-        deck.differ(command.place, f"{command.words[0]} {command.word(1)}: of all parts; springs, points and contacts have none")
+    """The last ALPHAD, BETAD and DMPSTR add to those of the materials; springs, contacts and points have none of it."""
+    last = {command.words[0]: command for command in commands if command.words[0] in DAMPING and command.word(1)}
+    for keyword, command in last.items():
+        value, key = command.real(1), DAMPING[keyword]
+        for material in deck.materials.values() if value else ():
+            if key == "loss":
+                give_loss(material, value, command.place)
+            else:
+                setattr(material, key, getattr(material, key) + value)
+                material.places.setdefault("DAMPING", command.place)
+        if value:
+            deck.differ(command.place, f"{keyword} {command.word(1)}: of all parts; springs, points and contacts have none")
 
 
 def make_material(deck, number, constants):
@@ -83,7 +86,7 @@ def make_material(deck, number, constants):
         material.places["DAMPING"] = (constants.get("ALPD") or constants["BETD"])[1]
     material.density, material.alpha, material.beta = value.get("DENS") or None, value.get("ALPD", 0.0), value.get("BETD", 0.0)
     if "DMPS" in constants:
-        material.loss, material.places["LOSS"] = constants["DMPS"]
+        give_loss(material, *constants["DMPS"])
     if (material.density or 1) < 0:
         raise constants["DENS"][1].wrong("the density must not be negative")
     if "EX" not in value:

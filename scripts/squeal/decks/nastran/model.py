@@ -3,7 +3,7 @@
 import numpy
 
 from ..axes import aligned
-from ..deck import Axes, Equation, Material, Section, Support
+from ..deck import Axes, Equation, Material, Section, Support, give_loss
 from ..elastic import engineering
 from .cards import named
 from .mesh import check_rows
@@ -36,6 +36,7 @@ def read_method(deck, tables, chosen):
 
 def read_parameters(deck, tables, mesh):
     """PARAM WTMASS is the factor from densities to those of mass, G a loss factor of all parts."""
+    every = 0.0, None  # the last G
     for table in named(tables, "PARAM"):
         for row in range(len(table)):
             name, value = table.words(row, 2)[:2]
@@ -49,19 +50,20 @@ def read_parameters(deck, tables, mesh):
                 if factor != 1:
                     deck.differ(table.place(row), f"PARAM WTMASS {value}: densities are those of the materials times this")
             elif name.upper() == "G":
-                for material in deck.materials.values():
-                    give_loss(material, table.one_real(row, 1, value), table.place(row))
-                deck.differ(table.place(row), f"PARAM G {value}: a loss factor of all parts; springs and contacts have none")
+                every = table.one_real(row, 1, value), table.place(row)
             else:
                 deck.note(table.place(row), f"PARAM {name}: not understood")
+    for material in deck.materials.values() if every[0] else ():
+        give_loss(material, *every)
+    if every[0]:
+        deck.differ(every[1], f"PARAM G {every[0]:g}: a loss factor of all parts; springs and contacts have none")
 
 
-def give_loss(material, loss, place):
-    """Adds to the loss factor of a material."""
-    if loss < 0:
-        raise place.wrong(f"the loss factor {loss:g} must not be negative")
-    material.loss += loss
-    material.places.setdefault("LOSS", place)
+def loss_of(material, table, row, at):
+    """GE, in field `at` of a material."""
+    word = table.words(row, at + 1)[at]
+    if word:
+        give_loss(material, table.one_real(row, at, word), table.place(row))
 
 
 def new_material(deck, table, row):
@@ -105,9 +107,7 @@ def read_materials(deck, tables):
             material = new_material(deck, table, row)
             material.young, material.poisson = isotropic(deck, table, row, constants)
             density_of(material, table, row, density)
-            words = table.words(row, 8)
-            if words[7]:
-                give_loss(material, table.one_real(row, 7, words[7]), table.place(row))
+            loss_of(material, table, row, 7)
     for table in named(tables, "MAT11"):
         check_rows(table, 10, 16)
         for row, values in enumerate(table.real(1, 11).tolist()):
@@ -116,6 +116,7 @@ def read_materials(deck, tables):
             if min(values[:3] + values[6:9]) <= 0:
                 raise table.place(row).wrong("MAT11: moduli must be positive")
             density_of(material, table, row, values[9])
+            loss_of(material, table, row, 15)
     for table in named(tables, "MAT9"):
         for row, values in enumerate(table.real(1, 23).tolist()):
             stiffness_of(deck, table, row, values)
@@ -130,6 +131,7 @@ def stiffness_of(deck, table, row, values):
     outside = full.copy()
     outside[:3, :3] = 0
     density_of(material, table, row, values[21])
+    loss_of(material, table, row, 30)
     if (outside != numpy.diag(numpy.diag(outside))).any():
         deck.note(table.place(row), "MAT9: shear is coupled; squeal has orthotropic materials, give one")
         return
