@@ -8,6 +8,7 @@
   masses   cross-orthogonality by SEREP and by Guyan's reduction as dense matrices have them
   pairs    in any order, with other frequencies, and of a pair of close modes whose shapes were turned
   expand   a sum of modes comes back at all nodes; what no mode has is the residual
+  pictures trace lines, and frequencies without sensors
   page     scripts/report shows pairs and moving shapes
   bad      a line each, status 1
 
@@ -315,6 +316,23 @@ def check_responses(brake):
     check(all(float(row["frac"]) > 1 - 1e-12 for row in table(brake.out / "correlate/responses.csv")), "exact: frf.csv beside itself")
 
 
+def check_pictures(brake):
+    """Trace lines are drawn; of frequencies alone, without sensors, one panel."""
+    nodes = brake.sensors(8)
+    path, _ = turned_file(brake, nodes, np.eye(3), np.zeros(3))
+    pictures = []
+    for more in (b"", universal.trace(range(1, 9))):
+        path.write_bytes(path.read_bytes() + more)
+        correlate(brake.out, path, drawn=True)
+        pictures.append(picture.plt.imread(brake.out / "correlate/shapes.png"))
+    check((pictures[0] != pictures[1]).any(axis=2).sum() > 1000, "pictures: trace lines of eight points are drawn")
+    modes = brake.folder / "alone.csv"
+    modes.write_text("freq_hz\n" + "".join(f"{1.02 * freq:.17g}\n" for freq in brake.freq))
+    correlate(brake.out, modes, drawn=True)
+    high, wide, _ = picture.plt.imread(brake.out / "correlate/correlate.png").shape
+    check(wide < 1.3 * high, f"pictures: frequencies without sensors are one panel of {wide} by {high}")
+
+
 def check_page(brake):
     """The report."""
     nodes = brake.sensors(25)
@@ -356,7 +374,8 @@ def check_bad(brake):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         brake = Brake(Path(folder) / "brake", "-modes_band", "500,9000", "-operators_save", "m")
-        for part in (check_exact, check_axes, check_noise, check_masses, check_pairs, check_expansion, check_page, check_bad):
+        for part in (check_exact, check_axes, check_noise, check_masses, check_pairs, check_expansion, check_pictures, check_page,
+                     check_bad):
             part(brake)
         check_responses(Brake(Path(folder) / "frf", *FRF))
     return 1 if FAULTS else 0

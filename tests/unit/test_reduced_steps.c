@@ -1,6 +1,7 @@
 /*
    Unit test of reduced/warp: eigenvalues of a small model about steady sliding as steps see them, by the formula, beside those of
-   the matrix of one step, which is the derivative of ReducedStep() and knows no formula.
+   the matrix of one step, which is the derivative of ReducedStep() and knows no formula. Only motions are compared. What steps do
+   to forces that alternate (step/relax.c) adds eigenvalues of its own and moves these by less than is allowed: case `cycle` tests that.
 */
 #include "check.h"
 #include "petscmain.h"
