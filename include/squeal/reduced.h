@@ -45,7 +45,8 @@
    frequencies: only the modes receive them.
 
    Mean forces on a massless compliance keep what alternates from step to step. Where bodies are damped that is halved
-   in each step (step/relax.c), and moves nothing. Limit: on a stiff light body without damping, at a low cut-off, the
+   in each step: the next one begins with other forces than those with which this one ends, and the forces at t_n are
+   the mean of both (step/relax.c). Limit: on a stiff light body without damping, at a low cut-off, the
    force is right in the mean of two steps: a block at rest under 9.81 N has 9.758 and 9.862 N in turn (0.5 %), with 6
    modes below 1000 Hz.
 
@@ -99,6 +100,7 @@ typedef struct {
   PetscReal *p,
     *last;          /* [n_ports] forces at t_n and t_{n-1}, N: lambda of the pairs (on the slave: normal, t, b), factors
                                 of the loads */
+  PetscReal *begin; /* [3 n_pairs] lambda with which the step from t_n begins, N: p, or relaxed (step/relax.c) */
   PetscReal     *q; /* [3 n_pairs] forces on the residual, N: lambda, delayed by its damping */
   PetscReal     *y; /* [3 n_pairs] displacements at the pairs, m */
   ContactStatus *status; /* [n_pairs] */

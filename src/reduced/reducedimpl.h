@@ -184,9 +184,9 @@ PETSC_INTERN void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, P
 PETSC_INTERN PetscErrorCode ReducedStepRespond(ReducedStepper stepper, const ReducedState *state, PetscReal next[],
                                                PetscReal q[], PetscReal y[]);
 
-/* step/relax.c - takes out of the forces of a step what alternates; derivatives X [columns][size] before and next after
-   the last step */
-PETSC_INTERN void ReducedStepperRelax(ReducedStepper stepper, ReducedState *state);
+/* step/relax.c - takes out of the forces with which the next step begins what alternates; derivatives X [columns][size]
+   before and next after the last step */
+PETSC_INTERN PetscErrorCode ReducedStepperRelax(ReducedStepper stepper, ReducedState *state);
 PETSC_INTERN void ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt size, PetscInt columns,
                                              const PetscReal X[], PetscReal next[]);
 

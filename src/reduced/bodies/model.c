@@ -56,7 +56,7 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
 
 PetscInt ReducedStateSize(const ReducedModel *model)
 {
-  return 2 * model->m + 2 * model->n_ports + 6 * model->n_pairs;
+  return 2 * model->m + 2 * model->n_ports + 9 * model->n_pairs;
 }
 
 PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
@@ -64,11 +64,12 @@ PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state
   PetscFunctionBeginUser;
   *state = (ReducedState){.time = 0};
   PetscCall(PetscCalloc2(ReducedStateSize(model), &state->eta, model->n_pairs, &state->status));
-  state->rate = state->eta + model->m;
-  state->p    = state->rate + model->m;
-  state->last = state->p + model->n_ports;
-  state->q    = state->last + model->n_ports;
-  state->y    = state->q + 3 * model->n_pairs;
+  state->rate  = state->eta + model->m;
+  state->p     = state->rate + model->m;
+  state->last  = state->p + model->n_ports;
+  state->begin = state->last + model->n_ports;
+  state->q     = state->begin + 3 * model->n_pairs;
+  state->y     = state->q + 3 * model->n_pairs;
   PetscFunctionReturn(0);
 }
 

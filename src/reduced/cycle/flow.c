@@ -71,7 +71,7 @@ PetscErrorCode CycleFlowPack(const CycleFlow *f, const ReducedState *s, PetscRea
     x[m + i] = s->rate[i];
   }
   for (PetscInt i = 0; i < n; i++) {
-    x[2 * m + i] = s->p[i];
+    x[2 * m + i] = s->begin[i];
     if (f->model->Cx) x[2 * m + n + i] = s->q[i];
   }
   if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_TRUE, 2, m, x));
@@ -108,8 +108,8 @@ static void FlowSetStatuses(CycleFlow *f)
   }
 }
 
-/* The state that x stands for; y = P eta + W q + W loads follows from it, and last = p, and the statuses: x has all
-   that a step knows of the past. */
+/* The state that x stands for; y = P eta + W q + W loads follows from it, and p = last = begin, and the statuses: x has
+   all that a step knows of the past. */
 static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
 {
   const ReducedModel *model = f->model;
@@ -122,7 +122,7 @@ static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
   if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_FALSE, 1, m, s->eta));
   if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_FALSE, 1, m, s->rate));
   for (PetscInt i = 0; i < n; i++) {
-    s->p[i] = x[2 * m + i];
+    s->p[i] = s->begin[i] = x[2 * m + i];
     s->q[i] = model->Cx ? x[2 * m + n + i] : s->p[i];
     s->y[i] = 0;
   }

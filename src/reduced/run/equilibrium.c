@@ -176,6 +176,7 @@ PetscErrorCode ReducedEquilibrium(const ReducedModel *model, const PetscReal loa
   if (!settled) *found = PETSC_FALSE;
   for (PetscInt k = 0; k < model->m; k++) state->rate[k] = 0;
   PetscCall(PetscArraycpy(state->last, state->p, model->n_ports));
+  PetscCall(PetscArraycpy(state->begin, state->p, 3 * model->n_pairs));
   PetscCall(PetscArraycpy(state->q, state->p, 3 * model->n_pairs));
   state->time = 0;
   PetscCall(PetscFree(s.mu));

@@ -26,6 +26,7 @@ typedef enum {
   KEPT_RATES,
   KEPT_FORCES,
   KEPT_LAST,
+  KEPT_BEGIN,
   KEPT_RESIDUAL,
   KEPT_DISPLACEMENTS,
   KEPT_STATUS,
@@ -81,6 +82,7 @@ static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal st
   item[KEPT_RATES]         = (JournalItem){"rates", m, r->motion.state.rate};
   item[KEPT_FORCES]        = (JournalItem){"forces", N, r->motion.state.p};
   item[KEPT_LAST]          = (JournalItem){"forces before", N, r->motion.state.last};
+  item[KEPT_BEGIN]         = (JournalItem){"forces to begin with", 3 * n, r->motion.state.begin};
   item[KEPT_RESIDUAL]      = (JournalItem){"residual", 3 * n, r->motion.state.q};
   item[KEPT_DISPLACEMENTS] = (JournalItem){"displacements", 3 * n, r->motion.state.y};
   item[KEPT_STATUS]        = (JournalItem){"status", n, status};

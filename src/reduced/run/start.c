@@ -221,8 +221,8 @@ static PetscErrorCode StartLaws(ReducedRun r)
   PetscFunctionReturn(0);
 }
 
-/* Velocities, then displacements, then the forces that obey the laws with both; last and q = p as if the state had
-   been there for long. */
+/* Velocities, then displacements, then the forces that obey the laws with both; last, begin and q = p as if the state
+   had been there for long. */
 PetscErrorCode ReducedStart(ReducedRun r)
 {
   ReducedState *s = &r->motion.state;
@@ -236,6 +236,7 @@ PetscErrorCode ReducedStart(ReducedRun r)
   PetscCall(ReducedSetFriction(r, 0, &changed));
   PetscCall(StartLaws(r));
   PetscCall(PetscArraycpy(s->last, s->p, r->reduction.model.n_ports));
+  PetscCall(PetscArraycpy(s->begin, s->p, 3 * r->reduction.model.n_pairs));
   PetscCall(PetscArraycpy(s->q, s->p, 3 * r->reduction.model.n_pairs));
   PetscCall(ReducedPairDisplacements(&r->reduction.model, s->eta, s->p, s->y));
   PetscFunctionReturn(0);

@@ -331,11 +331,11 @@ static void StepperShareDrag(ReducedStepper s, const ReducedState *state, Reduce
   report->damping -= work;
 }
 
-/* The forces of the pairs go on as they did, the guess of the laws; those at t_n are kept */
+/* The forces of the pairs go on as they did, the guess of the laws; those with which the step begins are kept */
 static void StepperGuess(PetscInt n, PetscInt n_ports, ReducedState *state)
 {
   for (PetscInt i = 0; i < n_ports; i++) {
-    const PetscReal p = state->p[i];
+    const PetscReal p = i < n ? state->begin[i] : state->p[i];
 
     if (i < n) state->p[i] = 2 * p - state->last[i];
     state->last[i] = p;
@@ -369,7 +369,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
     report->damping = -report->damping;
     StepperShareDrag(s, state, report);
   }
-  ReducedStepperRelax(s, state);
+  PetscCall(ReducedStepperRelax(s, state));
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));
   PetscCall(PetscArraycpy(state->rate, &s->next[m], m));
