@@ -111,7 +111,7 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
 static PetscBool LawIsOfBranches(const Viscoelastic *law)
 {
   return law->kind == VISCOELASTIC_PRONY || (law->kind == VISCOELASTIC_ZENER && law->value[2] == 1) ? PETSC_TRUE
-                                                                                                   : PETSC_FALSE;
+                                                                                                    : PETSC_FALSE;
 }
 
 /* Whether Maxwell branches are used: on the mesh */

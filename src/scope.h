@@ -6,13 +6,13 @@
 
 /* What of the scene a run uses, as bits */
 typedef enum {
-  USES_LOADS   = 1,  /* and gravity, whether it finds an equilibrium or not */
-  USES_PLACES  = 2,  /* probes and circles */
-  USES_DAMPING = 4,  /* dashpots, and that of the parts */
-  USES_SPIN    = 8,  /* of the parts */
-  USES_LAWS    = 16, /* of parts whose stiffness depends on the frequency; in statics their static one */
+  USES_LOADS    = 1,  /* and gravity, whether it finds an equilibrium or not */
+  USES_PLACES   = 2,  /* probes and circles */
+  USES_DAMPING  = 4,  /* dashpots, and that of the parts */
+  USES_SPIN     = 8,  /* of the parts */
+  USES_LAWS     = 16, /* of parts whose stiffness depends on the frequency; in statics their static one */
   USES_BRANCHES = 32, /* Maxwell branches of parts alone, on the mesh */
-  USES_ALL     = 63,
+  USES_ALL      = 63,
 } SceneUse;
 
 /* A run; model and contact are NULL for matrices without a mesh */

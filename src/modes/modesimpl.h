@@ -166,7 +166,7 @@ typedef struct {
   PetscInt  n_enlarged;                /* further vectors there, since damping is strong */
   PetscInt  n_about;                   /* complex shifts there, since it is stronger than that; or 0 */
   PetscReal pole;                      /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
-  char      why[128];                   /* why not by projection; empty where it was not tried */
+  char      why[128];                  /* why not by projection; empty where it was not tried */
   PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
   PetscBool proven;                    /* inertia counts what was found */

@@ -42,10 +42,10 @@ PetscErrorCode SavedByDamping(Modes modes, const PencilMatrices *pencil, const W
                     "quadratic problem of %" PetscInt_FMT " unknowns",
                     (double)window->route.mapped_alpha, (double)window->route.mapped_beta, 2 * n));
   else if (window->route.project)
-    PetscCall(PetscSNPrintf(text, SAVED_LENGTH,
-                            "%s damping on a basis of %" PetscInt_FMT " vectors: no quadratic problem of %" PetscInt_FMT
-                            " unknowns",
-                            window->route.n_enlarged || window->route.n_about ? "strong" : "weak", window->route.n_basis, 2 * n));
+    PetscCall(PetscSNPrintf(
+      text, SAVED_LENGTH,
+      "%s damping on a basis of %" PetscInt_FMT " vectors: no quadratic problem of %" PetscInt_FMT " unknowns",
+      window->route.n_enlarged || window->route.n_about ? "strong" : "weak", window->route.n_basis, 2 * n));
   else
     PetscCall(PetscSNPrintf(text, SAVED_LENGTH,
                             "nothing by damping: a quadratic problem of %" PetscInt_FMT " unknowns%s%s", 2 * n,

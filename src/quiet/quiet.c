@@ -63,10 +63,7 @@ static void QuietPoint(const QuietPoints *points, PetscInt i, PetscReal t[])
 
   if (i > points->n_corners) SequencePoint(points->sequence, i - 1 - points->n_corners, t);
   for (PetscInt k = 0; k < cube->n; k++)
-    t[k] = !i                      ? cube->own[k]
-           : i > points->n_corners ? 2 * t[k] - 1
-           : (i - 1) >> (k % 6) & 1 ? 1
-                                    : -1;
+    t[k] = !i ? cube->own[k] : i > points->n_corners ? 2 * t[k] - 1 : (i - 1) >> (k % 6) & 1 ? 1 : -1;
 }
 
 static PetscErrorCode QuietGet(void *ctx, PetscInt i, PetscReal p[])
@@ -178,8 +175,8 @@ static PetscErrorCode QuietSetUp(Quiet q)
 
   PetscFunctionBeginUser;
   q->cube.nominal = q->box.nominal;
-  PetscCall(CubeRead(q->comm, q->operators, q->box.statics ? CUBE_HELD_STATE : CUBE_NO_STATE, "quiet", &q->options,
-                     &q->cube));
+  PetscCall(
+    CubeRead(q->comm, q->operators, q->box.statics ? CUBE_HELD_STATE : CUBE_NO_STATE, "quiet", &q->options, &q->cube));
   PetscCheck(q->n_verify <= q->n_random, q->comm, PETSC_ERR_USER_INPUT,
              "-quiet_verify %" PetscInt_FMT " must be at most -quiet_random %" PetscInt_FMT, q->n_verify, q->n_random);
   PetscCall(BoxSetUp(&q->box, 0, NULL, NULL)); /* the status of the scene's own values holds everywhere */

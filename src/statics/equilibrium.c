@@ -33,7 +33,8 @@ static PetscErrorCode OutcomePrint(const Active *a, ActiveOutcome outcome, size_
     [ACTIVE_SLOW]      = "the pairs do not settle within -static_max_it %" PetscInt_FMT " iterations; allow more",
     [ACTIVE_JAMMED]    = "the bodies jam: friction presses them together by more than they yield",
     [ACTIVE_UNSOLVED]  = "GMRES on the rows of the pairs did not converge; allow more by -st_pairs_ksp_max_it",
-    [ACTIVE_UNSETTLED] = "the pressures and closings or the friction coefficients of the pairs do not settle; give -static_load_steps"};
+    [ACTIVE_UNSETTLED] =
+      "the pressures and closings or the friction coefficients of the pairs do not settle; give -static_load_steps"};
   char dense[96] = "";
 
   PetscFunctionBeginUser;

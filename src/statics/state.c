@@ -174,8 +174,7 @@ static PetscErrorCode StaticsMeasureKKT(Statics s)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->rows.n_pairs, &mu));
   for (PetscInt i = 0; i < s->rows.n_pairs; i++)
-    PetscCall(OperatorsGetPairMu(s->operators, s->p, &s->rows.pair[i], PETSC_FALSE,
-                                 s->state[i].lambda_n, &mu[i]));
+    PetscCall(OperatorsGetPairMu(s->operators, s->p, &s->rows.pair[i], PETSC_FALSE, s->state[i].lambda_n, &mu[i]));
   PetscCall(StaticsFindDisplacement(s, &displacement));
   PetscCall(ContactComputeKKT(s->contact, s->state, mu, s->rows.pressure, displacement, &s->kkt));
   PetscCall(PetscFree(mu));

@@ -103,15 +103,12 @@ static PetscReal PlaneResidual(const ModeFrame *f, const PetscReal X[], const Pe
 static PetscErrorCode TestPlane(int *failed)
 {
   const PetscReal  kappa[6] = {1, 2, 4, 1.4, 3, 7}, slope[6] = {1, -1, 0.1, 0, 0.3, 0}, p = 0.4;
-  const DenseEntry entry[2] = {
-    {0, 1, 0.1 },
-    {1, 0, -0.1}
-  };
-  const PetscInt member[2] = {1, 2}; /* kappa 1.4, 1.5, 1.5, ... */
-  PetscReal      X[2 * DENSE_MAX], Y[2 * DENSE_MAX];
-  ReducedModes   modes = {0};
-  ModeFrame     *frame;
-  Dense          dense;
+  const DenseEntry entry[2]  = {{0, 1, 0.1}, {1, 0, -0.1}};
+  const PetscInt   member[2] = {1, 2}; /* kappa 1.4, 1.5, 1.5, ... */
+  PetscReal        X[2 * DENSE_MAX], Y[2 * DENSE_MAX];
+  ReducedModes     modes = {0};
+  ModeFrame       *frame;
+  Dense            dense;
 
   PetscFunctionBeginUser;
   DenseDiagonal(&dense, 6, kappa, slope, 2, entry);
@@ -167,16 +164,14 @@ static PetscErrorCode TestUndamped(int *failed)
    whole eigenproblem. Reference: PHYSICS section 3, destabilisation by uneven damping */
 static PetscErrorCode TestDamped(int *failed)
 {
-  static const PetscReal cases[5][3] = {
-    {0.02, 0.02, 0.78066     },
-    {0.02, 0.04, 0.7779466667},
-    {0.04, 0.02, 0.7780266667},
-    {0.02, 0.2,  0.7660264463},
-    {0.2,  0.02, 0.7670082645}
-  };
-  static const PetscInt sizes[2] = {2, 9};
-  BranchEvents          events;
-  Dense                 dense;
+  static const PetscReal cases[5][3] = {{0.02, 0.02, 0.78066},
+                                        {0.02, 0.04, 0.7779466667},
+                                        {0.04, 0.02, 0.7780266667},
+                                        {0.02, 0.2, 0.7660264463},
+                                        {0.2, 0.02, 0.7670082645}};
+  static const PetscInt  sizes[2]    = {2, 9};
+  BranchEvents           events;
+  Dense                  dense;
 
   PetscFunctionBeginUser;
   for (int c = 0; c < 10; c++) {
@@ -208,10 +203,7 @@ static PetscErrorCode TestBothEnds(int *failed)
   PetscFunctionBeginUser;
   for (int c = 0; c < 6; c++) {
     const PetscReal  g        = (const PetscReal[]){0.13, 0.01, 1e-4}[c / 2];
-    const DenseEntry entry[2] = {
-      {0, 1, 2 * g },
-      {1, 0, -g / 2}
-    };
+    const DenseEntry entry[2] = {{0, 1, 2 * g}, {1, 0, -g / 2}};
 
     DenseDiagonal(&dense, 6, kappa, slope, 2, entry);
     PetscCall(FindOnsets(&dense, &everything, 0, 1, points[c % 2], &events));
@@ -228,14 +220,9 @@ static PetscErrorCode TestBothEnds(int *failed)
 static PetscErrorCode TestDoublets(int *failed)
 {
   const PetscReal  kappa[5] = {1, 1, 2, 2, 1.3}, slope[5] = {1, 1, -1, -1, 0};
-  const DenseEntry entry[4] = {
-    {0, 2, 0.1 },
-    {1, 3, 0.1 },
-    {2, 0, -0.1},
-    {3, 1, -0.1}
-  };
-  BranchEvents events;
-  Dense        dense;
+  const DenseEntry entry[4] = {{0, 2, 0.1}, {1, 3, 0.1}, {2, 0, -0.1}, {3, 1, -0.1}};
+  BranchEvents     events;
+  Dense            dense;
 
   PetscFunctionBeginUser;
   DenseDiagonal(&dense, 5, kappa, slope, 4, entry);

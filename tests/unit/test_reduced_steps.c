@@ -19,28 +19,29 @@ typedef struct {
   ReducedModel model;
   PetscReal    omega2[M_MODES], C[M_MODES * M_MODES], P[M_MODES * PORTS], W[PORTS * PORTS], Cm[M_MODES * 3 * PAIRS],
     Cx[9 * PAIRS * PAIRS], gap[PAIRS];
-  FrictionLaw  law[PAIRS];
+  FrictionLaw law[PAIRS];
 } Small;
 
 /* Two pairs that a load presses; nothing moves along b, where friction alone would damp. damping 0: none */
 static void SmallCreate(PetscReal damping, Small *s)
 {
   const PetscReal frequency[M_MODES] = {0, 1, 1.3, 6};
-  const PetscReal shape[4][M_MODES]  = {{0.6, 0.8, 0.3, 0.5}, {0.5, -0.4, 0.7, 0.2}, {0.7, -0.3, 0.6, -0.6}, {0.3, 0.6, 0.5, 0.1}};
+  const PetscReal shape[4][M_MODES]  = {
+     {0.6, 0.8, 0.3, 0.5}, {0.5, -0.4, 0.7, 0.2}, {0.7, -0.3, 0.6, -0.6}, {0.3, 0.6, 0.5, 0.1}};
 
-  *s       = (Small){.gap = {0}};
+  *s = (Small){.gap = {0}};
   for (int i = 0; i < PAIRS; i++) s->law[i] = (FrictionLaw){.speed = SPEED, .parameter = {MU}};
-  s->model = (ReducedModel){.m       = M_MODES,
-                            .n_pairs = PAIRS,
-                            .n_loads = 1,
-                            .n_ports = PORTS,
-                            .omega2  = s->omega2,
-                            .C       = damping > 0 ? s->C : NULL,
-                            .P       = s->P,
-                            .W       = s->W,
-                            .Cm      = damping > 0 ? s->Cm : NULL,
-                            .Cx      = damping > 0 ? s->Cx : NULL,
-                            .gap     = s->gap,
+  s->model = (ReducedModel){.m        = M_MODES,
+                            .n_pairs  = PAIRS,
+                            .n_loads  = 1,
+                            .n_ports  = PORTS,
+                            .omega2   = s->omega2,
+                            .C        = damping > 0 ? s->C : NULL,
+                            .P        = s->P,
+                            .W        = s->W,
+                            .Cm       = damping > 0 ? s->Cm : NULL,
+                            .Cx       = damping > 0 ? s->Cx : NULL,
+                            .gap      = s->gap,
                             .friction = s->law};
   for (int k = 0; k < M_MODES; k++) {
     s->omega2[k] = frequency[k] * frequency[k];
@@ -97,8 +98,7 @@ static PetscReal Nearest(double complex s, PetscReal dt, PetscInt n, const Petsc
   const double complex wanted  = cexp(s * dt);
   PetscReal            nearest = PETSC_MAX_REAL;
 
-  for (PetscInt i = 0; i < n; i++)
-    nearest = PetscMin(nearest, hypot(re[i] - creal(wanted), im[i] - cimag(wanted)));
+  for (PetscInt i = 0; i < n; i++) nearest = PetscMin(nearest, hypot(re[i] - creal(wanted), im[i] - cimag(wanted)));
   return nearest;
 }
 
@@ -138,7 +138,8 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   SmallCreate(0.01, &s);
   PetscCall(Distances(&s, 0.15, &formula, &smooth));
   *failed += CheckTrue("damped: steps of 0.15 s are seen", smooth > 1e-4, (double)smooth);
-  *failed += CheckTrue("damped: the formula leaves 2 % of it at most", formula < 0.02 * smooth, (double)(formula / smooth));
+  *failed +=
+    CheckTrue("damped: the formula leaves 2 % of it at most", formula < 0.02 * smooth, (double)(formula / smooth));
   PetscCall(SlepcFinalize());
   PetscFunctionReturn(0);
 }

@@ -184,8 +184,8 @@ static PetscErrorCode KindVisit(const char name[], const FrictionKind *chosen, F
   if (kind->file) row[n_rows++] = *kind->file;
   PetscCall(PetscSNPrintf(title, sizeof(title), "Friction by the law %s of contact", kind->name));
   PetscCall(PetscSNPrintf(why, sizeof(why), "not used with -@friction_law %s", chosen->name));
-  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name,
-                            read, kind == chosen ? NULL : why));
+  PetscCall(QuantitiesVisit(visitor, &(QuantityTable){title, "frictionlaw.h", n_rows, row, .in = 0}, name, read,
+                            kind == chosen ? NULL : why));
   PetscFunctionReturn(0);
 }
 

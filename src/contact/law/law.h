@@ -15,7 +15,7 @@ typedef struct {
   PetscBool (*varies)(const FrictionLaw *law);
   PetscReal (*rise)(const FrictionLaw *law, PetscReal s); /* p d mu / dp; NULL where mu knows no pressure */
   const Quantity *file;                                   /* row of the file of a table, at FrictionOptions; or NULL */
-  const char *(*remark)(const FrictionLaw *law); /* what is odd about the parameters, or NULL; NULL for none */
+  const char *(*remark)(const FrictionLaw *law);          /* what is odd about the parameters, or NULL; NULL for none */
 } FrictionKind;
 
 /* What options say: a law, and the file of its table */

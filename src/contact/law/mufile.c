@@ -25,8 +25,7 @@ static void LinesRead(const char file[], MuLines *lines)
 
   CsvOpen(&csv, file, 3, columns, 3);
   while (CsvNext(&csv)) {
-    if (lines->n == TABLE_ROOM)
-      (void)snprintf(csv.fault, sizeof(csv.fault), "it has more than %d lines", TABLE_ROOM);
+    if (lines->n == TABLE_ROOM) (void)snprintf(csv.fault, sizeof(csv.fault), "it has more than %d lines", TABLE_ROOM);
     for (PetscInt i = 0; i < 3 && !csv.fault[0]; i++) {
       const double x = CsvReal(&csv, i, PETSC_FALSE);
 
@@ -66,10 +65,11 @@ static void LinesTake(MuLines *lines, PetscReal values[])
   PetscReal     *speed = values, *pressure = speed + n, *mu = pressure + m;
 
   if (n < 2 || m < 2 || speed[0] != 0 || pressure[0] != 0) {
-    (void)snprintf(lines->fault, sizeof(lines->fault),
-                   "it must have two speeds and two pressures at least, each from 0 on; it has %d from %.6g and %d from "
-                   "%.6g",
-                   (int)n, n ? (double)speed[0] : 0, (int)m, m ? (double)pressure[0] : 0);
+    (void)snprintf(
+      lines->fault, sizeof(lines->fault),
+      "it must have two speeds and two pressures at least, each from 0 on; it has %d from %.6g and %d from "
+      "%.6g",
+      (int)n, n ? (double)speed[0] : 0, (int)m, m ? (double)pressure[0] : 0);
     return;
   }
   for (PetscInt i = 0; i < n * m; i++) mu[i] = -1;

@@ -95,16 +95,20 @@ static const FrictionParameter tabled_rows[] = {
 };
 
 static const Quantity tabled_file = {
-  "-mu_file", "with the columns speed,pressure,mu: each pressure at each speed, from 0 on, to beyond what comes to pass",
-  NULL,       QUANTITY_PATH,
-  .path = "file", .at = offsetof(FrictionOptions, file), .size = PETSC_MAX_PATH_LEN};
+  "-mu_file",
+  "with the columns speed,pressure,mu: each pressure at each speed, from 0 on, to beyond what comes to pass",
+  NULL,
+  QUANTITY_PATH,
+  .path = "file",
+  .at   = offsetof(FrictionOptions, file),
+  .size = PETSC_MAX_PATH_LEN};
 
 static const FrictionKind tabled_law = {.name      = "table",
-                                       .n         = 1,
-                                       .parameter = tabled_rows,
-                                       .mu        = TabledMu,
-                                       .slope     = TabledSlope,
-                                       .derive    = TabledDerive,
-                                       .varies    = TabledVaries,
-                                       .rise      = TabledRise,
-                                       .file      = &tabled_file};
+                                        .n         = 1,
+                                        .parameter = tabled_rows,
+                                        .mu        = TabledMu,
+                                        .slope     = TabledSlope,
+                                        .derive    = TabledDerive,
+                                        .varies    = TabledVaries,
+                                        .rise      = TabledRise,
+                                        .file      = &tabled_file};

@@ -222,7 +222,7 @@ struct _p_ContactProjector {
   ContactSums      sums[CONTACT_MAX];  /* of this rank's pairs; their numbers and those of steps of all ranks */
   ContactSlips     slips[CONTACT_MAX]; /* of the last step */
   PetscReal        worst[4];           /* residual of the last step, and the place of its slave */
-  PetscReal        beyond[3]; /* interface, speed, m/s, pressure, Pa, beyond a table of friction; -1: none */
+  PetscReal        beyond[3];          /* interface, speed, m/s, pressure, Pa, beyond a table of friction; -1: none */
   /* on all ranks */
   PetscReal   sweeps_before; /* the step made */
   ContactStep last;          /* that */

@@ -180,12 +180,13 @@ static PetscErrorCode AreaCheck(ContactProjector p, PetscInt strange)
                PETSC_ERR_SUP, "contact %s: friction of a table needs pairs that stay; take -%s_kinematics prescribed",
                p->contact->interfaces[i].name, p->contact->interfaces[i].name);
   if (x[0] < 0) PetscFunctionReturn(0);
-  SETERRQ(p->share.comm, PETSC_ERR_USER_INPUT,
-          "contact %s: the node of %s at %.6g, %.6g, %.6g m has no pair at rest, whose area would tell the pressure for "
-          "-%s_friction_law table; raise -%s_tolerance",
-          p->contact->interfaces[(PetscInt)x[0]].name, p->contact->interfaces[(PetscInt)x[0]].slave, (double)x[1],
-          (double)x[2], (double)x[3], p->contact->interfaces[(PetscInt)x[0]].name,
-          p->contact->interfaces[(PetscInt)x[0]].name);
+  SETERRQ(
+    p->share.comm, PETSC_ERR_USER_INPUT,
+    "contact %s: the node of %s at %.6g, %.6g, %.6g m has no pair at rest, whose area would tell the pressure for "
+    "-%s_friction_law table; raise -%s_tolerance",
+    p->contact->interfaces[(PetscInt)x[0]].name, p->contact->interfaces[(PetscInt)x[0]].slave, (double)x[1],
+    (double)x[2], (double)x[3], p->contact->interfaces[(PetscInt)x[0]].name,
+    p->contact->interfaces[(PetscInt)x[0]].name);
 }
 
 /* Forces of the slaves that face a facet. They are given on the ground, and kept in the frame of the master */

@@ -140,8 +140,8 @@ PetscErrorCode GeneralAdvance(const General *general, PetscBool early, BodiesWor
   PetscFunctionBeginUser;
   GeneralAdvanceNodes(general, begin, end, w);
   if (end > begin)
-    PetscCall(PetscLogFlops(
-      2 * BLOCK_FLOPS * (PetscLogDouble)(general->stiffness.start[end] - general->stiffness.start[begin]) +
-      NODE_FLOPS * (PetscLogDouble)(end - begin)));
+    PetscCall(PetscLogFlops(2 * BLOCK_FLOPS *
+                              (PetscLogDouble)(general->stiffness.start[end] - general->stiffness.start[begin]) +
+                            NODE_FLOPS * (PetscLogDouble)(end - begin)));
   PetscFunctionReturn(0);
 }

@@ -15,15 +15,15 @@
 typedef struct _p_Bodies *Bodies;
 
 typedef struct {
-  PetscInt         n;            /* length of a state vector on this rank */
-  PetscInt         n_vertices;   /* local nodes */
-  PetscInt        *at, *step;    /* [n_vertices]; at = -1 for a node without cells */
-  PetscReal       *basis;        /* [n_vertices][3][3], row j is the direction of component j */
-  const PetscBool *owned;        /* [n_vertices] exactly one rank owns each node */
-  PetscReal       *part, *total; /* [n] masses of this rank's cells alone, and complete ones, kg */
-  PetscReal       *minv;         /* [n] 1 / total, 0 in held directions and padding */
+  PetscInt         n;              /* length of a state vector on this rank */
+  PetscInt         n_vertices;     /* local nodes */
+  PetscInt        *at, *step;      /* [n_vertices]; at = -1 for a node without cells */
+  PetscReal       *basis;          /* [n_vertices][3][3], row j is the direction of component j */
+  const PetscBool *owned;          /* [n_vertices] exactly one rank owns each node */
+  PetscReal       *part, *total;   /* [n] masses of this rank's cells alone, and complete ones, kg */
+  PetscReal       *minv;           /* [n] 1 / total, 0 in held directions and padding */
   PetscInt         apart, n_apart; /* where unknowns of superelements that no node has stand, on every rank */
-  PetscReal       *damping;      /* [n] C v and branches of the last BodiesAdvance(), N; NULL without damping */
+  PetscReal       *damping;        /* [n] C v and branches of the last BodiesAdvance(), N; NULL without damping */
 } Layout;
 
 /* A call of BodiesAdvance(), with state vectors */

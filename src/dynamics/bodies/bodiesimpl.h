@@ -63,9 +63,10 @@ typedef struct {
 /* The Maxwell branches of a part; of its nodes the first n_early are shared with other ranks */
 typedef struct {
   PetscInt   part, n_branches, n, n_early;
-  PetscReal  stiff[VISCOELASTIC_BRANCHES], time[VISCOELASTIC_BRANCHES]; /* E_j / E; tau_j, s */
-  PetscInt  *vertex;                                                    /* [n] local node */
-  BlockRows  rows;                                                      /* of the static modulus, all of them */
+  PetscReal  stiff[VISCOELASTIC_BRANCHES], time[VISCOELASTIC_BRANCHES];     /* E_j / E; tau_j, s */
+  PetscReal  dt, decay[VISCOELASTIC_BRANCHES], gain[VISCOELASTIC_BRANCHES]; /* of the step: e^(-dt / tau_j); s */
+  PetscInt  *vertex;                                                        /* [n] local node */
+  BlockRows  rows;                                                          /* of the static modulus, all of them */
   PetscReal *motion, *product; /* [n][3] work, one number more at the end of motion */
   PetscReal *force;            /* [n_branches][n][3] q of this rank's cells, N */
 } MaxwellPart;
@@ -220,8 +221,8 @@ PETSC_INTERN PetscErrorCode BlockRowsCreate(const BodiesRowCells *cells, const M
                                             BlockRows *rows);
 PETSC_INTERN PetscErrorCode BlockRowsAdd(const BodiesRowCells *cells, const BodiesCell *cell, PetscReal scale,
                                          BlockRows *rows);
-PETSC_INTERN void BlockRowsMultiply(const BlockRows *rows, PetscInt begin, PetscInt end, const PetscReal x[],
-                                    PetscReal y[]);
+PETSC_INTERN void           BlockRowsMultiply(const BlockRows *rows, PetscInt begin, PetscInt end, const PetscReal x[],
+                                              PetscReal y[]);
 PETSC_INTERN PetscErrorCode BlockRowsDestroy(BlockRows *rows);
 
 /* cell.c - branches of a material, of which Zener's law of order 1 is one; sum of their E_j / E */

@@ -101,42 +101,58 @@ PetscErrorCode BranchesSetUp(Bodies b)
   PetscFunctionReturn(0);
 }
 
-/* K_p x at the nodes begin .. end - 1 */
-static void BranchMultiply(const Layout *l, const MaxwellPart *branch, PetscInt begin, PetscInt end,
-                           const PetscReal x[])
+/* The motion of all nodes of a part */
+static void BranchGather(const Layout *l, const MaxwellPart *branch, const PetscReal x[])
 {
   for (PetscInt i = 0; i < branch->n; i++)
     for (int j = 0; j < 3; j++)
       branch->motion[3 * i + j] = x[l->at[branch->vertex[i]] + j * l->step[branch->vertex[i]]];
-  BlockRowsMultiply(&branch->rows, begin, end, branch->motion, branch->product);
 }
 
-/* The forces of a part at the end of the step */
+/* What a step of dt leaves of q, and adds to it of K_p v */
+static void BranchSetStep(MaxwellPart *branch, PetscReal dt)
+{
+  if (branch->dt == dt) return;
+  branch->dt = dt;
+  for (PetscInt j = 0; j < branch->n_branches; j++) {
+    const PetscReal x = -dt / branch->time[j];
+
+    branch->decay[j] = PetscExpReal(x);
+    branch->gain[j]  = -branch->stiff[j] * branch->time[j] * expm1(x);
+  }
+}
+
+/* The forces of a part at the end of the step, of nodes begin .. end - 1 */
 static void BranchAdvance(const Layout *l, const MaxwellPart *branch, PetscInt begin, PetscInt end, BodiesWork *w)
 {
-  BranchMultiply(l, branch, begin, end, w->v);
-  for (PetscInt k = 3 * begin; k < 3 * end; k++) {
-    const PetscInt vertex = branch->vertex[k / 3], at = l->at[vertex] + k % 3 * l->step[vertex];
-    PetscReal      sum = 0;
+  BlockRowsMultiply(&branch->rows, begin, end, branch->motion, branch->product);
+  for (PetscInt i = begin; i < end; i++) {
+    for (PetscInt k = 3 * i; k < 3 * i + 3; k++) {
+      const PetscInt at  = l->at[branch->vertex[i]] + (k - 3 * i) * l->step[branch->vertex[i]];
+      PetscReal      sum = 0;
 
-    for (PetscInt j = 0; j < branch->n_branches; j++) {
-      const PetscReal x = -w->dt / branch->time[j];
-      PetscReal      *q = &branch->force[3 * branch->n * j + k];
+      for (PetscInt j = 0; j < branch->n_branches; j++) {
+        PetscReal *q = &branch->force[3 * branch->n * j + k];
 
-      *q = PetscExpReal(x) * *q - branch->stiff[j] * branch->time[j] * expm1(x) * branch->product[k];
-      sum += *q;
+        *q = branch->decay[j] * *q + branch->gain[j] * branch->product[k];
+        sum += *q;
+      }
+      w->d[at] += sum;
+      w->f[at] -= sum;
+      w->sums.damping += w->v[at] * sum;
     }
-    w->d[at] += sum;
-    w->f[at] -= sum;
-    w->sums.damping += w->v[at] * sum;
   }
 }
 
 void BranchesAdvance(Bodies b, PetscBool early, BodiesWork *w)
 {
   for (PetscInt i = 0; i < b->n_branches; i++) {
-    const MaxwellPart *branch = &b->branch[i];
+    MaxwellPart *branch = &b->branch[i];
 
+    if (early) {
+      BranchSetStep(branch, w->dt);
+      BranchGather(&b->layout, branch, w->v);
+    }
     BranchAdvance(&b->layout, branch, early ? 0 : branch->n_early, early ? branch->n_early : branch->n, w);
   }
 }
@@ -147,10 +163,11 @@ void BranchesAddStiffness(Bodies b, const PetscReal x[], PetscReal kx[])
 
   for (PetscInt i = 0; i < b->n_branches; i++) {
     const MaxwellPart *branch = &b->branch[i];
-    PetscReal     stiff  = 0;
+    PetscReal          stiff  = 0;
 
     for (PetscInt j = 0; j < branch->n_branches; j++) stiff += branch->stiff[j];
-    BranchMultiply(l, branch, 0, branch->n, x);
+    BranchGather(l, branch, x);
+    BlockRowsMultiply(&branch->rows, 0, branch->n, branch->motion, branch->product);
     for (PetscInt k = 0; k < 3 * branch->n; k++)
       kx[l->at[branch->vertex[k / 3]] + k % 3 * l->step[branch->vertex[k / 3]]] += stiff * branch->product[k];
   }

@@ -29,11 +29,11 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(bodies->model, &scene));
   PetscCall(ModelGetCell(bodies->model, c, &element, cell->vertex, x));
-  cell->n_nodes = element->n_nodes;
-  cell->part    = bodies->mesh->cell_part[c];
-  part          = &scene->parts[cell->part];
-  cell->alpha   = part->alpha;
-  cell->beta    = part->beta;
+  cell->n_nodes  = element->n_nodes;
+  cell->part     = bodies->mesh->cell_part[c];
+  part           = &scene->parts[cell->part];
+  cell->alpha    = part->alpha;
+  cell->beta     = part->beta;
   cell->branches = BranchesStiffness(part);
   PetscCall(ModelGetElasticity(bodies->model, c, part->young, part->density, &material));
   PetscCall(ElementMatrices(element, x, &material, cell->stiffness, me));

@@ -42,8 +42,8 @@ static void NeighboursTake(const BodiesRowCells *cells, const Mesh *mesh, PetscB
 
 /* Neighbours of all rows, once for each cell that they share: those of a row end before column[end[row]]. Counted
    first, then filled, the running ends being the places of the next entries. */
-static PetscErrorCode NeighboursCreate(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper,
-                                       PetscInt **end, PetscInt **column)
+static PetscErrorCode NeighboursCreate(const BodiesRowCells *cells, const Mesh *mesh, PetscBool upper, PetscInt **end,
+                                       PetscInt **column)
 {
   PetscInt n = 0;
 
@@ -187,7 +187,7 @@ static PetscErrorCode GeneralSumDamping(Bodies b, const BodiesRowCells *cells)
 /* product [n][4], g = K v of the step, is aligned for loads of four numbers; `room` is what is freed. */
 PetscErrorCode GeneralSetUp(Bodies b)
 {
-  General     *g     = &b->general;
+  General       *g     = &b->general;
   BodiesRowCells cells = {0};
 
   PetscFunctionBeginUser;

@@ -15,11 +15,11 @@
 #include "solver/block/orthonormal.h"
 
 #define ABOUT_LEVELS 3    /* steps of a residual, before the next dense problem */
-#define ABOUT_DROP    0.1  /* of what may remain of a residual: directions of corrections that make less are left out */
-#define ABOUT_FINER   0.01 /* times that, where all are */
-#define ABOUT_RANDOM  4    /* vectors of a search, and its steps */
-#define ABOUT_SEARCH  3
-#define ABOUT_NEW     1e-6 /* of them: what the basis has not */
+#define ABOUT_DROP   0.1  /* of what may remain of a residual: directions of corrections that make less are left out */
+#define ABOUT_FINER  0.01 /* times that, where all are */
+#define ABOUT_RANDOM 4    /* vectors of a search, and its steps */
+#define ABOUT_SEARCH 3
+#define ABOUT_NEW    1e-6 /* of them: what the basis has not */
 
 /* The length of columns k and k + 1, real and imaginary parts */
 static PetscErrorCode PairNorm(BV block, PetscInt k, PetscReal *norm)

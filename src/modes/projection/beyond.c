@@ -19,20 +19,20 @@
 #include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
-#define BEYOND_BLOCK    8
-#define ENLARGE_BLOCK   24
-#define ENLARGE_LARGEST 48  /* vectors of a block */
-#define ENLARGE_ENOUGH  0.5 /* radius at which the basis is large enough: corrections converge by that much in a step */
-#define ENLARGE_LEAST   0.3 /* |eigenvalue| of what it takes in */
-#define ENLARGE_STAYS   0.8 /* of the last radius: more blocks help no more */
-#define ENLARGE_WEAK    0.8 /* radius that will do then */
-#define ENLARGE_MISFIT  0.3 /* of the fit: with more of it alpha and beta are an average that no part has */
-#define ENLARGE_HOPELESS 4  /* radius that another beta does not help: sqrt(r^2 / (1 + r^2)) with half of it for r */
-#define ENLARGE_ROUNDS  16
-#define ENLARGE_MOST    400 /* columns that it adds: the dense problem has twice as many */
-#define BEYOND_STEPS    3
-#define BEYOND_POINTS   8    /* of the window, where laws of materials are looked at */
-#define BEYOND_NEW      1e-6 /* of a vector of length one: what the basis has not */
+#define BEYOND_BLOCK     8
+#define ENLARGE_BLOCK    24
+#define ENLARGE_LARGEST  48  /* vectors of a block */
+#define ENLARGE_ENOUGH   0.5 /* radius that is small enough: corrections converge by that much in a step */
+#define ENLARGE_LEAST    0.3 /* |eigenvalue| of what it takes in */
+#define ENLARGE_STAYS    0.8 /* of the last radius: more blocks help no more */
+#define ENLARGE_WEAK     0.8 /* radius that will do then */
+#define ENLARGE_MISFIT   0.3 /* of the fit: with more of it alpha and beta are an average that no part has */
+#define ENLARGE_HOPELESS 4   /* radius that another beta does not help: sqrt(r^2 / (1 + r^2)) with half of it for r */
+#define ENLARGE_ROUNDS   16
+#define ENLARGE_MOST     400 /* columns that it adds: the dense problem has twice as many */
+#define BEYOND_STEPS     3
+#define BEYOND_POINTS    8    /* of the window, where laws of materials are looked at */
+#define BEYOND_NEW       1e-6 /* of a vector of length one: what the basis has not */
 #define BEYOND_CLEAR                                                                                                   \
   0.1 /* an estimate below this, of two steps or more, is far enough from one: a third adds 2 % to 0.01 */
 

@@ -21,7 +21,7 @@
 #include "solver/block/orthonormal.h"
 
 #define DAMPING_WEAK     0.9
-#define PROJECT_ATTEMPTS 3 /* with ever more undamped modes */
+#define PROJECT_ATTEMPTS 3     /* with ever more undamped modes */
 #define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT     1e-11
 #define PROJECT_ROOM     2.5  /* columns of the basis beside undamped vectors */

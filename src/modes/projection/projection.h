@@ -119,8 +119,7 @@ PETSC_INTERN PetscErrorCode ProjectionExtendAbout(Projection *p, BV residuals[2]
 PETSC_INTERN PetscErrorCode ProjectionSearchAbout(Projection *p, PetscComplex lambda, unsigned long seed);
 /* projection/strong.c - the modes of the window by such factors, in parts, from the undamped vectors in the basis; why
    is set where they do not settle. n_undamped: undamped modes of the window */
-PETSC_INTERN PetscErrorCode ProjectionSolveStrong(Projection *p, PetscInt n_undamped, Window *window,
-                                                  const char **why);
+PETSC_INTERN PetscErrorCode ProjectionSolveStrong(Projection *p, PetscInt n_undamped, Window *window, const char **why);
 /* projection/settle.c - corrects the modes until all have settled; settled = they have, and the window is covered */
 PETSC_INTERN PetscErrorCode ProjectionIterate(Projection *p, ProjectionModes *found, PetscBool *settled);
 /* The modes of the window in place of the spectra of the solver */

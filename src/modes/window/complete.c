@@ -77,7 +77,8 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
 
   PetscFunctionBeginUser;
   if (window->route.counted)
-    PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "the inertia count confirms all undamped modes, %" PetscInt_FMT,
+    PetscCall(PetscSNPrintf(undamped, sizeof(undamped),
+                            "the inertia count confirms all undamped modes in the band, %" PetscInt_FMT,
                             window->known.expected));
   else
     PetscCall(PetscSNPrintf(undamped, sizeof(undamped), "two independent searches of the undamped modes agree to %.1e",
@@ -102,12 +103,12 @@ static PetscErrorCode DescribeStrong(const Window *window, const char region[], 
   const PetscInt n = window->route.n_about;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(
-    text, size,
-    "damping is strong (%.2g beyond the undamped modes); about %" PetscInt_FMT " complex shift%s the undamped modes and "
-    "searches from random vectors lead to these%s, all eigenvalues of the dense problems, and to no others%s; modes that "
-    "are damped by more than %.2g of critical damping are not sought",
-    (double)window->route.beyond, n, n == 1 ? "" : "s", region, rest, MODES_DAMPED_MOST));
+  PetscCall(PetscSNPrintf(text, size,
+                          "damping is strong (%.2g beyond the undamped modes); about %" PetscInt_FMT
+                          " complex shift%s the undamped modes and searches from random vectors lead to these%s, all "
+                          "eigenvalues of the dense problems, and to no others%s; modes that are damped by more than "
+                          "%.2g of critical damping are not sought",
+                          (double)window->route.beyond, n, n == 1 ? "" : "s", region, rest, MODES_DAMPED_MOST));
   PetscFunctionReturn(0);
 }
 
@@ -141,7 +142,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             "; unknowns have no mass: modes of |lambda| above %.6g 1/s are not sought",
                             (double)window->known.most));
   if (!window->count && !Expected(modes, window))
-    PetscCall(PetscSNPrintf(region, sizeof(region), " (|growth| below %.6g 1/s)", (double)window->growth));
+    PetscCall(PetscSNPrintf(region, sizeof(region), " for |growth| below %.6g 1/s", (double)window->growth));
   if (window->route.proven && window->count)
     PetscCall(PetscSNPrintf(text, size, "proven by the inertia count, %" PetscInt_FMT " up to the outermost",
                             window->known.expected));

@@ -280,9 +280,9 @@ static PetscErrorCode NullSpacesAdd(Pencil pencil, PetscInt n, const ContactPair
   PetscCall(PetscMalloc1(n + 1, &part));
   for (PetscInt k = 0; k < q->n_nodes; k++) {
     for (PetscInt p = 0; p < n; p++)
-      part[p] = list[p]->interface != interface
-                  ? 0
-                  : PencilFrictionShare(pencil, interface, k, (PetscInt)(list[p] - pairs), FRICTION_TANGENT);
+      part[p] = list[p]->interface != interface ? 0
+                                                : PencilFrictionShare(pencil, interface, k, (PetscInt)(list[p] - pairs),
+                                                                      FRICTION_TANGENT);
     PetscCall(NullSpaceCreate(pencil, n, list, part, &pencil->left[pencil->n_left]));
     pencil->left_interface[pencil->n_left] = interface;
     pencil->left_mu[pencil->n_left++]      = &q->node[k];

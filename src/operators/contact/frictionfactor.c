@@ -146,7 +146,7 @@ PetscErrorCode OperatorsGetPairMu(Operators operators, const PetscReal p[], cons
   PetscCall(InterfaceGetLaw(operators, p, pair->interface, &law));
   law = FrictionOfPair(&law, stated > 0 ? law.speed * pair->speed / stated : 0, pair->area);
   law = FrictionPressed(&law, force);
-  *mu       = rests ? FrictionMu(&law, 0) : FrictionSteady(&law);
+  *mu = rests ? FrictionMu(&law, 0) : FrictionSteady(&law);
   PetscFunctionReturn(0);
 }
 

@@ -17,8 +17,8 @@ PetscReal PencilFrictionShare(Pencil pencil, PetscInt interface, PetscInt k, Pet
   (void)ContactGetPairs(contact, &n, &n_all, &pairs);
   (void)ContactGetInterfaces(contact, &n, &c);
   if (!FrictionNeedsPressure(&c[interface].friction)) return FrictionNodeShare(q, k, pairs[pair].speed);
-  law = FrictionOfPair(&c[interface].friction, pairs[pair].speed, pairs[pair].area);
-  law = FrictionPressed(&law, pencil->force[pair]);
+  law              = FrictionOfPair(&c[interface].friction, pairs[pair].speed, pairs[pair].area);
+  law              = FrictionPressed(&law, pencil->force[pair]);
   law.parameter[0] = 1; /* the factor of the term */
   if (part == FRICTION_SLOPE) return FrictionSteadySlope(&law);
   return part == FRICTION_TANGENT ? FrictionSteadyTangent(&law) : FrictionSteady(&law);

@@ -80,8 +80,7 @@ PetscErrorCode ReducedCreate(MPI_Comm comm, ReducedRun *reduced)
 
 /* The bodies below a cut-off with parameters p, in the modes that resemble those of `like`, or in all. The rooms
    are borrowed from r; factors of the residual are freed, since nothing is lifted to the mesh from there. */
-PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like,
-                               ReducedRun *other)
+PetscErrorCode ReducedReduceAt(ReducedRun r, PetscReal cutoff, const PetscReal p[], ReducedRun like, ReducedRun *other)
 {
   PetscFunctionBeginUser;
   PetscCall(ReducedCreate(r->comm, other));

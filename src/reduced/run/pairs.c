@@ -152,8 +152,8 @@ static PetscErrorCode ReducedJudge(ReducedRun r, PetscReal dt)
   PetscCall(PetscMalloc1(n, &judged));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal  *slip = r->motion.pairs[i].slip, speed = hypot(slip[0], slip[1]) / dt;
-    const FrictionLaw law  = FrictionPressed(&r->reduction.model.friction[i], r->motion.pairs[i].lambda_n);
-    const PetscReal   mu   = FrictionMu(&law, speed);
+    const FrictionLaw law = FrictionPressed(&r->reduction.model.friction[i], r->motion.pairs[i].lambda_n);
+    const PetscReal   mu  = FrictionMu(&law, speed);
 
     judged[i] = (ContactJudged){
       &r->motion.pairs[i], mu, StateClosing(r, i), r->reduction.model.gap[i], PetscSqrtReal(r->reduction.pair[i].area),

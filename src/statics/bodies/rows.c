@@ -95,8 +95,8 @@ PetscErrorCode PairRowsSetFriction(Operators operators, const PetscReal p[], Pet
   PetscReal      mu;
 
   PetscFunctionBeginUser;
-  PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k],
-                               (PetscBool)(rows->interface[i].slides && !rows->slides[i]), force, &mu));
+  PetscCall(OperatorsGetPairMu(operators, p, &rows->pair[k], (PetscBool)(rows->interface[i].slides && !rows->slides[i]),
+                               force, &mu));
   rows->law[k].mu = rows->law[k].d == 3 ? PetscAbsReal(mu) : 0;
   rows->slide[k]  = rows->slides[i] ? mu : 0;
   PetscFunctionReturn(0);

@@ -21,7 +21,7 @@ static PetscErrorCode RubbingIsAsked(const PairRows *rows, PetscBool *asked)
 /* Raises the error for a pair beyond its table */
 static PetscErrorCode RubbingCheck(const PairRows *rows, PetscInt interface, const PetscReal at[2])
 {
-  const ContactInterface *c = &rows->interface[interface];
+  const ContactInterface *c   = &rows->interface[interface];
   FrictionLaw             law = c->friction;
 
   PetscFunctionBeginUser;
@@ -34,9 +34,9 @@ static PetscErrorCode RubbingCheck(const PairRows *rows, PetscInt interface, con
 /* The coefficients at the forces found; by how much they change, of the largest */
 static PetscErrorCode RubbingTake(Active *a, PetscReal *change)
 {
-  PairRows *rows     = a->rows;
-  PetscReal most[2]  = {0, 0}; /* change, and coefficient */
-  PetscReal(*at)[2]; /* of each interface the largest speed and pressure */
+  PairRows *rows    = a->rows;
+  PetscReal most[2] = {0, 0}; /* change, and coefficient */
+  PetscReal(*at)[2];          /* of each interface the largest speed and pressure */
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(rows->n_interfaces, &at));
@@ -46,8 +46,8 @@ static PetscErrorCode RubbingTake(Active *a, PetscReal *change)
     const PetscInt  i      = rows->pair[p].interface;
 
     PetscCall(PairRowsSetFriction(a->operators, a->p, p, force, rows));
-    most[0] = PetscMax(most[0], PetscAbsReal(rows->law[p].mu + PetscAbsReal(rows->slide[p]) - before));
-    most[1] = PetscMax(most[1], before);
+    most[0]  = PetscMax(most[0], PetscAbsReal(rows->law[p].mu + PetscAbsReal(rows->slide[p]) - before));
+    most[1]  = PetscMax(most[1], before);
     at[i][0] = PetscMax(at[i][0], rows->slides[i] ? rows->pair[p].speed : 0);
     at[i][1] = PetscMax(at[i][1], force / rows->pair[p].area);
   }

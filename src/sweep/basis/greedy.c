@@ -217,9 +217,9 @@ static PetscErrorCode PointsLook(GreedyWork *run)
 {
   Greedy *const        g         = run->greedy;
   const PetscInt       n_samples = g->n_samples, n_parameters = run->basis->reduced.n_parameters;
-  const CorrectionDrop drop = run->drop;
+  const CorrectionDrop drop  = run->drop;
   PetscReal            worst = 0, surprise = 0, beyond = 0, *middle;
-  PetscInt             n_added, n_statuses, n_sure = 0;
+  PetscInt             n_added, n_statuses, n_sure     = 0;
   PetscBool            own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -246,10 +246,10 @@ static PetscErrorCode PointsLook(GreedyWork *run)
     PetscCall(SampleAdd(run, p, PETSC_FALSE, 0, worst)); /* for the distances */
   }
   run->basis->reduced.beyond = beyond > 1 ? beyond : 0;
-  run->sides    = CORRECT_BOTH;
-  run->surprise = NULL;
-  run->first    = 0;
-  run->drop     = drop;
+  run->sides                 = CORRECT_BOTH;
+  run->surprise              = NULL;
+  run->first                 = 0;
+  run->drop                  = drop;
   for (PetscInt j = n_samples; j < g->n_samples; j++) PetscCall(PetscFree(g->sample[j].p));
   g->n_samples = n_samples;
   PetscCall(PetscFree(middle));

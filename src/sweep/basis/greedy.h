@@ -6,7 +6,7 @@
 #include <squeal/modes.h>
 
 #define GREEDY_LOOKS 4         /* points looked at with the factors of another, beside those of a full solution */
-#define LOOK_MOST    24 /* over a box, whatever they find */
+#define LOOK_MOST    24        /* over a box, whatever they find */
 #define GREEDY_SAFE  (1. / 30) /* of rtol at corrected points: a tenth of what POINTS_MARGIN leaves of it at others */
 
 /* A full solution */

@@ -18,7 +18,7 @@ typedef struct {
   PetscReal       *scale;    /* [n_parameters] */
   CorrectionDrop   drop;
   CorrectionSides  sides;
-  PetscReal       *surprise; /* how far a step finds errors beyond what was stated; NULL: not asked for */
+  PetscReal       *surprise;   /* how far a step finds errors beyond what was stated; NULL: not asked for */
   PetscInt         first;      /* sample from which on distances are measured */
   Correction      *correction; /* the greedy's */
   ShiftInvert      counter;    /* where the factors of the correction do not serve */

@@ -78,7 +78,7 @@ static PetscErrorCode RowsAppend(Mat A, PetscInt *at, BV block)
 /* Columns of both sides: N and T of each group for right vectors, those of R for left ones */
 static PetscErrorCode RowsCollect(const Basis *basis, PetscInt n, PairGroup group[], CorrectionBlock *block)
 {
-  const OperatorsTerm *term = basis->reduced.term;
+  const OperatorsTerm *term  = basis->reduced.term;
   PetscInt             at[2] = {0, 0};
 
   PetscFunctionBeginUser;
@@ -105,7 +105,7 @@ static void RowsForce(const Reduced *r, PetscInt t, const ReducedModes *modes, P
     force[k] = 0;
     for (PetscInt i = 0; i < modes->n; i++) {
       const PetscComplex *x = modes->x + i * modes->size, *y = modes->y + i * modes->size;
-      const PetscReal     part = h / PetscMax(cabs(modes->lambda[i]), PAIR_OMEGA * h);
+      const PetscReal     part  = h / PetscMax(cabs(modes->lambda[i]), PAIR_OMEGA * h);
       PetscComplex        right = 0, left = 0;
 
       for (PetscInt j = 0; j < modes->size; j++) {
@@ -124,8 +124,8 @@ static PetscErrorCode GroupScale(GreedyWork *run, const PetscReal p[], const Pai
   const Reduced  *r = &run->basis->reduced;
   const PetscInt  n = g->rank, *at = g->first;
   const PetscBool closed = OperatorsTermCoefficient(&r->term[g->normal], p) != 0 ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal     *force, *all, c[2];
-  Vec            z, row;
+  PetscReal      *force, *all, c[2];
+  Vec             z, row;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &force, r->n_parameters, &all));

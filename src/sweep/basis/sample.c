@@ -85,7 +85,7 @@ static PetscErrorCode SurpriseTake(const GreedyWork *run, const ReducedModes *st
 PetscErrorCode StepApply(GreedyWork *run, const PetscReal p[], ReducedModes *modes, PetscInt *n_added, PetscReal *worst)
 {
   ReducedModes    before = *modes, stated = {0};
-  CorrectionBlock block  = {0};
+  CorrectionBlock block = {0};
 
   PetscFunctionBeginUser;
   PetscCall(ReducedSolve(&run->basis->reduced, p, &run->guarded, modes));

@@ -11,15 +11,15 @@
 
 /* What is given, then what is made */
 typedef struct {
-  MPI_Comm    comm;
-  Operators   operators;
-  Modes       modes;
-  Statics     statics; /* about whose sliding state at each point the pencil is, or NULL: all pairs are closed */
-  PetscReal  *nominal; /* [n_base]; [n_parameters] from BoxSetUp() on */
-  PetscReal   rtol;
-  const char *option, *advice; /* that rtol is of, and what to do where it is not reached */
-  PetscInt    max_solutions, n_groups;
-  PetscBool   many;       /* points come, for which BoxCompress() pays */
+  MPI_Comm       comm;
+  Operators      operators;
+  Modes          modes;
+  Statics        statics; /* about whose sliding state at each point the pencil is, or NULL: all pairs are closed */
+  PetscReal     *nominal; /* [n_base]; [n_parameters] from BoxSetUp() on */
+  PetscReal      rtol;
+  const char    *option, *advice; /* that rtol is of, and what to do where it is not reached */
+  PetscInt       max_solutions, n_groups;
+  PetscBool      many;    /* points come, for which BoxCompress() pays */
   const Journal *journal; /* for what a killed run goes on from, or NULL; */
   const char    *begin;   /* its files begin so */
   /* */
@@ -37,8 +37,8 @@ typedef struct {
   BasisKept     kept;
   PointGroups   groups;
   Progress      progress;
-  PetscBool     whole; /* the basis is the whole space: no error but rounding */
-  Reduced       small; /* of fewer vectors, for many points; n_used is 0 where there is none */
+  PetscBool     whole;  /* the basis is the whole space: no error but rounding */
+  Reduced       small;  /* of fewer vectors, for many points; n_used is 0 where there is none */
   Reduced       turned; /* the basis in directions that hold less and less, with a core; likewise */
   PetscReal    *turn;   /* [n][n] these directions in the basis */
 } Box;

@@ -45,9 +45,9 @@
 static PetscErrorCode PencilTimes(const Estimate *e, const PetscComplex lambda[], PetscBool left, PetscInt m,
                                   const PetscComplex x[], PetscComplex Qx[])
 {
-  const PetscReal   *matrix[] = {e->pencil.K, e->pencil.C, e->pencil.M};
-  const PetscInt     n        = e->pencil.n;
-  PetscComplex      *part;
+  const PetscReal *matrix[] = {e->pencil.K, e->pencil.C, e->pencil.M};
+  const PetscInt   n        = e->pencil.n;
+  PetscComplex    *part;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m * n, &part));

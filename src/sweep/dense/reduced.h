@@ -9,8 +9,8 @@
 
 /* A_t = left' right, of few rows, on a basis */
 typedef struct {
-  PetscInt   rank;           /* rows, 0: it is no such product */
-  PetscReal *left, *right;   /* [n][rank] */
+  PetscInt   rank;         /* rows, 0: it is no such product */
+  PetscReal *left, *right; /* [n][rank] */
 } ReducedFactors;
 
 /* Leading vectors that eigenvalues are sought on first (condense.c), m = 0 for none: what the others add to one of them
@@ -33,9 +33,9 @@ typedef struct {
                                           rounding in A_t does, with those of the same RoundingTerm(); NULL, or NULL
                                           entries, where that is no more than rounding in the dense matrices */
   ReducedCore               core;
-  PetscReal                 beyond;    /* how far errors that were looked for exceeded what was stated; 0 for not */
-  PetscReal                 left_out;  /* of |kappa|, what directions may be worth that neither V nor Z was given */
-  ModesLimit                limit;     /* what counts as unstable; no limit without */
+  PetscReal                 beyond;   /* how far errors that were looked for exceeded what was stated; 0 for not */
+  PetscReal                 left_out; /* of |kappa|, what directions may be worth that neither V nor Z was given */
+  ModesLimit                limit;    /* what counts as unstable; no limit without */
 } Reduced;
 
 /* Eigenvalues to look for: omega in [low, high], |sigma| <= growth, rad/s; and with rtol > 0 those of larger |sigma|
