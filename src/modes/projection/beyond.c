@@ -272,8 +272,8 @@ PetscErrorCode ProjectionEnlarge(Projection *p, PetscReal *rho)
     PetscCall(BeyondDestroy(p, &space));
     PetscCall(PetscInfo(p->space.V, "%" PetscInt_FMT " vectors, %" PetscInt_FMT " of them new: measure was %.3g\n",
                         p->space.n, added, (double)*rho));
-    if (stays && (tried || *rho > ENLARGE_HOPELESS)) break;
-    if (stays && added) {
+    if (stays && *rho > ENLARGE_HOPELESS) break;
+    if (stays && added && !tried) {
       PetscCall(BeyondBalance(p, rho));
       tried = PETSC_TRUE;
     }
