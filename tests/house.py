@@ -4,7 +4,7 @@ is read."""
 
 import ast
 import re
-from collections import namedtuple
+from collections import Counter, namedtuple
 
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
 DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)
@@ -28,6 +28,7 @@ class Source:
         self.path = path
         self.text = path.read_text()
         self.code = NOISE.sub(blank, self.text)
+        self.words = Counter(re.findall(r"\w+", self.code))
         self.functions, self.names = [], []
         self.read_macros()
         self.read_items(ATTRIBUTE.sub(blank, DIRECTIVE.sub(blank, self.code)))

@@ -272,10 +272,18 @@ def row_faults(row, words):
         yield "is read by nobody"
 
 
+def together(counters):
+    """The sum of counters. Adding them one by one would copy the sum each time."""
+    total = collections.Counter()
+    for counter in counters:
+        total.update(counter)
+    return total
+
+
 def rows(house):
     """Options that are read without a row, rows that lack something, exceptions that nobody needs."""
     read = {}
-    words = sum((collections.Counter(re.findall(r"\w+", source.code)) for source in house.c), collections.Counter())
+    words = together(source.words for source in house.c)
     for source in house.c:
         for name, _, _, line in read_options(house, source):
             read[name] = house.say(source.path, line, f"-{name} is read without a row")
@@ -318,9 +326,9 @@ def unused(house):
 
 def dead(house):
     """Functions of C that no other file of the program names. Those that are static the compiler looks after."""
-    own = {source.path: collections.Counter(re.findall(r"\w+", source.code)) for source in house.c}
-    headers = sum((named for path, named in own.items() if path.suffix == ".h"), collections.Counter())
-    total = sum(own.values(), collections.Counter())
+    own = {source.path: source.words for source in house.c}
+    headers = together(named for path, named in own.items() if path.suffix == ".h")
+    total = together(own.values())
     public = {word for path, named in own.items() if "include" in path.parts for word in named}
     tested = set(re.findall(r"\w+", " ".join(path.read_text() for path in house.files("tests") if path.suffix in (".c", ".h"))))
     for source in house.c:
