@@ -40,7 +40,7 @@ class Result:
     joined: object = None  # what joins nodes, of joined/
     beams: object = None  # the superelement of joined/beams.py
     assembly: object = None
-    gaps: list = field(default_factory=list)  # (entry of a contact, its slave surface, gap or that of each node, place)
+    tables: list = field(default_factory=list)  # (entry of a contact, key of a file, slave and its gaps or lines of friction, place)
     fits: list = field(default_factory=list)  # (name of a contact whose surfaces are fitted before all else, place)
     entries: list = field(default_factory=list)
 

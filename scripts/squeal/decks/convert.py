@@ -10,6 +10,7 @@ from .abaqus.read import read_abaqus
 from .ansys.read import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
+from .friction import table_text
 from .joined.entries import write_equations
 from ..mesh.petsc_matrix import write_matrix
 from .mesh.faces import surface_nodes
@@ -69,22 +70,26 @@ def add_files(result, output):
     return files
 
 
-def add_gaps(result, output):
-    """Files of the gaps of contacts, whose entries get their names."""
+def add_tables(result, output):
+    """Files of the gaps and of the friction of contacts, whose entries get their names."""
     files = []
-    for entry, surface, value, place in result.gaps:
-        files.append((output.with_name(f"{output.name}_{entry.name}_gap.csv"), surface, value))
-        entry.rows.append(("gap", ("file", files[-1][0]), str(place)))
+    for entry, key, what, place in result.tables:
+        files.append((output.with_name(f"{output.name}_{entry.name}_{key.removesuffix('_file')}.csv"), key, what))
+        entry.rows.append((key, ("file", files[-1][0]), str(place)))
     return files
 
 
-def write_gaps(result, units, files):
+def gap_text(result, units, surface, value):
     """The gap at each node of the slave, in SI."""
-    for path, surface, value in files:
-        nodes = surface_nodes(result, result.surfaces[surface]).tolist()
-        each = {result.assembly.into[node]: gap for node, gap in value.items()} if isinstance(value, dict) else dict.fromkeys(nodes, value)
-        rows = [",".join(f"{v:.17g}" for v in (*result.x[node], each[node] * units.length)) for node in nodes]
-        path.write_text("\n".join(["x_m,y_m,z_m,gap_m", *rows]) + "\n", encoding="utf-8")
+    nodes = surface_nodes(result, result.surfaces[surface]).tolist()
+    each = {result.assembly.into[node]: gap for node, gap in value.items()} if isinstance(value, dict) else dict.fromkeys(nodes, value)
+    rows = [",".join(f"{v:.17g}" for v in (*result.x[node], each[node] * units.length)) for node in nodes]
+    return "\n".join(["x_m,y_m,z_m,gap_m", *rows]) + "\n"
+
+
+def write_tables(result, units, files):
+    for path, key, what in files:
+        path.write_text(gap_text(result, units, *what) if key == "gap" else table_text(what, units), encoding="utf-8")
 
 
 def write_beams(result, units, files):
@@ -124,7 +129,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         raise BadInput(f"{path}:1: places are not finite")
     mesh, scene, table = (output.with_name(output.name + ending) for ending in (".msh", ".yaml", "_equations.csv"))
     equations = table if result.joined.follows else None
-    files, tables = add_files(result, output), add_gaps(result, output)
+    files, tables = add_files(result, output), add_tables(result, output)
     lines, notes = scene_lines(deck, result, chosen, why, (mesh, equations)), [printable(note) for note in remarks(deck)]
     missing = deck.missing()
     if strict and missing:
@@ -134,7 +139,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         if equations:
             write_equations(table, result)
         write_beams(result, chosen, files)
-        write_gaps(result, chosen, tables)
+        write_tables(result, chosen, tables)
         write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None

@@ -208,6 +208,7 @@ class Contact:
     points: tuple = ()  # or overclosure, pressure, overclosure, ...
     exponential: tuple = ()  # or clearance at no pressure, pressure at no clearance
     decay: tuple = ()  # static and kinetic coefficient, speed over which the first falls to the second
+    table: tuple = ()  # or lines of friction.py; mu is the largest
     rotation: tuple = ()
     centre: tuple = ()
     turning: Place = None  # where the rotation is from

@@ -198,7 +198,7 @@ def fit_rows(assembly, contact):
     return [], False
 
 
-LAW = "mu", "stiffness", "points", "exponential", "decay"  # of a contact
+LAW = "mu", "stiffness", "points", "exponential", "decay", "table"  # of a contact
 
 
 def leave_mirrors(deck, pairs, noun):
@@ -246,9 +246,12 @@ def add_contacts(assembly):
         if contact.decay:
             rows += [("friction_law", "static_kinetic", comment), ("mu_static", ("", contact.decay[:1]), comment),
                      ("mu_kinetic", ("", contact.decay[1:2]), comment), ("mu_decay_speed", ("speed", contact.decay[2:]), comment)]
-            hints.append("speed: ?   friction depends on the sliding speed, m/s, which is not in the file: give it")
+        elif contact.table:
+            rows.append(("friction_law", "table", comment))
         elif contact.mu is not None:
             rows.append(("mu", ("", (contact.mu,)), comment))
+        if (contact.decay or contact.table) and not contact.rotation:
+            hints.append("speed: ?   friction depends on the sliding speed, m/s, which is not in the file: give it")
         if contact.rotation:
             rows += [("rotation", ("rate", contact.rotation), f"{contact.turning} of the master"),
                      ("centre", ("length", contact.centre), str(contact.turning))]
@@ -261,7 +264,9 @@ def add_contacts(assembly):
         if fitted:
             assembly.result.fits.append((assembly.result.entries[-1].name, contact.fit[1]))
         if contact.gap:
-            assembly.result.gaps.append((assembly.result.entries[-1], slave, *contact.gap))
+            assembly.result.tables.append((assembly.result.entries[-1], "gap", (slave, contact.gap[0]), contact.gap[1]))
+        if contact.table:
+            assembly.result.tables.append((assembly.result.entries[-1], "mu_file", contact.table, contact.place))
 
 
 def add_ties(assembly):

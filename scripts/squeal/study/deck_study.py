@@ -30,12 +30,15 @@ UNBALANCED = "UNBALANCED"  # the mark of such a line of scripts/import
 
 
 def found(folders, kinds):
-    """Files of all kinds that scripts/import reads."""
+    """Files of all kinds that scripts/import reads; of those with the same bytes and name's end the first."""
     missing = [str(folder) for folder in folders if not folder.is_dir()]
     if missing:
         raise BadInput(f"{missing[0]}: no such folder")
-    return sorted(path for folder in folders for path in folder.rglob("*")
-                  if path.suffix.lower() in kinds and path.is_file())
+    paths = sorted(path for folder in folders for path in folder.rglob("*") if path.suffix.lower() in kinds and path.is_file())
+    first = {}
+    for path in paths:
+        first.setdefault((path.suffix.lower(), hashlib.sha256(path.read_bytes()).digest()), path)
+    return list(first.values())
 
 
 def has_solids(path, depth=0):

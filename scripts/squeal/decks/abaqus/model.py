@@ -3,7 +3,7 @@
 import numpy
 
 from .joined import leave_coupling
-from .material import add_global_damping, first_row, numbers, other_rows
+from .material import add_global_damping, first_row, numbers
 from .sets import reader_nodes, surface_of
 from .words import choice, label
 from ..deck import NOT_NEEDED, Contact, Equation, Support, Tie, Turning
@@ -164,45 +164,6 @@ def do_interaction(reader, _, card):
     reader.interactions.setdefault(reader.interaction, {"place": card.place})
 
 
-def do_friction(reader, _, card):
-    if "ROUGH" in card.options:
-        raise card.place.wrong("*FRICTION, ROUGH: squeal has no contact without slip; give mu")
-    row, rest = friction_row(reader, card)
-    values = reader.interactions.get(reader.interaction)
-    if values is None:
-        raise card.place.wrong("*FRICTION outside of a *SURFACE INTERACTION")
-    if row[0] < 0:
-        raise card.place.wrong(f"friction coefficient {row[0]:g} must not be negative")
-    if "mu" in values:
-        reader.deck.note(values["friction"], f"*FRICTION {values['mu']:g}: not taken, another one follows on line {card.place.line}")
-    values["mu"], values["friction"] = row[0], card.place
-    if {"SLIP TOLERANCE", "ELASTIC SLIP"} & set(card.options):
-        reader.deck.differ(card.place, "*FRICTION: slip that Abaqus allows a pair that sticks; Coulomb's law of squeal allows none")
-    if "EXPONENTIAL DECAY" in card.options:
-        card.options.pop("EXPONENTIAL DECAY")
-        if len(row) < 3 or not row[2] > 0 or row[1] < 0:
-            reader.deck.note(card.place, "*FRICTION, EXPONENTIAL DECAY: needs mu_s, mu_k and a positive decay; mu_s is taken")
-        else:
-            values["decay"] = row[0], row[1], 1 / row[2]
-        row = row[:1]
-    if any(row[1:]):
-        reader.deck.note(card.place, "*FRICTION: only the first number, mu, is taken")
-    other_rows(reader, card, rest)
-
-
-def friction_row(reader, card):
-    """Numbers of the first line; of a table over pressure alone (mu, 0, pressure) or speed (mu, speed) this is said."""
-    row, rest = first_row(card, 1)
-    if not rest or "EXPONENTIAL DECAY" in card.options:
-        return row, rest
-    table = [[*values, 0.0, 0.0, 0.0][:4] for _, values in numbers(card)]
-    varies = [word for k, word in ((1, "slip rate"), (2, "pressure"), (3, "temperature")) if len({line[k] for line in table}) > 1]
-    values = ", ".join(f"{line[0]:g}" for line in table[:6])
-    reader.deck.note(card.place, f"*FRICTION: a table over {' and '.join(varies) or 'nothing'} (mu {values}{' ...' if table[6:] else ''}): "
-                                 f"modes are linear, the first, {row[0]:g}, is taken; give the mu of the scene's pressure and speed")
-    return row[:1], []
-
-
 def points_of(reader, card):
     """Overclosure and pressure, one after the other, of a table that rises from no pressure on; else it is listed, and nothing."""
     rows = [(place, row) for place, row in numbers(card) if row]
@@ -238,12 +199,6 @@ def do_behavior(reader, _, card):
         values["tied"] = True
     elif kind != "HARD":
         reader.deck.note(card.place, f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={kind}: not understood, contact is exact")
-
-
-def do_change_friction(reader, _, card):
-    reader.interaction = card.need("INTERACTION")
-    if reader.interaction not in reader.interactions:
-        raise card.place.wrong(f"there is no *SURFACE INTERACTION {reader.interaction}")
 
 
 def do_pair(reader, scope, card):
@@ -369,13 +324,14 @@ def finish(reader):
                                         f"*CONTACT PAIR {contact.slave}, {contact.master}, tied"))
             continue
         contact.mu, contact.stiffness = values.get("mu"), values.get("stiffness")
-        contact.points, contact.exponential, contact.decay = (values.get(name, ()) for name in ("points", "exponential", "decay"))
+        for name in ("points", "exponential", "decay", "table"):
+            setattr(contact, name, values.get(name, ()))
         reader.deck.contacts.append(contact)
     read_springs(reader)
     finish_steps(reader)
 
 
 CARDS = {"AMPLITUDE": do_amplitude, "BOUNDARY": do_boundary, "SPRING": do_spring, "DASHPOT": do_spring, "TIE": do_tie,
-         "SURFACE INTERACTION": do_interaction, "FRICTION": do_friction, "SURFACE BEHAVIOR": do_behavior,
-         "CHANGE FRICTION": do_change_friction, "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
+         "SURFACE INTERACTION": do_interaction, "SURFACE BEHAVIOR": do_behavior,
+         "CONTACT PAIR": do_pair, "MOTION": do_motion, "STEP": do_step, "STATIC": do_static,
          "FREQUENCY": do_frequency, "COMPLEX FREQUENCY": do_complex}

@@ -9,7 +9,7 @@ import numpy
 from ...tables import BadInput
 from . import beams as abaqus_beams, bolts as abaqus_bolts, connectors as abaqus_connectors, joined as abaqus_joined, loads as abaqus_loads
 from . import material as abaqus_material, mesh as abaqus_mesh
-from . import model as abaqus_model, sets as abaqus_sets, viscous as abaqus_viscous
+from . import friction as abaqus_friction, model as abaqus_model, sets as abaqus_sets, viscous as abaqus_viscous
 from .words import KEYWORDS, PARAMETERS, choice, half_word, label, spelled
 from ..deck import NOT_NEEDED, Deck, Index, Place
 from ..text import read_bytes, real, shorter
@@ -72,7 +72,8 @@ def listed(do):
 
 CARDS = {keyword: listed(do) for keyword, do in (
     abaqus_mesh.CARDS | abaqus_sets.CARDS | abaqus_material.CARDS | abaqus_model.CARDS | abaqus_loads.CARDS | abaqus_joined.CARDS |
-    abaqus_beams.CARDS | abaqus_connectors.CARDS | abaqus_bolts.CARDS | abaqus_viscous.CARDS).items()}
+    abaqus_beams.CARDS | abaqus_connectors.CARDS | abaqus_bolts.CARDS | abaqus_viscous.CARDS |
+    abaqus_friction.CARDS).items()}
 
 
 @dataclass
@@ -159,7 +160,7 @@ def read_cards(path, depth=0, last=None):
     last = [None] if last is None else last
     for card in split_cards(read_bytes(path), str(path)):
         if card.keyword == "INCLUDE":
-            name = card.options.get("INPUT", "").strip('"')
+            name = (card.options.get("INPUT") or card.options.get("FILE", "")).strip('"')
             if not name or depth == DEEPEST:
                 raise card.place.wrong("*INCLUDE needs INPUT=FILE" if not name else "files include each other too deeply")
             try:

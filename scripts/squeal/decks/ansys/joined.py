@@ -28,12 +28,14 @@ NAMES = {21: "MASS21", 14: "COMBIN14", 184: "MPC184"}
 
 def real_constants(commands):
     """Number of a set -> its values."""
-    found, last = {}, None
+    found, last, lines = {}, None, 0  # lines hold six values each
     for command in commands:
         if command.words[0] == "R":
-            last = found[command.whole(1)] = [command.real(k) for k in range(2, len(command.words))]
+            lines, last = 1, [command.real(k) for k in range(2, len(command.words))]
+            found[command.whole(1)] = last
         elif command.words[0] == "RMORE" and last is not None:
-            last += [0.0] * (-len(last) % 6) + [command.real(k) for k in range(1, len(command.words))]
+            last += [0.0] * (6 * lines - len(last)) + [command.real(k) for k in range(1, len(command.words))]
+            lines += 1
         elif command.words[0] == "RLBLOCK":
             block_of(command, found)
     return found

@@ -3,7 +3,8 @@
 import numpy
 
 from .blocks import DATABASE
-from .joined import pilot
+from .friction import give_friction
+from .joined import pilot, real_constants
 from .mesh import FACES
 from ..axes import aligned
 from ..deck import Axes, Contact, Equation, Load, Material, Section, Support, Tie, Turning, give_loss
@@ -17,7 +18,8 @@ LABELS = {"EX", "EY", "EZ", "PRXY", "PRYZ", "PRXZ", "NUXY", "NUYZ", "NUXZ", "GXY
           "MU"}
 
 
-def read_model(deck, commands, mesh):
+def read_model(deck, commands, mesh, friction):
+    """`friction` has the tables of TB,FRIC by their material."""
     values = read_constants(deck, commands)
     for number, constants in values.items():
         make_material(deck, number, constants)
@@ -29,7 +31,7 @@ def read_model(deck, commands, mesh):
         if command.words[0] in pending:
             pending[command.words[0]](deck, mesh, command)
     hold_turned(deck, mesh)
-    read_contact(deck, mesh, values)
+    read_contact(deck, mesh, values, friction, real_constants(commands))
 
 
 def read_constants(deck, commands):
@@ -325,7 +327,7 @@ def modes(deck, _, command):
 BONDED = 3, 5, 6  # values of KEYOPT(12)
 
 
-def read_contact(deck, mesh, values):
+def read_contact(deck, mesh, values, friction, real):
     """Pairs of contact and target elements with one set of real constants; friction by MU of the material."""
     for number in sorted({number for number, _ in mesh.facets}):
         if pilot(deck, mesh, number):
@@ -354,5 +356,6 @@ def read_contact(deck, mesh, values):
         if kind:
             deck.note(place, f"real constants {number}: KEYOPT(12) = {kind}, rough or without separation; not taken: NOT TIED")
             continue
-        mu = values.get(int(head[0, 0]), {}).get("MU", (0.0, None))[0]
-        deck.contacts.append(Contact(f"pair_{number}", f"contact_{number}", f"target_{number}", place, mu=mu))
+        material = int(head[0, 0])
+        deck.contacts.append(Contact(f"pair_{number}", f"contact_{number}", f"target_{number}", place))
+        give_friction(deck, deck.contacts[-1], number, material, friction, values.get(material, {}), real.get(number, []))

@@ -5,7 +5,8 @@ import re
 import numpy
 
 from ...tables import BadInput
-from . import bolts as ansys_bolts, sections as ansys_sections, joined as ansys_joined, mesh as ansys_mesh, model as ansys_model
+from . import bolts as ansys_bolts, friction as ansys_friction, sections as ansys_sections, joined as ansys_joined
+from . import mesh as ansys_mesh, model as ansys_model
 from .blocks import BLOCK, DATABASE, Command, read_block
 from ..deck import Deck, Place
 from ..text import line_starts, read_bytes
@@ -16,7 +17,7 @@ PLAIN = {"*IF", "*ENDIF", "*ELSE", "*ELSEIF", "*MSG", "*GET", "DOF", "NUMOFF", "
          "CMSEL", "NSEL", "ESEL", "ALLSEL", "CMDEL", "NUMCMP", "OUTRES", "OUTPR", "SAVE", "RESCONTROL", "TIME", "KUSE", "NEQIT", "NCNV",
          "CRPLIM", "TOFFST", "LSCLEAR"}
 NOTHING = {"OMEGA", "DOMEGA", "CGLOC", "CGOMEGA", "DCGOMG", "ALPHAD", "BETAD", "DMPRAT", "DMPSTR"}  # where all values are 0
-REPLACED = {"ET", "KEYOPT", "MP", "MPDATA"}  # whose words may be parameters
+REPLACED = {"ET", "KEYOPT", "MP", "MPDATA", "TB"}  # whose words may be parameters
 SET = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*,|(\w+)\s*=)\s*([-+.\deE]+)\s*$", re.IGNORECASE)
 ROWS = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*,|(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*=)\s*([-+.\deE,\s]+)$", re.IGNORECASE)
 ASSIGNED = re.compile(r"\w+\s*(?:\([^)]*\))?\s*=")
@@ -117,7 +118,9 @@ def read_ansys(path):
     ansys_sections.set_shells(deck, mesh, sections, ansys_joined.real_constants(commands))
     ansys_sections.read_beams(deck, mesh, sections)
     ansys_joined.read_joined(deck, commands, mesh)
-    ansys_model.read_model(deck, commands, mesh)
+    friction, taken = ansys_friction.read_tables(deck, commands)
+    commands = [command for command in commands if not any(command is other for other in taken)]
+    ansys_model.read_model(deck, commands, mesh, friction)
     if not any(command.words[0] in ("FINISH", "FINI", "SOLVE") for command in commands):
         deck.note(Place(str(path), len(starts) - 1), "there is no FINISH: is the file whole?")
     for command in commands:
