@@ -70,6 +70,10 @@ PetscErrorCode OperatorsHaveNodes(Operators operators, PetscBool *have);
 /*@ OperatorsHaveTerms - whether -terms or -superelements may hold or join anything. Not collective. @*/
 PetscErrorCode OperatorsHaveTerms(Operators operators, PetscBool *have);
 
+/*@ OperatorsCheckEven - raises the error for a superelement whose stiffness, or with `damping` whose damping, has a
+    skew part, which `what` does not have. Collective; after OperatorsSetUp(). @*/
+PetscErrorCode OperatorsCheckEven(Operators operators, PetscBool damping, const char what[]);
+
 /*@ OperatorsCountSuperelements - how many there are. Not collective. @*/
 PetscInt OperatorsCountSuperelements(Operators operators);
 

@@ -8,6 +8,7 @@ PetscErrorCode ReducedRefuse(ReducedRun r)
   PetscBool laws = PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  PetscCall(OperatorsCheckEven(r->run.operators, PETSC_TRUE, "-dynamics_model reduced"));
   for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
     const ContactInterface *c = &r->run.interfaces[i];
     PetscReal               way;

@@ -112,7 +112,10 @@ PetscErrorCode StaticsSetUp(Statics s, const PetscReal p[])
   PetscInt                  n;
 
   PetscFunctionBeginUser;
-  if (!s->rows.G) PetscCall(StaticsCreateRows(s));
+  if (!s->rows.G) {
+    PetscCall(OperatorsCheckEven(s->operators, PETSC_FALSE, "an equilibrium"));
+    PetscCall(StaticsCreateRows(s));
+  }
   PetscCall(OperatorsGetParameters(s->operators, &n, &parameters));
   for (PetscInt i = 0; i < n; i++) s->p[i] = p ? p[i] : parameters[i].value;
   for (PetscInt i = 0; i < n; i++) PetscCall(OperatorsCheckParameter(s->operators, i, s->p[i]));

@@ -268,6 +268,7 @@ PetscErrorCode BodyCreate(Substructure s)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(s->model, &mesh));
+  PetscCall(OperatorsCheckEven(s->operators, PETSC_TRUE, "-analysis superelement"));
   PetscCall(BodyMark(s, mesh));
   PetscCall(BodyNumber(s, mesh, &unknowns));
   PetscCall(PetscCalloc3(body->n_own, &body->joined, body->n_own, &body->pressed, body->n_own, &body->by));

@@ -7,8 +7,6 @@
 #include "base/options/help.h"
 #include "operators/files/matrixterm.h"
 
-#define SUPERELEMENT_EVEN 1e-8 /* of the norm: what differs from the transpose by less is rounding of a file */
-
 #define SUPER(member) QUANTITY_AT(Superelement, member)
 
 /* One matrix: its file and its scale */
@@ -35,6 +33,8 @@ static const Quantity rows[] = {
    .count = offsetof(Superelement, n_sets)},
   {"-distance", "how far they may be off; default 1e-5 of the mesh from a node or point, 5 % of a facet from a surface",
    "m", QUANTITY_REAL, SUPER(distance), QUANTITY_POSITIVE, .given = offsetof(Superelement, has_distance)},
+  {"-skew", "keep what its stiffness and damping have beyond symmetric, of friction or a spin", NULL, QUANTITY_BOOL,
+   SUPER(skew)},
   SUPERELEMENT_SCALE("k", "stiffness", SUPERELEMENT_K, VARIES_LINEAR),
   SUPERELEMENT_SCALE("m", "mass", SUPERELEMENT_M, VARIES_LINEAR),
   SUPERELEMENT_SCALE("c", "damping", SUPERELEMENT_C, VARIES_LINEAR | VARIES_DAMPING),
@@ -86,28 +86,6 @@ PetscErrorCode SuperelementsAddUnknowns(Operators o)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < o->n_superelements; i++) PetscCall(ModelAddUnknowns(o->model, o->superelements[i].n_apart));
-  PetscFunctionReturn(0);
-}
-
-/* Raises the error for a matrix that is not symmetric, and makes it exactly so */
-static PetscErrorCode MatrixMakeEven(MPI_Comm comm, const char option[], const char file[], Mat *A)
-{
-  PetscReal norm, part;
-  Mat       T;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatTranspose(*A, MAT_INITIAL_MATRIX, &T));
-  PetscCall(MatNorm(*A, NORM_FROBENIUS, &norm));
-  PetscCall(MatAYPX(T, -1, *A, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MatNorm(T, NORM_FROBENIUS, &part)); /* T = A - A' */
-  PetscCheck(
-    part <= SUPERELEMENT_EVEN * norm, comm, PETSC_ERR_USER_INPUT,
-    "%s %s differs by %.2g of its norm from its transpose: a superelement is symmetric; where the file holds "
-    "half of it, give all of it; the skew part of a spin or of friction is not supported: leave it out, or load "
-    "all matrices as -terms",
-    option, file, (double)(norm > 0 ? part / norm : 0));
-  if (part > 0) PetscCall(MatAXPY(*A, -0.5, T, DIFFERENT_NONZERO_PATTERN));
-  PetscCall(MatDestroy(&T));
   PetscFunctionReturn(0);
 }
 
@@ -207,7 +185,7 @@ static PetscErrorCode SuperelementLoad(Operators o, Superelement *s, int i)
              "%s %s has %" PetscInt_FMT " rows, but -%s_table %s has %" PetscInt_FMT
              " unknowns: a line is needed for each",
              option, s->file[i], rows_read, s->name, s->table, s->n);
-  PetscCall(MatrixMakeEven(o->comm, option, s->file[i], &s->A[i]));
+  PetscCall(SuperelementCheckEven(s, i, option, &s->A[i]));
   PetscFunctionReturn(0);
 }
 
@@ -254,7 +232,7 @@ static PetscErrorCode SuperelementAddTerm(Operators o, Superelement *s, int i, M
   static const char *const       scale[] = {"k_scale", "m_scale", "c_scale"};
   const OperatorsParameter       like    = {
              .row = QuantityFind(&table, scale[i]), .value = s->scale[i], .damps = (PetscBool)(i == SUPERELEMENT_C)};
-  Mat A;
+  Mat A, part[2];
 
   PetscFunctionBeginUser;
   s->index[i] = -1;
@@ -264,8 +242,13 @@ static PetscErrorCode SuperelementAddTerm(Operators o, Superelement *s, int i, M
   if (!B) PetscFunctionReturn(0);
   PetscCall(MatPtAP(s->A[i], B, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &A));
   PetscCall(MatProductClear(A));
-  PetscCall(TermsAdd(&o->terms, kind[i], A, PETSC_TRUE, 1, &s->index[i]));
-  PetscCall(TermsSetCause(&o->terms, "superelement", s->name, scale[i]));
+  PetscCall(SuperelementSplit(A, &part[0], &part[1]));
+  for (int odd = 0; odd < 2; odd++) {
+    if (!part[odd]) continue;
+    PetscCall(TermsAdd(&o->terms, kind[i], part[odd], (PetscBool)!odd, 1, &s->index[i]));
+    PetscCall(TermsSetCause(&o->terms, "superelement", s->name, scale[i]));
+    PetscCall(MatDestroy(&part[odd]));
+  }
   if (i == SUPERELEMENT_M) PetscCall(PetscObjectReference((PetscObject)A));
   if (i == SUPERELEMENT_M) s->mass = A;
   PetscCall(MatDestroy(&A));

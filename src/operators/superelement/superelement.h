@@ -4,6 +4,8 @@
 
       K += k B' K_s B,   M += m B' M_s B,   C += c B' C_s B,   k, m, c = 1 in the scene.
 
+   K_s and C_s may have skew parts, of friction and of a spin, where -..._skew says so (skew.c).
+
    A piece has matrices and scales of its own on the unknowns of another one (-..._of): what its parts add, so that
    their moduli may vary one by one.
 */
@@ -35,6 +37,7 @@ typedef struct _p_Superelement {
   char    **sets;
   PetscReal distance; /* m; 0: not given */
   PetscBool has_table, has_distance;
+  PetscBool skew; /* K_s and C_s keep their skew parts */
   /* the one whose unknowns, rows, places and shares it borrows; NULL for its own */
   struct _p_Superelement *whole;
   /* read before the model is set up */
@@ -68,6 +71,11 @@ PETSC_INTERN PetscErrorCode SuperelementsAddUnknowns(Operators operators);
 PETSC_INTERN PetscErrorCode SuperelementsSetUp(Operators operators);
 PETSC_INTERN PetscErrorCode SuperelementsAddChecksum(Operators operators, Checksum checksum);
 PETSC_INTERN PetscErrorCode SuperelementsDestroy(Operators operators);
+
+/* skew.c - raises the error for a matrix that is not symmetric, and makes it exactly so, or for a half of one where it
+   may be skew; its symmetric and its skew part, NULL where it has none. Collective. */
+PETSC_INTERN PetscErrorCode SuperelementCheckEven(const Superelement *s, int i, const char option[], Mat *A);
+PETSC_INTERN PetscErrorCode SuperelementSplit(Mat A, Mat *even, Mat *odd);
 
 /* superelement.c - raises an error for one with mass, whose internal unknowns do not tell how they fall */
 PETSC_INTERN PetscErrorCode SuperelementsCheckWeight(Operators operators);

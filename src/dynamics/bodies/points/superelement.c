@@ -56,6 +56,7 @@ PetscErrorCode SuperLayOut(Bodies b)
 
   PetscFunctionBeginUser;
   if (!OperatorsCountSuperelements(b->operators)) PetscFunctionReturn(0);
+  PetscCall(OperatorsCheckEven(b->operators, PETSC_TRUE, "a transient"));
   PetscCall(OperatorsGetSuperelements(b->operators, NULL, &s->all));
   s->n = s->all.n;
   PetscCheck(s->n <= SUPER_MOST, b->comm, PETSC_ERR_SUP,
