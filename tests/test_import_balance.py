@@ -142,6 +142,30 @@ def strict(folder):
     conversion.of_scene = kept
 
 
+def alone(folder):
+    """--part writes the mesh and the masses that a deck of this part alone gives, whatever else the deck has."""
+    other = "*NODE\n" + "".join(f"{n + 10}, {x}, {y}, {z}\n" for n, x, y, z in (
+        (1, 0, 0, 10), (2, 10, 0, 10), (3, 10, 10, 10), (4, 0, 10, 10), (5, 0, 0, 30), (6, 10, 0, 30), (7, 10, 10, 30), (8, 0, 10, 30)))
+    other += "*ELEMENT, TYPE=C3D8I, ELSET=F\n2, 11,12,13,14,15,16,17,18\n*SURFACE, NAME=LOW\nF, S1\n*SOLID SECTION, ELSET=F, MATERIAL=M\n"
+    touch = "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nLOW, TOP\n"
+    body, steps = BOX[:BOX.index("*BOUNDARY")], BOX[BOX.index("*BOUNDARY"):]
+    for name, text in (("plain", body), ("both", body + other + touch + steps)):
+        (folder / f"{name}.inp").write_text(text)
+    conversion.convert(folder / "plain.inp", "mm-t-s", folder / "plain")
+    lines = conversion.convert(folder / "both.inp", "mm-t-s", folder / "one", part="e")
+    check("--part: the mesh of the part alone", (folder / "one.msh").read_bytes() == (folder / "plain.msh").read_bytes())
+    scene = (folder / "one.yaml").read_text()
+    listed = [word for word in ("supports:", "loads:", "contacts:", "gravity:") if f"\n{word}" in scene or f" {word}" in scene]
+    check("--part: nothing holds, loads or touches it", not listed and "parts: e\n" in scene, scene)
+    check("--part: the balance is that of the part", any(line.startswith("balance: the scene has") for line in lines), lines)
+    check("--part: says what it leaves out", "e alone, free (--part): left out are 1 other parts and 4 supports" in scene, scene)
+    try:
+        conversion.convert(folder / "both.inp", "mm-t-s", folder / "one", part="disc")
+        check("--part that is none", False)
+    except BadInput as error:
+        check("--part that is none", str(error) == f"--part disc: the parts of {folder}/both.inp are e, f", error)
+
+
 def halved(model):
     model.forces /= 2
     return model
@@ -154,6 +178,7 @@ def main():
         deck, _ = box(Path(name))
         differences(deck)
         strict(Path(name))
+        alone(Path(name))
     return 1 if FAILED else 0
 
 

@@ -134,6 +134,25 @@ def give_sections(deck):
         deck.note(place, f"{left.sum()} elements have no section and no set of their own: they become a part `body`")
 
 
+def parts_of_cells(deck):
+    """Number of the section of each cell, the last that it has, -1 without one."""
+    part_of = numpy.full(deck.n_cells, -1)
+    for number, section in enumerate(deck.sections):
+        before = part_of[section.cells]
+        for other in numpy.unique(before[before >= 0]).tolist():
+            deck.differ(section.place, f"{(before == other).sum()} elements of {deck.sections[other].name} have the later section of "
+                                       f"{section.name}")
+        part_of[section.cells] = number
+    return part_of
+
+
+def part_names(deck, part_of, sets=None, things=None):
+    """Number of each section that has cells -> name of its part."""
+    sets, things = sets or Names(), things or Names(reserved=True)
+    with_cells = set(numpy.unique(part_of).tolist())
+    return {number: things.new(sets.new(section.name)) for number, section in enumerate(deck.sections) if number in with_cells}
+
+
 class Assembly:
     """Names and groups while the result is made."""
 
@@ -144,22 +163,15 @@ class Assembly:
 
     def parts(self, used):
         """Parts by sections; a cell has the last of its sections, none is in no part. Returns their names by number."""
-        names = {}
-        part_of = numpy.full(self.deck.n_cells, -1)
+        part_of = parts_of_cells(self.deck)
+        names = part_names(self.deck, part_of, self.sets, self.things)
         for number, section in enumerate(self.deck.sections):
-            before = part_of[section.cells]
-            for other in numpy.unique(before[before >= 0]).tolist():
-                self.deck.differ(section.place, f"{(before == other).sum()} elements of {self.deck.sections[other].name} have the later "
-                                                f"section of {section.name}")
-            part_of[section.cells] = number
-        for number, section in enumerate(self.deck.sections):
-            cells = numpy.flatnonzero(part_of == number)
-            if not len(cells):
+            if number not in names:
                 self.deck.note(section.place, f"section of {section.name}: has no elements" + (
                     " but those of later sections" if len(section.cells) else ""))
                 continue
-            name = self.things.new(self.sets.new(section.name))
-            self.result.volumes[name], names[number] = cells, name
+            name = names[number]
+            self.result.volumes[name] = numpy.flatnonzero(part_of == number)
             if section.material and not used[section.material].young:
                 self.deck.note(section.place, f"part {name}: material {section.material} has no stiffness that squeal takes: give it")
             self.result.entries.append(part_entry(name, section, used[section.material]))

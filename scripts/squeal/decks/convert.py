@@ -7,6 +7,7 @@ import numpy
 
 from ..tables import BadInput, printable
 from .abaqus.read import read_abaqus
+from .alone import leave_alone
 from .ansys.read import read_ansys
 from .assemble import assemble, give_sections, model_size
 from .balance import compared, of_deck
@@ -101,8 +102,8 @@ def write_beams(result, units, files):
     files["table"].write_text(result.beams.table(result.assembly.deck.x, units), encoding="utf-8")
 
 
-def convert(path, units=None, output=None, strict=False, subcase=None):
-    """Writes OUTPUT.msh and OUTPUT.yaml; returns the lines to print."""
+def convert(path, units=None, output=None, strict=False, subcase=None, part=None):
+    """Writes OUTPUT.msh and OUTPUT.yaml, of one part alone where one is named; returns the lines to print."""
     chosen = named(units) if units else None
     output = output or Path(path.stem)
     check_name(path)
@@ -117,6 +118,8 @@ def convert(path, units=None, output=None, strict=False, subcase=None):
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
     set_orientation(deck)
     give_sections(deck)
+    if part:
+        leave_alone(deck, part)
     size = model_size(deck)
     if not 0 < size < 1e100:
         raise BadInput(f"{path}:1: all nodes are in one place")
