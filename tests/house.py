@@ -103,6 +103,14 @@ def declared(text, at, line):
     yield Name("type", name[1], line(at + name.start(1)))
 
 
+def together(counters):
+    """The sum of counters. Adding them one by one would copy the sum each time."""
+    total = Counter()
+    for counter in counters:
+        total.update(counter)
+    return total
+
+
 class Script:
     """One Python file: text, functions and classes, names that it imports and does not use."""
 

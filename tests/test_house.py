@@ -30,7 +30,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from house import Script, Source, blank
+from house import Script, Source, blank, together
 from house_circles import circles_of
 from house_options import named_without_row
 from house_planted import PLANTED
@@ -270,14 +270,6 @@ def row_faults(row, words):
         yield "has no unit"
     if row["at"] and words[re.split(r"[(., ]", row["at"])[-1]] < 3:  # its struct, its row, and who reads it
         yield "is read by nobody"
-
-
-def together(counters):
-    """The sum of counters. Adding them one by one would copy the sum each time."""
-    total = collections.Counter()
-    for counter in counters:
-        total.update(counter)
-    return total
 
 
 def rows(house):

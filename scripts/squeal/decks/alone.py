@@ -6,7 +6,8 @@ from ..tables import BadInput
 from .assemble import part_names, parts_of_cells
 from .deck import Block
 
-JOINING = ("supports", "springs", "loads", "contacts", "ties", "turnings", "joins", "lumps", "links", "equations", "beams", "one_way", "bolts")
+JOINING = ("supports", "springs", "loads", "contacts", "ties", "turnings", "joins", "lumps", "links", "equations", "beams", "one_way",
+           "bolts")
 
 
 def leave_alone(deck, wanted):
