@@ -106,6 +106,7 @@ def differences(deck):
     def without(**changed):
         model = balance.Model(deck.x, deck.blocks, deck.parts, pressed=deck.pressed, gravity=deck.gravity)
         model.held, model.springs, model.forces = deck.held.copy(), deck.springs.copy(), deck.forces.copy()
+        model.touching = deck.touching
         for name, value in changed.items():
             setattr(model, name, value)
         return model
@@ -117,7 +118,9 @@ def differences(deck):
             ("one direction", {"held": deck.held & [True, True, False]}, "held directions"),
             ("a force", {"forces": 0 * deck.forces}, "force"), ("a pressure", {"pressed": []}, "loaded nodes"),
             ("gravity", {"gravity": None}, "force"), ("a place", {"x": deck.x + [1e-7, 0, 0]}, "centre"),
-            ("springs", {"springs": deck.springs + 1.0}, "stiffness")):
+            ("springs", {"springs": deck.springs + 1.0}, "stiffness"),
+            ("a contact", {"touching": deck.touching | {"contacts": (1, np.array([1e-4, 1e-4]))}}, "contacts: 0"),
+            ("a bolt", {"touching": deck.touching | {"bolts": (1, np.array([1e3, 0]))}}, "1, 1000 N in the scene")):
         lines, differs = balance.compared(deck, without(**changed))
         kept = differs is not None and lines[0] == differs and differs.startswith(balance.MARK) and word in differs
         check(f"said: {about}", kept, differs)
@@ -152,6 +155,8 @@ def alone(folder):
     for name, text in (("plain", body), ("both", body + other + touch + steps)):
         (folder / f"{name}.inp").write_text(text)
     conversion.convert(folder / "plain.inp", "mm-t-s", folder / "plain")
+    lines = conversion.convert(folder / "both.inp", "mm-t-s", folder / "both")
+    check("a contact of 10 x 10 mm on 10 x 10 mm", "contacts: 1, 0.0001 m^2 of slaves, 0.0001 m^2 of masters" in lines, lines)
     lines = conversion.convert(folder / "both.inp", "mm-t-s", folder / "one", part="e")
     check("--part: the mesh of the part alone", (folder / "one.msh").read_bytes() == (folder / "plain.msh").read_bytes())
     scene = (folder / "one.yaml").read_text()

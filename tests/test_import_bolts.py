@@ -55,6 +55,8 @@ def squeal(program, folder, text):
     (folder / "deck.inp").write_text(text)
     printed = "\n".join(convert(folder / "deck.inp", "mm-t-s", folder / "deck", strict=False))
     check("balance", "UNBALANCED" not in printed, printed if "UNBALANCED" in printed else "")
+    n_bolts = len(re.findall(r"^\*PRE-TENSION", text, re.M | re.I)) or len(re.findall("PRETENSION", text))
+    check("balance: number of bolts", not n_bolts or f"\nbolts: {n_bolts}, " in printed, printed)
     done = subprocess.run([program, "-options_file", folder / "deck.yaml", "-analysis", "static", "-output_dir", folder / "out"],
                           capture_output=True, text=True, check=False, timeout=300)
     if done.returncode:

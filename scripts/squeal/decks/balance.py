@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy
 
+from . import touching
 from .mesh.faces import keys_of
 from .mesh.integrals import areas, volumes
 
@@ -30,6 +31,7 @@ class Model:
     rigid: list = field(default_factory=list)  # nodes of each rigid set
     links: list = field(default_factory=list)  # stiffness and viscosity [12] of bushings
     equations: int = 0
+    touching: dict = None  # of touching.py
 
     def __post_init__(self):
         n = len(self.x)
@@ -100,6 +102,7 @@ def of_deck(deck, blocks, result, units):
         elif len(load.faces):
             model.pressed += faces_of(model, load.faces, load.pressure * units.stress)
     join_model(model, deck, joined, units)
+    model.touching = touching.of_deck(deck, lambda faces: [nodes for _, nodes, _ in faces_of(model, faces, 0)], model.x, units)
     if deck.gravity is not None:
         model.gravity = numpy.multiply(deck.gravity[0], units.length / units.time**2)
     return model
@@ -140,14 +143,14 @@ def join_model(model, deck, joined, units):
 
 def faces_of(model, faces, pressure):
     """Rows of `pressed` of faces (cell, face)."""
-    first, found = 0, []
-    for shape, nodes in model.blocks:
-        inside = (faces[:, 0] >= first) & (faces[:, 0] < first + len(nodes))
+    firsts, found = numpy.cumsum([0, *(len(nodes) for _, nodes in model.blocks)]), []
+    of_block = numpy.searchsorted(firsts, faces[:, 0], side="right") - 1
+    for block in numpy.unique(of_block).tolist():
+        shape, nodes = model.blocks[block]
         for number, local in enumerate(shape.faces()):
-            cells = faces[inside & (faces[:, 1] == number), 0]
+            cells = faces[(of_block == block) & (faces[:, 1] == number), 0]
             if len(cells):
-                found.append((cells, nodes[cells - first][:, local], pressure))
-        first += len(nodes)
+                found.append((cells, nodes[cells - firsts[block]][:, local], pressure))
     return found
 
 
@@ -333,13 +336,15 @@ def compared(deck, scene):
     else:
         differs = [f"{MARK}: {what} of {other.name}: {one} in the deck, {two} in the scene"
                    for row, other in zip([*rows, total], [*others, other_total]) for what, one, two in apart(row, other, size)]
-    lines = differs[:1] or ["balance: the scene has the mass, centre, inertia, elements, held and loaded nodes, force and moment of the "
-                            "deck"]
+    differs += [f"{MARK}: {what}: {one} in the deck, {two} in the scene"
+                for what, one, two in touching.apart(deck.touching, scene.touching, SAME)]
+    lines = differs[:1] or ["balance: the scene has the mass, centre, inertia, elements, held and loaded nodes, contacts, ties, bolts, "
+                            "force and moment of the deck"]
     if lost:
         mass = f", {lost.lumped:.6g} kg" if lost.lumped else ""
         lines.append(f"balance: nodes of no volume element: {lost.held} held, {lost.loaded} loaded with {shown(lost.force)} N{mass}; not "
                      "in the scene")
-    return lines + table(others, other_total), differs[0] if differs else None
+    return lines + table(others, other_total) + touching.lines(scene.touching), differs[0] if differs else None
 
 
 def table(rows, total):

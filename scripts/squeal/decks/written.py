@@ -4,6 +4,7 @@ import numpy
 import yaml
 
 from ..tables import BadInput
+from . import touching
 from .balance import Carried, Model, cells_of_faces
 from .mesh.elements import FACE_GMSH, SHAPES
 
@@ -106,6 +107,7 @@ def of_scene(mesh, path):
     hold(model, scene, sets)
     points = join(model, scene, sets)
     load(model, scene, sets, points)
+    model.touching = touching.of_scene(scene, words, sets, x)
     return model
 
 
