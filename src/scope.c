@@ -107,26 +107,6 @@ PetscErrorCode ScopeGetRun(MPI_Comm comm, const Scope *s, QuantityRun *run)
   PetscFunctionReturn(0);
 }
 
-/* Whether a law is one of Maxwell branches, which have equations in time */
-static PetscBool LawIsOfBranches(const Viscoelastic *law)
-{
-  return law->kind == VISCOELASTIC_PRONY || (law->kind == VISCOELASTIC_ZENER && law->value[2] == 1) ? PETSC_TRUE
-                                                                                                    : PETSC_FALSE;
-}
-
-/* Whether Maxwell branches are used: on the mesh */
-static PetscErrorCode ScopeHasBranches(const Scope *s, PetscBool *has)
-{
-  PetscBool reduced;
-
-  PetscFunctionBeginUser;
-  *has = PETSC_FALSE;
-  if (!(s->uses & USES_BRANCHES)) PetscFunctionReturn(0);
-  PetscCall(ReducedIsAsked(s->reduced, &reduced));
-  *has = reduced ? PETSC_FALSE : PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
 /* The option of the first part or matrix whose stiffness depends on the frequency, empty for none; but for those of
    parts that are Maxwell branches where `branches` says so */
 static PetscErrorCode ScopeNameLaw(const Scope *s, PetscBool branches, size_t size, char text[], PetscBool *hysteretic)
@@ -141,7 +121,7 @@ static PetscErrorCode ScopeNameLaw(const Scope *s, PetscBool branches, size_t si
   for (PetscInt i = 0; s->model && i < scene->n_parts && !text[0]; i++) {
     const Part *p = &scene->parts[i];
 
-    if (!p->law.kind || (branches && LawIsOfBranches(&p->law))) continue;
+    if (!p->law.kind || (branches && ViscoelasticBranches(&p->law))) continue;
     *hysteretic = p->law.kind == VISCOELASTIC_HYSTERETIC ? PETSC_TRUE : PETSC_FALSE;
     PetscCall(ViscoelasticName(&p->law, -1, &option, name));
     PetscCall(PetscSNPrintf(text, size, "-%s_%s", p->name, option));
@@ -153,7 +133,7 @@ PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *s)
 {
   const char *folder;
   char        option[256];
-  PetscBool   hysteretic, branches;
+  PetscBool   hysteretic, branches = s->uses & USES_BRANCHES ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ScopeNameLaw(s, PETSC_FALSE, sizeof(option), option, &hysteretic));
@@ -163,12 +143,11 @@ PetscErrorCode ScopeCheckLaws(MPI_Comm comm, const Scope *s)
              "them out",
              folder, option);
   if (s->uses & USES_LAWS) PetscFunctionReturn(0);
-  PetscCall(ScopeHasBranches(s, &branches));
   PetscCall(ScopeNameLaw(s, branches, sizeof(option), option, &hysteretic));
   PetscCheck(
     !option[0], comm, PETSC_ERR_USER_INPUT,
     "%s makes the stiffness depend on the frequency, which -analysis %s does not know as yet, only modes, frf, "
-    "sweep with -sweep_method full, transient on the mesh with -..._prony_modulus, and static, which has the static "
+    "sweep with -sweep_method full, transient with -..._prony_modulus, and static, which has the static "
     "stiffness; %s",
     option, AnalysisNames[s->analysis],
     hysteretic && s->model ? "give -model_loss_frequency, Hz, for damping that is exact there"

@@ -11,7 +11,7 @@ typedef enum {
   USES_DAMPING  = 4,  /* dashpots, and that of the parts */
   USES_SPIN     = 8,  /* of the parts */
   USES_LAWS     = 16, /* of parts whose stiffness depends on the frequency; in statics their static one */
-  USES_BRANCHES = 32, /* Maxwell branches of parts alone, on the mesh */
+  USES_BRANCHES = 32, /* Maxwell branches of parts alone */
   USES_ALL      = 63,
 } SceneUse;
 

@@ -305,6 +305,10 @@ PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex
 /*@ OperatorsHaveLaws - the same of their parts and matrices. Not collective. @*/
 PetscBool OperatorsHaveLaws(Operators operators);
 
+/*@ OperatorsGetLaws - the laws of the bodies at p, NULL for the values of the scene: G(lambda) scale A beside the
+    static stiffness. A is a reference; the caller frees each and the list. Collective. @*/
+PetscErrorCode OperatorsGetLaws(Operators operators, const PetscReal p[], PetscInt *n, PencilLaw **law);
+
 /*@ PencilHasLaws - whether stiffness depends on the eigenvalue. Not collective. @*/
 PetscBool PencilHasLaws(Pencil pencil);
 

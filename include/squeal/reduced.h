@@ -16,6 +16,18 @@
    y the displacements at the ports (m): what is above the cut-off is massless, and damped as the bodies are (left
    undamped, growth would be wrong by percents). s changes 1e-8 of it at most.
 
+   Maxwell branches of a part of stiffness K_p at unit modulus (viscoelastic.h) add forces to both equations, on the
+   coordinates e = (eta, q) of u = Phi eta + X q,
+
+      sum_j E_j S z_j,   S = (Phi, X)'K_p (Phi, X),   z_j' = e' - z_j / tau_j,
+
+   with z_j = 0 at the start, relaxed. With the mean rate of e in a step z_j is exact, and its mean in the step is
+
+      (1 - b / tau) z_j + b de / dt,   b = tau (1 - (tau / dt) (1 - exp(-dt / tau))):
+
+   a known force and a damper E_j b S, which is of second order at any tau, and takes energy always. That of the springs
+   is none of the strain energy: work on branches is damping, as on the mesh.
+
    Where displacements follow others, u = Z q (ties, points that are joined rigidly: OperatorsGetDependents()), K, M, D
    and V are Z'K Z, Z'M Z, Z'D Z and Z'V: bodies that a tie joins are one. Phi and X are kept as Z Phi and Z X, of all
    unknowns. Nodes that follow may have pairs, loads, probes and impulses.
@@ -62,6 +74,7 @@
 #include <squeal/dynamics.h>
 #include <squeal/modes.h>
 #include <squeal/pressurelaw.h>
+#include <squeal/viscoelastic.h>
 
 /* The error of the cut-off is told by what else is found on the modes below so many times it, of a transient, a cycle
    and a point of a map. 1.5 times may hold no further mode of a light body, and then tell a hundredth of the error:
@@ -71,38 +84,49 @@
 typedef struct _p_ReducedRun    *ReducedRun;
 typedef struct _p_ReducedSparse *ReducedSparse;
 
+/* Maxwell branches of a part: E_j, Pa, tau_j, s, and S / Pa in blocks as C, Cm, Cx are */
+typedef struct {
+  PetscInt   n;
+  PetscReal  stiff[VISCOELASTIC_BRANCHES], time[VISCOELASTIC_BRANCHES];
+  PetscReal *S, *Sm, *Sx; /* [m][m], [3 n_pairs][m], [3 n_pairs][3 n_pairs] */
+} ReducedBranch;
+
 /* The reduced bodies: dense but for `sparse`, alike on every rank. Matrices are column-major. Ports: normal, t, b of
    pair 0, of pair 1 and so on, then the loads, among them gravity, the motions, and their rates, then x, y, z of each
    probe */
 typedef struct {
-  PetscInt      m, n_pairs, n_loads, n_probes, n_ports, n_motions;
-  PetscReal    *omega2;   /* [m] (rad/s)^2, ascending, 0 for rigid modes */
-  PetscReal    *C;        /* [m][m] 1/s, symmetric; NULL without damping */
-  PetscReal    *P;        /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
-  PetscReal    *W;        /* [n_ports][n_ports], m/N; where sparse those of loads and probes alone */
-  PetscReal    *Cm;       /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
-  PetscReal    *Cx;       /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
-  PetscReal    *Y;        /* [n_motions][n_ports] what each motion moves at pairs and probes by itself, m */
-  PetscReal    *kappa;    /* [n_motions][n_motions] d'K_dd d, J */
-  PetscReal    *drag;     /* [n_motions][n_motions] what takes their rates, d'D d and with X d, J s */
-  PetscBool     dragged;  /* motions have two loads each, the second for their rate */
-  PetscReal    *Mx;       /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
-  ReducedSparse sparse;   /* products with W and Cx in place of these; NULL where they are dense */
-  PetscReal    *gap;      /* [n_pairs] g0, m, positive open */
-  PairSpring   *spring;   /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
-  FrictionLaw  *friction; /* [n_pairs] with the stated speed of each */
+  PetscInt       m, n_pairs, n_loads, n_probes, n_ports, n_motions;
+  PetscReal     *omega2;     /* [m] (rad/s)^2, ascending, 0 for rigid modes */
+  PetscReal     *C;          /* [m][m] 1/s, symmetric; NULL without damping */
+  PetscReal     *P;          /* [n_ports][m], m numbers for each port, 1/sqrt(kg) */
+  PetscReal     *W;          /* [n_ports][n_ports], m/N; where sparse those of loads and probes alone */
+  PetscReal     *Cm;         /* [3 n_pairs][m] Phi'C X, s / sqrt(kg); NULL without damping */
+  PetscReal     *Cx;         /* [3 n_pairs][3 n_pairs] X'C X, m s/N, symmetric; NULL without damping */
+  PetscReal     *Y;          /* [n_motions][n_ports] what each motion moves at pairs and probes by itself, m */
+  PetscReal     *kappa;      /* [n_motions][n_motions] d'K_dd d, J */
+  PetscReal     *drag;       /* [n_motions][n_motions] what takes their rates, d'D d and with X d, J s */
+  PetscBool      dragged;    /* motions have two loads each, the second for their rate */
+  PetscReal     *Mx;         /* [3 n_pairs][3 n_pairs] X'M X, kg (m/N)^2, symmetric; NULL where nobody asks for it */
+  PetscInt       n_branches; /* parts with branches */
+  ReducedBranch *branch;     /* [n_branches] */
+  PetscReal     *S;          /* S of all of them, one behind another */
+  ReducedSparse  sparse;     /* products with W and Cx in place of these; NULL where they are dense */
+  PetscReal     *gap;        /* [n_pairs] g0, m, positive open */
+  PairSpring    *spring;     /* [n_pairs] normal laws in series with the pairs; NULL where contact is exact */
+  FrictionLaw   *friction;   /* [n_pairs] with the stated speed of each */
 } ReducedModel;
 
-/* A state at t_n; its numbers stand one behind another, eta first, y last */
+/* A state at t_n; its numbers stand one behind another, eta first, z last */
 typedef struct {
   PetscReal  time;       /* s */
   PetscReal *eta, *rate; /* [m] coordinates, m sqrt(kg), and rates */
   PetscReal *p,
-    *last;          /* [n_ports] forces at t_n and t_{n-1}, N: lambda of the pairs (on the slave: normal, t, b), factors
+    *last; /* [n_ports] forces at t_n and t_{n-1}, N: lambda of the pairs (on the slave: normal, t, b), factors
                                 of the loads */
-  PetscReal *begin; /* [3 n_pairs] lambda with which the step from t_n begins, N: p, or relaxed (step/relax.c) */
-  PetscReal     *q; /* [3 n_pairs] forces on the residual, N: lambda, delayed by its damping */
-  PetscReal     *y; /* [3 n_pairs] displacements at the pairs, m */
+  PetscReal     *begin;  /* [3 n_pairs] lambda with which the step from t_n begins, N: p, or relaxed (step/relax.c) */
+  PetscReal     *q;      /* [3 n_pairs] forces on the residual, N: lambda, delayed by its damping */
+  PetscReal     *y;      /* [3 n_pairs] displacements at the pairs, m */
+  PetscReal     *z;      /* [branches of all parts][m + 3 n_pairs] elongations of the springs of branches */
   ContactStatus *status; /* [n_pairs] */
 } ReducedState;
 

@@ -184,6 +184,10 @@ PetscErrorCode ViscoelasticAddChecksum(const Viscoelastic *law, Checksum checksu
 /*@ ViscoelasticEvaluate - G and its derivatives at lambda, rad/s, Im lambda >= 0. Not collective. @*/
 void ViscoelasticEvaluate(const Viscoelastic *law, PetscComplex lambda, ViscoelasticAt *at);
 
+/*@ ViscoelasticBranches - how many Maxwell branches a law is, E_j = value[j] and tau_j = value[n + j]; 0 where it has
+    no equation in time. Not collective. @*/
+PetscInt ViscoelasticBranches(const Viscoelastic *law);
+
 /*@ ViscoelasticRange - the frequencies, rad/s, for which a law tells something: all but of a table. Not collective. @*/
 void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2]);
 

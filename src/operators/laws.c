@@ -119,8 +119,8 @@ PetscErrorCode PencilSetReference(Pencil pencil, PetscReal omega)
   PetscFunctionReturn(0);
 }
 
-/* The law of a term at the present point, in place: who has got it before looks on at it */
-static PetscErrorCode LawTake(Pencil pencil, const OperatorsTerm *term, PencilLaw *law)
+/* The law of a term at a point, in place: who has got it before looks on at it */
+static PetscErrorCode LawTake(const PetscReal p[], const OperatorsTerm *term, PencilLaw *law)
 {
   OperatorsTerm  rest = *term;
   ViscoelasticAt at;
@@ -128,9 +128,9 @@ static PetscErrorCode LawTake(Pencil pencil, const OperatorsTerm *term, PencilLa
   PetscFunctionBeginUser;
   rest.law       = NULL;
   law->symmetric = term->symmetric;
-  law->scale     = OperatorsTermCoefficient(&rest, pencil->parameters.p);
+  law->scale     = OperatorsTermCoefficient(&rest, p);
   law->reference = term->reference;
-  law->law       = OperatorsLawValues(term->law, pencil->parameters.p);
+  law->law       = OperatorsLawValues(term->law, p);
   law->at        = 0;
   ViscoelasticEvaluate(&law->law, CMPLX(0, term->reference), &at);
   if (term->reference > 0) law->at = at.modulus;
@@ -146,6 +146,16 @@ static PetscBool TermIsLaw(const OperatorsTerm *term)
   return term->law && term->kind == OPERATORS_STIFFNESS ? PETSC_TRUE : PETSC_FALSE;
 }
 
+PetscErrorCode OperatorsGetLaws(Operators o, const PetscReal p[], PetscInt *n, PencilLaw **law)
+{
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(PetscCalloc1(o->n_laws, law));
+  for (PetscInt t = 0; t < o->terms.n; t++)
+    if (TermIsLaw(&o->terms.term[t])) PetscCall(LawTake(OperatorsPoint(o, p), &o->terms.term[t], &(*law)[(*n)++]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PencilFormLaws(Pencil pencil)
 {
   const Terms *list = pencil->Zr ? &pencil->projected : &pencil->base;
@@ -158,7 +168,7 @@ PetscErrorCode PencilFormLaws(Pencil pencil)
   if (!pencil->law) PetscCall(PetscCalloc1(n, &pencil->law));
   pencil->n_laws = n;
   for (PetscInt t = 0, l = 0; t < list->n; t++)
-    if (TermIsLaw(&list->term[t])) PetscCall(LawTake(pencil, &list->term[t], &pencil->law[l++]));
+    if (TermIsLaw(&list->term[t])) PetscCall(LawTake(pencil->parameters.p, &list->term[t], &pencil->law[l++]));
   pencil->has_laws = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

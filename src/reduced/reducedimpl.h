@@ -40,6 +40,10 @@ struct _p_ReducedStepper {
   PetscReal            *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
   PetscReal            *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
   ReducedRelaxed       *relaxed;                 /* [n_pairs] */
+  ReducedModel          damped; /* with branches: the model with their dampers, which `model` is then */
+  PetscReal            *A;      /* [rank][rank] LU factors of H^-1, kept for forces of branches; else NULL */
+  PetscBLASInt         *pivot;  /* [rank] */
+  PetscReal            *known, *elongation; /* [m + 3 n_pairs] forces of branches that a step knows; work */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
@@ -160,8 +164,14 @@ struct _p_ReducedRun {
 /* product.c - Y = A X and Y = A'X of dense blocks, Y without gaps between its columns */
 PETSC_INTERN void ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
 PETSC_INTERN void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
+/* Makes A [N][N] symmetric to the last bit */
+PETSC_INTERN void ReducedSymmetrise(PetscInt N, PetscReal A[]);
 /* y += X coefficients. Collective */
 PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y);
+
+/* bodies/model.c - zeros of so many parts with branches; branches of all parts */
+PETSC_INTERN PetscErrorCode ReducedBranchesCreate(PetscInt n_parts, ReducedModel *model);
+PETSC_INTERN PetscInt       ReducedBranches(const ReducedModel *model);
 
 /* step/energy.c - displacement at a port, m */
 PETSC_INTERN PetscReal ReducedPortDisplacement(const ReducedModel *model, const PetscReal eta[], const PetscReal p[],
@@ -187,8 +197,8 @@ PETSC_INTERN PetscErrorCode ReducedStepRespond(ReducedStepper stepper, const Red
 /* step/relax.c - takes out of the forces with which the next step begins what alternates; derivatives X [columns][size]
    before and next after the last step */
 PETSC_INTERN PetscErrorCode ReducedStepperRelax(ReducedStepper stepper, ReducedState *state);
-PETSC_INTERN void ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt size, PetscInt columns,
-                                             const PetscReal X[], PetscReal next[]);
+PETSC_INTERN void           ReducedStepperRelaxTangent(ReducedStepper stepper, PetscInt size, PetscInt columns,
+                                                       const PetscReal X[], PetscReal next[]);
 
 /* step/tangent.c - derivative of the last step: x = (eta, rate, lambda, q where the residual is damped) of so many
    numbers; the changes X [columns][size] at t_n, at most as many as numbers, become those at t_{n+1} */
@@ -243,6 +253,9 @@ PETSC_INTERN PetscErrorCode ReducedSparseDestroy(ReducedSparse *sparse);
    size */
 PETSC_INTERN PetscErrorCode ReducedSetResidual(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedApplyResidual(ReducedRun reduced, Mat B, Mat X);
+/* bodies/branches.c - branches of the parts before the residual is there, with their laws; these freed */
+PETSC_INTERN PetscErrorCode ReducedBranchesBegin(ReducedRun reduced, PencilLaw **law);
+PETSC_INTERN PetscErrorCode ReducedBranchesEnd(ReducedRun reduced, PencilLaw **law);
 
 /* pairs.c - gaps and laws of the pairs of all ranks; their states and sums after a step; residuals of the laws */
 PETSC_INTERN PetscErrorCode ReducedSetPairs(ReducedRun reduced);
@@ -291,6 +304,20 @@ PETSC_INTERN PetscErrorCode ReducedForget(ReducedRun reduced);
    less on the chosen ones: a force that moves the same */
 PETSC_INTERN PetscErrorCode ReducedStepperSetResidual(ReducedStepper stepper);
 PETSC_INTERN void           ReducedStepperSettle(ReducedStepper stepper, const PetscReal lambda[]);
+
+/* X [columns][3 n_pairs] := H X, where there are branches */
+PETSC_INTERN PetscErrorCode ReducedStepperApplyH(ReducedStepper stepper, PetscInt columns, PetscReal X[]);
+
+/* step/branches.c - the model of a step with the dampers of branches */
+PETSC_INTERN PetscErrorCode ReducedStepperSetBranches(ReducedStepper stepper);
+/* Forces [m + 3 n_pairs] of elongations, in the mean of a step of dt, or with dt 0 at once */
+PETSC_INTERN void ReducedBranchForces(const ReducedModel *model, PetscReal dt, const PetscReal z[], PetscReal work[],
+                                      PetscReal force[]);
+/* What a step knows of them; dq -= H k of those on the residual */
+PETSC_INTERN void           ReducedStepperKnowBranches(ReducedStepper stepper, const ReducedState *state);
+PETSC_INTERN PetscErrorCode ReducedStepperDragBranches(ReducedStepper stepper);
+/* Elongations at the end of the step, and the work, J, that was done on the forces that it knew */
+PETSC_INTERN PetscReal ReducedStepperAdvanceBranches(ReducedStepper stepper, ReducedState *state);
 
 /* stepper.c - Q of the work of damping, where it is not there yet: only who asks for works needs it */
 PETSC_INTERN PetscErrorCode ReducedStepperSetDamping(ReducedStepper stepper);

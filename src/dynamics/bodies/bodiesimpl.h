@@ -225,8 +225,7 @@ PETSC_INTERN void           BlockRowsMultiply(const BlockRows *rows, PetscInt be
                                               PetscReal y[]);
 PETSC_INTERN PetscErrorCode BlockRowsDestroy(BlockRows *rows);
 
-/* cell.c - branches of a material, of which Zener's law of order 1 is one; sum of their E_j / E */
-PETSC_INTERN PetscInt  BranchesCount(const Viscoelastic *law);
+/* cell.c - sum of E_j / E of the branches of a material */
 PETSC_INTERN PetscReal BranchesStiffness(const Part *part);
 
 /* branches.c - forces at the end of a step, after those of the kernels; kx += what the

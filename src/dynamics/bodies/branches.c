@@ -19,7 +19,7 @@
 /* The branches of a material */
 static PetscInt BranchesOf(const Viscoelastic *law, PetscReal stiff[], PetscReal time[])
 {
-  const PetscInt n = BranchesCount(law);
+  const PetscInt n = ViscoelasticBranches(law);
 
   for (PetscInt j = 0; j < n; j++) {
     stiff[j] = law->value[j] / law->young;

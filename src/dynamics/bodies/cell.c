@@ -5,16 +5,11 @@
 */
 #include "bodiesimpl.h"
 
-PetscInt BranchesCount(const Viscoelastic *law)
-{
-  return law->kind == VISCOELASTIC_PRONY ? law->n / 2 : law->kind == VISCOELASTIC_ZENER ? 1 : 0;
-}
-
 PetscReal BranchesStiffness(const Part *part)
 {
   PetscReal sum = 0;
 
-  for (PetscInt j = 0; j < BranchesCount(&part->law); j++) sum += part->law.value[j] / part->law.young;
+  for (PetscInt j = 0; j < ViscoelasticBranches(&part->law); j++) sum += part->law.value[j] / part->law.young;
   return sum;
 }
 

@@ -106,6 +106,12 @@ void ViscoelasticEvaluate(const Viscoelastic *law, PetscComplex lambda, Viscoela
   if (law->kind == VISCOELASTIC_TABLE) TableEvaluate(law, lambda, at);
 }
 
+PetscInt ViscoelasticBranches(const Viscoelastic *law)
+{
+  if (law->kind == VISCOELASTIC_PRONY) return law->n / 2;
+  return law->kind == VISCOELASTIC_ZENER && law->value[2] == 1 ? 1 : 0;
+}
+
 void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2])
 {
   const ViscoelasticTable *about[2];

@@ -7,8 +7,9 @@
 #include "reduced/reducedimpl.h"
 #include "base/process/memory.h"
 
-#define MEMORY_COPIES 6
-#define MEMORY_DAMPED 5
+#define MEMORY_COPIES   6
+#define MEMORY_DAMPED   5
+#define MEMORY_BRANCHES 2
 
 /* GB of a machine that all its ranks want for n pairs */
 static double MemoryOfPairs(double n_pairs, int copies)
@@ -28,7 +29,8 @@ static const char *MemoryAdvice(ReducedRun r)
 PetscErrorCode ReducedCheckMemory(ReducedRun r)
 {
   const ContactPair *pair;
-  PetscInt           n_local, n;
+  const ModelScene  *scene;
+  PetscInt           n_local, n, n_laws = 0;
   PetscBool          given;
   double             fits[2]; /* GB to be had, and with the other sign those wanted */
   int                copies = MEMORY_COPIES;
@@ -39,7 +41,10 @@ PetscErrorCode ReducedCheckMemory(ReducedRun r)
   if (given) PetscFunctionReturn(0); /* factors have a check of their own */
   PetscCall(ContactGetPairs(r->run.contact, &n_local, &n, &pair));
   PetscCall(OperatorsGetBodies(r->run.operators, r->request.p, NULL, NULL, &C));
-  if (C) copies += MEMORY_DAMPED;
+  PetscCall(ModelGetScene(r->run.model, &scene));
+  for (PetscInt i = 0; i < scene->n_parts; i++) n_laws += scene->parts[i].law.kind ? 1 : 0;
+  if (C || n_laws) copies += MEMORY_DAMPED;
+  if (n_laws) copies += (int)n_laws + MEMORY_BRANCHES;
   if (r->request.weighs) copies++;
   if (r->request.springs) copies++;
   fits[0] = 1e-3 * MemoryRoom(&given);

@@ -1,6 +1,53 @@
 /* Copies of the reduced bodies (reduced.h), states, reports of steps, and their end */
 #include "reduced/reducedimpl.h"
 
+/* Numbers of S in all its blocks */
+static PetscInt BranchSize(const ReducedModel *model)
+{
+  const PetscInt m = model->m, n = 3 * model->n_pairs;
+
+  return m * m + n * m + n * n;
+}
+
+PetscErrorCode ReducedBranchesCreate(PetscInt n_parts, ReducedModel *model)
+{
+  const PetscInt m = model->m, n = 3 * model->n_pairs, size = BranchSize(model);
+
+  PetscFunctionBeginUser;
+  model->n_branches = n_parts;
+  PetscCall(PetscCalloc2(n_parts, &model->branch, n_parts * size, &model->S));
+  for (PetscInt i = 0; i < n_parts; i++) {
+    ReducedBranch *b = &model->branch[i];
+
+    b->S  = &model->S[i * size];
+    b->Sm = b->S + m * m;
+    b->Sx = b->Sm + n * m;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The branches of a model like those of another */
+static PetscErrorCode BranchesCopy(const ReducedModel *from, ReducedModel *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedBranchesCreate(from->n_branches, to));
+  for (PetscInt i = 0; i < from->n_branches; i++) {
+    to->branch[i].n = from->branch[i].n;
+    PetscCall(PetscArraycpy(to->branch[i].stiff, from->branch[i].stiff, VISCOELASTIC_BRANCHES));
+    PetscCall(PetscArraycpy(to->branch[i].time, from->branch[i].time, VISCOELASTIC_BRANCHES));
+  }
+  PetscCall(PetscArraycpy(to->S, from->S, from->n_branches * BranchSize(from)));
+  PetscFunctionReturn(0);
+}
+
+PetscInt ReducedBranches(const ReducedModel *model)
+{
+  PetscInt n = 0;
+
+  for (PetscInt i = 0; i < model->n_branches; i++) n += model->branch[i].n;
+  return n;
+}
+
 PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
 {
   const PetscInt   m = from->m, n = from->n_pairs, N = from->n_ports;
@@ -26,6 +73,7 @@ PetscErrorCode ReducedModelCopy(const ReducedModel *from, ReducedModel *to)
     PetscCall(PetscMalloc1(size[i], copy[i]));
     PetscCall(PetscArraycpy(*copy[i], source[i], size[i]));
   }
+  PetscCall(BranchesCopy(from, to));
   PetscCall(PetscMalloc2(n, &to->gap, n, &to->friction));
   PetscCall(PetscArraycpy(to->gap, from->gap, n));
   PetscCall(PetscArraycpy(to->friction, from->friction, n));
@@ -49,6 +97,8 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
   PetscCall(PetscFree(model->Y));
   PetscCall(PetscFree(model->kappa));
   PetscCall(PetscFree(model->drag));
+  PetscCall(PetscFree2(model->branch, model->S));
+  model->n_branches = 0;
   PetscCall(PetscFree2(model->gap, model->friction));
   PetscCall(PetscFree(model->spring));
   PetscFunctionReturn(0);
@@ -56,7 +106,8 @@ PetscErrorCode ReducedModelDestroy(ReducedModel *model)
 
 PetscInt ReducedStateSize(const ReducedModel *model)
 {
-  return 2 * model->m + 2 * model->n_ports + 9 * model->n_pairs;
+  return 2 * model->m + 2 * model->n_ports + 9 * model->n_pairs +
+         ReducedBranches(model) * (model->m + 3 * model->n_pairs);
 }
 
 PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state)
@@ -70,6 +121,7 @@ PetscErrorCode ReducedStateCreate(const ReducedModel *model, ReducedState *state
   state->begin = state->last + model->n_ports;
   state->q     = state->begin + 3 * model->n_pairs;
   state->y     = state->q + 3 * model->n_pairs;
+  state->z     = state->y + 3 * model->n_pairs;
   PetscFunctionReturn(0);
 }
 

@@ -191,10 +191,7 @@ static PetscErrorCode ReducedSetDamping(ReducedRun r)
   PetscCall(BlockMultiply(C, r->reduction.Phi, CPhi));
   PetscCall(PetscMalloc1(m * m, &r->reduction.model.C));
   PetscCall(BlockGram(r->reduction.Phi, CPhi, r->reduction.model.C));
-  for (PetscInt j = 0; j < m; j++)
-    for (PetscInt i = 0; i < j; i++)
-      r->reduction.model.C[i + m * j] = r->reduction.model.C[j + m * i] =
-        0.5 * (r->reduction.model.C[i + m * j] + r->reduction.model.C[j + m * i]);
+  ReducedSymmetrise(m, r->reduction.model.C);
   PetscCall(MatDestroy(&CPhi));
   PetscFunctionReturn(0);
 }

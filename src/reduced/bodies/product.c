@@ -52,3 +52,10 @@ PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec 
   }
   PetscFunctionReturn(0);
 }
+
+/* The mean of both: the contact laws and energies take W as symmetric. */
+void ReducedSymmetrise(PetscInt N, PetscReal A[])
+{
+  for (PetscInt j = 0; j < N; j++)
+    for (PetscInt i = 0; i < j; i++) A[i + N * j] = A[j + N * i] = 0.5 * (A[i + N * j] + A[j + N * i]);
+}

@@ -5,8 +5,8 @@
    changes 1e-8 at most, and free bodies are regular. Where displacements follow others, u = Z q, Z (Z'(K - s M)
    Z)^-1 Z' stands for the inverse, and Phi = Z times the modes of q: all else is of all unknowns.
 
-   With X = R V of the pairs also Cm = Phi'D X, Cx = X'D X and Mx = X'M X of the damping D and the mass M; X'D X =
-   V'R D X costs a second solution per column but no room for all of X.
+   With X = R V of the pairs also Cm = Phi'D X, Cx = X'D X and Mx = X'M X of the damping D and the mass M, and the same
+   of parts with branches in place of D; X'D X = V'R D X costs a second solution per column but no room for all of X.
 */
 #include "reduced/reducedimpl.h"
 #include "solver/block/orthonormal.h"
@@ -98,15 +98,9 @@ static PetscErrorCode ResidualTakeForm(ReducedRun r, Mat D, const ResidualColumn
   PetscFunctionReturn(0);
 }
 
-/* Symmetric to the last bit, the mean of both: the contact laws and energies take W as symmetric. */
-static void ResidualSymmetrise(PetscInt N, PetscReal A[])
-{
-  for (PetscInt j = 0; j < N; j++)
-    for (PetscInt i = 0; i < j; i++) A[i + N * j] = A[j + N * i] = 0.5 * (A[i + N * j] + A[j + N * i]);
-}
-
 /* Columns first .. first + n - 1 of all that is made of V */
-static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], PetscInt first, PetscInt n)
+static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], const PencilLaw law[], PetscInt first,
+                                    PetscInt n)
 {
   const PetscInt  N = r->reduction.model.n_ports;
   PetscInt        n_own;
@@ -124,6 +118,8 @@ static PetscErrorCode ResidualBlock(ReducedRun r, Mat Gt, const Mat form[2], Pet
     PetscCall(MatDuplicate(c.B, MAT_DO_NOT_COPY_VALUES, &c.Y));
     PetscCall(ResidualTakeForm(r, form[0], &c, r->reduction.model.Cx, r->reduction.model.Cm));
     PetscCall(ResidualTakeForm(r, form[1], &c, r->reduction.model.Mx, NULL));
+    for (PetscInt i = 0; i < r->reduction.model.n_branches; i++)
+      PetscCall(ResidualTakeForm(r, law[i].A, &c, r->reduction.model.branch[i].Sx, r->reduction.model.branch[i].Sm));
     PetscCall(MatDestroy(&c.Y));
   }
   PetscCall(MatDestroy(&c.B));
@@ -140,6 +136,7 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   PencilMatrices  pencil;
   PetscInt        n, begin;
   PetscBool       sparse;
+  PencilLaw      *law;
   Mat             Gt, C, form[2]; /* damping, mass */
 
   PetscFunctionBeginUser;
@@ -150,6 +147,7 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
   PetscCall(ShiftInvertCreate(&pencil, shift, PETSC_FALSE, &r->reduction.progress, &r->reduction.inverse));
   PetscCall(ReducedIsSparse(r, &sparse));
   if (sparse) PetscCall(ReducedSparseCreate(r, shift, C));
+  PetscCall(ReducedBranchesBegin(r, &law));
   begin = sparse ? n_pairs : 0;
   PetscCall(MatTranspose(r->reduction.G, MAT_INITIAL_MATRIX, &Gt));
   PetscCall(PetscCalloc1(N * (N - begin), &r->reduction.model.W));
@@ -160,14 +158,15 @@ PetscErrorCode ReducedSetResidual(ReducedRun r)
                           (N - begin + RESIDUAL_BLOCK - 1) / RESIDUAL_BLOCK));
   for (PetscInt first = begin; first < N; first += n) {
     n = PetscMin(RESIDUAL_BLOCK, (first < n_pairs ? n_pairs : N) - first);
-    PetscCall(ResidualBlock(r, Gt, form, first, n));
+    PetscCall(ResidualBlock(r, Gt, form, law, first, n));
     PetscCall(ProgressStep(&r->reduction.progress));
   }
   PetscCall(ProgressEnd(&r->reduction.progress));
   PetscCall(MatDestroy(&Gt));
+  PetscCall(ReducedBranchesEnd(r, &law));
   if (sparse) PetscFunctionReturn(0);
-  ResidualSymmetrise(N, r->reduction.model.W);
-  if (C) ResidualSymmetrise(n_pairs, r->reduction.model.Cx);
-  if (r->request.weighs) ResidualSymmetrise(n_pairs, r->reduction.model.Mx);
+  ReducedSymmetrise(N, r->reduction.model.W);
+  if (C) ReducedSymmetrise(n_pairs, r->reduction.model.Cx);
+  if (r->request.weighs) ReducedSymmetrise(n_pairs, r->reduction.model.Mx);
   PetscFunctionReturn(0);
 }

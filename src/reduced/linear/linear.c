@@ -7,6 +7,9 @@
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
 
+   Branches of parts add forces as a damping S does that is multiplied by E_j / (s + 1 / tau_j): their elongations z_j
+   on the modes are unknowns of the first-order system, z_j' = eta' - z_j / tau_j.
+
    What the modes leave out has in e^(s t) the compliance sum phi phi' / (omega^2 + s^2), to first order W - s^2 Mx,
    exact in all modes above the cut-off but for (omega / their own frequency)^2 of itself:
 
@@ -132,20 +135,23 @@ static PetscErrorCode ClosedSolveForm(ClosedPairs *c, const PetscReal X[], Petsc
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ClosedSolveDamping(ClosedPairs *c)
+/* Adds C - Cm E S - P'E T of a damping to its C; T is that of it */
+static PetscErrorCode ClosedAddDamping(ClosedPairs *c, const PetscReal Cm[], const PetscReal Cx[], PetscReal C[])
 {
   const PetscInt m = c->model->m, n = c->n;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m; k++)
-    for (PetscInt i = 0; i < n; i++) c->T[i + n * k] = c->model->Cm[k + m * 3 * c->pair[i]];
-  PetscCall(ClosedSolveForm(c, c->model->Cx, c->T));
+    for (PetscInt i = 0; i < n; i++) c->T[i + n * k] = Cm[k + m * 3 * c->pair[i]];
+  PetscCall(ClosedSolveForm(c, Cx, c->T));
+  ClosedAdd(c, -1, Cm, c->S, C);
+  ClosedAdd(c, -1, c->model->P, c->T, C);
   PetscFunctionReturn(0);
 }
 
-/* K and C over the mass 1 + P'E (N W E)^-1 N Mx E S; ClosedSolveForm() from Y = 0 gives -(N W E)^-1 N Mx E S, hence
-   the sign. */
-static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscReal K[], PetscReal C[])
+/* The n matrices A [m][m] over the mass 1 + P'E (N W E)^-1 N Mx E S; ClosedSolveForm() from Y = 0 gives -(N W E)^-1 N
+   Mx E S, hence the sign. */
+static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscInt n, PetscReal *const A[])
 {
   const PetscInt m = c->model->m;
   PetscReal     *mass, *Y;
@@ -158,8 +164,7 @@ static PetscErrorCode ClosedDivideByMass(ClosedPairs *c, PetscReal K[], PetscRea
   for (PetscInt k = 0; k < m; k++) mass[k + m * k] = 1;
   ClosedAdd(c, -1, c->model->P, Y, mass);
   PetscCall(DenseFactor(m, mass, pivot, NULL));
-  PetscCall(DenseSolve(m, mass, pivot, PETSC_FALSE, m, K));
-  PetscCall(DenseSolve(m, mass, pivot, PETSC_FALSE, m, C));
+  for (PetscInt i = 0; i < n; i++) PetscCall(DenseSolve(m, mass, pivot, PETSC_FALSE, m, A[i]));
   PetscCall(PetscFree3(mass, Y, pivot));
   PetscFunctionReturn(0);
 }
@@ -245,29 +250,66 @@ static PetscErrorCode ClosedFill(ClosedPairs *c, const PetscReal lambda_n[], Pet
     PetscCall(ClosedSolveStiffness(c));
     ClosedAdd(c, 1, model->P, c->S, K);
   }
-  if (c->n && model->Cx) {
-    PetscCall(ClosedSolveDamping(c));
-    ClosedAdd(c, -1, model->Cm, c->S, C);
-    ClosedAdd(c, -1, model->P, c->T, C);
-  }
+  if (c->n && model->Cx) PetscCall(ClosedAddDamping(c, model->Cm, model->Cx, C));
   if (c->n && lambda_n) PetscCall(ClosedAddFriction(c, lambda_n, C));
+  PetscFunctionReturn(0);
+}
+
+/* The same with branches: A = [0 1 0; -K -C -E_j B; 0 1 -1 / tau_j], B of each part behind K and C. What oscillates
+   comes first of the 2 m that are handed out; the others decay, most of them as branches do. */
+static PetscErrorCode BranchesEigen(const ReducedModel *model, PetscReal *const system[], PetscReal sigma[],
+                                    PetscReal omega[])
+{
+  const PetscInt m = model->m, n = m * (2 + ReducedBranches(model));
+  PetscReal     *A, *w;
+  PetscInt       at = 2 * m, kept = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n * n, &A, 2 * n, &w));
+  for (PetscInt k = 0; k < m; k++) A[k + n * (m + k)] = 1;
+  for (PetscInt k = 0; k < 2 * m; k++)
+    for (PetscInt l = 0; l < m; l++) A[m + l + n * k] = -system[k / m][l + m * (k % m)];
+  for (PetscInt i = 0; i < model->n_branches; i++)
+    for (PetscInt j = 0; j < model->branch[i].n; j++, at += m)
+      for (PetscInt k = 0; k < m; k++) {
+        A[at + k + n * (m + k)]  = 1;
+        A[at + k + n * (at + k)] = -1 / model->branch[i].time[j];
+        for (PetscInt l = 0; l < m; l++)
+          A[m + l + n * (at + k)] = -model->branch[i].stiff[j] * system[2 + i][l + m * k];
+      }
+  PetscCall(DenseEigen(n, A, w, w + n, NULL, NULL));
+  for (int oscillates = 1; oscillates >= 0; oscillates--)
+    for (PetscInt k = 0; k < n && kept < 2 * m; k++) {
+      if ((w[n + k] != 0) != oscillates) continue;
+      sigma[kept]   = w[k];
+      omega[kept++] = w[n + k];
+    }
+  PetscCall(PetscFree2(A, w));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
                                 PetscBool inertia, PetscReal sigma[], PetscReal omega[])
 {
-  const PetscInt m = model->m;
-  PetscReal     *K, *C;
+  const PetscInt m = model->m, n = 2 + model->n_branches;
+  PetscReal     *all, **system;
   ClosedPairs    c;
 
   PetscFunctionBeginUser;
   PetscCall(ClosedCreate(model, closed, lambda_n, &c));
-  PetscCall(PetscCalloc2(m * m, &K, m * m, &C));
-  PetscCall(ClosedFill(&c, lambda_n, K, C));
-  if (inertia) PetscCall(ClosedDivideByMass(&c, K, C));
-  PetscCall(QuadraticEigen(m, (PetscReal *const[2]){K, C}, sigma, omega, NULL));
-  PetscCall(PetscFree2(K, C));
+  PetscCall(PetscCalloc2(n * m * m, &all, n, &system));
+  for (PetscInt i = 0; i < n; i++) system[i] = &all[i * m * m];
+  PetscCall(ClosedFill(&c, lambda_n, system[0], system[1]));
+  for (PetscInt i = 2; i < n; i++) {
+    PetscCall(PetscArraycpy(system[i], model->branch[i - 2].S, m * m));
+    if (c.n) PetscCall(ClosedAddDamping(&c, model->branch[i - 2].Sm, model->branch[i - 2].Sx, system[i]));
+  }
+  if (inertia) PetscCall(ClosedDivideByMass(&c, n, system));
+  if (n > 2)
+    PetscCall(BranchesEigen(model, system, sigma, omega));
+  else
+    PetscCall(QuadraticEigen(m, system, sigma, omega, NULL));
+  PetscCall(PetscFree2(all, system));
   PetscCall(ClosedDestroy(&c));
   PetscFunctionReturn(0);
 }

@@ -24,6 +24,15 @@ static void WarpFactors(const ReducedModel *model, PetscReal dt, PetscInt k, Pet
   *root   = x > 0 ? *damper * PetscAbsReal(sin(x)) / x : 1;
 }
 
+/* Row and column k of A [m][m] times a factor */
+static void WarpSquare(PetscInt m, PetscInt k, PetscReal factor, PetscReal A[])
+{
+  for (PetscInt l = 0; l < m; l++) {
+    A[k + m * l] *= factor;
+    A[l + m * k] *= factor;
+  }
+}
+
 /* The model in coordinates of mass 1 */
 static void WarpModel(PetscReal dt, const ReducedModel *model, ReducedModel *warped)
 {
@@ -36,9 +45,10 @@ static void WarpModel(PetscReal dt, const ReducedModel *model, ReducedModel *war
     warped->omega2[k] *= PetscSqr(root);
     for (PetscInt i = 0; i < model->n_ports; i++) warped->P[k + m * i] *= root;
     for (PetscInt i = 0; model->Cm && i < 3 * model->n_pairs; i++) warped->Cm[k + m * i] *= root;
-    for (PetscInt l = 0; model->C && l < m; l++) {
-      warped->C[k + m * l] *= damper;
-      warped->C[l + m * k] *= damper;
+    if (model->C) WarpSquare(m, k, damper, warped->C);
+    for (PetscInt j = 0; j < model->n_branches; j++) {
+      WarpSquare(m, k, damper, warped->branch[j].S);
+      for (PetscInt i = 0; i < 3 * model->n_pairs; i++) warped->branch[j].Sm[k + m * i] *= root;
     }
   }
 }

@@ -19,6 +19,7 @@ typedef enum {
   KEPT_COMPLIANCE,
   KEPT_COUPLING,
   KEPT_VISCOUS,
+  KEPT_BRANCHES,
   KEPT_KICKS,
   KEPT_MODES,
   KEPT_SCALARS, /* the state */
@@ -29,6 +30,7 @@ typedef enum {
   KEPT_BEGIN,
   KEPT_RESIDUAL,
   KEPT_DISPLACEMENTS,
+  KEPT_ELONGATIONS,
   KEPT_STATUS,
   KEPT_SLIP,
   KEPT_SHOWN,
@@ -68,6 +70,7 @@ static void ReducedListModel(ReducedRun r, PetscInt n_own, PetscScalar modes[], 
   item[KEPT_COMPLIANCE] = (JournalItem){"compliance", N * (model->sparse ? N - n : N), model->W};
   item[KEPT_COUPLING]   = (JournalItem){"coupling", model->Cm ? m * n : 0, model->Cm};
   item[KEPT_VISCOUS]    = (JournalItem){"damping of the residual", model->Cx ? n * n : 0, model->Cx};
+  item[KEPT_BRANCHES]   = (JournalItem){"stiffness of branches", model->n_branches * (m * m + n * m + n * n), model->S};
   item[KEPT_KICKS]      = (JournalItem){"kicks", r->reduction.n_hits * m, r->reduction.hits};
   item[KEPT_MODES]      = (JournalItem){"modes", m * n_own, modes};
 }
@@ -85,9 +88,11 @@ static void ReducedListItems(ReducedRun r, ReducedScalars *scalars, PetscReal st
   item[KEPT_BEGIN]         = (JournalItem){"forces to begin with", 3 * n, r->motion.state.begin};
   item[KEPT_RESIDUAL]      = (JournalItem){"residual", 3 * n, r->motion.state.q};
   item[KEPT_DISPLACEMENTS] = (JournalItem){"displacements", 3 * n, r->motion.state.y};
-  item[KEPT_STATUS]        = (JournalItem){"status", n, status};
-  item[KEPT_SLIP]          = (JournalItem){"slip", 2 * n, r->motion.report.slip};
-  item[KEPT_SHOWN]         = (JournalItem){"rates of forces", 2 * N, r->motion.p_rate};
+  item[KEPT_ELONGATIONS] =
+    (JournalItem){"branches", ReducedBranches(&r->reduction.model) * (m + 3 * n), r->motion.state.z};
+  item[KEPT_STATUS]  = (JournalItem){"status", n, status};
+  item[KEPT_SLIP]    = (JournalItem){"slip", 2 * n, r->motion.report.slip};
+  item[KEPT_SHOWN]   = (JournalItem){"rates of forces", 2 * N, r->motion.p_rate};
   item[KEPT_SUMS]    = (JournalItem){"sums", r->run.n_interfaces * N_REALS(ContactSums), (PetscReal *)r->motion.sums};
   item[KEPT_LAWS]    = (JournalItem){"contact laws", 0, NULL};
   item[KEPT_HISTORY] = (JournalItem){"history", 0, NULL};

@@ -28,6 +28,22 @@ void ReducedSetShown(ReducedRun r, PetscBool start)
   }
 }
 
+/* Takes the forces of branches off the accelerations of the modes */
+static PetscErrorCode RecordBranches(ReducedRun r)
+{
+  const ReducedModel *model = &r->reduction.model;
+  const PetscInt      n     = model->m + 3 * model->n_pairs;
+  PetscReal          *force, *work;
+
+  PetscFunctionBeginUser;
+  if (!model->n_branches) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(n, &force, n, &work));
+  ReducedBranchForces(model, 0, r->motion.state.z, work, force);
+  for (PetscInt k = 0; k < model->m; k++) r->motion.acceleration[k] -= force[k];
+  PetscCall(PetscFree2(force, work));
+  PetscFunctionReturn(0);
+}
+
 /* eta'' = P'p - Omega^2 eta - C eta' - Cm q', m sqrt(kg)/s^2; q' by differences, as in velocities */
 static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
@@ -44,6 +60,7 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
     for (PetscInt j = 0; j < 3 * model->n_pairs && model->Cm; j++)
       r->motion.acceleration[k] -= model->Cm[k + m * j] * r->motion.p_rate[j];
   }
+  PetscCall(RecordBranches(r));
   PetscFunctionReturn(0);
 }
 

@@ -114,9 +114,8 @@ void ReducedStepperSettle(ReducedStepper s, const PetscReal lambda[])
   }
 }
 
-/* X [columns][n], of which the chosen rows are known, := H X, zero in the others; A [rank][rank] LU factors */
-static PetscErrorCode StepperApplyH(ReducedStepper s, const PetscReal A[], const PetscBLASInt pivot[], PetscInt columns,
-                                    PetscReal X[])
+/* Of X the chosen rows are known; zero in the others then */
+PetscErrorCode ReducedStepperApplyH(ReducedStepper s, PetscInt columns, PetscReal X[])
 {
   const PetscInt n = 3 * s->model->n_pairs, rank = s->rank;
   PetscReal     *Y;
@@ -125,7 +124,7 @@ static PetscErrorCode StepperApplyH(ReducedStepper s, const PetscReal A[], const
   PetscCall(PetscMalloc1(rank * columns, &Y));
   for (PetscInt j = 0; j < columns; j++)
     for (PetscInt i = 0; i < rank; i++) Y[i + rank * j] = X[s->chosen[i] + n * j];
-  PetscCall(DenseSolve(rank, A, pivot, PETSC_FALSE, columns, Y));
+  PetscCall(DenseSolve(rank, s->A, s->pivot, PETSC_FALSE, columns, Y));
   PetscCall(PetscArrayzero(X, n * columns));
   for (PetscInt j = 0; j < columns; j++)
     for (PetscInt i = 0; i < rank; i++) X[s->chosen[i] + n * j] = Y[i + rank * j];
@@ -160,8 +159,6 @@ PetscErrorCode ReducedStepperSetResidual(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  PetscReal          *A;
-  PetscBLASInt       *pivot;
   PetscBool           singular;
 
   PetscFunctionBeginUser;
@@ -171,16 +168,16 @@ PetscErrorCode ReducedStepperSetResidual(ReducedStepper s)
   if (!model->Cx) PetscFunctionReturn(0);
   PetscCall(StepperCombine(s));
   PetscCall(PetscMalloc2(n * n, &s->HW, n * m, &s->HC));
-  PetscCall(PetscMalloc2(s->rank * s->rank, &A, s->rank, &pivot));
-  PetscCall(StepperFormResidual(s, A));
+  PetscCall(PetscMalloc2(s->rank * s->rank, &s->A, s->rank, &s->pivot));
+  PetscCall(StepperFormResidual(s, s->A));
   for (PetscInt j = 0; j < n; j++) PetscCall(PetscArraycpy(&s->HW[n * j], &model->W[model->n_ports * j], n));
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt k = 0; k < m; k++) s->HC[j + n * k] = model->Cm[k + m * j];
-  PetscCall(DenseFactor(s->rank, A, pivot, &singular));
+  PetscCall(DenseFactor(s->rank, s->A, s->pivot, &singular));
   PetscCheck(!singular, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT,
              "the compliance of the contact pairs is singular: take a lower -dynamics_cutoff");
-  PetscCall(StepperApplyH(s, A, pivot, n, s->HW));
-  PetscCall(StepperApplyH(s, A, pivot, m, s->HC));
-  PetscCall(PetscFree2(A, pivot));
+  PetscCall(ReducedStepperApplyH(s, n, s->HW));
+  PetscCall(ReducedStepperApplyH(s, m, s->HC));
+  if (!model->n_branches) PetscCall(PetscFree2(s->A, s->pivot));
   PetscFunctionReturn(0);
 }

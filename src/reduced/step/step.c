@@ -20,7 +20,8 @@ static PetscReal StepperKick(ReducedStepper s, const PetscReal kick[], const Red
   return work;
 }
 
-/* next = E z + F g with g = P' mean, the forces on the modes (m sqrt(kg)/s^2), constant in the step. */
+/* next = E z + F g with g = P' mean less those of branches, the forces on the modes (m sqrt(kg)/s^2), constant in the
+   step. */
 static void StepperRespond(ReducedStepper s)
 {
   const ReducedModel *model = s->model;
@@ -28,6 +29,7 @@ static void StepperRespond(ReducedStepper s)
 
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
   ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
+  for (PetscInt k = 0; k < m && s->known; k++) s->x[2 * m + k] -= s->known[k];
   for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
   ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
   ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
@@ -53,6 +55,7 @@ static PetscErrorCode StepperSolveResidual(ReducedStepper s, const ReducedState 
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) s->dq[i] = 0;
+  ReducedStepperKnowBranches(s, state);
   StepperRespond(s);
   for (PetscInt i = 0; i < n; i++) {
     s->q[i] = model->Cm ? state->q[i] : state->p[i];
@@ -66,6 +69,7 @@ static PetscErrorCode StepperSolveResidual(ReducedStepper s, const ReducedState 
     ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
     ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
   }
+  PetscCall(ReducedStepperDragBranches(s));
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
   StepperDrag(s);
   PetscFunctionReturn(0);
@@ -348,6 +352,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  PetscReal           taken;
 
   PetscFunctionBeginUser;
   report->external = StepperKick(s, drive->kick, state);
@@ -369,6 +374,8 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
     report->damping = -report->damping;
     StepperShareDrag(s, state, report);
   }
+  taken = ReducedStepperAdvanceBranches(s, state);
+  if (report->works) report->damping -= taken;
   PetscCall(ReducedStepperRelax(s, state));
   PetscCall(PetscArraycpy(state->q, s->q, n));
   PetscCall(PetscArraycpy(state->eta, s->next, m));

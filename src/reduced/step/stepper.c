@@ -267,7 +267,8 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   s->model = model;
   s->dt    = dt;
   s->rtol  = rtol;
-  s->w     = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
+  PetscCall(ReducedStepperSetBranches(s));
+  s->w = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
   PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, model->sparse ? 0 : n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
@@ -298,6 +299,9 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(PetscFree3(s->E, s->F, s->W));
   PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));
+  PetscCall(PetscFree2(s->A, s->pivot));
+  PetscCall(PetscFree3(s->damped.C, s->damped.Cm, s->damped.Cx));
+  PetscCall(PetscFree2(s->known, s->elongation));
   PetscCall(PetscFree(s->R));
   PetscCall(PetscFree(s->G));
   PetscCall(PetscFree(s->chosen));
