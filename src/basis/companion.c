@@ -27,8 +27,8 @@ static PetscErrorCode DenseShiftedCreate(const DensePencil *pencil, PetscReal sh
   w->n      = pencil->n;
   w->N      = pencil->damped ? 2 * w->n : w->n;
   w->shift  = shift;
-  PetscCall(PetscMalloc3(w->n * w->n, &w->P, w->N * w->N, &w->B, w->n, &w->pivot));
-  PetscCall(PetscCalloc4(w->N, &w->wr, w->N, &w->wi, w->N * w->N, &w->R, w->N * w->N, &w->L));
+  PetscCall(PetscMalloc2(w->n * w->n, &w->P, w->n, &w->pivot));
+  PetscCall(DenseSchurCreate(w->N, &w->schur));
   PetscFunctionReturn(0);
 }
 
@@ -37,14 +37,13 @@ void DensePencilAt(const DensePencil *q, PetscReal linear, PetscReal square, Pet
   for (PetscInt i = 0; i < q->n * q->n; i++) P[i] = q->K[i] + (q->damped ? linear * q->C[i] : 0) + square * q->M[i];
 }
 
-/* Symmetric: M x = theta P x; definite is false where P is not */
+/* Symmetric: M x = theta P x, x in place of Z; definite is false where P is not */
 static PetscErrorCode SolveSymmetric(DenseShifted *w, PetscBool *definite)
 {
   PetscFunctionBeginUser;
   DensePencilAt(w->pencil, w->shift, w->shift * w->shift, w->P);
-  PetscCall(PetscArraycpy(w->R, w->pencil->M, w->n * w->n));
-  PetscCall(PetscArrayzero(w->wi, w->n));
-  PetscCall(DenseSymmetricEigen(w->n, w->R, w->P, w->wr, definite));
+  PetscCall(PetscArraycpy(w->schur.Z, w->pencil->M, w->n * w->n));
+  PetscCall(DenseSymmetricEigen(w->n, w->schur.Z, w->P, w->schur.wr, definite));
   PetscFunctionReturn(0);
 }
 
@@ -80,8 +79,9 @@ PetscErrorCode DenseCompanion(const DensePencil *q, const PetscReal s[2], PetscR
 static PetscErrorCode SolveGeneral(DenseShifted *w, PetscBool *singular)
 {
   PetscFunctionBeginUser;
-  PetscCall(DenseCompanion(w->pencil, (PetscReal[2]){w->shift, w->shift * w->shift}, w->P, w->pivot, w->B, singular));
-  if (!*singular) PetscCall(DenseEigen(w->N, w->B, w->wr, w->wi, w->L, w->R));
+  PetscCall(
+    DenseCompanion(w->pencil, (PetscReal[2]){w->shift, w->shift * w->shift}, w->P, w->pivot, w->schur.T, singular));
+  if (!*singular) PetscCall(DenseSchurForm(&w->schur));
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +91,7 @@ static PetscBool IsOnShift(const DenseShifted *w)
   const PetscReal unit = w->pencil->damped ? 1 : w->shift * w->shift;
 
   for (PetscInt i = 0; i < w->N; i++)
-    if (hypot(w->wr[i], w->wi[i]) * unit > ON_SHIFT) return PETSC_TRUE;
+    if (hypot(w->schur.wr[i], w->schur.wi[i]) * unit > ON_SHIFT) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -119,16 +119,17 @@ PetscErrorCode DenseShiftedSolve(const DensePencil *pencil, PetscReal shift, Den
 
 PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *lambda)
 {
-  const PetscComplex theta = CMPLX(w->wr[i], w->wi[i]);
+  const PetscReal    wr = w->schur.wr[i], wi = w->schur.wi[i];
+  const PetscComplex theta = CMPLX(wr, wi);
   PetscComplex       kappa;
 
   if (theta == 0) return PETSC_FALSE;
   if (w->pencil->damped) {
-    *lambda = w->wi[i] == 0 ? CMPLX(w->shift * (1 + 1 / w->wr[i]), 0) : w->shift * (1 + 1 / theta);
+    *lambda = wi == 0 ? CMPLX(w->shift * (1 + 1 / wr), 0) : w->shift * (1 + 1 / theta);
     return cimag(*lambda) >= 0 ? PETSC_TRUE : PETSC_FALSE;
   }
-  if (w->wi[i] == 0) {
-    const PetscReal real = 1 / w->wr[i] - w->shift * w->shift;
+  if (wi == 0) {
+    const PetscReal real = 1 / wr - w->shift * w->shift;
 
     *lambda = real > 0 ? CMPLX(0, PetscSqrtReal(real)) : CMPLX(PetscSqrtReal(-real), 0);
     return PETSC_TRUE;
@@ -139,21 +140,26 @@ PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *la
   return PETSC_TRUE;
 }
 
-/* Rows of eigenvector i of LAPACK's real storage from offset on, x [n]; conjugate for left vectors */
-static void VectorGet(const DenseShifted *w, const PetscReal V[], PetscInt i, PetscInt offset, PetscBool left,
-                      PetscComplex x[])
+/* Rows of vector i from offset on, x [n]; conjugate for left vectors */
+static PetscErrorCode VectorGet(const DenseShifted *w, PetscInt i, PetscInt offset, PetscBool left, PetscComplex x[])
 {
-  const PetscReal  sign = left ? -1 : 1;
-  const PetscInt   at   = w->wi[i] < 0 ? i - 1 : i;
-  const PetscReal *r = V + at * w->N + offset, *c = r + w->N;
+  const PetscReal wi = w->schur.wi[i], sign = (wi > 0 ? 1 : -1) * (left ? -1 : 1);
+  PetscReal      *v;
 
-  for (PetscInt k = 0; k < w->n; k++)
-    x[k] = w->wi[i] == 0 ? CMPLX(r[k], 0) : CMPLX(r[k], w->wi[i] > 0 ? sign * c[k] : -sign * c[k]);
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * w->N, &v));
+  PetscCall(DenseSchurVector(&w->schur, wi < 0 ? i - 1 : i, left, v));
+  for (PetscInt k = 0; k < w->n; k++) x[k] = CMPLX(v[offset + k], wi == 0 ? 0 : sign * v[w->N + offset + k]);
+  PetscCall(PetscFree(v));
+  PetscFunctionReturn(0);
 }
 
-void DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[])
+PetscErrorCode DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[])
 {
-  VectorGet(w, w->R, i, 0, PETSC_FALSE, x);
+  PetscFunctionBeginUser;
+  if (!w->pencil->symmetric) PetscCall(VectorGet(w, i, 0, PETSC_FALSE, x));
+  for (PetscInt k = 0; k < w->n && w->pencil->symmetric; k++) x[k] = w->schur.Z[i * w->n + k];
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[])
@@ -163,7 +169,7 @@ PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(2 * n, &parts));
-  VectorGet(w, w->L, i, w->N - n, PETSC_TRUE, y);
+  PetscCall(VectorGet(w, i, w->N - n, PETSC_TRUE, y));
   DenseSplit(n, y, parts);
   PetscCall(DenseSolve(n, w->P, w->pivot, PETSC_TRUE, 2, parts));
   DenseUnite(n, parts, y);
@@ -174,7 +180,7 @@ PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex 
 PetscErrorCode DenseShiftedDestroy(DenseShifted *w)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(w->P, w->B, w->pivot));
-  PetscCall(PetscFree4(w->wr, w->wi, w->R, w->L));
+  PetscCall(PetscFree2(w->P, w->pivot));
+  PetscCall(DenseSchurDestroy(&w->schur));
   PetscFunctionReturn(0);
 }

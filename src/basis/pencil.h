@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/algebra/dense.h"
+#include "schur.h"
 #include <squeal/pencil.h>
 
 /* h(lambda) A, A [n * n] */
@@ -37,9 +38,8 @@ typedef struct {
   const DensePencil *pencil;
   PetscInt           n, N; /* sizes of Q and of the standard problem, N = 2 n with damping */
   PetscReal          shift;
-  PetscReal         *P, *B;   /* [n * n] factors of Q(shift); [N * N] */
-  PetscReal         *wr, *wi; /* [N] theta */
-  PetscReal         *R, *L;   /* [N * N] in LAPACK's real storage */
+  PetscReal         *P;     /* [n * n] factors of Q(shift) */
+  DenseSchur         schur; /* of theta */
   PetscBLASInt      *pivot;
 } DenseShifted;
 
@@ -47,8 +47,8 @@ typedef struct {
 PetscErrorCode DenseShiftedSolve(const DensePencil *pencil, PetscReal shift, DenseShifted *w);
 /* lambda of entry i of N, omega >= 0; false for what is not listed: infinite ones, the one of a conjugate pair */
 PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *lambda);
-/* Its vectors [n], of any length */
-void           DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[]);
+/* Its vectors [n], of any length; left ones of a pencil that is not symmetric */
+PetscErrorCode DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[]);
 PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[]);
 PetscErrorCode DenseShiftedDestroy(DenseShifted *w);
 

@@ -239,7 +239,7 @@ PetscErrorCode ChangeSolveVectors(const ChangeSpace *s, const ChangeRange *range
   for (PetscInt i = 0; i < w.N; i++) {
     if (!EntryIsListed(&w, i, range, &value)) continue;
     v[0].lambda[m] = value;
-    DenseShiftedRight(&w, i, z);
+    PetscCall(DenseShiftedRight(&w, i, z));
     UnitParts(n, z, &v[0].x[2 * m * n]);
     PetscCall(DenseShiftedLeft(&w, i, z));
     UnitParts(n, z, &v[1].x[2 * m++ * n]);
@@ -268,7 +268,7 @@ PetscErrorCode ChangeSolve(const ChangeSpace *s, PetscInt n_terms, const ChangeT
     ChangedMode mode;
 
     if (!EntryIsListed(&w, i, range, &mode.lambda)) continue;
-    DenseShiftedRight(&w, i, x);
+    PetscCall(DenseShiftedRight(&w, i, x));
     PetscCall(DenseShiftedLeft(&w, i, y));
     PetscCall(ErrorFind(&c, range->noise, mode.lambda, x, y, &mode.error));
     if (!(mode.error < cabs(mode.lambda))) {

@@ -81,7 +81,7 @@ static PetscErrorCode DenseSolveWithin(const DensePencil *pencil, PetscReal shif
   PetscCall(DenseShiftedSolve(pencil, shift, &w));
   for (PetscInt i = 0; i < w.N; i++) {
     if (!DenseShiftedLambda(&w, i, &lambda[*m]) || cabs(lambda[*m] - circle[0]) > circle[1]) continue;
-    DenseShiftedRight(&w, i, &X[*m * pencil->n]);
+    PetscCall(DenseShiftedRight(&w, i, &X[*m * pencil->n]));
     ++*m;
     DensePart(pencil->n, m, lambda, X);
   }

@@ -256,7 +256,7 @@ static PetscErrorCode DenseSolveAll(const Projection *p, const DensePencil *dens
 
   PetscFunctionBeginUser;
   PetscCall(DenseShiftedSolve(dense, PetscMax(high, PetscSqrtReal(PetscAbsReal(p->si.shift))), w));
-  values[1] = w->wr, values[2] = w->wi;
+  values[1] = w->schur.wr, values[2] = w->schur.wi;
   for (int i = 0; i < 3; i++)
     PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->N : 1), MPIU_REAL, 0, p->modes->comm));
   PetscFunctionReturn(0);
@@ -281,7 +281,7 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
     modes->lambda[i] = lambda[list[i]];
-    DenseShiftedRight(&w, list[i], &modes->vectors[0][i * k]);
+    PetscCall(DenseShiftedRight(&w, list[i], &modes->vectors[0][i * k]));
     PetscCall(DenseShiftedLeft(&w, list[i], &modes->vectors[1][i * k]));
     for (int side = 0; side < 2; side++)
       VectorTurn(k, cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE, &modes->vectors[side][i * k]);

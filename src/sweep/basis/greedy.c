@@ -134,6 +134,7 @@ static PetscErrorCode PointNext(GreedyWork *run, PetscInt *next)
   PetscFunctionBeginUser;
   *next = PointFarthest(run, &farthest);
   if (g->n_passed < enough && (farthest > 0 || g->n_samples == 1)) PetscFunctionReturn(0);
+  if (g->reach > g->window.growth) g->window.rtol = g->goal * g->rtol / POINTS_MARGIN; /* as in what comes after */
   if (g->lazy) PetscCall(EstimatesLazy(run));
   worst = EstimateWorst(run);
   if (!g->lazy || worst < 0 || run->estimate[worst] <= g->goal * g->rtol) PetscCall(EstimatesAll(run));
@@ -283,6 +284,7 @@ PetscErrorCode GreedyRun(Greedy *greedy, PetscInt n, const PetscReal points[], B
   run.guarded.low      = low < 0.5 * high ? 0 : low * (1 - GUARD);
   run.guarded.high     = high * (1 + GUARD);
   run.guarded.growth   = PetscMax(greedy->window.growth, greedy->reach);
+  run.guarded.rtol     = 0;
   PetscCall(PetscCalloc3(n, &run.estimate, n_parameters, &run.scale, n, &run.fresh));
   PetscCall(PointsScale(basis->pencil, n, points, run.scale));
   if (greedy->n_samples) PetscCall(PointNext(&run, &next));

@@ -25,16 +25,19 @@ static PetscErrorCode PointStoreReset(PointStore *store, const Reduced *reduced,
   PetscCall(PointStoreDestroy(store));
   store->n_used = n_used;
   store->window = *window;
-  PetscCall(PetscMalloc3(STORE_MOST * reduced->n_parameters, &store->p, STORE_MOST, &store->modes, STORE_MOST,
-                         &store->estimated));
+  PetscCall(PetscCalloc4(STORE_MOST * reduced->n_parameters, &store->p, STORE_MOST, &store->all, STORE_MOST,
+                         &store->modes, STORE_MOST, &store->estimated));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PointStoreDestroy(PointStore *store)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < store->n; i++) PetscCall(ReducedModesDestroy(&store->modes[i]));
-  PetscCall(PetscFree3(store->p, store->modes, store->estimated));
+  for (PetscInt i = 0; i < store->n; i++) {
+    PetscCall(ReducedModesDestroy(&store->all[i]));
+    PetscCall(ReducedModesDestroy(&store->modes[i]));
+  }
+  PetscCall(PetscFree4(store->p, store->all, store->modes, store->estimated));
   store->n = store->n_used = 0;
   PetscFunctionReturn(0);
 }
@@ -70,6 +73,21 @@ PetscErrorCode PointEstimate(const Reduced *reduced, const PetscReal p[], Reduce
   PetscFunctionReturn(0);
 }
 
+/* Errors of a stored point, and which of its modes beyond the growth they let pass, on the basis that there is now */
+static PetscErrorCode StoredEstimate(PointStore *store, const Reduced *reduced, PetscInt at)
+{
+  const PetscReal *p = &store->p[at * reduced->n_parameters];
+
+  PetscFunctionBeginUser;
+  if (store->estimated[at] == reduced->n) PetscFunctionReturn(0);
+  PetscCall(ReducedModesDestroy(&store->modes[at]));
+  PetscCall(ReducedModesSelect(&store->all[at], store->all[at].n, NULL, &store->modes[at]));
+  PetscCall(ReducedDropInexact(reduced, p, &store->window, &store->modes[at]));
+  PetscCall(PointEstimate(reduced, p, &store->modes[at]));
+  store->estimated[at] = reduced->n;
+  PetscFunctionReturn(0);
+}
+
 /* Not collective. The eigenvalues are kept with the model, the errors with the size of the whole basis: after
    vectors were added the errors alone are computed again. The caller gets a copy. */
 PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const ReducedWindow *window,
@@ -90,12 +108,10 @@ PetscErrorCode PointStoreSolve(PointStore *store, const Reduced *reduced, const 
   if (at < 0) {
     at = store->n;
     PetscCall(PetscArraycpy(&store->p[at * reduced->n_parameters], p, reduced->n_parameters));
-    PetscCall(ReducedSolve(reduced, p, window, &store->modes[at]));
-    store->estimated[at] = 0;
+    PetscCall(ReducedSolveAll(reduced, p, window, &store->all[at]));
     store->n++;
   }
-  if (store->estimated[at] != reduced->n) PetscCall(PointEstimate(reduced, p, &store->modes[at]));
-  store->estimated[at] = reduced->n;
+  PetscCall(StoredEstimate(store, reduced, at));
   PetscCall(ReducedModesSelect(&store->modes[at], store->modes[at].n, NULL, modes));
   PetscFunctionReturn(0);
 }

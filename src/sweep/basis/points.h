@@ -11,7 +11,8 @@ typedef struct {
   PetscInt      n, n_used; /* points; vectors of the model */
   PetscInt     *estimated; /* [n] size of the basis that the errors are from */
   PetscReal    *p;         /* [n][n_parameters] */
-  ReducedModes *modes;     /* [n] */
+  ReducedModes *all;       /* [n] with all beyond the growth of the window, known or not */
+  ReducedModes *modes;     /* [n] with errors */
   ReducedWindow window;
 } PointStore;
 

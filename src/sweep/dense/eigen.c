@@ -40,28 +40,29 @@ PetscReal DensePencilNoise(const DensePencil *q, PetscInt n, const PetscComplex 
   return PETSC_MACHINE_EPSILON * PetscSqrtReal(sum_x) * PetscSqrtReal(sum_y);
 }
 
-/* Whether lambda is zero within rounding of K, here and on the mesh, and of the shifted solution:
+/* Whether lambda of entry i is zero within rounding of K, here and on the mesh, and of the shifted solution:
       |lambda|^2 x^H M x <= 100 (noise of the dense K + eps x^H E x + eps h^2 x^H M x),
    the last since eigenvalues come from those of a problem shifted by h. E = NULL: the mesh is left to
    RoundingMarkRigid(). */
-static PetscErrorCode IsRigid(const DenseShifted *w, const PetscReal E[], PetscComplex lambda, const PetscComplex x[],
+static PetscErrorCode IsRigid(const DenseShifted *w, const PetscReal E[], PetscInt i, PetscComplex lambda,
                               PetscBool *rigid)
 {
   const PetscInt  n      = w->n;
   const PetscReal square = cabs(lambda) * cabs(lambda), own = PETSC_MACHINE_EPSILON * w->shift * w->shift;
-  PetscComplex   *Mx;
+  PetscComplex   *x, *Mx;
   PetscReal       mass = 0, mesh = 0;
 
   PetscFunctionBeginUser;
   *rigid = PETSC_FALSE;
   if (square > w->shift * w->shift) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(n, &Mx));
+  PetscCall(PetscMalloc2(n, &x, n, &Mx));
+  PetscCall(DenseShiftedRight(w, i, x));
   PetscCall(DenseTimes(&(DenseBlock){w->pencil->M, n, n, n}, PETSC_FALSE, 1, x, Mx));
   for (PetscInt k = 0; k < n; k++) mass += creal(conj(x[k]) * Mx[k]);
-  PetscCall(PetscFree(Mx));
   if (E) PetscCall(DenseEnergies(n, E, 1, x, &mesh));
   mesh *= PETSC_MACHINE_EPSILON;
   if (square * mass <= RIGID_FLOOR * (DensePencilNoise(w->pencil, n, x, x) + mesh + own * mass)) *rigid = PETSC_TRUE;
+  PetscCall(PetscFree2(x, Mx));
   PetscFunctionReturn(0);
 }
 
@@ -100,17 +101,14 @@ static PetscErrorCode RigidOnce(PetscInt n_rigid, ReducedModes *modes)
 static PetscErrorCode List(const DenseShifted *w, const PetscReal E[], const ReducedWindow *window, PetscInt list[],
                            PetscComplex lambda[], PetscInt count[2])
 {
-  PetscComplex *x;
-  PetscInt      n = 0, n_rigid = 0;
+  PetscInt n = 0, n_rigid = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(w->n, &x));
   for (PetscInt i = 0; i < w->N; i++) {
     PetscBool rigid;
 
     if (!DenseShiftedLambda(w, i, &lambda[i])) continue;
-    DenseShiftedRight(w, i, x);
-    PetscCall(IsRigid(w, E, lambda[i], x, &rigid));
+    PetscCall(IsRigid(w, E, i, lambda[i], &rigid));
     if (rigid) lambda[i] = 0;
     if (!IsInside(window, lambda[i])) continue;
     list[n] = i;
@@ -122,7 +120,6 @@ static PetscErrorCode List(const DenseShifted *w, const PetscReal E[], const Red
   }
   count[0] = n;
   count[1] = n_rigid;
-  PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
 }
 
@@ -144,7 +141,7 @@ PetscErrorCode DensePencilEigen(const DensePencil *pencil, const PetscReal E[], 
   for (PetscInt k = 0; k < count[0]; k++) {
     modes->lambda[k] = lambda[list[k]];
     modes->rigid[k]  = k < count[1] ? PETSC_TRUE : PETSC_FALSE;
-    DenseShiftedRight(&w, list[k], modes->x + k * w.n);
+    PetscCall(DenseShiftedRight(&w, list[k], modes->x + k * w.n));
     if (pencil->symmetric)
       PetscCall(PetscArraycpy(modes->y + k * w.n, modes->x + k * w.n, w.n));
     else

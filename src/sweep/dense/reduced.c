@@ -329,10 +329,10 @@ PetscErrorCode ReducedPencilLoose(const Reduced *reduced, const PetscReal p[], P
   PetscFunctionReturn(0);
 }
 
-/* Not collective: each rank solves points of its own. Modes are inside the window with its tolerance, sorted,
-   scaled and biorthogonal; errors are 0 until ReducedEstimate(), unless modes beyond the growth had to be judged. */
-PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
-                            ReducedModes *modes)
+/* Not collective: each rank solves points of its own. Modes are sorted, scaled and biorthogonal; errors are 0 until
+   ReducedEstimate(). */
+PetscErrorCode ReducedSolveAll(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                               ReducedModes *modes)
 {
   const PetscInt n = reduced->n_used;
   DensePencil    pencil;
@@ -351,10 +351,18 @@ PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const R
   PetscCall(ModesSort(modes));
   PetscCall(ModesFinish(&pencil, Ms, modes));
   if (!pencil.damped) PetscCall(RoundingMarkRigid(reduced, p, window, modes));
-  PetscCall(ReducedDropInexact(reduced, p, window, modes));
   PetscCall(DensePencilDestroy(&pencil));
   PetscCall(PetscFree(E));
   PetscCall(PetscFree(Ms));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                            ReducedModes *modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReducedSolveAll(reduced, p, window, modes));
+  PetscCall(ReducedDropInexact(reduced, p, window, modes));
   PetscFunctionReturn(0);
 }
 

@@ -64,6 +64,9 @@ typedef struct {
    right ones. Undamped, a negative kappa is listed as lambda = +sqrt(-kappa) only; damped, all real eigenvalues are. */
 PetscErrorCode ReducedSolve(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
                             ReducedModes *modes);
+/* The same with all modes beyond the growth of a window with rtol > 0, before ReducedDropInexact() */
+PetscErrorCode ReducedSolveAll(const Reduced *reduced, const PetscReal p[], const ReducedWindow *window,
+                               ReducedModes *modes);
 /* A single simple eigenvalue from a guess: lambda with the vectors of the first mode of from, or with none (NULL) when
    lambda is known to many digits. modes->n = 1, or 0 where the iteration does not end */
 PetscErrorCode ReducedFollow(const Reduced *reduced, const PetscReal p[], PetscComplex lambda, const ReducedModes *from,
