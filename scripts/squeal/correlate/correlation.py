@@ -52,8 +52,8 @@ def placed(measured, args):
         if left.max() > args.tolerance:
             raise BadInput(f"--points: point {worst} is {1e3 * left.max():.4g} mm off after the best turn and shift, --tolerance is "
                            f"{1e3 * args.tolerance:.4g} mm; are the units right (--units)?")
-        said = [f"{len(left)} points fix the axes, {1e3 * numpy.sqrt((left**2).mean()):.3g} mm off on average, {worst} most, "
-                f"{1e3 * left.max():.3g} mm"]
+        said = [f"{len(left)} points fix the axes, {1e3 * numpy.sqrt((left**2).mean()):.3g} mm off on average, at most "
+                f"{1e3 * left.max():.3g} mm ({worst})"]
     elif args.transform is not None:
         turn, shift, said = rotation(args.transform[3:]), args.transform[:3], []
     else:

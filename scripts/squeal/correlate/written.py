@@ -112,9 +112,8 @@ def print_sensors(to):
     """Where the sensors are."""
     far = max(to.found, key=lambda one: one.distance)
     apart = numpy.array([one.distance for one in to.found])
-    print(f"{len(to.found)} sensors on the mesh: {1e3 * apart.mean():.3g} mm from it on average, {far.channel.name} most, "
-          f"{1e3 * far.distance:.3g} mm "
-          f"(on {far.part}); refused beyond {1e3 * to.tolerance:.3g} mm")
+    print(f"{len(to.found)} sensors on the mesh: {1e3 * apart.mean():.3g} mm from it on average, at most "
+          f"{1e3 * far.distance:.3g} mm ({far.channel.name}, on {far.part}); refused beyond {1e3 * to.tolerance:.3g} mm")
     alike = [one for one in to.found if one.others]
     if alike:
         print(f"sensor {alike[0].channel.name} lies on {alike[0].part} and {', '.join(alike[0].others)} alike, taken on {alike[0].part}"
