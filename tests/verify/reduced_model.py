@@ -26,11 +26,21 @@ SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report"
 MOST = 60  # cells
 NODE = """
 const fs = require("fs"), read = name => fs.readFileSync(`${process.argv[1]}/${name}.js`), file = fs.readFileSync(process.argv[2]);
-const {readModel, modesAt} = new Function("module", read("dense") + read("reduced") + "; return module.exports;")({});
+const {readModel, modesAt} = new Function("module",
+  ["dense", "hessenberg", "follow", "reduced"].map(read).join("") + "; return module.exports;")({});
 const model = readModel(file.buffer.slice(file.byteOffset, file.byteOffset + file.length));
-const begun = Date.now(), found = JSON.parse(fs.readFileSync(0)).map(p => modesAt(model, p));
-console.log(JSON.stringify({found, seconds: (Date.now() - begun) / 1000}));
-"""
+const points = JSON.parse(fs.readFileSync(0)), begun = Date.now(), found = points.map(p => modesAt(model, p));
+const seconds = (Date.now() - begun) / 1000, far = (a, b) => a.length !== b.length ? 1 : Math.max(0, ...a.map((mode, k) =>
+  Math.hypot(mode.growth - b[k].growth, 2 * Math.PI * (mode.freq - b[k].freq)) / model.high));
+let [moved, followed, apart] = [0, 0, 0];
+for (const goal of points.slice(0, 12)) {  // as a slider moves, from one point to the other in steps
+  for (let k = 1, own = points[0]; k <= STEPS; k++, moved++) {
+    const p = own.map((value, i) => value + k / STEPS * (goal[i] - value)), modes = modesAt(model, p, {moving: true}), last = model.before;
+    if (model.followed) { followed++; apart = Math.max(apart, far(modes, modesAt(model, p))); model.before = last; }
+  }
+}
+console.log(JSON.stringify({found, seconds, moved, followed, apart}));
+""".replace("STEPS", "8")
 
 
 def read(path):
@@ -101,15 +111,21 @@ def sweep(folder, model, node):
         for row in csv.DictReader(table):
             rows.setdefault(float(row["value"]), []).append(complex(float(row["growth_rad_s"]), 2 * numpy.pi * float(row["freq_hz"])))
     worst, n_modes = 0.0, 0
-    found = by_node(node, folder, [[value] * len(model["parameters"]) for value in rows])["found"]
-    for modes, given in zip(found, rows.values(), strict=True):
+    answer = by_node(node, folder, [[value] * len(model["parameters"]) for value in rows])
+    for modes, given in zip(answer["found"], rows.values(), strict=True):
         values = numpy.array([complex(mode["growth"], 2 * numpy.pi * mode["freq"]) for mode in modes])
         if len(values) != len(given):
             print(f"{len(values)} modes for {len(given)}")
             return 1
         worst, n_modes = max(worst, max(min(abs(values - value)) for value in given)), n_modes + len(given)
     print(f"{n_modes} modes at {len(rows)} values: they differ by {worst:.1e} rad/s of {model['high']:.4g}")
-    return 0 if n_modes and worst <= 1e-9 * model["high"] else 1
+    return 0 if n_modes and worst <= 1e-9 * model["high"] and follows(answer) else 1
+
+
+def follows(answer):
+    """Whether modes followed in small steps are those of the whole problem, nearly always."""
+    print(f"{answer['followed']} of {answer['moved']} steps followed, within {answer['apart']:.1e} of the largest frequency")
+    return answer["followed"] >= 0.8 * answer["moved"] > 0 and answer["apart"] <= 1e-9
 
 
 def main(folder, page=False):
@@ -135,7 +151,7 @@ def main(folder, page=False):
     far = max((min(abs(own - value)) for value in values), default=0)
     print(f"{len(cells)} points of {model['n_used']} vectors: growth differs by {worst:.1e} rad/s of {model['high']:.4g}, from scipy by "
           f"{far:.1e}; {len(cells) / answer['seconds']:.1f} a second")
-    return 0 if cells and len(values) == len(own) and \
+    return 0 if cells and len(values) == len(own) and follows(answer) and \
         worst <= 1e-9 * model["high"] and far <= 1e-7 * model["high"] and (not page or page_says(folder, answer["found"][0])) else 1
 
 

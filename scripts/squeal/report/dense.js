@@ -1,5 +1,5 @@
-// Dense matrices of the page: factors, a Hessenberg form, its eigenvalues by the QR iteration, and shifted systems with it, each in the
-// square of the size. No DOM, nothing of models: reduced.js begins after it, in a worker of the page and in node.
+// Dense matrices of the page: factors, a Hessenberg form, its eigenvalues by the QR iteration. No DOM, nothing of models: hessenberg.js,
+// follow.js and reduced.js come after it, in a worker of the page and in node.
 //
 //   A = S H S^-1,   S of scaling by powers of two and elimination (EISPACK balanc, elmhes),   H upper Hessenberg, kept by rows
 "use strict";
@@ -30,6 +30,20 @@ function addAt(n, f, a, o, b, p) {
     b[p + i + 3] += f * a[o + i + 3];
   }
   for (; i < n; i++) b[p + i] += f * a[o + i];
+}
+
+// a[p + i] += f a[o + i] of n numbers; then sum l[o + i] a[p + i], one row of a matrix being read once
+function addAndDot(n, f, a, o, p, l) {
+  let s = 0, t = 0, i = 0;
+  for (; i < n - 1; i += 2) {
+    const x = a[p + i] + f * a[o + i], y = a[p + i + 1] + f * a[o + i + 1];
+    a[p + i] = x;
+    a[p + i + 1] = y;
+    s += x * l[o + i];
+    t += y * l[o + i + 1];
+  }
+  if (i < n) { a[p + i] += f * a[o + i]; s += a[p + i] * l[o + i]; }
+  return s + t;
 }
 
 // Factors of A [n * n] (column-major) in place; the rows' order
@@ -110,12 +124,10 @@ function eliminate(N, a, l, order) {
     const pivot = a[m * N + m - 1], top = m * N;
     l.fill(0, top + m + 1, top + N);
     if (pivot === 0) continue;
-    for (let i = m + 1; i < N; i++) {
-      const f = l[top + i] = a[i * N + m - 1] / pivot;
-      a[i * N + m - 1] = 0;
-      addAt(N - m, -f, a, top + m, a, i * N + m);
-    }
-    for (let i = 0; i < N; i++) a[i * N + m] += dotAt(N - m - 1, l, top + m + 1, a, i * N + m + 1);
+    for (let i = m + 1; i < N; i++) { l[top + i] = a[i * N + m - 1] / pivot; a[i * N + m - 1] = 0; }
+    for (let i = m + 1; i < N; i++)
+      a[i * N + m] += addAndDot(N - m - 1, -l[top + i], a, top + m + 1, i * N + m + 1, l) - l[top + i] * a[top + m];
+    for (let i = 0; i <= m; i++) a[i * N + m] += dotAt(N - m - 1, l, top + m + 1, a, i * N + m + 1);
   }
 }
 
@@ -211,182 +223,5 @@ function reflect2(n, a, k, l, last, fx, fy, q) {
   for (let i = l * n + k, end = Math.min(last, k + 3) * n + k; i <= end; i += n) {
     const t = fx * a[i] + fy * a[i + 1];
     a[i] -= t; a[i + 1] -= t * q;
-  }
-}
-
-// A = S H S^-1 and systems with A - s, s = a + i b. Vectors are two arrays, re and im; im is null for real ones with a real s
-class Hessenberg {
-  constructor(N) {
-    this.N = N;
-    this.h = new Float64Array(N * N);  // by rows
-    this.l = new Float64Array(N * N);
-    this.work = new Float64Array(N * N);
-    this.im = new Float64Array(N * N);
-    this.d = new Float64Array(N);
-    this.wr = new Float64Array(N);
-    this.wi = new Float64Array(N);
-    this.order = new Int32Array(N);
-    this.lr = new Float64Array(N);
-    this.li = new Float64Array(N);
-    this.swapped = new Uint8Array(N);
-  }
-
-  // Of what stands in h. The scales of the first matrix serve for all that come after it, which are much like it
-  reduce() {
-    const {N, h, d} = this;
-    let sum = 0;
-    for (let i = 0; i < N * N; i++) sum += h[i] - h[i];  // of numbers that are finite zero
-    if (sum !== 0) throw new Error(NOT_FINITE);
-    if (d[0] === 0) balance(N, h, d);
-    else for (let i = 0; i < N; i++) for (let j = 0, f = 1 / d[i]; j < N; j++) h[i * N + j] *= f * d[j];
-    eliminate(N, h, this.l, this.order);
-  }
-
-  eigenvalues() {
-    this.work.set(this.h);
-    hqr(this.N, this.work, this.wr, this.wi);
-  }
-
-  // Factors of H - s; a pivot that is zero becomes a tiny one, as it should be for vectors
-  shift(a, b) {
-    const N = this.N, u = this.work, v = this.im, tiny = 2.2e-16 * (Math.abs(a) + Math.abs(b)) || 1e-300;
-    this.complex = b !== 0;
-    u.set(this.h);
-    for (let i = 0; i < N; i++) {
-      u[i * N + i] -= a;
-      if (!this.complex) continue;
-      v.fill(0, i * N + Math.max(0, i - 1), (i + 1) * N);
-      v[i * N + i] = -b;
-    }
-    for (let k = 0; k < N; k++) {
-      const row = k * N, next = row + N;
-      if (k === N - 1) { if (Math.abs(u[row + k]) + (this.complex ? Math.abs(v[row + k]) : 0) < tiny) u[row + k] = tiny; break; }
-      const mine = Math.abs(u[row + k]) + (this.complex ? Math.abs(v[row + k]) : 0);
-      const other = Math.abs(u[next + k]) + (this.complex ? Math.abs(v[next + k]) : 0);
-      this.swapped[k] = other > mine ? 1 : 0;
-      if (other > mine) for (let j = k; j < N; j++) {
-        let t = u[row + j]; u[row + j] = u[next + j]; u[next + j] = t;
-        if (this.complex) { t = v[row + j]; v[row + j] = v[next + j]; v[next + j] = t; }
-      }
-      if (Math.max(mine, other) < tiny) u[row + k] = tiny;
-      if (this.complex) this.clearComplex(k, row, next);
-      else {
-        const f = this.lr[k] = u[next + k] / u[row + k];
-        addAt(N - k - 1, -f, u, row + k + 1, u, next + k + 1);
-      }
-    }
-  }
-
-  clearComplex(k, row, next) {
-    const u = this.work, v = this.im, a = u[row + k], b = v[row + k], d = a * a + b * b, x = u[next + k], y = v[next + k];
-    const f = this.lr[k] = (x * a + y * b) / d, g = this.li[k] = (y * a - x * b) / d;
-    if (f !== 0 || g !== 0) for (let j = k + 1; j < this.N; j++) {
-      u[next + j] -= f * u[row + j] - g * v[row + j];
-      v[next + j] -= f * v[row + j] + g * u[row + j];
-    }
-  }
-
-  // x := (H - s)^-1 x
-  solve(re, im) {
-    const N = this.N, u = this.work, v = this.im;
-    if (!im) { this.solveRe(re); return; }
-    for (let k = 0; k < N - 1; k++) {
-      if (this.swapped[k]) { let t = re[k]; re[k] = re[k + 1]; re[k + 1] = t; t = im[k]; im[k] = im[k + 1]; im[k + 1] = t; }
-      const f = this.lr[k], g = this.li[k];
-      re[k + 1] -= f * re[k] - g * im[k];
-      im[k + 1] -= f * im[k] + g * re[k];
-    }
-    for (let k = N - 1; k >= 0; k--) {
-      const o = k * N;
-      let x = 0, y = 0, z = 0, w = 0;
-      for (let j = k + 1; j < N; j++) {
-        x += u[o + j] * re[j];
-        z += v[o + j] * im[j];
-        y += u[o + j] * im[j];
-        w += v[o + j] * re[j];
-      }
-      x = re[k] - (x - z);
-      y = im[k] - (y + w);
-      const a = u[o + k], b = v[o + k], d = a * a + b * b;
-      re[k] = (x * a + y * b) / d;
-      im[k] = (y * a - x * b) / d;
-    }
-  }
-
-  solveRe(x) {
-    const N = this.N, u = this.work;
-    for (let k = 0; k < N - 1; k++) {
-      if (this.swapped[k]) { const t = x[k]; x[k] = x[k + 1]; x[k + 1] = t; }
-      x[k + 1] -= this.lr[k] * x[k];
-    }
-    for (let k = N - 1; k >= 0; k--) {
-      const o = k * N;
-      x[k] = (x[k] - dotAt(N - k - 1, u, o + k + 1, x, k + 1)) / u[o + k];
-    }
-  }
-
-  solveTransposedRe(x) {
-    const N = this.N, u = this.work;
-    for (let k = 0; k < N; k++) {
-      const o = k * N, f = x[k] /= u[o + k];
-      addAt(N - k - 1, -f, u, o + k + 1, x, k + 1);
-    }
-    for (let k = N - 2; k >= 0; k--) {
-      x[k] -= this.lr[k] * x[k + 1];
-      if (this.swapped[k]) { const t = x[k]; x[k] = x[k + 1]; x[k + 1] = t; }
-    }
-  }
-
-  // x := (H - s)^-T x
-  solveTransposed(re, im) {
-    const N = this.N, u = this.work, v = this.im;
-    if (!im) { this.solveTransposedRe(re); return; }
-    for (let k = 0; k < N; k++) {
-      const o = k * N, a = u[o + k], b = v[o + k], d = a * a + b * b;
-      const x = (re[k] * a + im[k] * b) / d, y = (im[k] * a - re[k] * b) / d;
-      re[k] = x; im[k] = y;
-      for (let j = k + 1; j < N; j++) {
-        re[j] -= u[o + j] * x - v[o + j] * y;
-        im[j] -= u[o + j] * y + v[o + j] * x;
-      }
-    }
-    for (let k = N - 2; k >= 0; k--) {
-      const f = this.lr[k], g = this.li[k];
-      re[k] -= f * re[k + 1] - g * im[k + 1];
-      im[k] -= f * im[k + 1] + g * re[k + 1];
-      if (this.swapped[k]) { let t = re[k]; re[k] = re[k + 1]; re[k + 1] = t; t = im[k]; im[k] = im[k + 1]; im[k + 1] = t; }
-    }
-  }
-
-  // x := S x
-  back(x) {
-    const N = this.N;
-    for (let m = N - 2; m > 0; m--) {
-      addAt(N - m - 1, x[m], this.l, m * N + m + 1, x, m + 1);
-      const j = this.order[m], t = x[m];
-      x[m] = x[j]; x[j] = t;
-    }
-    for (let i = 0; i < N; i++) x[i] *= this.d[i];
-  }
-
-  // x := S^-1 x
-  forth(x) {
-    const N = this.N;
-    for (let i = 0; i < N; i++) x[i] /= this.d[i];
-    for (let m = 1; m < N - 1; m++) {
-      const j = this.order[m], t = x[m];
-      x[m] = x[j]; x[j] = t;
-      addAt(N - m - 1, -x[m], this.l, m * N + m + 1, x, m + 1);
-    }
-  }
-
-  // y := S^-T y
-  backTransposed(y) {
-    const N = this.N;
-    for (let m = N - 2; m > 0; m--) {
-      const sum = y[m] - dotAt(N - m - 1, this.l, m * N + m + 1, y, m + 1), j = this.order[m];
-      y[m] = y[j]; y[j] = sum;
-    }
-    for (let i = 0; i < N; i++) y[i] /= this.d[i];
   }
 }

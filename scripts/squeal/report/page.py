@@ -19,6 +19,7 @@ from .transients import transient_part
 from .vibrations import cycle_part, map_part
 
 HERE = Path(__file__).resolve().parent
+WORKER = "dense", "hessenberg", "follow", "reduced"  # what computes the modes of a reduced model
 LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",
@@ -104,7 +105,7 @@ def page(folders, title, opening, share):
     body = tag("body", tag("header", tag("h1", title), tag("p", subtitle(folders), class_="quiet")),
                navigation(folders, opening),
                tag("main", first, compare_section(folders, verdicts) if len(folders) > 1 else None, articles),
-               tag("script", resource("dense.js"), resource("reduced.js"), type="text/plain", id="reduced-code")
+               tag("script", *(resource(f"{name}.js") for name in WORKER), type="text/plain", id="reduced-code")
                if any("model" in folder.analyses for folder in folders) else None,
                tag("script", *(resource(name) for name in ("page.js", "viewer.js", "stage.js", "sliders.js"))))
     return join([Markup("<!DOCTYPE html>\n"), tag("html", head, body, lang="en")])

@@ -84,13 +84,15 @@ function formOf(model, pencil, p, first, n) {
   return {form, block, n, h, damped};
 }
 
+const GUARD = 0.1;  // of the highest frequency, beyond the band: modes that may come into it while a slider moves
+
 // lambda of the band or near it, im >= 0, each with its s: the eigenvalue of the form, lambda or kappa = -lambda^2. Of a pair of complex
 // kappa the one that grows and the one that decays have one s
 function candidates(model, {form, damped}) {
   const {N, wr, wi} = form, found = [];
   form.eigenvalues();
   const add = (lambda, s) => {
-    if (lambda[1] >= model.low * (1 - 1e-6) && lambda[1] <= model.high * (1 + 1e-6)) found.push({lambda, s});
+    if (lambda[1] >= model.low - GUARD * model.high && lambda[1] <= (1 + GUARD) * model.high) found.push({lambda, s});
   };
   for (let k = 0; k < N; k++) {
     const re = wr[k], im = wi[k];
@@ -117,26 +119,52 @@ function normalise(x) {
 
 const ENOUGH = 1e-8;  // of what rounding lets a vector grow by in a step of inverse iteration: less calls for another one
 
-// x of s by inverse iteration, and w, M' times the left vector: both of M^-1 Q
-function vectorsOf({form, n, damped}, [a, b]) {
-  const {N} = form, x = vector(N, b !== 0), w = vector(N, b !== 0);
+// Vectors to begin with, in those of the form
+function startOf({N}, complex) {
+  const x = vector(N, complex), w = vector(N, complex);
   for (let i = 0; i < N; i++) { x.re[i] = Math.cos(1 + i * i); w.re[i] = Math.sin(2 + i); }
+  return {x, w};
+}
+
+// The part of y beside x, both of length 1
+const beside = (x, y) => Math.sqrt(Math.max(0, 1 - Math.min(1, Math.hypot(...dot({re: x.re, im: x.im?.map(value => -value)}, y)))));
+
+// x of s by inverse iteration, and w, M' times the left vector, both of M^-1 Q. With given vectors of the form to begin with, which it
+// overwrites, it is one step; turned: what of them was not x or w, in a product
+function vectorsOf({form, n, damped}, [a, b], given) {
+  const {x, w} = given ?? startOf(form, b !== 0);
+  if (given) { form.forth(x.re, x.im); form.forthTransposed(w.re, w.im); }
   normalise(x);
   normalise(w);
+  const before = given && [likewise(x, x.im), likewise(w, w.im)];
   form.shift(a, b);
-  for (let turn = 0, grown = 0; turn < 2 && grown < ENOUGH; turn++) {
+  for (let turn = 0, grown = 0; turn < (given ? 1 : 2) && grown < ENOUGH; turn++) {
     form.solve(x.re, x.im);
     form.solveTransposed(w.re, w.im);
     grown = 2.2e-16 * Math.hypot(a, b) * Math.min(normalise(x), normalise(w));
   }
-  for (const part of partsIn(x)) {
-    form.back(x[part]);
-    form.backTransposed(w[part]);
-    if (damped) { x[part] = x[part].slice(0, n); w[part] = w[part].slice(n); }
-  }
+  const turned = given ? beside(before[0], x) * beside(before[1], w) : 0;
+  form.back(x.re, x.im);
+  form.backTransposed(w.re, w.im);
+  if (damped) for (const part of partsIn(x)) { x[part] = x[part].slice(0, n); w[part] = w[part].slice(n); }
   normalise(x);
   normalise(w);
-  return {x, w};
+  return {x, w, turned};
+}
+
+// Columns o/n .. + 3 of A, each n numbers, with x[j .. j + 3], or transposed with all of x
+function fourColumns(n, A, o, x, y, j, transposed) {
+  const p = o + n, q = p + n, r = q + n;
+  let [s, t, u, v] = transposed ? [0, 0, 0, 0] : [x[j], x[j + 1], x[j + 2], x[j + 3]];
+  if (!transposed) {
+    for (let i = 0; i < n; i++) y[i] += s * A[o + i] + t * A[p + i] + u * A[q + i] + v * A[r + i];
+    return;
+  }
+  for (let i = 0; i < n; i++) {
+    const f = x[i];
+    s += f * A[o + i]; t += f * A[p + i]; u += f * A[q + i]; v += f * A[r + i];
+  }
+  y[j] = s; y[j + 1] = t; y[j + 2] = u; y[j + 3] = v;
 }
 
 // A x with the m columns of A from `first` on, rows n; transposed: A' x
@@ -144,8 +172,9 @@ function times(A, n, first, m, transposed, x) {
   const y = vector(transposed ? m : n, x.im);
   for (const part of partsIn(x)) {
     const v = x[part], out = y[part];
-    for (let j = 0; j < m; j++)
-      if (transposed) out[j] = dotAt(n, A, (first + j) * n, v, 0); else addAt(n, v[j], A, (first + j) * n, out, 0);
+    let j = 0;
+    for (; j < m - 3; j += 4) fourColumns(n, A, (first + j) * n, v, out, j, transposed);
+    for (; j < m; j++) if (transposed) out[j] = dotAt(n, A, (first + j) * n, v, 0); else addAt(n, v[j], A, (first + j) * n, out, 0);
   }
   return y;
 }
@@ -186,18 +215,18 @@ function rootOf([re, im], given) {
   return [Math.sqrt(0.5 * (size - re)), given[1] === 0 ? 0 : Math.sqrt(0.5 * (size + re))];
 }
 
-// One eigenvalue to all digits with its vectors: undamped kappa := kappa + w'(M^-1 K - kappa) x / w'x
-function refine(pencil, own, {lambda, s}) {
-  const {x, w} = vectorsOf(own, s), parts = partsOf(pencil, own.block, 0, own.n, false, x);
+// One eigenvalue to all digits with its vectors: undamped kappa := kappa + w'(M^-1 K - kappa) x / w'x; or one step to it from given vectors
+function refine(pencil, own, {lambda, s}, given) {
+  const {x, w, turned} = vectorsOf(own, s, given), least = given ? 1e-1 : 1e-4, parts = partsOf(pencil, own.block, 0, own.n, false, x);
   if (pencil.damped) {
     const change = quotient(dot(w, united(parts, s, false)), dot(w, united(parts, s, true)));
-    if (Math.hypot(...change) < 1e-4 * Math.hypot(...s)) lambda = [s[0] - change[0], s[1] - change[1]];
+    if (Math.hypot(...change) < least * Math.hypot(...s)) lambda = s = [s[0] - change[0], s[1] - change[1]];
   } else {
     const mass = dot(w, x), [a, b] = quotient(dot(w, parts[0]), mass), size = Math.hypot(...s);
-    if (Math.hypot(a - s[0], b - s[1]) < 1e-4 * size) s = s[1] === 0 ? [a, 0] : [a, b];
+    if (Math.hypot(a - s[0], b - s[1]) < least * size) s = s[1] === 0 ? [a, 0] : [a, b];
     lambda = rootOf(s, lambda);
   }
-  return {lambda, s, x, w, slope: pencil.damped ? dot(w, united(parts, lambda, true)) : dot(w, x)};
+  return {lambda, s, x, w, turned, slope: pencil.damped ? dot(w, united(parts, lambda, true)) : dot(w, x)};
 }
 
 // s' Q_zz^-1 r, by the form of Q_zz, over y' Q' x; undamped Q' = 2 lambda M
@@ -217,12 +246,12 @@ function estimate(pencil, own, rest, {lambda, s, x, w, slope}) {
   const r = apply(rest.block, 0, own.n, x, false), left = apply(own.block, own.n, n, w, true), v = vector(form.N, x.im);
   for (const part of partsIn(v)) {
     for (let i = 0; i < n; i++) v[part][damped ? n + i : i] = damped ? -r[part][i] : r[part][i];
-    form.forth(v[part]);
   }
+  form.forth(v.re, v.im);
   form.shift(...(damped ? lambda : s));
   form.solve(v.re, v.im);
+  form.back(v.re, v.im);
   for (const part of partsIn(v)) {
-    form.back(v[part]);
     v[part] = v[part].slice(0, n);
     if (damped) for (let i = 0; i < n; i++) v[part][i] /= h;
   }
@@ -230,10 +259,14 @@ function estimate(pencil, own, rest, {lambda, s, x, w, slope}) {
   return Math.hypot(...quotient(dot(left, v), derivative));
 }
 
-// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of the one `chosen`, by its place
-function modesAt(model, p, chosen = -1) {
+// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of the one `chosen`, by its place. `moving`: followed
+// from those before where they can be, which model.followed tells
+function modesAt(model, p, {chosen = -1, moving = false} = {}) {
   const pencil = pencilAt(model, p), own = formOf(model, pencil, p, 0, model.n_used), modes = [];
-  const found = candidates(model, own).map(mode => refine(pencil, own, mode));
+  let found = moving && model.before?.length ? follow(model, pencil, own, model.before) : null;
+  model.followed = found !== null;
+  found ??= candidates(model, own).map(mode => refine(pencil, own, mode));
+  model.before = found;
   const rest = model.n > model.n_used ? formOf(model, pencil, p, model.n_used, model.n - model.n_used) : null;
   for (const mode of found) {
     const {lambda: [a, b], x, s} = mode;

@@ -1,5 +1,6 @@
 "use strict";
-// Sliders of a reduced model: its modes at any values of the parameters, computed in a worker of the page (dense.js, reduced.js).
+// Sliders of a reduced model: its modes at any values of the parameters, computed in a worker of the page (dense.js to reduced.js). While a
+// slider moves they are followed from value to value; when it rests, all are computed anew.
 
 // The bytes of a text that is base64 of deflated bytes
 async function inflated(text) {
@@ -8,8 +9,10 @@ async function inflated(text) {
   return new Response(stream).arrayBuffer();
 }
 
-// A worker that answers {p, chosen} with {modes, n, took} or {fault}: n evaluations took so many ms, several where one is too quick to be
-// timed. A busy one gets the newest question when it is done
+const REST = 250;  // ms without a move
+
+// A worker that answers {p, moving} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one is too quick
+// to be timed. A busy one gets the newest question when it is done
 function asker(buffer, answer) {
   const code = document.getElementById("reduced-code").textContent + `
     let model = null;
@@ -18,8 +21,8 @@ function asker(buffer, answer) {
         if (data.buffer) { model = readModel(data.buffer); return; }
         const begun = performance.now();
         let modes, n = 0;
-        do { modes = modesAt(model, data.p, data.chosen); n++; } while (data.several && n < 200 && performance.now() - begun < 30);
-        postMessage({p: data.p, modes, n, took: performance.now() - begun});
+        do { modes = modesAt(model, data.p, {moving: data.moving}); n++; } while (data.several && n < 200 && performance.now() - begun < 30);
+        postMessage({p: data.p, modes, moving: data.moving, followed: model.followed, n, took: performance.now() - begun});
       } catch (error) { postMessage({fault: error.message}); }
     };`;
   const worker = new Worker(URL.createObjectURL(new Blob([code], {type: "text/javascript"})));
@@ -56,51 +59,65 @@ class Rate {
   }
 }
 
-// The row of a mode: frequency, growth, error, state
-function mode_row(model, mode) {
-  const row = document.createElement("tr"), size = Math.hypot(mode.growth, 2 * Math.PI * mode.freq);
+// What the row of a mode says: frequency, growth, error, state
+function mode_texts(model, mode) {
+  const size = Math.hypot(mode.growth, 2 * Math.PI * mode.freq);
   const error = mode.error + model.error * size + 1e-9 * size;
   const limit = Math.max(model.limit_growth, model.limit_ratio * size);
   const state = mode.growth > Math.max(error, limit) ? "unstable" : mode.growth > error ? "neutral" : "stable";
-  for (const text of [mode.freq.toFixed(3), mode.growth === 0 ? "0" : mode.growth.toPrecision(5), mode.error.toExponential(1), state]) {
-    const cell = document.createElement("td");
-    cell.textContent = text;
-    row.append(cell);
-  }
-  if (state === "unstable") row.className = "unstable";
-  return row;
+  return [mode.freq.toFixed(3), mode.growth === 0 ? "0" : mode.growth.toPrecision(5), mode.error.toExponential(1), state];
+}
+
+// Rows for all modes; those that there are serve again, and only what changes is written
+function show_modes(body, model, modes) {
+  while (body.rows.length > modes.length) body.deleteRow(-1);
+  modes.forEach((mode, k) => {
+    const texts = mode_texts(model, mode), row = body.rows[k] ?? body.insertRow();
+    texts.forEach((text, i) => {
+      const cell = row.cells[i] ?? row.insertCell();
+      if (cell.textContent !== text) cell.textContent = text;
+    });
+    row.classList.toggle("unstable", texts[3] === "unstable");
+  });
 }
 
 async function add_sliders(place) {
   const buffer = await inflated(document.getElementById(place.dataset.source).textContent);
   const model = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 0, new Uint8Array(buffer).indexOf(10))));
   const sliders = [...place.querySelectorAll("input[type=range]")], body = place.querySelector("tbody");
-  const said = place.querySelector(".said"), beyond = place.querySelector(".beyond-line"), rate = new Rate();
+  const said = place.querySelector(".said"), beyond = place.querySelector(".beyond-line"), rates = [new Rate(), new Rate()];
   const range = entry => `${Number(entry.lower.toPrecision(5))} to ${Number(entry.upper.toPrecision(5))}`;
   place.dataset.answers = 0;
-  const ask = asker(buffer, ({p, modes, fault, ...effort}) => {
+  const ask = asker(buffer, ({p, modes, fault, moving, followed, ...effort}) => {
     if (fault) { said.textContent = `not computed: ${fault}`; return; }
     const outside = model.parameters.filter(({lower, upper}, i) => p[i] < lower || p[i] > upper);
-    body.replaceChildren(...modes.map(mode => mode_row(model, mode)));
+    show_modes(body, model, modes);
     sliders.forEach((slider, i) => slider.parentElement.classList.toggle("beyond", outside.includes(model.parameters[i])));
     beyond.textContent = outside.length ? "Outside of what the model was made for: " +
       outside.map(entry => `${entry.name}, ${range(entry)}`).join("; ") + ". It extrapolates, and its errors are not known." : "";
+    const rate = rates[moving ? 1 : 0];
     rate.add(effort);
-    said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ${rate.text()}`;
+    said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ` +
+      `${followed ? "followed from those before until the slider rests, which may miss one that comes; " : ""}${rate.text()}`;
     place.modes = modes;
+    place.asked = p;
+    place.dataset.moving = moving;
     place.dataset.answers++;
     place.dataset.state = "done";
   });
-  const moved = () => {
+  let resting = 0;
+  const look = moving => {
+    clearTimeout(resting);
+    if (moving) resting = setTimeout(look, REST, false);
     sliders.forEach(slider => { slider.nextElementSibling.textContent = Number(slider.value).toPrecision(5); });
-    ask({p: sliders.map(slider => Number(slider.value)), several: !rate.value});
+    ask({p: sliders.map(slider => Number(slider.value)), moving, several: !moving && !rates[0].value});
   };
-  for (const slider of sliders) slider.addEventListener("input", moved);
+  for (const slider of sliders) slider.addEventListener("input", () => look(true));
   place.querySelector("button").addEventListener("click", () => {
     sliders.forEach((slider, i) => { slider.value = model.parameters[i].value; });
-    moved();
+    look(false);
   });
-  moved();
+  look(false);
 }
 
 addEventListener("DOMContentLoaded", () => {
