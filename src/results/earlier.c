@@ -72,6 +72,8 @@ static const struct {
   {"quiet_statement.csv", NULL},
   {"quiet_cells.csv", NULL},
   {"reduced_model.bin", NULL},
+  {"reduced_shapes.h5", NULL},
+  {"reduced_shapes.xmf", NULL},
   {"design.csv", NULL},
   {"design_corners.csv", NULL},
   {"frf.csv", NULL},

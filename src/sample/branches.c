@@ -58,8 +58,8 @@ static void BranchCount(Sample s, PetscInt b, SampleBranch *branch)
       if (b < s->nominal.n && m->branch != b) continue;
       present = PETSC_TRUE;
       if (ModesLimitIsExceeded(limit, m->sigma, m->omega, 0)) grows = PETSC_TRUE;
-      if (ModesLimitIsExceeded(limit, m->sigma, m->omega, m->error)) surely = PETSC_TRUE;
-      if (ModesLimitIsExceeded(limit, m->sigma + m->error, m->omega, 0)) possibly = PETSC_TRUE;
+      if (ModesLimitIsExceeded(limit, m->sigma, m->omega, m->growth_error)) surely = PETSC_TRUE;
+      if (ModesLimitIsExceeded(limit, m->sigma + m->growth_error, m->omega, 0)) possibly = PETSC_TRUE;
     }
     branch->n += present || b == s->nominal.n ? 1 : 0;
     branch->n_unstable += grows;

@@ -78,23 +78,38 @@ PetscErrorCode SampleModesAt(Sample s, const PetscReal p[], ReducedModes *modes,
   PetscFunctionReturn(0);
 }
 
+/* What of the error of mode k its growth may have: none without damping and growth where no other mode is
+   within both errors. kappa = -lambda^2 of a real pencil without damping are real or in pairs, so that one alone stays
+   real, and lambda imaginary. */
+static PetscReal GrowthError(const ReducedModes *modes, PetscInt k, PetscBool damped)
+{
+  PetscBool alone = !damped && creal(modes->lambda[k]) == 0 ? PETSC_TRUE : PETSC_FALSE;
+
+  for (PetscInt j = 0; j < modes->n && alone; j++)
+    if (j != k && cabs(modes->lambda[j] - modes->lambda[k]) <= modes->error[j] + modes->error[k]) alone = PETSC_FALSE;
+  return alone ? 0 : modes->error[k];
+}
+
 /* Solves a point, and finds its branches */
 static PetscErrorCode SampleSolvePoint(Sample s, PetscInt i, SamplePoint *point)
 {
   ReducedModes modes;
   PetscReal   *p;
   PetscInt    *branch;
+  PetscBool    damped;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->box.n_parameters, &p));
   PetscCall(SampleParameters(s, i, p));
+  damped = ReducedIsDamped(&s->box.basis.reduced, p);
   PetscCall(SampleModesAt(s, p, &modes, &branch));
   PetscCall(PetscMalloc1(modes.n, &point->mode));
   point->n     = 0;
   point->worst = ReducedModesWorst(&modes, &s->box.window, PETSC_FALSE);
   for (PetscInt k = 0; k < modes.n; k++)
     if (BoxHolds(&s->box, modes.lambda[k]))
-      point->mode[point->n++] = (SampleMode){creal(modes.lambda[k]), cimag(modes.lambda[k]), modes.error[k], branch[k]};
+      point->mode[point->n++] = (SampleMode){creal(modes.lambda[k]), cimag(modes.lambda[k]), modes.error[k],
+                                             GrowthError(&modes, k, damped), branch[k]};
   PetscCall(PetscFree(branch));
   PetscCall(ReducedModesDestroy(&modes));
   PetscCall(PetscFree(p));

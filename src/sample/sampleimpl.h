@@ -32,8 +32,8 @@ typedef struct {
 
 /* One eigenvalue of a sample */
 typedef struct {
-  PetscReal sigma, omega, error; /* rad/s */
-  PetscInt  branch;              /* from 0 on, of the nominal modes; -1 where it is none of them for certain */
+  PetscReal sigma, omega, error, growth_error; /* rad/s, the last one of sigma alone */
+  PetscInt  branch;                            /* from 0 on, of the nominal modes; -1: none of them for certain */
 } SampleMode;
 
 /* All in the band */

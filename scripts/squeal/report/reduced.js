@@ -259,9 +259,9 @@ function estimate(pencil, own, rest, {lambda, s, x, w, slope}) {
   return Math.hypot(...quotient(dot(left, v), derivative));
 }
 
-// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of the one `chosen`, by its place. `moving`: followed
-// from those before where they can be, which model.followed tells
-function modesAt(model, p, {chosen = -1, moving = false} = {}) {
+// Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of that nearest to {freq, growth} `chosen`. `moving`:
+// followed from those before where they can be, which model.followed tells
+function modesAt(model, p, {chosen = null, moving = false} = {}) {
   const pencil = pencilAt(model, p), own = formOf(model, pencil, p, 0, model.n_used), modes = [];
   let found = moving && model.before?.length ? follow(model, pencil, own, model.before) : null;
   model.followed = found !== null;
@@ -278,7 +278,9 @@ function modesAt(model, p, {chosen = -1, moving = false} = {}) {
     } else modes.push({freq, growth: a, error, x});
   }
   modes.sort((a, b) => a.freq - b.freq || b.growth - a.growth);
-  return modes.map(({freq, growth, error, x}, k) => k === chosen ? {freq, growth, error, x} : {freq, growth, error});
+  const far = mode => Math.hypot(2 * Math.PI * (mode.freq - chosen.freq), mode.growth - chosen.growth);
+  const nearest = chosen && modes.reduce((best, mode) => !best || far(mode) < far(best) ? mode : best, null);
+  return modes.map(mode => mode === nearest ? mode : {...mode, x: undefined});
 }
 
 // The model of a file's bytes: a line of JSON, then the matrices as float64

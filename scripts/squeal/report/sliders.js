@@ -11,7 +11,7 @@ async function inflated(text) {
 
 const REST = 250;  // ms without a move
 
-// A worker that answers {p, moving} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one is too quick
+// A worker that answers {p, moving, chosen} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one is too quick
 // to be timed. A busy one gets the newest question when it is done
 function asker(buffer, answer) {
   const code = document.getElementById("reduced-code").textContent + `
@@ -21,7 +21,7 @@ function asker(buffer, answer) {
         if (data.buffer) { model = readModel(data.buffer); return; }
         const begun = performance.now();
         let modes, n = 0;
-        do { modes = modesAt(model, data.p, {moving: data.moving}); n++; } while (data.several && n < 200 && performance.now() - begun < 30);
+        do { modes = modesAt(model, data.p, data); n++; } while (data.several && n < 200 && performance.now() - begun < 30);
         postMessage({p: data.p, modes, moving: data.moving, followed: model.followed, n, took: performance.now() - begun});
       } catch (error) { postMessage({fault: error.message}); }
     };`;
@@ -59,6 +59,39 @@ class Rate {
   }
 }
 
+// Shapes x of the model on the bodies of a viewer (models.py), as whole numbers relative to the largest displacement, which is real
+class Shapes {
+  constructor(stage) {
+    this.stage = stage;
+    this.weights = decoded(stage.bodies.weights, Float64Array);
+    this.directions = stage.bodies.directions.map(text => decoded(text, Int16Array));
+  }
+
+  // sum over the directions of (weights x) times them
+  sum(x) {
+    const n = this.directions[0].length, size = x.length, sum = new Float64Array(n);
+    this.directions.forEach((direction, k) => {
+      let weight = 0;
+      for (let i = 0; i < size; i++) weight += this.weights[k * size + i] * x[i];
+      for (let i = 0; i < n; i++) sum[i] += weight * direction[i];
+    });
+    return sum;
+  }
+
+  show({freq, growth, x}) {
+    const re = this.sum(x.re), im = x.im ? this.sum(x.im) : new Float64Array(re.length), part = new Float64Array(2);
+    let largest = 0;
+    for (let i = 0; i < re.length; i++) {
+      const size = Math.hypot(re[i], im[i]);
+      if (size > largest) { largest = size; part.set([re[i] / size, im[i] / size]); }
+    }
+    const turned = sign => Int16Array.from(re, (value, i) =>
+      Math.round(32767 / 1.7321 * (sign ? im[i] * part[0] - value * part[1] : value * part[0] + im[i] * part[1]) / (largest || 1)));
+    const title = `${freq.toFixed(2)} Hz, growth ${growth.toPrecision(4)} 1/s`;
+    this.stage.replace({number: 0, title, detail: title, re: turned(0), im: turned(1)});
+  }
+}
+
 // What the row of a mode says: frequency, growth, error, state
 function mode_texts(model, mode) {
   const size = Math.hypot(mode.growth, 2 * Math.PI * mode.freq);
@@ -86,6 +119,8 @@ async function add_sliders(place) {
   const model = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 0, new Uint8Array(buffer).indexOf(10))));
   const sliders = [...place.querySelectorAll("input[type=range]")], body = place.querySelector("tbody");
   const said = place.querySelector(".said"), beyond = place.querySelector(".beyond-line"), rates = [new Rate(), new Rate()];
+  const shapes = place.dataset.shapes ? new Shapes(stages[place.dataset.shapes]) : null;
+  let chosen = {freq: 0, growth: 1e9};
   const range = entry => `${Number(entry.lower.toPrecision(5))} to ${Number(entry.upper.toPrecision(5))}`;
   place.dataset.answers = 0;
   const ask = asker(buffer, ({p, modes, fault, moving, followed, ...effort}) => {
@@ -99,6 +134,12 @@ async function add_sliders(place) {
     rate.add(effort);
     said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ` +
       `${followed ? "followed from those before until the slider rests, which may miss one that comes; " : ""}${rate.text()}`;
+    const mode = modes.find(({x}) => x);
+    if (mode && shapes) {
+      shapes.show(mode);
+      [...body.rows].forEach((row, k) => row.classList.toggle("chosen", modes[k] === mode));
+    }
+    if (mode) chosen = {freq: mode.freq, growth: mode.growth};
     place.modes = modes;
     place.asked = p;
     place.dataset.moving = moving;
@@ -110,8 +151,12 @@ async function add_sliders(place) {
     clearTimeout(resting);
     if (moving) resting = setTimeout(look, REST, false);
     sliders.forEach(slider => { slider.nextElementSibling.textContent = Number(slider.value).toPrecision(5); });
-    ask({p: sliders.map(slider => Number(slider.value)), moving, several: !moving && !rates[0].value});
+    ask({p: sliders.map(slider => Number(slider.value)), moving, chosen: shapes && chosen, several: !moving && !rates[0].value});
   };
+  if (shapes) body.addEventListener("click", ({target}) => {
+    const row = target.closest("tr");
+    if (row && place.modes) { chosen = place.modes[row.sectionRowIndex]; look(false); }
+  });
   for (const slider of sliders) slider.addEventListener("input", () => look(true));
   place.querySelector("button").addEventListener("click", () => {
     sliders.forEach((slider, i) => { slider.value = model.parameters[i].value; });

@@ -152,6 +152,13 @@ class Stage {
       (button, k) => button.setAttribute("aria-pressed", k === i));
   }
 
+  // Another shape in the place of the only one
+  replace(shape) {
+    renderer.forget(this.bodies.shapes[0]);
+    this.bodies.shapes[0] = shape;
+    this.select(0);
+  }
+
   // Points of the canvas per unit and what lies in its middle, so that the body at rest has room to move
   fit_to(canvas, state) {
     const rows = rotation(state.turn), p = this.bodies.points, low = [9, 9], high = [-9, -9];

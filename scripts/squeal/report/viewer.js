@@ -168,6 +168,11 @@ class Glass {
     gl.vertexAttribPointer(slot, 3, kind, kind === gl.SHORT, 0, 0);
   }
 
+  // A shape that will not be drawn again
+  forget(shape) {
+    for (const part of ["re", "im"]) if (shape[`${part}_buffer`]) this.gl.deleteBuffer(shape[`${part}_buffer`]);
+  }
+
   indexed(bodies, name, mode, line) {
     const gl = this.gl;
     gl.uniform4fv(this.at("line"), line);
@@ -224,6 +229,8 @@ class Glass {
 
 // Without WebGL: quads from the back to the front
 class Painter {
+  forget() {}
+
   draw(canvas, bodies, state) {
     const ink = canvas.getContext("2d"), shape = bodies.shape(state.index), rows = rotation(state.turn);
     const [c, s] = [Math.cos(state.phase), Math.sin(state.phase)], d = DIRECTIONS[state.colour];

@@ -38,7 +38,7 @@ static void BandCount(Sample s, PetscInt i, ConditionBand *band)
     const PetscReal   f = m->omega / (2 * PETSC_PI);
 
     if (f < band->low || f >= band->high) continue;
-    if (ModesLimitIsExceeded(&s->box.limit, m->sigma + m->error, m->omega, 0) &&
+    if (ModesLimitIsExceeded(&s->box.limit, m->sigma + m->growth_error, m->omega, 0) &&
         !ModesLimitIsExceeded(&s->box.limit, m->sigma, m->omega, m->error))
       open = PETSC_TRUE;
     if (ModesLimitJudge(&s->box.limit, m->sigma, m->omega, m->error) != MODE_UNSTABLE) continue;

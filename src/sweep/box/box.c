@@ -249,6 +249,7 @@ PetscErrorCode BoxDestroy(Box *box)
   PetscCall(BoxForgetSmall(&box->small));
   PetscCall(BoxForgetSmall(&box->turned));
   PetscCall(PetscFree(box->turn));
+  PetscCall(PetscFree(box->few));
   PetscCall(GreedyDestroy(&box->greedy));
   PetscCall(BasisDestroy(&box->basis));
   PetscCall(PencilDestroy(&box->pencil));

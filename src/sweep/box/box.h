@@ -39,6 +39,7 @@ typedef struct {
   Progress      progress;
   PetscBool     whole;  /* the basis is the whole space: no error but rounding */
   Reduced       small;  /* of fewer vectors, for many points; n_used is 0 where there is none */
+  PetscReal    *few;    /* [small.n_used][n] these vectors in the basis */
   Reduced       turned; /* the basis in directions that hold less and less, with a core; likewise */
   PetscReal    *turn;   /* [n][n] these directions in the basis */
 } Box;
@@ -83,6 +84,9 @@ typedef struct {
 /* Writes reduced_model.bin, of the model of fewer vectors where there is one; nothing where it is too large for a page,
    where a coefficient is no monomial, or where the contact status differs between points. Collective. */
 PETSC_INTERN PetscErrorCode BoxExport(const Box *box, const BoxVaried *varied, Results results);
+/* shapes.c - writes reduced_shapes.h5, the vectors of that model on the mesh; nothing where they are too large, without
+   a mesh, or with -output_fields 0. Collective. */
+PETSC_INTERN PetscErrorCode BoxExportShapes(const Box *box, Results results);
 /* Frees it. Not collective. */
 PETSC_INTERN PetscErrorCode BoxForgetSmall(Reduced *small);
 /* Modes of one point with estimated errors, in the window or a little beyond it (guarded), on the basis or on the model

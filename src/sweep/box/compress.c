@@ -28,13 +28,13 @@
 #define COMPRESS_TO   1e-3
 #define ESTIMATES     40 /* fewer tell too little: of 15 vectors with 7 more the true error was all that was stated */
 #define COMPRESS_STEP 2.25
-#define COMPRESS_MOST 30 /* points, at which each is tried */
-#define LEAST_OMEGA       0.01 /* slower modes count as if they were at this part of the upper end of the window */
+#define COMPRESS_MOST 30   /* points, at which each is tried */
+#define LEAST_OMEGA   0.01 /* slower modes count as if they were at this part of the upper end of the window */
 #define CORE_FROM     200  /* vectors, below which all eigenvalues of the basis cost little */
 #define CORE_RTOL     0.02 /* of rtol, what the others may add to a mode of the core */
 #define CORE_POINTS   12   /* at which that is tried, and at how many of them it may fail */
 #define CORE_FAIL     1
-#define LEAST_GAIN    0.7  /* a basis that is not smaller than this part of the other one is of no use */
+#define LEAST_GAIN    0.7 /* a basis that is not smaller than this part of the other one is of no use */
 
 /* B [m][m] = V' A V of the leading n x n block of A (column stride lda), V [m][n] */
 static PetscErrorCode MatrixProject(PetscInt n, PetscInt lda, const PetscReal A[], PetscInt m, const PetscReal V[],
@@ -49,8 +49,7 @@ static PetscErrorCode MatrixProject(PetscInt n, PetscInt lda, const PetscReal A[
   PetscCall(PetscBLASIntCast(lda, &stride));
   PetscCall(PetscBLASIntCast(m, &columns));
   PetscCall(PetscMalloc1(n * m, &AV));
-  PetscCallBLAS("BLASgemm",
-                BLASgemm_("N", "N", &size, &columns, &size, &one, A, &stride, V, &size, &zero, AV, &size));
+  PetscCallBLAS("BLASgemm", BLASgemm_("N", "N", &size, &columns, &size, &one, A, &stride, V, &size, &zero, AV, &size));
   PetscCallBLAS("BLASgemm",
                 BLASgemm_("T", "N", &columns, &columns, &size, &one, V, &size, AV, &size, &zero, B, &columns));
   PetscCall(PetscFree(AV));
@@ -135,7 +134,7 @@ static PetscErrorCode FactorsProject(PetscInt n, const ReducedFactors *large, Pe
                                      ReducedFactors *small)
 {
   const PetscReal *from[] = {large->left, large->right}, one = 1, zero = 0;
-  PetscReal      **to[]   = {&small->left, &small->right};
+  PetscReal      **to[] = {&small->left, &small->right};
   PetscBLASInt     rank, size, columns;
 
   PetscFunctionBeginUser;
@@ -316,12 +315,17 @@ PetscErrorCode BoxCompress(Box *box, PetscInt n_points, const PetscReal points[]
   PetscCall(BoxForgetSmall(&box->small));
   PetscCall(BoxForgetSmall(&box->turned));
   PetscCall(PetscFree(box->turn));
+  PetscCall(PetscFree(box->few));
   if (box->whole) PetscFunctionReturn(0);
   PetscCall(PetscCalloc3(n * n, &C, n * n, &V, n, &w));
   PetscCall(SnapshotsTake(box, n_snapshots, points, C));
   PetscCall(DirectionsFind(box, C, V, w, &found));
   PetscCallMPI(MPI_Bcast(&found, 1, MPIU_BOOL, 0, box->comm));
   if (found) PetscCall(SmallChoose(box, n_points, points, V, w));
+  if (box->small.n_used) {
+    PetscCall(PetscMalloc1(n * box->small.n_used, &box->few));
+    PetscCall(PetscArraycpy(box->few, V, n * box->small.n_used));
+  }
   if (found) PetscCall(CoreChoose(box, n_points, points, V));
   PetscCall(PetscFree3(C, V, w));
   PetscFunctionReturn(0);

@@ -169,6 +169,7 @@ PetscErrorCode BoxExport(const Box *box, const BoxVaried *varied, Results result
   PetscCall(ExportTerms(box, reduced, varied, &text, sum, &pieces[1]));
   pieces[0] = (ResultsPiece){text.text, text.length};
   PetscCall(ResultsBinaryWrite(results, box->comm, "reduced_model.bin", PETSC_TRUE, rank ? 0 : n_terms + 1, pieces));
+  PetscCall(BoxExportShapes(box, results));
   PetscCall(PetscFree(pieces));
   PetscCall(PetscFree(sum));
   PetscCall(PetscFree(text.text));

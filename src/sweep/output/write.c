@@ -304,7 +304,7 @@ static PetscErrorCode SweepWriteModel(Sweep sweep, Results results)
       }
     }
   varied.parameter = parameter, varied.lower = ends, varied.upper = ends + n;
-  box.basis.reduced = sweep->basis.reduced;
+  box.basis        = sweep->basis;
   PetscCall(BoxExport(&box, &varied, results));
   PetscCall(PetscFree2(parameter, ends));
   PetscFunctionReturn(0);
