@@ -28,18 +28,19 @@ READERS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".da
            ".cdb": read_ansys, **dict.fromkeys(MED, read_meshes), ".vtk": read_meshes, ".vtu": read_meshes}
 
 
-# Endings that decks of several programs have, and what only those of a program have at the beginning of a line
+# Endings that decks of several programs have, and what only those of a program have at the beginning of a line, with a word of it
 SHARED = (".dat", ".inp")
-SIGNS = ((read_ansys, re.compile(rb"^[ \t]*nblock[ \t]*,", re.IGNORECASE | re.MULTILINE)),
-         (read_abaqus, re.compile(rb"^[ \t]*\*[ \t]*(?:heading|node|part|include)\b", re.IGNORECASE | re.MULTILINE)),
-         (read_nastran, re.compile(rb"^[ \t]*(?:grid[ *\t,]|begin[ \t]+bulk|cend\b)", re.IGNORECASE | re.MULTILINE)))
+SIGNS = ((read_ansys, b"nblock", re.compile(rb"^[ \t]*nblock[ \t]*,", re.IGNORECASE | re.MULTILINE)),
+         (read_abaqus, b"*", re.compile(rb"^[ \t]*\*[ \t]*(?:heading|node|part|include)\b", re.IGNORECASE | re.MULTILINE)),
+         (read_nastran, b"", re.compile(rb"^[ \t]*(?:grid[ *\t,]|begin[ \t]+bulk|cend\b)", re.IGNORECASE | re.MULTILINE)))
 
 
 def reader_of(path):
     """Who reads a file: by its ending, and by its content where several programs have this ending."""
     if path.suffix.lower() in SHARED and path.is_file():
         data = path.read_bytes()
-        return next((reader for reader, sign in SIGNS if sign.search(data)), READERS[path.suffix.lower()])
+        small = data.lower()
+        return next((reader for reader, word, sign in SIGNS if word in small and sign.search(data)), READERS[path.suffix.lower()])
     return READERS.get(path.suffix.lower())
 
 

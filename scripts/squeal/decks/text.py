@@ -11,9 +11,16 @@ from .deck import Place
 
 WHOLE = re.compile(r"[+-]?\d{1,15}$")
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$")
-EMPTY = re.compile(rb"(?:\A|,)[\s+-]*(?:,|\Z)")  # a field without a number
-CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x1f\x7f]")
+NOTHING = b" \t\n\r\f\v+-"  # that a field without a number has
+CONTROL = bytes(sorted({*range(32), 127} - set(b"\t\n\f\r")))
 CHUNK = 200000  # lines that become a matrix of characters at once
+
+
+def control_at(data):
+    """Place of the first byte that no text has, or -1."""
+    if len(data.translate(None, CONTROL)) == len(data):
+        return -1
+    return next(at for at, byte in enumerate(data) if byte in CONTROL)
 
 
 def read_bytes(path):
@@ -25,9 +32,9 @@ def read_bytes(path):
     data = data.removeprefix(b"\xef\xbb\xbf")  # the mark of UTF-8
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    control = CONTROL.search(data)
-    if control:
-        raise Place(str(path), data.count(b"\n", 0, control.start()) + 1).wrong(f"the byte {control[0][0]} is no text")
+    at = control_at(data)
+    if at >= 0:
+        raise Place(str(path), data.count(b"\n", 0, at) + 1).wrong(f"the byte {data[at]} is no text")
     return data
 
 
@@ -57,7 +64,8 @@ def real(text, place, what="a number"):
 
 def parse_all(flat, kind):
     """Numbers with commas between, or None where one is none. (numpy takes blanks for -1, and a sign alone for 0.)"""
-    if EMPTY.search(flat):
+    tight = flat.translate(None, NOTHING)
+    if b",," in tight or tight[:1] in (b"", b",") or tight[-1:] == b",":
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -6,7 +6,7 @@ import warnings
 
 import numpy
 
-from ..decks.text import CONTROL
+from ..decks.text import control_at
 from ..tables import BadInput, regular
 
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?$")  # Fortran may leave out the E
@@ -23,9 +23,9 @@ def read_lines(path):
         text = data.decode("ascii")
     except UnicodeDecodeError as error:
         raise BadInput(f"{path}: byte {error.start} is no text") from None
-    control = CONTROL.search(data)
-    if control:
-        raise BadInput(f"{path}: byte {control.start()} is no text")
+    at = control_at(data)
+    if at >= 0:
+        raise BadInput(f"{path}: byte {at} is no text")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     if lines[-1]:
         raise BadInput(f"{path}: its last line has no end; was it cut off?")

@@ -123,7 +123,8 @@ def read_header(lines, place):
 
 def split_cards(data, file):
     """Cards of a file; comments, which begin with **, divide data into pieces."""
-    data = BLANKS.sub(b"", data)
+    if b" *" in data or b"\t*" in data:
+        data = BLANKS.sub(b"", data)
     at, line, card, cards = 0, 1, None, []
     while at < len(data):
         if data.startswith(b"*", at):

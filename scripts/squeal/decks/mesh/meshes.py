@@ -145,6 +145,9 @@ def note_families(deck, what, numbers, families):
     if gone:
         deck.note(place, f"family {gone[0]}{f' and {len(gone) - 1} more' if gone[1:] else ''} of {what} is not in the file: "
                          "the groups of its members are not known")
+    bare = sorted(number for number in used - {0} if number in families and not families[number])
+    if bare:
+        deck.note(place, f"family {bare[0]}{f' and {len(bare) - 1} more' if bare[1:] else ''} of {what} is in no group")
     kept = {name for number in used for name in families.get(number, [])}
     for name in sorted({name for names in families.values() for name in names} - kept):
         deck.note(place, f"group {name}: no {what} are in it")
