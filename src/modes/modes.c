@@ -9,6 +9,8 @@
 #include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
+#define MODES_REFERENCE 2 /* of a target: modes above this are far above it */
+
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
@@ -17,6 +19,50 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   PetscCall(QuantitiesInit(&modes_quantities, *modes));
   PetscCall(OrderingRegister()); /* for -st_pc_factor_mat_ordering_type metis */
   PetscCall(BlockKrylovRegister());
+  PetscFunctionReturn(0);
+}
+
+/* Undamped modes nearest to the target, of which the lowest and the highest, rad/s */
+static PetscErrorCode UndampedRange(Modes modes, PetscReal range[2])
+{
+  PencilMatrices undamped;
+  ShiftInvert    si = {.factored = PETSC_FALSE};
+  Window         window;
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilGetMatrices(modes->pencil, &undamped));
+  undamped.C      = NULL;
+  undamped.n_laws = 0;
+  modes->counter  = (ShiftInvert){.progress = &modes->progress};
+  PetscCall(LimitBegin(modes));
+  PetscCall(WindowFind(modes, &window));
+  PetscCall(ModesFactor(modes, &undamped, UndampedShift(&window), RELEASE_NOTHING, &si));
+  PetscCall(ModesSolveRight(modes, &undamped, &window, &si));
+  range[0] = PETSC_MAX_REAL;
+  range[1] = 0;
+  for (PetscInt i = 0; i < modes->right.n; i++) {
+    if (modes->right.omega[i] <= window.known.scale) continue;
+    range[0] = PetscMin(range[0], modes->right.omega[i]);
+    range[1] = PetscMax(range[1], modes->right.omega[i]);
+  }
+  PetscCall(SpectrumDestroy(&modes->right));
+  PetscCall(ShiftInvertDestroy(&modes->counter));
+  PetscCall(ShiftInvertDestroy(&si));
+  PetscFunctionReturn(0);
+}
+
+/* The reference at which K and C have stiffness that depends on the frequency: the middle of the band, or the target; where
+   modes lie far above a target their middle, as C with the same loss at the target would stop them */
+static PetscErrorCode ReferenceSet(Modes modes, PetscReal middle)
+{
+  PetscReal range[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(PencilSetReference(modes->pencil, middle));
+  if (modes->has_band) PetscFunctionReturn(0);
+  PetscCall(UndampedRange(modes, range));
+  if (range[1] > MODES_REFERENCE * middle)
+    PetscCall(PencilSetReference(modes->pencil, (range[0] + range[1]) / 2));
   PetscFunctionReturn(0);
 }
 
@@ -30,7 +76,7 @@ PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
   PetscCheck(middle > 0, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_target 0: the stiffness of a part depends on the frequency, and at 0 Hz nothing oscillates; give "
              "a target above it, or a -modes_band");
-  PetscCall(PencilSetReference(pencil, middle));
+  PetscCall(ReferenceSet(modes, middle));
   PetscFunctionReturn(0);
 }
 

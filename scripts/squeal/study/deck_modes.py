@@ -20,6 +20,7 @@ RIGID = 1e-4  # of the largest: less is a rigid motion
 MORE = 8  # modes of squeal beyond those of CalculiX: rigid ones, and ends of equal ones
 ASKS = re.compile(r"^[ \t]*\*\s*FREQUENCY\b", re.M | re.I)
 TYPES = re.compile(r"^[ \t]*\*\s*ELEMENT\b[^\n]*?TYPE\s*=\s*(\w+)", re.M | re.I)
+INCLUDE = re.compile(r"^[ \t]*\*\s*INCLUDE\s*,\s*INPUT\s*=\s*\"?([^,\"\n]+)\"?[ \t]*$", re.M | re.I)
 BEGIN, END = "E I G E N V A L U E   O U T P U T", "P A R T I C I P A T I O N"
 ROW = re.compile(r"^\s+(?:\d+\s+)?\d+\s+(\S+E\S+)\s+(\S+E\S+)\s+(\S+E\S+)\s+(\S+E\S+)\s*$", re.M)
 # What is written in place of what, and what that means
@@ -124,9 +125,18 @@ def reasons(said, kinds):
     return own + [note.removeprefix("differs: ") for note in notes if not IDLE.search(note)]
 
 
+def whole_text(path, depth=0):
+    """A deck with the files that it includes in their places."""
+    text = path.read_text(encoding="latin-1")
+    if depth > 3:
+        return text
+    inner = lambda found: whole_text(path.parent / found[1].strip(), depth + 1) if (path.parent / found[1].strip()).is_file() else found[0]
+    return INCLUDE.sub(inner, text)
+
+
 def judge(path, args):
     """A row of the table."""
-    text = path.read_text(encoding="latin-1")
+    text = whole_text(path)
     kinds = sorted({kind.upper() for kind in TYPES.findall(text)})
     row = {"file": str(path), "elements": " ".join(kinds), "outcome": "no ccx", "modes": "", "apart": "", "apart_changed": "", "why": ""}
     theirs, why = ccx(path, text, args.seconds)

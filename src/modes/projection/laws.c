@@ -21,7 +21,8 @@
 #define LAWS_LARGEST 0.5  /* rad that the phase may turn in a step of the contour */
 #define LAWS_SPLITS  30   /* of a step of it */
 #define LAWS_SIDE    16   /* steps of a side */
-#define LAWS_EQUAL   1e-9 /* relative distance of eigenvalues that are one, of vectors that are one */
+#define LAWS_ALIKE   1e-6 /* relative distance from a target of modes that are copies of each other */
+#define LAWS_SHORT   1e-3 /* of the distance of the farthest mode: how far the contour stays away from it */
 
 /* The pencil with a share of h in place of h, turned by the detour */
 typedef struct {
@@ -303,13 +304,19 @@ static PetscBool ContourHolds(const Projection *p, PetscReal d, PetscComplex lam
   return cimag(lambda) < w->edge[1] && PetscAbsReal(creal(lambda)) < w->growth ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The radius of a circle just short of the farthest of the modes nearest to a target */
+/* The radius of a circle short of the farthest of the modes nearest to a target, and of its copies: halfway to the next
+   nearer one, but at most LAWS_SHORT */
 static PetscReal ContourRadius(const Projection *p, const ProjectionModes *found)
 {
-  PetscReal d = 0;
+  PetscReal d = 0, nearer = 0;
 
   for (PetscInt i = 0; i < found->n; i++) d = PetscMax(d, cabs(found->lambda[i] - CMPLX(0, p->window->target)));
-  return d * (1 - LAWS_EQUAL);
+  for (PetscInt i = 0; i < found->n; i++) {
+    const PetscReal own = cabs(found->lambda[i] - CMPLX(0, p->window->target));
+
+    if (own < d * (1 - LAWS_ALIKE)) nearer = PetscMax(nearer, own);
+  }
+  return PetscMax(d * (1 - LAWS_SHORT), (d + nearer) / 2);
 }
 
 PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
