@@ -51,8 +51,8 @@ static PetscErrorCode UndampedRange(Modes modes, PetscReal range[2])
   PetscFunctionReturn(0);
 }
 
-/* The reference at which K and C have stiffness that depends on the frequency: the middle of the band, or the target; where
-   modes lie far above a target their middle, as C with the same loss at the target would stop them */
+/* The reference at which K and C have stiffness that depends on the frequency: the middle of the band, or the target;
+   where modes lie far above a target their middle, as C with the same loss at the target would stop them */
 static PetscErrorCode ReferenceSet(Modes modes, PetscReal middle)
 {
   PetscReal range[2];
