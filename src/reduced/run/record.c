@@ -49,17 +49,15 @@ static PetscErrorCode RecordAccelerate(ReducedRun r)
 {
   const ReducedModel *model = &r->reduction.model;
   const PetscInt      m     = model->m;
+  PetscReal          *a     = r->motion.acceleration;
 
   PetscFunctionBeginUser;
   ReducedTimes(&(DenseBlock){model->P, m, model->n_ports, m},
-               &(DenseBlock){r->motion.state.p, model->n_ports, 1, model->n_ports}, r->motion.acceleration);
-  for (PetscInt k = 0; k < m; k++) {
-    r->motion.acceleration[k] -= model->omega2[k] * r->motion.state.eta[k];
-    for (PetscInt j = 0; j < m && model->C; j++)
-      r->motion.acceleration[k] -= model->C[k + m * j] * r->motion.state.rate[j];
-    for (PetscInt j = 0; j < 3 * model->n_pairs && model->Cm; j++)
-      r->motion.acceleration[k] -= model->Cm[k + m * j] * r->motion.p_rate[j];
-  }
+               &(DenseBlock){r->motion.state.p, model->n_ports, 1, model->n_ports}, a);
+  for (PetscInt k = 0; k < m; k++) a[k] -= model->omega2[k] * r->motion.state.eta[k];
+  if (model->C) ReducedBlockTimes(&(DenseBlock){model->C, m, m, m}, PETSC_FALSE, -1, r->motion.state.rate, a);
+  if (model->Cm)
+    ReducedBlockTimes(&(DenseBlock){model->Cm, m, 3 * model->n_pairs, m}, PETSC_FALSE, -1, r->motion.p_rate, a);
   PetscCall(RecordBranches(r));
   PetscFunctionReturn(0);
 }

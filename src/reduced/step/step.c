@@ -301,14 +301,12 @@ static PetscReal StepperLoadWork(ReducedStepper s, const ReducedState *state)
 static PetscErrorCode StepperDamping(ReducedStepper s, PetscReal *taken)
 {
   const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
-  PetscReal      work = 0;
+  PetscReal      work;
 
   PetscFunctionBeginUser;
   *taken = 0;
   if (!s->Q) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < 3 * m; i++) s->product[i] = 0;
-  ReducedBlockTimes(&(DenseBlock){s->Q, 3 * m, 3 * m, 3 * m}, PETSC_FALSE, 1, s->x, s->product);
-  for (PetscInt i = 0; i < 3 * m; i++) work += s->x[i] * s->product[i];
+  work   = ReducedForm(3 * m, 3 * m, s->Q, s->x);
   *taken = work;
   if (!s->model->Cm) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m; k++) s->product[k] = 0;

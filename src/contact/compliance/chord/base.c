@@ -19,7 +19,7 @@
 #define CHORD_PIVOT 1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
 
 /* Row of an index at its pair */
-static inline void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3])
+INTO_VERSIONS void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3])
 {
   const ComplianceFrame *f    = &c->chord.frame[i / 4];
   const PetscInt         kind = i % 4;
@@ -30,7 +30,7 @@ static inline void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3
 }
 
 /* l of a unit of an index: friction follows the normal force */
-static inline void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t[3])
+INTO_VERSIONS void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t[3])
 {
   const ComplianceFrame *f = &c->chord.frame[j / 4];
 
@@ -40,8 +40,7 @@ static inline void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t
 }
 
 /* y := what a unit of index j moves, [3 n] */
-VERSIONS
-static void ChordImage(const ContactCompliance c, PetscInt j, PetscReal y[])
+INTO_VERSIONS void ImageOf(const ContactCompliance c, PetscInt j, PetscReal y[])
 {
   const PetscInt   N = 3 * c->n, p = j / 4;
   const PetscReal *W = &c->W[3 * p * N];
@@ -50,6 +49,11 @@ static void ChordImage(const ContactCompliance c, PetscInt j, PetscReal y[])
   ChordAlong(c, j, t);
   for (int d = 0; d < 3; d++) t[d] *= c->kappa[p];
   for (PetscInt i = 0; i < N; i++) y[i] = t[0] * W[i] + t[1] * W[N + i] + t[2] * W[2 * N + i];
+}
+
+static VERSIONS void ChordImage(const ContactCompliance c, PetscInt j, PetscReal y[])
+{
+  ImageOf(c, j, y);
 }
 
 /* A(i, j), y being the image of j */
@@ -117,12 +121,12 @@ static PetscErrorCode ChordReserve(ContactCompliance c)
 }
 
 /* Column j of the base */
-static void ChordSetColumn(ContactCompliance c, PetscInt j)
+static VERSIONS void ChordSetColumn(ContactCompliance c, PetscInt j)
 {
-  ComplianceChord *h = &c->chord;
-  PetscReal       *A = &h->LU[j * h->m];
+  const ComplianceChord *h = &c->chord;
+  PetscReal *restrict A    = &h->LU[j * h->m];
 
-  ChordImage(c, h->index[j], c->force);
+  ImageOf(c, h->index[j], c->force);
   for (PetscInt i = 0; i < h->m; i++) {
     const PetscReal *y = &c->force[h->at[i]], *r = &h->row[3 * i];
 
