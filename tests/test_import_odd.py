@@ -4,6 +4,7 @@ what must become of them, worked out by hand; frequencies of a bar of two cubes 
 
     test_import_odd.py SQUEAL MPIRUN"""
 
+import csv
 import re
 import sys
 import tempfile
@@ -149,10 +150,40 @@ def bars(folder):
             check(f"Ansys, {version}, {types[:12]}: {BAR:.3f} Hz", abs(found / BAR - 1) < SAME, found)
 
 
+TABLE = ("SOL 111\nCEND\nSPC = 1\nMETHOD = 4\nSDAMPING = 9\nBEGIN BULK\n" + decks_others.GRIDS + decks_others.HEXA + decks_others.PROPERTY +
+         "SPC1,1,123,1,2,3,4\nEIGRL,4,,,3\nTABDMP1,9,CRIT\n,0.,.005,1.E5,.01,2.E5,.02,ENDT\nENDDATA\n")
+
+
+def damped(folder):
+    """A table of damping over frequency: half the loss factor is the damping ratio sin(arctan(eta) / 2) of each mode."""
+    sections(folder, "deck.bdf", TABLE)
+    done = program().run(folder, ["-options_file", "scene.yaml", "-output_dir", "damped", "-output_fields", "0"])
+    check("TABDMP1: runs", done.status == 0, done.stderr)
+    with (folder / "damped/modes.csv").open(newline="") as rows:
+        found = [(float(row["freq_hz"]), float(row["damping_ratio"])) for row in csv.DictReader(rows)]
+    wanted = [np.sin(np.arctan(2 * np.interp(f, (0, 1e5, 2e5), (.005, .01, .02))) / 2) for f, _ in found]
+    off = max(abs(ratio / own - 1) for (_, ratio), own in zip(found, wanted))
+    check(f"TABDMP1: {len(found)} modes, damping off by {off:.1e}, 3e-4 allowed", len(found) == 3 and off < 3e-4, (found, wanted))
+    rows = "CRIT\n,0.,.005,1.E5,.01,2.E5,.02"
+    for about, new, loss in (("one value", "CRIT\n,0.,.005,1.E5,.005", 0.01), ("G", "G\n,0.,.03,1.E5,.03", 0.03), ("Q", "Q\n,0.,50.,1.E5,50.", 0.02)):
+        options, _ = sections(folder, "deck.bdf", TABLE.replace(rows, new))
+        check(f"TABDMP1 of {about}: a loss factor", abs(float(options.get("part_1_loss_factor", 0)) - loss) < 1e-15, options)
+    options, listed = sections(folder, "deck.bdf", TABLE.replace("SDAMPING = 9", "SDAMPING = 8"))
+    told = [line for line in listed if "TABDMP1 9: case control has no SDAMPING = 9" in line or "SDAMPING = 8: there is no" in line]
+    check("TABDMP1 that is not chosen is said", not any("loss" in key for key in options) and len(told) == 2, listed)
+    rising = "rising frequencies"
+    for old, new, said in (("CRIT", "X", "type X is none of"), ("2.E5", "5.E4", rising), (".01,", "-.01,", rising)):
+        try:
+            sections(folder, "deck.bdf", TABLE.replace(old, new))
+            check(f"TABDMP1 with {new}: refused", False, "it was not")
+        except BadInput as error:
+            check(f"TABDMP1 with {new}: refused", said in str(error), str(error))
+
+
 def main():
     sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
     with tempfile.TemporaryDirectory(prefix="squeal-") as name:
-        for case in (chosen, middles, odd_meshes, bars):
+        for case in (chosen, middles, odd_meshes, bars, damped):
             case(Path(name))
     orientation()
     program().end()

@@ -9,7 +9,7 @@ from ..deck import NOT_NEEDED, Place
 from .cards import named
 
 LINE = re.compile(r"([A-Za-z][A-Za-z0-9]*)\s*(\([^)]*\))?\s*(?:=|\s|$)\s*(.*)$")
-CHOICES = ("SPC", "LOAD", "METHOD", "STATSUB", "MPC")
+CHOICES = ("SPC", "LOAD", "METHOD", "STATSUB", "MPC", "SDAMPING")
 # First four letters of what asks for output, or names
 OUTPUT = {word[:4] for word in """TITLE SUBTITLE LABEL ECHO LINE MAXLINES DISPLACEMENT VELOCITY ACCELERATION STRESS STRAIN ELSTRESS FORCE
 ELFORCE SPCFORCES MPCFORCES OLOAD ESE EKE EDE SET OUTPUT PAGE VECTOR PRESSURE THERMAL FLUX GPFORCE GPSTRESS GPSTRAIN GPKE SVECTOR
@@ -45,7 +45,7 @@ def read_line(deck, control, place, text):
     number = int(value) if re.fullmatch(r"\d{1,9}", value) else None
     if word[:4] == "SUBC" and word not in ("SUBCOM", ) and number is not None:
         control.cases.append(Case(number, place))
-    elif (word if word in ("SPC", "MPC") else word[:4]) in ("SPC", "LOAD", "METH", "STAT", "MPC") and number is not None:
+    elif (word if word in ("SPC", "MPC") else word[:4]) in ("SPC", "LOAD", "METH", "STAT", "MPC", "SDAM") and number is not None:
         name = next(choice for choice in CHOICES if choice.startswith(word[:4]))
         (control.cases[-1].choices if control.cases else control.above)[name] = number, place
     elif word[:4] in OUTPUT or value.upper() == "NONE":
@@ -116,6 +116,7 @@ class Chosen:
         self.spcs = set() if spc is None else {spc, *sums.get(spc, ())}
         self.loads = {} if load is None else {load: 1.0} | factors.get(load, {})
         self.mpcs = mpc_sets(deck, tables, choices, control)
+        self.damping = choices.get("SDAMPING", (None, None))
         self.method = choices.get("METHOD", (None,))[0]
         mpc = choices.get("MPC", (None,))[0]
         for name, number, cards in (("MPC", mpc, ("MPC", "MPCADD")), ("SPC", spc, (*SPCS, "SPCADD")), ("LOAD", load, (*LOADS, "LOAD"))):

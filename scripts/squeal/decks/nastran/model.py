@@ -6,6 +6,7 @@ from ..axes import aligned
 from ..deck import Axes, Equation, Material, Section, Support, give_loss
 from ..elastic import engineering
 from .cards import named
+from .damping import read_damping
 from .mesh import check_rows
 from .shells import read_properties as read_shell_properties
 
@@ -15,6 +16,7 @@ KNOWN = {"PSOLID", "MAT1", "MAT9", "MAT10", "MAT11", "SPC", "SPC1", "EIGRL", "EI
 def read_model(deck, tables, mesh, chosen):
     read_materials(deck, tables)
     read_parameters(deck, tables, mesh)
+    read_damping(deck, tables, chosen)
     read_properties(deck, tables, mesh)
     read_supports(deck, tables, mesh, chosen)
     read_method(deck, tables, chosen)

@@ -4,15 +4,16 @@ import re
 
 from ...tables import BadInput
 from . import case as nastran_case, contact as nastran_contact, loads as nastran_loads, mesh as nastran_mesh, model as nastran_model
-from . import beams as nastran_beams, joined as nastran_joined, shells as nastran_shells, springs as nastran_springs
-from . import systems as nastran_systems
+from . import beams as nastran_beams, damping as nastran_damping, joined as nastran_joined, shells as nastran_shells
+from . import springs as nastran_springs, systems as nastran_systems
 from ..deck import Deck, Place
 from .cards import tables_of
 from ..text import read_bytes
 
 DEEPEST = 10
 KNOWN = (nastran_mesh.KNOWN | nastran_systems.KNOWN | nastran_model.KNOWN | nastran_loads.KNOWN | nastran_springs.KNOWN |
-         nastran_contact.KNOWN | nastran_case.KNOWN | nastran_joined.KNOWN | nastran_shells.KNOWN | nastran_beams.KNOWN)
+         nastran_contact.KNOWN | nastran_case.KNOWN | nastran_joined.KNOWN | nastran_shells.KNOWN | nastran_beams.KNOWN |
+         nastran_damping.KNOWN)
 # A name, in quotes perhaps over several lines
 INCLUDE = re.compile(rb"^[ \t]*include[ \t]*=?[ \t]*"
                      rb"(?:'([^']{1,1000})'|\"([^\"]{1,1000})\"|([^'\"\n$]+))[^\n]*$", re.IGNORECASE | re.MULTILINE)
