@@ -165,7 +165,8 @@ def damped(folder):
     off = max(abs(ratio / own - 1) for (_, ratio), own in zip(found, wanted))
     check(f"TABDMP1: {len(found)} modes, damping off by {off:.1e}, 3e-4 allowed", len(found) == 3 and off < 3e-4, (found, wanted))
     rows = "CRIT\n,0.,.005,1.E5,.01,2.E5,.02"
-    for about, new, loss in (("one value", "CRIT\n,0.,.005,1.E5,.005", 0.01), ("G", "G\n,0.,.03,1.E5,.03", 0.03), ("Q", "Q\n,0.,50.,1.E5,50.", 0.02)):
+    for about, new, loss in (("one value", "CRIT\n,0.,.005,1.E5,.005", 0.01), ("G", "G\n,0.,.03,1.E5,.03", 0.03),
+                             ("Q", "Q\n,0.,50.,1.E5,50.", 0.02)):
         options, _ = sections(folder, "deck.bdf", TABLE.replace(rows, new))
         check(f"TABDMP1 of {about}: a loss factor", abs(float(options.get("part_1_loss_factor", 0)) - loss) < 1e-15, options)
     options, listed = sections(folder, "deck.bdf", TABLE.replace("SDAMPING = 9", "SDAMPING = 8"))
