@@ -256,13 +256,18 @@ class Fibres:
 
 def drop_without_thickness(deck):
     """Shells without a thickness are no cells."""
-    gone = numpy.zeros(deck.n_cells, bool)
+    gone, kept = numpy.zeros(deck.n_cells, bool), numpy.zeros(deck.n_nodes, bool)
+    for shells in deck.shells:
+        gone[shells.first:shells.first + len(shells.thickness)] = ~(shells.thickness > 0)
+    for first, block in zip(deck.firsts(), deck.blocks):
+        kept[block.own_nodes()[~gone[first:first + len(block.ids)]]] = True
     for shells in deck.shells:
         without = ~(shells.thickness > 0)
-        gone[shells.first:shells.first + len(without)] = without
         if without.any():
-            deck.note(shells.block.place, f"{without.sum()} shells {shells.block.kind} without a thickness that is read: not in the scene; "
-                                          "a superelement of their program may stand for them")
+            ids, shared = shells.block.ids[without], numpy.unique(shells.nodes[without])
+            deck.note(shells.block.place, f"{without.sum()} shells {shells.block.kind} without a thickness that is read: not in the scene; let "
+                                          f"their program write a superelement of elements {min(ids)} to {max(ids)} with the "
+                                          f"{kept[shared].sum()} nodes that they share with the rest, for -superelements")
     if gone.any():
         drop_cells(deck, gone)
 

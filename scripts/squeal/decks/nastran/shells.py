@@ -23,8 +23,10 @@ def read_shells(deck, mesh, tables):
         found = numpy.isin(head[:, 1], list(known))
         if not found.all():
             place = table.place(int((~found).argmax()))
-            deck.note(place, f"{(~found).sum()} {table.name} without a PSHELL (of layers?): not in the scene; a superelement of their "
-                             "program may stand for them")
+            ids = head[~found, 0]
+            deck.note(place, f"{len(ids)} {table.name} without a PSHELL (of layers?): not in the scene; let their program write a "
+                             f"superelement of elements {min(ids)} to {max(ids)} with the nodes that they share with the rest, for "
+                             "-superelements")
         second = (nodes[:, corners:] > 0).all(axis=1) if n > corners else numpy.zeros(len(nodes), bool)
         part = found & ~second & (nodes[:, corners:] > 0).any(axis=1)
         if part.any():
