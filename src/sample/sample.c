@@ -4,7 +4,6 @@
 */
 #include "sampleimpl.h"
 #include "base/text.h"
-#include <petsctime.h>
 
 PetscErrorCode SampleCreate(MPI_Comm comm, Sample *sample)
 {
@@ -141,19 +140,16 @@ PetscErrorCode SampleGetVaried(Sample s, const char **names)
 
 PetscErrorCode SampleSolve(Sample s, Results results)
 {
-  PetscLogDouble begun, ended;
-
   PetscFunctionBeginUser;
   PetscCall(ConditionsCheckOptions(s));
   PetscCall(SampleFindVariables(s));
   PetscCall(SamplesCheckValues(s));
-  PetscCall(PetscTime(&begun));
+  PetscCall(SampleTimeTake(&s->took[0]));
   PetscCall(SampleJournalOpen(s, results));
   s->box.many = s->n_points >= SAMPLE_MANY ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(BoxSetUp(&s->box, s->n_points, SampleGet, s));
   PetscCall(SamplePoints(s));
-  PetscCall(PetscTime(&ended));
-  s->seconds[0] = ended - begun;
+  PetscCall(SampleTimeTake(&s->took[0]));
   PetscCall(SampleBranches(s));
   if (s->file[0]) PetscCall(SampleBands(s));
   PetscCall(SampleVerify(s));

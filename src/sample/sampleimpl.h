@@ -36,6 +36,11 @@ typedef struct {
   PetscInt  branch;                            /* from 0 on, of the nominal modes; -1: none of them for certain */
 } SampleMode;
 
+/* Of the first rank, s; of its processor, which others may have used too */
+typedef struct {
+  PetscLogDouble wall, processor;
+} SampleTime;
+
 /* All in the band */
 typedef struct {
   PetscInt    n;
@@ -92,18 +97,18 @@ struct _p_Sample {
   PetscInt      *reversed; /* [n_reversed] parameters that turn with the disc */
   ConditionBand *band;     /* [n_bands] the last one is of all */
   /* results */
-  Sequence       sequence;
-  PetscReal     *factor; /* [n_variables][n_variables] L of the correlations L L', or NULL */
-  PetscInt       n_points;
-  SamplePoint   *point;          /* [n_points] the samples, then the rest of the design */
-  ReducedModes   nominal, small; /* whose modes are the branches; the same on the model of fewer vectors */
-  PetscInt       n_large;        /* points that were solved on the whole basis */
-  SampleBranch  *branch;         /* [nominal.n + 1] */
-  PetscInt       n_divided;      /* solutions that following the branches took */
-  SamplePass     pass;
-  Results        results;
-  Journal        journal;    /* what a killed run goes on from */
-  PetscLogDouble seconds[2]; /* basis and points; full solutions beside them */
+  Sequence      sequence;
+  PetscReal    *factor; /* [n_variables][n_variables] L of the correlations L L', or NULL */
+  PetscInt      n_points;
+  SamplePoint  *point;          /* [n_points] the samples, then the rest of the design */
+  ReducedModes  nominal, small; /* whose modes are the branches; the same on the model of fewer vectors */
+  PetscInt      n_large;        /* points that were solved on the whole basis */
+  SampleBranch *branch;         /* [nominal.n + 1] */
+  PetscInt      n_divided;      /* solutions that following the branches took */
+  SamplePass    pass;
+  Results       results;
+  Journal       journal; /* what a killed run goes on from */
+  SampleTime    took[2]; /* basis and points; full solutions beside them */
 };
 
 extern const QuantityTable sample_quantities;
@@ -164,6 +169,8 @@ PETSC_INTERN PetscErrorCode SampleShare(Sample sample, PetscInt first, PetscInt 
 /* verify.c - full solutions at some samples; which one the k-th is */
 PETSC_INTERN PetscErrorCode SampleVerify(Sample sample);
 PETSC_INTERN PetscInt       SampleVerified(Sample sample, PetscInt k);
+/* verify.c - from zero the time now, then what passed since */
+PETSC_INTERN PetscErrorCode SampleTimeTake(SampleTime *time);
 /* branches.c - the mode of a branch at a point, NULL where it has none; branch nominal.n: the mode that grows fastest;
    all branches */
 PETSC_INTERN const SampleMode *SampleFind(Sample sample, PetscInt i, PetscInt branch);

@@ -4,6 +4,7 @@
 */
 #include "sampleimpl.h"
 #include <petsctime.h>
+#include <time.h>
 
 /* One point by the eigensolver. The basis may have seen it: of thousands it has seen few */
 static PetscErrorCode SampleCompare(Sample s, PetscInt i, SampleCheck *check)
@@ -28,20 +29,29 @@ static PetscErrorCode SampleCompare(Sample s, PetscInt i, SampleCheck *check)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SampleTimeTake(SampleTime *time)
+{
+  SampleTime now;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&now.wall));
+  now.processor = (PetscLogDouble)clock() / (PetscLogDouble)CLOCKS_PER_SEC;
+  *time = (SampleTime){now.wall - time->wall, now.processor - time->processor};
+  PetscFunctionReturn(0);
+}
+
 /* What was solved for the samples is counted without what is solved again here */
 PetscErrorCode SampleVerify(Sample s)
 {
   const PetscInt n_large = s->n_large, n_divided = s->n_divided;
-  PetscLogDouble begun, ended;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->n_verify, &s->check));
-  PetscCall(PetscTime(&begun));
+  PetscCall(SampleTimeTake(&s->took[1]));
   for (PetscInt k = 0; k < s->n_verify; k++) PetscCall(SampleCompare(s, SampleVerified(s, k), &s->check[k]));
-  PetscCall(PetscTime(&ended));
-  s->seconds[1] = ended - begun;
-  s->n_large    = n_large;
-  s->n_divided  = n_divided;
+  PetscCall(SampleTimeTake(&s->took[1]));
+  s->n_large   = n_large;
+  s->n_divided = n_divided;
   PetscFunctionReturn(0);
 }
 

@@ -52,8 +52,9 @@ static PetscErrorCode VerifiedView(Sample s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(
       viewer,
       "checked by full solutions at %" PetscInt_FMT " points: largest true error %.1e, at most %.2g of what is stated; "
-      "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond it; %.3g s each\n",
-      s->n_verify, (double)error, (double)ratio, n_beyond, n, s->seconds[1] / (double)s->n_verify));
+      "%" PetscInt_FMT " of %" PetscInt_FMT " modes beyond it; %.3g s each, %.3g s of a processor\n",
+      s->n_verify, (double)error, (double)ratio, n_beyond, n, s->took[1].wall / (double)s->n_verify,
+      s->took[1].processor / (double)s->n_verify));
   if (n_other)
     PetscCall(
       PetscViewerASCIIPrintf(viewer, "%" PetscInt_FMT " of them have another contact status on the mesh\n", n_other));
@@ -130,8 +131,9 @@ PetscErrorCode SampleView(Sample s, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "modes of these are sought in a core of %" PetscInt_FMT " directions\n",
                                      s->box.turned.core.m));
   PetscCall(VerifiedView(s, viewer));
-  PetscCall(PetscViewerASCIIPrintf(
-    viewer, "time: basis and samples %.2f s, %" PetscInt_FMT " points, %" PetscInt_FMT " between for branches\n",
-    s->seconds[0], s->n_points, s->n_divided));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "time: basis and samples %.2f s, %.2f s of a processor, %" PetscInt_FMT
+                                   " points, %" PetscInt_FMT " between for branches\n",
+                                   s->took[0].wall, s->took[0].processor, s->n_points, s->n_divided));
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,6 @@ import json
 import zlib
 
 import numpy
-import scipy.linalg
 
 from ..mesh.bodies import Scene, opened, sound
 from ..tables import BadInput
@@ -64,9 +63,9 @@ def modes_at(model, matrices, p):
     n, h = len(K), model["high"]
     if C.any():
         A = numpy.block([[numpy.zeros((n, n)), h * numpy.eye(n)], numpy.linalg.solve(M, numpy.hstack([-K / h, -C]))])
-        values, vectors = scipy.linalg.eig(A)
+        values, vectors = numpy.linalg.eig(A)
     else:
-        kappa, vectors = scipy.linalg.eig(numpy.linalg.solve(M, K))
+        kappa, vectors = numpy.linalg.eig(numpy.linalg.solve(M, K))
         values = 1j * numpy.sqrt(kappa.astype(complex))
     inside = (abs(values.imag) >= model["low"]) & (abs(values.imag) <= h)
     return vectors[:n, inside]
@@ -102,7 +101,10 @@ def moving(folder, name, model, data, room):
     path = folder.path / "reduced_shapes.h5"
     if not path.exists():
         return missing("No shapes: reduced_shapes.h5 is not there; see -output_fields."), None
-    found = directions_of(path, folder.disc(), model, data, room)
+    try:
+        found = directions_of(path, folder.disc(), model, data, room)
+    except BadInput as error:
+        return missing(f"No shapes: {error}."), None
     if not found:
         return missing("No shapes: they are too large for the page."), None
     bodies, U, weights = found
