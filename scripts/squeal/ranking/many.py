@@ -16,6 +16,8 @@ TIME = "-dynamics_model reduced -dynamics_cutoff 25e3 -ts_max_time 70e-3 -map_wi
 BLOW = "-impulses tap -tap_at -0.12,0,0 -tap_part disc -tap_impulse 0,0,-5e-5"
 POINT = {"point": int, "value": float, "value_2": float, "regime": str, "freq_hz": float, "freq_error_hz": optional,
          "growth_rad_s": optional, "force_rms_n": float, "status": str}
+DISTURBED = {"point": int, "regime": str, "freq_hz": float, "status": str}
+ENERGY = "-map_disturbance 1e-3 -map_disturbance_least 1e-6"  # J, of the random velocities
 MODE = {"point": int, "freq_hz": float, "growth_rad_s": float, "damping_ratio": float}
 INDEX = {"growth": lambda mode: mode["growth_rad_s"],
          "damping ratio, the most negative": lambda mode: -mode["damping_ratio"],
@@ -24,7 +26,8 @@ INDEX = {"growth": lambda mode: mode["growth_rad_s"],
 
 
 class Many(NamedTuple):
-    """A brake: rows, damping, modulus (Pa), friction, its unstable modes, the row of map.csv, the mode that wins or None."""
+    """A brake: rows, damping, modulus (Pa), friction, its unstable modes, the row of map.csv, the mode that wins or None, and those that
+    win from random velocities."""
     rows: str
     damping: str
     young: float
@@ -32,6 +35,7 @@ class Many(NamedTuple):
     modes: list
     point: dict
     winner: int
+    winners: list = []
 
 
 def all_maps():
@@ -45,8 +49,10 @@ def map_of(args, rows, damping):
     factors = " ".join(f"-{part}_alpha {alpha} -{part}_beta {value}"
                        for part, value in zip(("pad", "disc", "beam"), beta))
     values = ",".join(map(str, FRICTION)), ",".join(f"{young:.6g}" for young in MODULI)
-    return run(args.program, 1, args.runs / f"{rows.replace(',', '_')}-{damping}",
-               f"-analysis map {BRAKE} -rig_beam_rows {rows} {factors} {TIME} {BLOW} "
+    disturbed = f"-map_disturbances {args.disturbed} {ENERGY}" if args.disturbed else ""
+    name = f"{rows.replace(',', '_')}-{damping}" + (f"-{args.disturbed}" if args.disturbed else "")
+    return run(args.program, 1, args.runs / name,
+               f"-analysis map {BRAKE} -rig_beam_rows {rows} {factors} {TIME} {BLOW} {disturbed} "
                f"-map_parameter contact_mu,pad_young -map_values {values[0]} -map_values_2 {values[1]}", PAPER)
 
 
@@ -62,10 +68,12 @@ def scenes_of(args, rows, damping):
     """The brakes of a map with two or more unstable modes that vibrate, the fastest of which grows by LEAST."""
     folder = map_of(args, rows, damping)
     modes = read_table(folder / "map_modes.csv", MODE)
+    runs = read_table(folder / "map_disturbed.csv", DISTURBED) if args.disturbed else []
     for point in read_table(folder / "map.csv", POINT):
         own = [mode for mode in modes if mode["point"] == point["point"] and mode["freq_hz"] > 0]
         if len(own) > 1 and max(mode["growth_rad_s"] for mode in own) >= LEAST and point["status"] != "failed":
-            yield Many(rows, damping, point["value_2"], point["value"], own, point, winner_of(own, point["freq_hz"]))
+            ends = [winner_of(own, end["freq_hz"]) for end in runs if end["point"] == point["point"] and end["status"] != "failed"]
+            yield Many(rows, damping, point["value_2"], point["value"], own, point, winner_of(own, point["freq_hz"]), ends)
 
 
 def predicted(scene, index):
