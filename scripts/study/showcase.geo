@@ -7,7 +7,7 @@
 // radial vanes; the hat's plate (z 65 to 75) has a bore of radius 40 and five bolt holes of radius 10 at radius 75.
 
 SetFactory("OpenCASCADE");
-DefineConstant[ size = {12, Name "size"}, vanes = {21, Name "vanes"}, wide = {28.7, Name "wide"} ];
+DefineConstant[ size = {12, Name "size"}, vanes = {21, Name "vanes"}, wide = {28.7, Name "wide"}, washer = {10, Name "washer"} ];
 
 // Front ring, wall and plate: a profile that turns about z; the rear ring; vanes with parallel sides
 rz[] = {40,65,  105,65,  105,0,  175,0,  175,10,  112.5,10,  112.5,75,  40,75};
@@ -34,7 +34,20 @@ For i In {0:4}
 EndFor
 plate[] = BooleanDifference{ Volume{turned[1]}; Delete; }{ Volume{hole[]}; Delete; };
 disc[] = BooleanUnion{ Volume{plate[]}; Delete; }{ Volume{hollow[]}; Delete; };
-held[] = Surface In BoundingBox{-86, -86, 64.9, 86, 86, 75.1}; // bore and holes
+If (washer > 10) // rings of this radius about the holes, on both faces of the plate
+  For k In {0:1}
+    For i In {0:4}
+      a = news; Disk(a) = {75*Cos(Pi/2 + 2*Pi*i/5), 75*Sin(Pi/2 + 2*Pi*i/5), 65 + 10*k, washer};
+      b = news; Disk(b) = {75*Cos(Pi/2 + 2*Pi*i/5), 75*Sin(Pi/2 + 2*Pi*i/5), 65 + 10*k, 10};
+      ring[] = BooleanDifference{ Surface{a}; Delete; }{ Surface{b}; Delete; };
+      rings[5*k + i] = ring[0];
+    EndFor
+  EndFor
+  BooleanFragments{ Volume{disc[]}; Delete; }{ Surface{rings[]}; Delete; }
+  disc[] = Volume{:};
+EndIf
+reach = 76 + washer;
+held[] = Surface In BoundingBox{-reach, -reach, 64.9, reach, reach, 75.1}; // bore, holes, rings
 plate[] = Surface In BoundingBox{-105.1, -105.1, 64.9, 105.1, 105.1, 65.1};
 front[] = Surface In BoundingBox{-175.1, -175.1, -0.1, 175.1, 175.1, 0.1};
 behind[] = Surface In BoundingBox{-175.1, -175.1, 34.9, 175.1, 175.1, 35.1};

@@ -12,6 +12,7 @@ from ..picture import BLUE, GREY, VERMILION, save_picture  # noqa: E402
 MOST = 30  # rows and columns of a matrix with numbers in it
 NAMES = 40  # along an axis
 SHOWN = 6  # pairs
+MANY = 1000  # points, from which on they are drawn smaller
 MOVED = 0.15  # of the largest extent: the largest motion of a picture
 
 
@@ -76,10 +77,11 @@ def motion(to, values, of, count):
 def draw_shape(axes, points, moves, lines, colour):
     """Points at rest and moved; trace lines where there are some."""
     moved = points + moves
-    axes.scatter(*points.T, s=4, color=GREY)
-    axes.scatter(*moved.T, s=9, color=colour)
+    small = min(1, MANY / len(points))
+    axes.scatter(*points.T, s=4 * small, linewidths=0, color=GREY)
+    axes.scatter(*moved.T, s=9 * small, linewidths=0, color=colour)
     axes.add_collection3d(Line3DCollection(moved[numpy.reshape(lines, (-1, 2)).astype(int)], colors=colour, linewidths=0.8))
-    axes.add_collection3d(Line3DCollection(numpy.stack([points, moved], axis=1), colors=colour, linewidths=0.4))
+    axes.add_collection3d(Line3DCollection(numpy.stack([points, moved], axis=1), colors=colour, linewidths=0.4 * small))
     middle, half = (points.max(axis=0) + points.min(axis=0)) / 2, 0.55 * numpy.ptp(points, axis=0).max()
     for name, at in zip("xyz", middle):
         getattr(axes, f"set_{name}lim")(at - half, at + half)

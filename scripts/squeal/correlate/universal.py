@@ -104,7 +104,10 @@ def datasets(path):
     """All datasets of a file, one after the other."""
     cursor, found = Cursor(path), 0
     while cursor.more():
-        line = cursor.next("it").strip(b" \t\r\x00\x1a")
+        whole = cursor.next("it")
+        line = whole.strip(b" \t\r\x00\x1a")
+        if not line and set(whole) == set(b" ") and cursor.at > len(cursor.data):
+            raise cursor.wrong("the file ends within a line; was it cut off?")
         if not line:
             continue
         if line != MARK:

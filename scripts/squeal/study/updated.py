@@ -12,7 +12,7 @@ N = 8
 NOISE = 1e-3
 YOUNG = 2e11
 NAMES = [f"b{k}_young" for k in range(1, N + 1)]
-SWEEP = "0:1:11"  # values of friction
+SWEEP = "0.45:0.8:4"  # values of friction about the lowest lock-in, at 0.62 in the scene
 BRAKE = """model: {source: rig}
 parts: disc,pad,beam
 rig: {disc_elements: "6,24,1", pad_elements: "2,2,2", beam_elements: 3}
