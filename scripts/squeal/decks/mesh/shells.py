@@ -265,8 +265,8 @@ def drop_without_thickness(deck):
         without = ~(shells.thickness > 0)
         if without.any():
             ids, shared = shells.block.ids[without], numpy.unique(shells.nodes[without])
-            deck.note(shells.block.place, f"{without.sum()} shells {shells.block.kind} without a thickness that is read: not in the scene; let "
-                                          f"their program write a superelement of elements {min(ids)} to {max(ids)} with the "
+            deck.note(shells.block.place, f"{without.sum()} shells {shells.block.kind} without a thickness that is read: not in the scene; "
+                                          f"let their program write a superelement of elements {min(ids)} to {max(ids)} with the "
                                           f"{kept[shared].sum()} nodes that they share with the rest, for -superelements")
     if gone.any():
         drop_cells(deck, gone)
