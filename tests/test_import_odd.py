@@ -172,13 +172,15 @@ def damped(folder):
     options, listed = sections(folder, "deck.bdf", TABLE.replace("SDAMPING = 9", "SDAMPING = 8"))
     told = [line for line in listed if "TABDMP1 9: case control has no SDAMPING = 9" in line or "SDAMPING = 8: there is no" in line]
     check("TABDMP1 that is not chosen is said", not any("loss" in key for key in options) and len(told) == 2, listed)
-    rising = "rising frequencies"
-    for old, new, said in (("CRIT", "X", "type X is none of"), ("2.E5", "5.E4", rising), (".01,", "-.01,", rising)):
-        try:
-            sections(folder, "deck.bdf", TABLE.replace(old, new))
-            check(f"TABDMP1 with {new}: refused", False, "it was not")
-        except BadInput as error:
-            check(f"TABDMP1 with {new}: refused", said in str(error), str(error))
+    for old, new in (("2.E5", "5.E4"), (".01,", "-.01,"), ("0.,.005", "-1.,.005")):
+        options, listed = sections(folder, "deck.bdf", TABLE.replace(old, new))
+        check(f"TABDMP1 with {new}: said", sum("TABDMP1 9: up to 64 rising" in line for line in listed) == 1 and
+              not any("loss" in key for key in options), listed)
+    try:
+        sections(folder, "deck.bdf", TABLE.replace("CRIT", "X"))
+        check("TABDMP1 of type X: refused", False, "it was not")
+    except BadInput as error:
+        check("TABDMP1 of type X: refused", "type X is none of" in str(error), str(error))
 
 
 def main():

@@ -19,8 +19,12 @@ def read_damping(deck, tables, chosen):
     for table in named(tables, "TABDMP1"):
         for row, own in enumerate(table.whole(0, 1)[:, 0].tolist()):
             if own == number:
-                found = True
-                add(deck, table.place(row), number, points_of(table, row))
+                found, points = True, points_of(table, row)
+                if points:
+                    add(deck, table.place(row), number, points)
+                else:
+                    deck.note(table.place(row), f"TABDMP1 {own}: up to {MOST} rising frequencies with damping that is not negative are "
+                                                "needed: not taken")
             else:
                 deck.note(table.place(row), f"TABDMP1 {own}: case control has no SDAMPING = {own}: not taken")
     if number is not None and not found:
@@ -28,7 +32,7 @@ def read_damping(deck, tables, chosen):
 
 
 def points_of(table, row):
-    """Frequencies and loss factors of a card, ascending."""
+    """Frequencies and loss factors of a card, ascending; none of one that squeal cannot have."""
     words, place = table.words(row, 9), table.place(row)
     kind, points = words[1].upper(), []
     if kind not in FACTORS:
@@ -40,10 +44,9 @@ def points_of(table, row):
         if pair[0] and "SKIP" not in (pair[0].upper(), pair[1].upper()):
             frequency, value = (table.one_real(row, at + k, pair[k] or "0.") for k in (0, 1))
             points.append((frequency, FACTORS[kind](value)))
-    if len(points) > MOST:
-        raise place.wrong(f"TABDMP1: {len(points)} frequencies, squeal takes {MOST}")
-    if not points or any(not g >= 0 or f < 0 for f, g in points) or any(b <= a for (a, _), (b, _) in zip(points, points[1:])):
-        raise place.wrong("TABDMP1: rising frequencies with damping that is not negative are needed")
+    falls = any(b <= a for (a, _), (b, _) in zip(points, points[1:]))
+    if len(points) > MOST or falls or any(not g >= 0 or f < 0 for f, g in points):
+        return []
     return points
 
 
