@@ -19,8 +19,10 @@
 #define LAWS_DETOUR  0.5 /* of h: how far these go, with both branches of a real problem then apart */
 #define LAWS_STEPS   64
 #define LAWS_LARGEST 0.5  /* rad that the phase may turn in a step of the contour */
+#define LAWS_RATE    1    /* rad that it may turn in one at the rates of both ends */
 #define LAWS_SPLITS  30   /* of a step of it */
 #define LAWS_SIDE    16   /* steps of a side */
+#define LAWS_NEAR    0.01 /* of a step: over so much the rate of the phase is looked at */
 #define LAWS_ALIKE   1e-6 /* relative distance from a target of modes that are copies of each other */
 #define LAWS_SHORT   1e-3 /* of the distance of the farthest mode: how far the contour stays away from it */
 
@@ -253,15 +255,32 @@ static PetscBool StepIsShort(const Contour *c, const PetscComplex lambda[2])
   return PETSC_TRUE;
 }
 
+/* Whether the rates of the phase at both ends of a step turn it by no more: eigenvalues of T next to the edge, a pair
+   or a cluster, turn it by whole turns between points that are far from them */
+static PetscErrorCode StepIsSlow(Contour *c, const PetscComplex lambda[2], const PetscReal phase[2], PetscBool *slow)
+{
+  PetscReal near;
+
+  PetscFunctionBeginUser;
+  *slow = PETSC_TRUE;
+  for (int i = 0; i < 2 && *slow; i++) {
+    PetscCall(ContourPhase(c, lambda[i] + LAWS_NEAR * (lambda[1 - i] - lambda[i]), &near));
+    if (PetscAbsReal(remainder(near - phase[i], 2 * PETSC_PI)) > LAWS_NEAR * LAWS_RATE) *slow = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Adds what the phase turns by between two points, at which it is known */
 static PetscErrorCode ContourStep(Contour *c, const PetscComplex lambda[2], const PetscReal phase[2], int splits)
 {
   const PetscReal    turn   = remainder(phase[1] - phase[0], 2 * PETSC_PI);
   const PetscComplex middle = (lambda[0] + lambda[1]) / 2;
   PetscReal          between;
+  PetscBool          good = PetscAbsReal(turn) <= LAWS_LARGEST && StepIsShort(c, lambda) ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if ((PetscAbsReal(turn) <= LAWS_LARGEST && StepIsShort(c, lambda)) || !splits) {
+  if (good && splits) PetscCall(StepIsSlow(c, lambda, phase, &good));
+  if (good || !splits) {
     c->turned += turn;
     if (!splits) c->lost = PETSC_TRUE;
     PetscFunctionReturn(0);
