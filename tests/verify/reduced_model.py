@@ -30,8 +30,8 @@ const {readModel, modesAt} = new Function("module",
   ["dense", "hessenberg", "follow", "reduced"].map(read).join("") + "; return module.exports;")({});
 const model = readModel(file.buffer.slice(file.byteOffset, file.byteOffset + file.length));
 const points = JSON.parse(fs.readFileSync(0)), begun = Date.now(), found = points.map(p => modesAt(model, p));
-const seconds = (Date.now() - begun) / 1000, far = (a, b) => a.length !== b.length ? 1 : Math.max(0, ...a.map((mode, k) =>
-  Math.hypot(mode.growth - b[k].growth, 2 * Math.PI * (mode.freq - b[k].freq)) / model.high));
+const seconds = (Date.now() - begun) / 1000, far = (a, b) => a.length !== b.length ? 1 : Math.max(0, ...a.map(mode => Math.min(
+  ...b.map(other => Math.hypot(mode.growth - other.growth, 2 * Math.PI * (mode.freq - other.freq)) / model.high))));
 let [moved, followed, apart] = [0, 0, 0];
 for (const goal of points.slice(0, 12)) {  // as a slider moves, from one point to the other in steps
   for (let k = 1, own = points[0]; k <= STEPS; k++, moved++) {

@@ -54,6 +54,8 @@ function valuesOn(model, own, pairs) {
   return candidates(model, {form: small, damped});
 }
 
+// s of a thousandth of the highest frequency: slower modes, rigid ones among them, are known to a part of that
+const leastOf = ({h, damped}) => damped ? 1e-3 * h : 1e-6 * h * h;
 const apart = (a, b) => Math.hypot(a.s[0] - b.s[0], a.s[1] - b.s[1]);
 
 // A copy that is complex or not
@@ -62,13 +64,14 @@ const likewise = (x, complex) => ({re: x.re.slice(), im: complex ? x.im?.slice()
 // The mode of a value by steps from the vectors of the nearest one before, gap: the distance of the next value; null where they do not end
 // near it. Of a change c of s in a step, from vectors that turned by t, about (c t)^2 / gap is left
 function followOne(pencil, own, value, gap, before, pairs) {
+  const size = Math.max(Math.hypot(...value.s), leastOf(own));
   let nearest = 0, mode = value, start = null;
   before.forEach((other, k) => { if (apart(other, value) < apart(before[nearest], value)) nearest = k; });
   for (let step = 0; step < FOLLOW_STEPS; step++) {
-    const [x, w] = start ?? pairs[nearest], complex = mode.s[1] !== 0, last = mode, size = Math.hypot(...value.s);
+    const [x, w] = start ?? pairs[nearest], complex = mode.s[1] !== 0, last = mode;
     mode = refine(pencil, own, mode, {x: likewise(x, complex), w: likewise(w, complex)});
     if (!(apart(mode, value) < JUMP * size)) return null;
-    if (apart(mode, last) ** 2 * mode.turned < LEFT * size * Math.min(gap, size)) return mode;
+    if (mode.turned < Infinity && apart(mode, last) ** 2 * mode.turned < LEFT * size * Math.min(Math.max(gap, LEFT * size), size)) return mode;
     start = vectorsOfForm(own, mode);
   }
   return null;
@@ -76,11 +79,14 @@ function followOne(pencil, own, value, gap, before, pairs) {
 
 // The modes at the values of `own` from those before, or null
 function follow(model, pencil, own, before) {
-  const pairs = before.map(mode => vectorsOfForm(own, mode)), values = valuesOn(model, own, pairs), modes = [];
+  const pairs = before.map(mode => vectorsOfForm(own, mode)), modes = [];
+  let values;
+  try { values = valuesOn(model, own, pairs); } catch { return null; }  // L'Z is singular, or its iteration does not end
   for (const value of values) {
     const gap = Math.min(...values.map(other => other === value ? Infinity : apart(other, value)), 2 * Math.abs(value.s[1]) || Infinity);
     const mode = followOne(pencil, own, value, gap, before, pairs);
-    if (!mode || modes.some((other, k) => apart(other, mode) < MEET * apart(values[k], value))) return null;
+    const meet = (other, k) => apart(other, mode) < MEET * apart(values[k], value) && Math.hypot(...mode.s) > leastOf(own);
+    if (!mode || modes.some(meet)) return null;
     modes.push(mode);
   }
   return modes;

@@ -191,8 +191,9 @@ function united(parts, [a, b], derivative) {
   parts.forEach((part, k) => {
     const [c, s] = weights[k];
     if (part && (c !== 0 || s !== 0)) for (let i = 0; i < y.re.length; i++) {
-      y.re[i] += c * part.re[i] - s * part.im[i];
-      y.im[i] += c * part.im[i] + s * part.re[i];
+      const re = part.re[i], im = part.im ? part.im[i] : 0;
+      y.re[i] += c * re - s * im;
+      y.im[i] += c * im + s * re;
     }
   });
   return y;
@@ -217,13 +218,15 @@ function rootOf([re, im], given) {
 
 // One eigenvalue to all digits with its vectors: undamped kappa := kappa + w'(M^-1 K - kappa) x / w'x; or one step to it from given vectors
 function refine(pencil, own, {lambda, s}, given) {
-  const {x, w, turned} = vectorsOf(own, s, given), least = given ? 1e-1 : 1e-4, parts = partsOf(pencil, own.block, 0, own.n, false, x);
+  const found = vectorsOf(own, s, given), {x, w} = found, size = Math.hypot(...s), parts = partsOf(pencil, own.block, 0, own.n, false, x);
+  const most = given ? 0.1 * Math.max(size, leastOf(own)) : 1e-4 * size;
+  let turned = found.turned;
   if (pencil.damped) {
     const change = quotient(dot(w, united(parts, s, false)), dot(w, united(parts, s, true)));
-    if (Math.hypot(...change) < least * Math.hypot(...s)) lambda = s = [s[0] - change[0], s[1] - change[1]];
+    if (Math.hypot(...change) < most) lambda = s = [s[0] - change[0], s[1] - change[1]]; else turned = Infinity;
   } else {
-    const mass = dot(w, x), [a, b] = quotient(dot(w, parts[0]), mass), size = Math.hypot(...s);
-    if (Math.hypot(a - s[0], b - s[1]) < least * size) s = s[1] === 0 ? [a, 0] : [a, b];
+    const mass = dot(w, x), [a, b] = quotient(dot(w, parts[0]), mass);
+    if (Math.hypot(a - s[0], b - s[1]) < most) s = s[1] === 0 ? [a, 0] : [a, b]; else turned = Infinity;
     lambda = rootOf(s, lambda);
   }
   return {lambda, s, x, w, turned, slope: pencil.damped ? dot(w, united(parts, lambda, true)) : dot(w, x)};
