@@ -163,12 +163,18 @@ def alone(folder):
     listed = [word for word in ("supports:", "loads:", "contacts:", "gravity:") if f"\n{word}" in scene or f" {word}" in scene]
     check("--part: nothing holds, loads or touches it", not listed and "parts: e\n" in scene, scene)
     check("--part: the balance is that of the part", any(line.startswith("balance: the scene has") for line in lines), lines)
-    check("--part: says what it leaves out", "e alone, free (--part): left out are 1 other parts and 4 supports" in scene, scene)
-    try:
-        conversion.convert(folder / "both.inp", "mm-t-s", folder / "one", part="disc")
-        check("--part that is none", False)
-    except BadInput as error:
-        check("--part that is none", str(error) == f"--part disc: the parts of {folder}/both.inp are e, f", error)
+    check("--part: says what it leaves out",
+          "e alone, free (--part): without f, and without supports, loads, contacts, ties, joints and "
+          "masses, 4 in all" in scene, scene)
+    for wrong in ("disc", ""):
+        try:
+            conversion.convert(folder / "both.inp", "mm-t-s", folder / "one", part=wrong)
+            check("--part that is none", False)
+        except BadInput as error:
+            check("--part that is none", str(error) == f"--part {wrong}: the parts of {folder}/both.inp are e, f", error)
+    (folder / "alike.inp").write_text((body + other).replace("ELSET=F", "ELSET=E-").replace("F, S1", "E-, S1"))
+    conversion.convert(folder / "alike.inp", "mm-t-s", folder / "second", part="e_2")
+    check("--part: a part keeps the name by which it was asked for", "parts: e_2\n" in (folder / "second.yaml").read_text())
 
 
 def halved(model):

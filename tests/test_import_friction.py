@@ -111,6 +111,10 @@ def of_abaqus(folder, program):
     back = f"{changed}*FRICTION\n0.2\n*CHANGE FRICTION, INTERACTION=I, RESET\n"
     brought(folder, abaqus(text_of(PRESSED), step=back))
     slid(folder, program, "*CHANGE FRICTION, RESET", lambda s, p: mu_of(PRESSED, s, p), (10,))
+    _, lines = brought(folder, abaqus("*FRICTION, EXPONENTIAL DECAY\n0.5, 0.3, 0.002\n0.4, 0.2, 0.002\n"))
+    check("a second line of a decay is said", sum("only the first line is taken" in line for line in lines) == 1, lines)
+    refused(folder, "a table of more lines than squeal's", abaqus(text_of([(0.3 + 0.1 * p, s, p) for s in range(10000) for p in (0, 1)])),
+            "at most 20000")
     brought(folder, abaqus("*FRICTION, EXPONENTIAL DECAY, TEST DATA\n0.5\n0.35, 40.\n0.3\n"))
     slid(folder, program, "exponential decay by three points", lambda s, _: 0.3 + 0.2 * (0.05 / 0.2)**(s / 40), (40, 100))
     fields = "*FRICTION, DEPENDENCIES=1\n0.5, 0., 0., 0., 1.\n0.3, 90., 0., 0., 1.\n0.9, 0., 0., 0., 2.\n"
@@ -151,6 +155,12 @@ def of_ansys(folder):
     other = ["TB,FRIC,3", "TBFIELD,SLDI,0", "TBDATA,1,0.35", "TBFIELD,SLDI,1", "TBDATA,1,0.3"]
     _, lines = brought(folder, plain.replace("MODOPT", "\n".join(other) + "\nMODOPT"), "cdb")
     check("TB,FRIC over the sliding distance: said", sum("depends on SLDI" in line for line in lines) == 1, lines)
+    for about, words, mu, said in (("a parameter", ["MUVAL=0.3", "TB,FRIC,3", "TBDATA,1,MUVAL"], "0.3", ""),
+                                   ("TBDELE", ["TB,FRIC,3", "TBDATA,1,0.3", "TBDELE,FRIC,3"], "0.45", "TBDELE: the table TB,FRIC,3"),
+                                   ("two tables", ["TB,FRIC,3", "TBDATA,1,0.3", "TB,FRIC,3", "TBDATA,1,0.2"], "0.2",
+                                    "the place of the one")):
+        options, lines = brought(folder, plain.replace("MODOPT", "\n".join([*words, "MODOPT"])), "cdb")
+        check(f"TB,FRIC by {about}", options["pair_5_mu"] == mu and (not said or sum(said in line for line in lines) == 1), lines)
     decay = "R,5\nRMORE\nRMORE\nRMORE,,,1.5,0.01\nMODOPT"
     options, _ = brought(folder, plain.replace("MODOPT", decay), "cdb")
     found = [options.get(f"pair_5_mu_{key}") for key in ("static", "kinetic", "decay_speed")]

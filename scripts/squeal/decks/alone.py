@@ -10,6 +10,9 @@ JOINING = ("supports", "springs", "loads", "contacts", "ties", "turnings", "join
            "bolts")
 
 
+MOST_NAMED = 4  # other parts
+
+
 def leave_alone(deck, wanted):
     """Takes all but the part with that name in the scene out of the deck."""
     part_of = parts_of_cells(deck)
@@ -19,14 +22,16 @@ def leave_alone(deck, wanted):
         raise BadInput(f"--part {wanted}: the parts of {deck.path} are {', '.join(names.values())}")
     kept = part_of == number
     section = deck.sections[number]
+    others = [name for name in names.values() if name != wanted]
     left_out = sum(len(getattr(deck, kind)) for kind in JOINING)
     keep_cells(deck, kept)
-    section.cells = numpy.arange(deck.n_cells)
+    section.cells, section.name = numpy.arange(deck.n_cells), wanted
     deck.sections, deck.gravity, deck.preload = [section], None, None
     for kind in JOINING:
         setattr(deck, kind, [])
-    deck.differ(section.place, f"{wanted} alone, free (--part): left out are {len(names) - 1} other parts and {left_out} supports, loads, "
-                               "contacts, ties, joints and masses")
+    named = ", ".join(others[:MOST_NAMED]) + (" and others" if others[MOST_NAMED:] else "")
+    deck.differ(section.place, f"{wanted} alone, free (--part): without {named or 'other parts'}, and without supports, loads, contacts, "
+                               f"ties, joints and masses, {left_out} in all")
 
 
 def keep_cells(deck, kept):

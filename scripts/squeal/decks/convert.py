@@ -119,7 +119,7 @@ def convert(path, units=None, output=None, strict=False, subcase=None, part=None
         raise BadInput(f"{path}:1: there are no volume elements that squeal has")
     set_orientation(deck)
     give_sections(deck)
-    if part:
+    if part is not None:
         leave_alone(deck, part)
     size = model_size(deck)
     if not 0 < size < 1e100:

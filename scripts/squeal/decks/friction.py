@@ -69,7 +69,7 @@ def law_of(deck, place, words, lines, temperature=None):
         lines = at_temperature(lines, value)
     if len({line[0] for line in lines}) == 1:
         return lines[0][0], ()
-    if len(lines) > MOST or grid(lines)[2].size > MOST:
+    if len(lines) > MOST or (len(grid(lines)[0]) + 1) * (len(grid(lines)[1]) + 1) >= MOST:
         raise place.wrong(f"{words}: squeal's tables have at most {MOST} lines")
     deck.differ(place, f"{words}: as a table over slip rate and pressure, which beyond its ends stays what it is there, as in the deck")
     return max(line[0] for line in lines), tuple(map(tuple, lines))

@@ -36,8 +36,8 @@ def do_friction(reader, _, card):
 def decay_of(reader, card):
     """Static and kinetic coefficient, speed of the decay; by TEST DATA from mu at rest, mu at a slip rate, mu of fast sliding."""
     rows = [row for _, row in numbers(card)]
-    if "TEST DATA" in card.options:
-        card.options.pop("TEST DATA")
+    measured = card.options.pop("TEST DATA", None) is not None
+    if measured:
         still, (slow, rate, *_) = rows[0][0], (*(rows[1] if len(rows) > 1 else []), 0.0, 0.0)[:2]
         fast = rows[2][0] if len(rows) > 2 else (slow - 0.05 * still) / 0.95
         good = rate > 0 and still > slow > fast >= 0 or rate > 0 and 0 <= still < slow < fast
@@ -45,8 +45,10 @@ def decay_of(reader, card):
     else:
         row = (rows[0] + [0.0] * 3)[:3]
         found = (row[0], row[1], 1 / row[2]) if row[2] > 0 and row[1] >= 0 else ()
-        rows = rows[:1]
-    if not found or len(rows) > 3:
+    if len(rows) > (3 if measured else 1):
+        reader.deck.note(card.place, "*FRICTION, EXPONENTIAL DECAY: only the first line is taken" if not measured else
+                         "*FRICTION, EXPONENTIAL DECAY, TEST DATA: only the first three lines are taken")
+    if not found:
         reader.deck.note(card.place, "*FRICTION, EXPONENTIAL DECAY: needs mu_s, mu_k and a positive decay; mu_s is taken")
         return {}
     return {"decay": found}

@@ -12,17 +12,30 @@ def read_tables(deck, commands):
     """Number of a material -> (mu, lines of decks/friction.py) of TB,FRIC; and the commands that say so."""
     found, taken, at = {}, [], 0
     while at < len(commands):
+        if commands[at].words[0] == "TBDELE" and commands[at].word(1).upper()[:4] in ("FRIC", "ALL"):
+            forget(deck, commands[at], found)
+            taken.append(commands[at])
+            at += 1
+            continue
         if commands[at].words[0] != "TB" or commands[at].word(1).upper()[:4] != "FRIC":
             at += 1
             continue
         end = at + 1
-        while end < len(commands) and commands[end].words[0][:3] in ("TBD", "TBT", "TBF", "TBP"):
+        while end < len(commands) and commands[end].words[0] != "TBDELE" and commands[end].words[0][:3] in ("TBD", "TBT", "TBF", "TBP"):
             end += 1
         own = commands[at:end]
         taken += own
         read_table(deck, own, found)
         at = end
     return found, taken
+
+
+def forget(deck, command, found):
+    """TBDELE: the table of a material, or of all, is none."""
+    word = command.word(2).upper()
+    for number in list(found) if word in ("", "ALL") else [command.whole(2)]:
+        if found.pop(number, None):
+            deck.differ(command.place, f"TBDELE: the table TB,FRIC,{number} before it is not taken")
 
 
 def read_table(deck, own, found):
@@ -54,6 +67,8 @@ def read_table(deck, own, found):
         return
     if len(lines) == 1 or not unlike(lines):
         lines = lines[-1:]
+    if number in found:
+        deck.differ(head.place, f"{what}: takes the place of the one before it")
     found[number] = law_of(deck, head.place, what, lines)
 
 

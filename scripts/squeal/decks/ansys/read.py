@@ -17,7 +17,7 @@ PLAIN = {"*IF", "*ENDIF", "*ELSE", "*ELSEIF", "*MSG", "*GET", "DOF", "NUMOFF", "
          "CMSEL", "NSEL", "ESEL", "ALLSEL", "CMDEL", "NUMCMP", "OUTRES", "OUTPR", "SAVE", "RESCONTROL", "TIME", "KUSE", "NEQIT", "NCNV",
          "CRPLIM", "TOFFST", "LSCLEAR"}
 NOTHING = {"OMEGA", "DOMEGA", "CGLOC", "CGOMEGA", "DCGOMG", "ALPHAD", "BETAD", "DMPRAT", "DMPSTR"}  # where all values are 0
-REPLACED = {"ET", "KEYOPT", "MP", "MPDATA", "TB"}  # whose words may be parameters
+REPLACED = {"ET", "KEYOPT", "MP", "MPDATA", "TB", "TBDATA", "TBFIELD", "TBTEMP", "TBDELE"}  # whose words may be parameters
 SET = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*,|(\w+)\s*=)\s*([-+.\deE]+)\s*$", re.IGNORECASE)
 ROWS = re.compile(r"(?:\*SET\s*,\s*(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*,|(\w+)\s*\(\s*(\d+)[\s,1]*\)\s*=)\s*([-+.\deE,\s]+)$", re.IGNORECASE)
 ASSIGNED = re.compile(r"\w+\s*(?:\([^)]*\))?\s*=")
