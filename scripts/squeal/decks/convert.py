@@ -103,9 +103,8 @@ def write_beams(result, units, files):
     files["table"].write_text(result.beams.table(result.assembly.deck.x, units), encoding="utf-8")
 
 
-def convert(path, units=None, output=None, strict=False, subcase=None, part=None):
-    """Writes OUTPUT.msh and OUTPUT.yaml, of one part alone where one is named; returns the lines to print."""
-    chosen = named(units) if units else None
+def checked_output(path, output):
+    """Where the two files go, without their endings."""
     output = output or Path(path.stem)
     check_name(path)
     check_name(output)
@@ -113,6 +112,11 @@ def convert(path, units=None, output=None, strict=False, subcase=None, part=None
         raise BadInput(f"{output}: PETSc takes \\ in the name of a file for /; give --output another name")
     if not output.parent.is_dir():
         raise BadInput(f"{output.parent}: no such folder; make it, or give --output another")
+    return output
+
+
+def read_bodies(path, subcase, part):
+    """The deck with its solids, each in a section, all of them or those of one part; and the size of the model."""
     deck = read_deck(path, subcase)
     solidify(deck)
     if not deck.n_cells:
@@ -124,20 +128,15 @@ def convert(path, units=None, output=None, strict=False, subcase=None, part=None
     size = model_size(deck)
     if not 0 < size < 1e100:
         raise BadInput(f"{path}:1: all nodes are in one place")
-    nodes = [block.nodes for block in deck.blocks]
-    used = [deck.materials[section.material] for section in deck.sections if section.material]
-    chosen, why = (chosen, f"units {chosen.name}, given by --units") if chosen else guess(deck, size, used)
-    result = assemble(deck, size)
-    result.x = result.x * chosen.length
-    if not numpy.isfinite(result.x).all():
-        raise BadInput(f"{path}:1: places are not finite")
+    return deck, size
+
+
+def write_all(deck, result, output, chosen, why):
+    """Writes all files; returns their names, mesh and scene first, and the remarks."""
     mesh, scene, table = (output.with_name(output.name + ending) for ending in (".msh", ".yaml", "_equations.csv"))
     equations = table if result.joined.follows else None
     files, tables = add_files(result, output), add_tables(result, output)
     lines, notes = scene_lines(deck, result, chosen, why, (mesh, equations)), [printable(note) for note in remarks(deck)]
-    missing = deck.missing()
-    if strict and missing:
-        raise BadInput(f"{printable(str(missing[0][0]))}: {printable(missing[0][1])} ({len(missing)} such lines; --strict)")
     try:
         write_mesh(mesh, result)
         if equations:
@@ -147,13 +146,31 @@ def convert(path, units=None, output=None, strict=False, subcase=None, part=None
         write_scene(scene, [printable(line) for line in lines], notes)
     except OSError as error:
         raise BadInput(f"{error.filename}: {error.strerror}") from None
-    balance, differs = compared(of_deck(deck, nodes, result, chosen), of_scene(mesh, scene))
+    return [mesh, scene, *filter(None, (equations, *files.values(), *(path for path, *_ in tables)))], notes
+
+
+def convert(path, units=None, output=None, strict=False, subcase=None, part=None):
+    """Writes OUTPUT.msh and OUTPUT.yaml, of one part alone where one is named; returns the lines to print."""
+    chosen = named(units) if units else None
+    output = checked_output(path, output)
+    deck, size = read_bodies(path, subcase, part)
+    nodes = [block.nodes for block in deck.blocks]
+    used = [deck.materials[section.material] for section in deck.sections if section.material]
+    chosen, why = (chosen, f"units {chosen.name}, given by --units") if chosen else guess(deck, size, used)
+    result = assemble(deck, size)
+    result.x = result.x * chosen.length
+    if not numpy.isfinite(result.x).all():
+        raise BadInput(f"{path}:1: places are not finite")
+    missing = deck.missing()
+    if strict and missing:
+        raise BadInput(f"{printable(str(missing[0][0]))}: {printable(missing[0][1])} ({len(missing)} such lines; --strict)")
+    written, notes = write_all(deck, result, output, chosen, why)
+    balance, differs = compared(of_deck(deck, nodes, result, chosen), of_scene(*written[:2]))
     if strict and differs:
         raise BadInput(f"{path}:1: {differs} (--strict)")
-    cells = sum(len(block.ids) for block in result.blocks)
     if result.beams:
         balance.append(f"beams: a superelement of {len(result.beams.words)} unknowns, {result.beams.mass * chosen.mass:.6g} kg, "
                        "which are in no part above")
-    written = " ".join(map(str, filter(None, (mesh, scene, equations, *files.values(), *(path for path, *_ in tables)))))
+    cells = sum(len(block.ids) for block in result.blocks)
     return [printable(why), f"{len(result.x)} nodes, {cells} elements, {len(result.volumes)} volumes, {len(result.surfaces)} surfaces, "
-            f"{len(result.points)} sets of nodes", *notes, *balance, written]
+            f"{len(result.points)} sets of nodes", *notes, *balance, " ".join(map(str, written))]
