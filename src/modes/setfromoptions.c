@@ -36,6 +36,7 @@ static PetscErrorCode ModesChooseRange(Modes modes)
     PetscCall(OptionsDrop(modes->comm, "-modes_band",
                           modes->has_count ? "-modes_count asks for the modes nearest to -modes_target"
                                            : "-modes_target asks for the modes nearest to it"));
+  if (!band) modes->band[0] = modes->band[1] = 0; /* no edge of what is counted about a target */
   modes->has_band    = band;
   modes->has_nearest = band ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);

@@ -24,7 +24,6 @@
 #define LAWS_SIDE    16   /* steps of a side */
 #define LAWS_NEAR    0.01 /* of a step: over so much the rate of the phase is looked at */
 #define LAWS_ALIKE   1e-6 /* relative distance from a target of modes that are copies of each other */
-#define LAWS_SHORT   1e-3 /* of the distance of the farthest mode: how far the contour stays away from it */
 
 /* The pencil with a share of h in place of h, turned by the detour */
 typedef struct {
@@ -270,11 +269,34 @@ static PetscErrorCode StepIsSlow(Contour *c, const PetscComplex lambda[2], const
   PetscFunctionReturn(0);
 }
 
-/* Adds what the phase turns by between two points, at which it is known */
-static PetscErrorCode ContourStep(Contour *c, const PetscComplex lambda[2], const PetscReal phase[2], int splits)
+/* Point i of 4 LAWS_SIDE, or between two, of the edge of the window, above the real axis: of a rectangle, or of a
+   circle about the target with radius d */
+static PetscComplex ContourPoint(const Projection *p, PetscReal d, PetscReal i)
 {
-  const PetscReal    turn   = remainder(phase[1] - phase[0], 2 * PETSC_PI);
-  const PetscComplex middle = (lambda[0] + lambda[1]) / 2;
+  const Window   *w = p->window;
+  const PetscReal t = fmod(i, LAWS_SIDE) / LAWS_SIDE, low = PetscMax(w->edge[0], w->known.scale), g = w->growth;
+  const PetscReal angle = 2 * PETSC_PI * i / (4 * LAWS_SIDE);
+
+  if (w->count) return CMPLX(d * cos(angle), PetscMax(low, w->target + d * sin(angle)));
+  switch ((int)(i / LAWS_SIDE) % 4) {
+  case 0:
+    return CMPLX(-g + 2 * g * t, low);
+  case 1:
+    return CMPLX(g, low + t * (w->edge[1] - low));
+  case 2:
+    return CMPLX(g - 2 * g * t, w->edge[1]);
+  default:
+    return CMPLX(-g, w->edge[1] - t * (w->edge[1] - low));
+  }
+}
+
+/* Adds what the phase turns by between points i[0] and i[1], at which it is known. Steps are split on the edge itself:
+   chords of a circle leave out a thousandth of it */
+static PetscErrorCode ContourStep(const Projection *p, PetscReal d, Contour *c, const PetscReal i[2],
+                                  const PetscReal phase[2], int splits)
+{
+  const PetscReal    turn = remainder(phase[1] - phase[0], 2 * PETSC_PI), middle = (i[0] + i[1]) / 2;
+  const PetscComplex lambda[2] = {ContourPoint(p, d, i[0]), ContourPoint(p, d, i[1])};
   PetscReal          between;
   PetscBool          good = PetscAbsReal(turn) <= LAWS_LARGEST && StepIsShort(c, lambda) ? PETSC_TRUE : PETSC_FALSE;
 
@@ -285,31 +307,10 @@ static PetscErrorCode ContourStep(Contour *c, const PetscComplex lambda[2], cons
     if (!splits) c->lost = PETSC_TRUE;
     PetscFunctionReturn(0);
   }
-  PetscCall(ContourPhase(c, middle, &between));
-  PetscCall(ContourStep(c, (PetscComplex[2]){lambda[0], middle}, (PetscReal[2]){phase[0], between}, splits - 1));
-  PetscCall(ContourStep(c, (PetscComplex[2]){middle, lambda[1]}, (PetscReal[2]){between, phase[1]}, splits - 1));
+  PetscCall(ContourPhase(c, ContourPoint(p, d, middle), &between));
+  PetscCall(ContourStep(p, d, c, (PetscReal[2]){i[0], middle}, (PetscReal[2]){phase[0], between}, splits - 1));
+  PetscCall(ContourStep(p, d, c, (PetscReal[2]){middle, i[1]}, (PetscReal[2]){between, phase[1]}, splits - 1));
   PetscFunctionReturn(0);
-}
-
-/* Point i of 4 LAWS_SIDE of the edge of the window, above the real axis: of a rectangle, or of a circle about the
-   target with radius d */
-static PetscComplex ContourPoint(const Projection *p, PetscReal d, int i)
-{
-  const Window   *w = p->window;
-  const PetscReal t = (PetscReal)(i % LAWS_SIDE) / LAWS_SIDE, low = PetscMax(w->edge[0], w->known.scale), g = w->growth;
-  const PetscReal angle = 2 * PETSC_PI * i / (4 * LAWS_SIDE);
-
-  if (w->count) return CMPLX(d * cos(angle), PetscMax(low, w->target + d * sin(angle)));
-  switch (i / LAWS_SIDE % 4) {
-  case 0:
-    return CMPLX(-g + 2 * g * t, low);
-  case 1:
-    return CMPLX(g, low + t * (w->edge[1] - low));
-  case 2:
-    return CMPLX(g - 2 * g * t, w->edge[1]);
-  default:
-    return CMPLX(-g, w->edge[1] - t * (w->edge[1] - low));
-  }
 }
 
 /* Whether the contour is about lambda */
@@ -323,19 +324,23 @@ static PetscBool ContourHolds(const Projection *p, PetscReal d, PetscComplex lam
   return cimag(lambda) < w->edge[1] && PetscAbsReal(creal(lambda)) < w->growth ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The radius of a circle short of the farthest of the modes nearest to a target, and of its copies: halfway to the next
-   nearer one, but at most LAWS_SHORT */
+/* The radius of a circle just within the farthest of the modes nearest to a target and its copies: halfway to the next
+   nearer one, but at most LAWS_ALIKE short of the nearest copy */
 static PetscReal ContourRadius(const Projection *p, const ProjectionModes *found)
 {
-  PetscReal d = 0, nearer = 0;
+  PetscReal d = 0, copy, nearer = 0;
 
   for (PetscInt i = 0; i < found->n; i++) d = PetscMax(d, cabs(found->lambda[i] - CMPLX(0, p->window->target)));
+  copy = d;
   for (PetscInt i = 0; i < found->n; i++) {
     const PetscReal own = cabs(found->lambda[i] - CMPLX(0, p->window->target));
 
-    if (own < d * (1 - LAWS_ALIKE)) nearer = PetscMax(nearer, own);
+    if (own < d * (1 - LAWS_ALIKE))
+      nearer = PetscMax(nearer, own);
+    else
+      copy = PetscMin(copy, own);
   }
-  return PetscMax(d * (1 - LAWS_SHORT), (d + nearer) / 2);
+  return PetscMax(copy * (1 - LAWS_ALIKE), (copy + nearer) / 2);
 }
 
 PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
@@ -344,7 +349,6 @@ PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *f
   const PetscReal d = ContourRadius(p, found);
   Contour         c = {.pencil = SubspacePencil(&p->space)};
   const PetscInt  n = c.pencil.n;
-  PetscComplex    at[2];
   PetscReal       phase[2];
   PetscInt        inside = 0;
 
@@ -352,12 +356,10 @@ PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *f
   PetscCall(PetscMalloc3(2 * n, &c.nu, n * n, &c.T, n, &c.pivot));
   PetscCall(QuadraticEigenvalues(p, &c));
   PetscCall(ContourTake(&c, found));
-  at[0] = ContourPoint(p, d, 0);
-  PetscCall(ContourPhase(&c, at[0], &phase[0]));
-  for (int i = 1; i <= 4 * LAWS_SIDE; i++, at[0] = at[1], phase[0] = phase[1]) {
-    at[1] = ContourPoint(p, d, i % (4 * LAWS_SIDE));
-    PetscCall(ContourPhase(&c, at[1], &phase[1]));
-    PetscCall(ContourStep(&c, at, phase, LAWS_SPLITS));
+  PetscCall(ContourPhase(&c, ContourPoint(p, d, 0), &phase[0]));
+  for (int i = 0; i < 4 * LAWS_SIDE; i++, phase[0] = phase[1]) {
+    PetscCall(ContourPhase(&c, ContourPoint(p, d, i + 1), &phase[1]));
+    PetscCall(ContourStep(p, d, &c, (PetscReal[2]){i, i + 1}, phase, LAWS_SPLITS));
   }
   for (PetscInt i = 0; i < c.n; i++) inside += ContourHolds(p, d, c.nu[i]);
   for (PetscInt i = 0; i < found->n; i++) inside -= ContourHolds(p, d, found->lambda[i]);
