@@ -52,10 +52,14 @@ class Folder:
         return (f"{self.path}: holds no result ({', '.join(TABLES.values())}); is it the -output_dir of a run that "
                 "ended?")
 
-    def lacks(self, error):
-        """A paragraph about what cannot be read, and a line for the user."""
+    def said(self, error):
+        """What cannot be read, a line for the user too."""
         self.wrong.append(str(error))
-        return missing(f"{error}.")
+        return str(error)
+
+    def lacks(self, error):
+        """A paragraph about it."""
+        return missing(f"{self.said(error)}.")
 
     def tried(self, make, *given):
         """What is made, or what is wrong."""

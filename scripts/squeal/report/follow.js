@@ -71,7 +71,8 @@ function followOne(pencil, own, value, gap, before, pairs) {
     const [x, w] = start ?? pairs[nearest], complex = mode.s[1] !== 0, last = mode;
     mode = refine(pencil, own, mode, {x: likewise(x, complex), w: likewise(w, complex)});
     if (!(apart(mode, value) < JUMP * size)) return null;
-    if (mode.turned < Infinity && apart(mode, last) ** 2 * mode.turned < LEFT * size * Math.min(Math.max(gap, LEFT * size), size)) return mode;
+    const enough = LEFT * size * Math.min(Math.max(gap, LEFT * size), size);
+    if (mode.turned < Infinity && apart(mode, last) ** 2 * mode.turned < enough) return mode;
     start = vectorsOfForm(own, mode);
   }
   return null;

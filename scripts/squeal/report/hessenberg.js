@@ -1,5 +1,5 @@
-// A = S H S^-1 as dense.js makes it, and systems with A - s, s = a + i b, each in the square of the size. Vectors are two arrays, re and im;
-// im is null for real ones with a real s.
+// A = S H S^-1 as dense.js makes it, and systems with A - s, s = a + i b, each in the square of the size. Vectors are two arrays, re
+// and im; im is null for real ones with a real s.
 "use strict";
 
 // (re, im)[p + i] += (f, g) l[o + i] of n numbers

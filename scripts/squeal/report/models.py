@@ -19,21 +19,36 @@ BEYOND = 0.25  # of the range, on either side: how far sliders reach
 STEPS = 400
 POINTS = 6  # of the box beside the scene's own, whose modes' shapes are taken
 SHAPE_ERROR = 0.01  # of the length of a shape, that directions left out may be
+LARGEST = 1e100  # number of a matrix
+LIMITS = "low", "high", "limit_ratio", "limit_growth", "error"
+ABSENT = "No shapes: reduced_shapes.h5 is not there. It is left out above 96 MB, without a mesh, and with -output_fields 0."
 HEADS = "frequency, Hz", "growth, 1/s", "error, rad/s", "state"
 
 
 def read_model(path):
-    """What its first line says, and all bytes."""
+    """What its first line says, the matrices [terms][n][n], and all bytes."""
     data = path.read_bytes()
     try:
         model = json.loads(data[:data.index(b"\n")])
-        n_numbers = model["n"]**2 * len(model["terms"])
-        ranges = [(entry["name"], entry["lower"], entry["upper"], entry["value"]) for entry in model["parameters"]]
-        if len(data) - data.index(b"\n") - 1 != 8 * n_numbers or not all(low < high for _, low, high, _ in ranges):
-            raise ValueError
-    except (ValueError, KeyError, TypeError):
+        n = model["n"]
+        matrices = numpy.frombuffer(data[data.index(b"\n") + 1:]).reshape(len(model["terms"]), n, n).transpose(0, 2, 1)
+        check_head(model)
+    except (ValueError, KeyError, TypeError, IndexError, OverflowError):
         raise BadInput(f"{path}: is no reduced model, or is not whole") from None
-    return model, data
+    if not (abs(matrices) < LARGEST).all():
+        raise BadInput(f"{path}: a matrix has values that are no numbers or above {LARGEST:g}; was the file damaged?")
+    return model, matrices, data
+
+
+def check_head(model):
+    """ValueError, KeyError or TypeError where what is read of it cannot be."""
+    ranges = [[float(entry[key]) for key in ("lower", "value", "upper")] for entry in model["parameters"]]
+    powers = [float(power) for term in model["terms"] for i, power, absolute in term["factors"] if ranges[i] and absolute in (0, 1)]
+    numbers = [*powers, *(float(term["scale"]) for term in model["terms"]), *(x for values in ranges for x in values),
+               *(float(model[key]) for key in LIMITS)]
+    named = all(entry["name"] + entry["unit"] for entry in model["parameters"]) and {term["kind"] for term in model["terms"]} <= set("KCM")
+    if not (named and 0 < model["n_used"] <= model["n"] and numpy.isfinite(numbers).all() and all(low < high for low, _, high in ranges)):
+        raise ValueError
 
 
 def slider(entry):
@@ -71,40 +86,47 @@ def modes_at(model, matrices, p):
     return vectors[:n, inside]
 
 
-def snapshots(model, data):
+def snapshots(model, matrices):
     """Coordinates of the modes at some points of the box, real and imaginary parts, columns of length 1."""
-    n = model["n"]
-    matrices = numpy.frombuffer(data[data.index(b"\n") + 1:]).reshape(len(model["terms"]), n, n).transpose(0, 2, 1)
     low, high, own = (numpy.array([entry[key] for entry in model["parameters"]]) for key in ("lower", "upper", "value"))
     points = [own, *(low + (high - low) * numpy.random.default_rng(1).random((POINTS, len(low))))]
-    vectors = numpy.hstack([modes_at(model, matrices, p) for p in points])
+    with numpy.errstate(all="ignore"):  # what is not finite is an error of eig
+        vectors = numpy.hstack([modes_at(model, matrices, p) for p in points])
     columns = numpy.hstack([vectors.real, vectors.imag])
     return columns / numpy.maximum(numpy.linalg.norm(columns, axis=0), 1e-300)
 
 
-def directions_of(path, disc, model, data, room):
+def shape_of(path, name, shapes, scene):
+    """Vector of the model on the nodes of the scene, [nodes][3]."""
+    wanted, there = (len(scene.points), 3), getattr(shapes.get(name), "shape", "none")
+    if there != wanted:
+        raise BadInput(f"{path}: array {name} is {there}, must be {wanted}: nodes and directions; was the file damaged?")
+    return sound(path, name, shapes[name][:])
+
+
+def directions_of(path, disc, model, snaps, room):
     """Bodies, directions U [3 nodes][r] on their surface and their weights U'V [r][n_used]; None where they do not fit into the room."""
     with opened(path) as file:
-        bodies = Bodies(Scene(file, disc))
-        shapes = file["VTKHDF/PointData"]
-        V = numpy.stack([bodies.moved(sound(path, f"vector_{k:03d}", shapes[f"vector_{k:03d}"][:])).ravel()
+        scene = Scene(file, disc)
+        bodies = Bodies(scene)
+        V = numpy.stack([bodies.moved(shape_of(path, f"vector_{k:03d}", scene.shapes, scene)).ravel()
                          for k in range(1, model["n_used"] + 1)], axis=1)
-    moved = V @ snapshots(model, data)
+    moved = V @ snaps
     U, size, _ = numpy.linalg.svd(moved / numpy.maximum(numpy.linalg.norm(moved, axis=0), 1e-300), full_matrices=False)
     left = numpy.sqrt(numpy.cumsum(size[::-1]**2)[::-1] / moved.shape[1])
     r = max(1, int((left > SHAPE_ERROR).sum()))
     return (bodies, U[:, :r], U[:, :r].T @ V) if 8 / 3 * len(U) * r < room else None
 
 
-def moving(folder, name, model, data, room):
+def moving(folder, name, model, snaps, room):
     """The viewer of the chosen mode; what is missing."""
     path = folder.path / "reduced_shapes.h5"
     if not path.exists():
-        return missing("No shapes: reduced_shapes.h5 is not there; see -output_fields."), None
+        return missing(ABSENT), None
     try:
-        found = directions_of(path, folder.disc(), model, data, room)
+        found = directions_of(path, folder.disc(), model, snaps, room)
     except BadInput as error:
-        return missing(f"No shapes: {error}."), None
+        return missing(f"No shapes: {folder.said(error)}."), None
     if not found:
         return missing("No shapes: they are too large for the page."), None
     bodies, U, weights = found
@@ -117,15 +139,20 @@ def moving(folder, name, model, data, room):
 
 def model_part(folder, room):
     """All of it."""
-    model, data = read_model(folder.path / "reduced_model.bin")
+    path = folder.path / "reduced_model.bin"
+    model, matrices, data = read_model(path)
+    try:
+        snaps = snapshots(model, matrices)
+    except numpy.linalg.LinAlgError as error:
+        raise BadInput(f"{path}: has no modes at some values of its parameters: {error}; was the file damaged?") from None
     text = base64.b64encode(zlib.compress(data, 6)).decode()
     if len(text) > max(room, 3e6):
-        raise BadInput(f"{folder.path / 'reduced_model.bin'}: {len(text) / 1e6:.1f} MB are too much for the page")
+        raise BadInput(f"{path}: {len(text) / 1e6:.1f} MB are too much for the page")
     name = f"{folder.key}-model"
     table = tag("table", tag("thead", tag("tr", [tag("th", head) for head in HEADS])), tag("tbody"))
     said = (f"{count(model['n_used'], 'vector')}, and {count(model['n'] - model['n_used'], 'further one')} for the estimate of its error "
             "(an estimate, no bound). The modes are computed here, in the browser.")
-    picture, vectors = moving(folder, f"{folder.key}-vectors", model, data, room - len(text))
+    picture, vectors = moving(folder, f"{folder.key}-vectors", model, snaps, room - len(text))
     said += " A click on a row shows how that mode moves." if vectors else ""
     place = tag("div", [slider(entry) for entry in model["parameters"]], tag("button", "The scene's own values", type="button"),
                 tag("p", "", class_="beyond-line", role="status"), tag("p", "", class_="said"), tag("div", table, class_="scroll"),

@@ -11,8 +11,8 @@ async function inflated(text) {
 
 const REST = 250;  // ms without a move
 
-// A worker that answers {p, moving, chosen} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one is too quick
-// to be timed. A busy one gets the newest question when it is done
+// A worker that answers {p, moving, chosen} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one
+// is too quick to be timed. A busy one gets the newest question when it is done
 function asker(buffer, answer) {
   const code = document.getElementById("reduced-code").textContent + `
     let model = null;
@@ -114,55 +114,81 @@ function show_modes(body, model, modes) {
   });
 }
 
-async function add_sliders(place) {
-  const buffer = await inflated(document.getElementById(place.dataset.source).textContent);
-  const model = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 0, new Uint8Array(buffer).indexOf(10))));
-  const sliders = [...place.querySelectorAll("input[type=range]")], body = place.querySelector("tbody");
-  const said = place.querySelector(".said"), beyond = place.querySelector(".beyond-line"), rates = [new Rate(), new Rate()];
-  const shapes = place.dataset.shapes ? new Shapes(stages[place.dataset.shapes]) : null;
-  let chosen = {freq: 0, growth: 1e9};
-  const range = entry => `${Number(entry.lower.toPrecision(5))} to ${Number(entry.upper.toPrecision(5))}`;
-  place.dataset.answers = 0;
-  const ask = asker(buffer, ({p, modes, fault, moving, followed, ...effort}) => {
-    if (fault) { said.textContent = `not computed: ${fault}`; return; }
-    const outside = model.parameters.filter(({lower, upper}, i) => p[i] < lower || p[i] > upper);
-    show_modes(body, model, modes);
-    sliders.forEach((slider, i) => slider.parentElement.classList.toggle("beyond", outside.includes(model.parameters[i])));
-    beyond.textContent = outside.length ? "Outside of what the model was made for: " +
-      outside.map(entry => `${entry.name}, ${range(entry)}`).join("; ") + ". It extrapolates, and its errors are not known." : "";
-    const rate = rates[moving ? 1 : 0];
+const range = entry => `${Number(entry.lower.toPrecision(5))} to ${Number(entry.upper.toPrecision(5))}`;
+
+// Sliders of one model: its elements, what was asked and answered last
+class Sliders {
+  constructor(place, buffer) {
+    const bytes = new Uint8Array(buffer);
+    Object.assign(this, {place, chosen: {freq: 0, growth: 1e9}, rates: [new Rate(), new Rate()], resting: 0});
+    this.model = JSON.parse(new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(10))));
+    this.inputs = [...place.querySelectorAll("input[type=range]")];
+    [this.body, this.said, this.beyond] = ["tbody", ".said", ".beyond-line"].map(name => place.querySelector(name));
+    this.shapes = place.dataset.shapes ? new Shapes(stages[place.dataset.shapes]) : null;
+    place.dataset.answers = 0;
+    this.ask = asker(buffer, answer => this.show(answer));
+    this.listen();
+    this.look(false);
+  }
+
+  listen() {
+    for (const input of this.inputs) input.addEventListener("input", () => this.look(true));
+    this.place.querySelector("button").addEventListener("click", () => {
+      this.inputs.forEach((input, i) => { input.value = this.model.parameters[i].value; });
+      this.look(false);
+    });
+    if (this.shapes) this.body.addEventListener("click", ({target}) => {
+      const row = target.closest("tr");
+      if (row && this.place.modes) { this.chosen = this.place.modes[row.sectionRowIndex]; this.look(false); }
+    });
+  }
+
+  // Asks for the modes at what the sliders say
+  look(moving) {
+    const {inputs, shapes, chosen, rates} = this;
+    clearTimeout(this.resting);
+    if (moving) this.resting = setTimeout(() => this.look(false), REST);
+    for (const input of inputs) input.nextElementSibling.textContent = Number(input.value).toPrecision(5);
+    this.ask({p: inputs.map(input => Number(input.value)), moving, chosen: shapes && chosen, several: !moving && !rates[0].value});
+  }
+
+  show({p, modes, fault, moving, followed, ...effort}) {
+    const {place, rates} = this, rate = rates[moving ? 1 : 0];
+    if (fault) { this.said.textContent = `not computed: ${fault}`; return; }
     rate.add(effort);
-    said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ` +
+    show_modes(this.body, this.model, modes);
+    this.showBeyond(p);
+    this.said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ` +
       `${followed ? "followed from those before until the slider rests, which may miss one that comes; " : ""}${rate.text()}`;
-    const mode = modes.find(({x}) => x);
-    if (mode && shapes) {
-      shapes.show(mode);
-      [...body.rows].forEach((row, k) => row.classList.toggle("chosen", modes[k] === mode));
-    }
-    if (mode) chosen = {freq: mode.freq, growth: mode.growth};
-    place.modes = modes;
-    place.asked = p;
+    this.showShape(modes);
+    Object.assign(place, {modes, asked: p});
     place.dataset.moving = moving;
     place.dataset.answers++;
     place.dataset.state = "done";
-  });
-  let resting = 0;
-  const look = moving => {
-    clearTimeout(resting);
-    if (moving) resting = setTimeout(look, REST, false);
-    sliders.forEach(slider => { slider.nextElementSibling.textContent = Number(slider.value).toPrecision(5); });
-    ask({p: sliders.map(slider => Number(slider.value)), moving, chosen: shapes && chosen, several: !moving && !rates[0].value});
-  };
-  if (shapes) body.addEventListener("click", ({target}) => {
-    const row = target.closest("tr");
-    if (row && place.modes) { chosen = place.modes[row.sectionRowIndex]; look(false); }
-  });
-  for (const slider of sliders) slider.addEventListener("input", () => look(true));
-  place.querySelector("button").addEventListener("click", () => {
-    sliders.forEach((slider, i) => { slider.value = model.parameters[i].value; });
-    look(false);
-  });
-  look(false);
+  }
+
+  // Which parameters are outside of the ranges that the model was made for
+  showBeyond(p) {
+    const outside = this.model.parameters.filter(({lower, upper}, i) => p[i] < lower || p[i] > upper);
+    this.inputs.forEach((input, i) => input.parentElement.classList.toggle("beyond", outside.includes(this.model.parameters[i])));
+    this.beyond.textContent = outside.length ? "Outside of what the model was made for: " +
+      outside.map(entry => `${entry.name}, ${range(entry)}`).join("; ") + ". It extrapolates, and its errors are not known." : "";
+  }
+
+  // The mode that has its vector
+  showShape(modes) {
+    const mode = modes.find(({x}) => x);
+    if (!mode) return;
+    if (this.shapes) {
+      this.shapes.show(mode);
+      [...this.body.rows].forEach((row, k) => row.classList.toggle("chosen", modes[k] === mode));
+    }
+    this.chosen = {freq: mode.freq, growth: mode.growth};
+  }
+}
+
+async function add_sliders(place) {
+  return new Sliders(place, await inflated(document.getElementById(place.dataset.source).textContent));
 }
 
 addEventListener("DOMContentLoaded", () => {

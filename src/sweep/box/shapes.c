@@ -52,7 +52,7 @@ PetscErrorCode BoxExportShapes(const Box *box, Results results)
   const Mesh    *mesh;
   PetscBool      wanted;
   PetscInt       n_nodes;
-  PetscReal     *nodal;
+  PetscReal     *nodal, size;
   ResultsField   field;
   BV             block;
 
@@ -62,7 +62,14 @@ PetscErrorCode BoxExportShapes(const Box *box, Results results)
   if (!mesh || !wanted || !box->basis.pencil) PetscFunctionReturn(0);
   n_nodes = mesh->n_nodes;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_nodes, 1, MPIU_INT, MPI_SUM, box->comm));
-  if (3.0 * sizeof(PetscReal) * (PetscReal)n_nodes * (PetscReal)n > SHAPES_MOST) PetscFunctionReturn(0);
+  size = 3.0 * sizeof(PetscReal) * (PetscReal)n_nodes * (PetscReal)n;
+  if (size > SHAPES_MOST) {
+    PetscCall(PetscPrintf(box->comm,
+                          "reduced_shapes.h5 is not written: %" PetscInt_FMT " vectors on the mesh are %.0f MB, and at "
+                          "most %.0f MB are; the page has sliders without moving shapes\n",
+                          n, (double)size / 1e6, SHAPES_MOST / 1e6));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMalloc1(3 * mesh->n_nodes, &nodal));
   PetscCall(ResultsFieldOpen(results, "reduced_shapes", mesh, &field));
   for (PetscInt first = 0; first < n; first += SHAPES_ONCE) {
