@@ -70,7 +70,7 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes);
 
 /*@ ModesSetPencil - the system to solve, at the point that it has when ModesSolve() is called; it must stay until the
     modes are written or another pencil is set. Its reference frequency (PencilSetReference()) becomes the middle of the
-    band, or the target, where it has none. Collective. @*/
+    band, or the target, where it has none; ModesSolve() takes the middle of modes far above a target. Collective. @*/
 PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil);
 
 /*@
@@ -125,8 +125,8 @@ PetscErrorCode ModesGetFactor(Modes modes, const struct ShiftInvert **factor);
 /*@ ModesSolve - computes eigenvalues, vectors, errors and labels, and checks that none is missing. Collective. @*/
 PetscErrorCode ModesSolve(Modes modes);
 
-/*@ ModesWantTerms - whether the options ask for what needs the terms of the pencil after the solution. Not
-    collective. @*/
+/*@ ModesWantTerms - whether the options ask for what needs the terms of the pencil in the solution, as stiffness that
+    depends on the frequency does about a target, or after it. Not collective. @*/
 PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted);
 
 /*@ ModesPrepareComponents - finds the bodies of the pencil while its terms are there, as ModesFindComponents() needs

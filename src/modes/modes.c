@@ -9,8 +9,6 @@
 #include "solver/factor/ordering.h"
 #include <squeal/options.h>
 
-#define MODES_REFERENCE 2 /* of a target: modes above this are far above it */
-
 PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
 {
   PetscFunctionBeginUser;
@@ -22,61 +20,19 @@ PetscErrorCode ModesCreate(MPI_Comm comm, Modes *modes)
   PetscFunctionReturn(0);
 }
 
-/* Undamped modes nearest to the target, of which the lowest and the highest, rad/s */
-static PetscErrorCode UndampedRange(Modes modes, PetscReal range[2])
-{
-  PencilMatrices undamped;
-  ShiftInvert    si = {.factored = PETSC_FALSE};
-  Window         window;
-
-  PetscFunctionBeginUser;
-  PetscCall(PencilGetMatrices(modes->pencil, &undamped));
-  undamped.C      = NULL;
-  undamped.n_laws = 0;
-  modes->counter  = (ShiftInvert){.progress = &modes->progress};
-  PetscCall(LimitBegin(modes));
-  PetscCall(WindowFind(modes, &window));
-  PetscCall(ModesFactor(modes, &undamped, UndampedShift(&window), RELEASE_NOTHING, &si));
-  PetscCall(ModesSolveRight(modes, &undamped, &window, &si));
-  range[0] = PETSC_MAX_REAL;
-  range[1] = 0;
-  for (PetscInt i = 0; i < modes->right.n; i++) {
-    if (modes->right.omega[i] <= window.known.scale) continue;
-    range[0] = PetscMin(range[0], modes->right.omega[i]);
-    range[1] = PetscMax(range[1], modes->right.omega[i]);
-  }
-  PetscCall(SpectrumDestroy(&modes->right));
-  PetscCall(ShiftInvertDestroy(&modes->counter));
-  PetscCall(ShiftInvertDestroy(&si));
-  PetscFunctionReturn(0);
-}
-
-/* The reference at which K and C have stiffness that depends on the frequency: the middle of the band, or the target;
-   where modes lie far above a target their middle, as C with the same loss at the target would stop them */
-static PetscErrorCode ReferenceSet(Modes modes, PetscReal middle)
-{
-  PetscReal range[2];
-
-  PetscFunctionBeginUser;
-  PetscCall(PencilSetReference(modes->pencil, middle));
-  if (modes->has_band) PetscFunctionReturn(0);
-  PetscCall(UndampedRange(modes, range));
-  if (range[1] > MODES_REFERENCE * middle)
-    PetscCall(PencilSetReference(modes->pencil, (range[0] + range[1]) / 2));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModesSetPencil(Modes modes, Pencil pencil)
 {
   const PetscReal middle = 2 * PETSC_PI * (modes->has_band ? (modes->band[0] + modes->band[1]) / 2 : modes->target);
 
   PetscFunctionBeginUser;
-  modes->pencil = pencil;
+  modes->pencil   = pencil;
+  modes->may_move = PETSC_FALSE;
   if (!pencil || !PencilHasLaws(pencil) || PencilGetReference(pencil) != 0) PetscFunctionReturn(0);
   PetscCheck(middle > 0, modes->comm, PETSC_ERR_USER_INPUT,
              "-modes_target 0: the stiffness of a part depends on the frequency, and at 0 Hz nothing oscillates; give "
              "a target above it, or a -modes_band");
-  PetscCall(ReferenceSet(modes, middle));
+  PetscCall(PencilSetReference(pencil, middle));
+  modes->may_move = modes->has_band ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 
@@ -223,10 +179,11 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
   else
     PetscCall(ProjectSolve(modes, pencil, window, &window->route.project));
   PetscCheck(
-    window->route.project || !pencil->n_laws, modes->comm, PETSC_ERR_NOT_CONVERGED,
+    window->route.project || window->route.middle > 0 || !pencil->n_laws, modes->comm, PETSC_ERR_NOT_CONVERGED,
     "modes of materials whose stiffness depends on the frequency are found by projection, which cannot be done: "
-    "%s; narrow -modes_band, or give less damping",
-    window->route.why);
+    "%s; %s, or give less damping",
+    window->route.why,
+    modes->has_band ? "narrow -modes_band" : "give a -modes_band, or a -modes_target nearer to the modes");
   PetscCheck(window->route.project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "-modes_damping project cannot be done: %s; use auto or pep", window->route.why);
   PetscFunctionReturn(0);
@@ -249,7 +206,8 @@ static PetscErrorCode CheckLaws(Modes modes, PetscBool found)
   PetscFunctionReturn(0);
 }
 
-/* All modes of the pencil in the window, but for their names; none = there is none in it */
+/* All modes of the pencil in the window, but for their names; none = there is none in it. Again with another reference
+   where undamped modes lie far above a target (project.c) */
 static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
 {
   PencilMatrices pencil;
@@ -267,6 +225,13 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   if (*none) PetscFunctionReturn(0);
   PetscCall(ShiftsChoose(modes, &pencil, window));
   PetscCall(SolveProjected(modes, &pencil, window));
+  if (window->route.middle > 0) {
+    modes->may_move = PETSC_FALSE;
+    PetscCall(PencilSetReference(modes->pencil, window->route.middle));
+    PetscCall(ModesReset(modes));
+    PetscCall(FindAll(modes, window, none));
+    PetscFunctionReturn(0);
+  }
   if (!window->route.project) PetscCall(SolveWhole(modes, &pencil, window));
   PetscCall(PencilGetMatrices(modes->pencil, &pencil)); /* which may have been freed meanwhile */
   *none = modes->right.n ? PETSC_FALSE : PETSC_TRUE;

@@ -87,15 +87,15 @@ struct _p_Modes {
   Pencil   pencil;
   Sound    sound; /* NULL: nobody listens */
   /* set by options */
-  PetscReal band[2], target; /* Hz */
-  PetscReal growth;          /* rad/s; 0: a tenth of the highest angular frequency */
-  PetscReal free_to;         /* of the highest frequency: free modes of the bodies up to there; 0: none */
-  PetscBool free_found;      /* free modes from the modes found, where free_to is 0 */
-  PetscReal unstable[2];     /* growth up to this is no instability: damping ratio, %; 1/s */
-  PetscInt  most;            /* modes that a band may hold; 0: any number */
-  PetscBool has_most;        /* given */
-  PetscBool may_be_none;     /* a band without modes is no error */
-  PetscReal max_time;        /* s, of one solution; 0: any */
+  PetscReal band[2], target;       /* Hz */
+  PetscReal growth;                /* rad/s; 0: a tenth of the highest angular frequency */
+  PetscReal free_to;               /* of the highest frequency: free modes of the bodies up to there; 0: none */
+  PetscBool free_found;            /* free modes from the modes found, where free_to is 0 */
+  PetscReal unstable[2];           /* growth up to this is no instability: damping ratio, %; 1/s */
+  PetscInt  most;                  /* modes that a band may hold; 0: any number */
+  PetscBool has_most;              /* given */
+  PetscBool may_be_none, may_move; /* a band without modes is no error; a reference at a target may move */
+  PetscReal max_time;              /* s, of one solution; 0: any */
   PetscBool has_band, has_target, has_count, has_both, has_nearest, has_route, has_disc, left, keep, filters,
     sensitivities, couplings;
   PetscInt     count;
@@ -167,14 +167,14 @@ typedef struct {
   PetscInt  n_about;                   /* complex shifts there, since it is stronger than that; or 0 */
   PetscReal pole;                      /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
   char      why[128];                  /* why not by projection; empty where it was not tried */
+  PetscReal middle;                    /* or 0: of undamped modes far above a target, a better reference, rad/s */
   PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
   PetscBool proven;                    /* inertia counts what was found */
   PetscReal worst;                     /* largest relative difference of right and left eigenvalues */
 } WindowRoute;
 
-/* What to look for: all eigenvalues with omega in [low, high] and |sigma| <= growth, rad/s; what is known of them, and
-   how they were found */
+/* All eigenvalues with omega in [low, high], |sigma| <= growth, rad/s; what is known of them; how they were found */
 typedef struct {
   PetscReal   low, high, growth;
   PetscInt    count;   /* > 0: this many nearest to target instead, low and high unknown */

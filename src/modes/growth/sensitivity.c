@@ -25,7 +25,7 @@ typedef struct {
 PetscErrorCode ModesWantTerms(Modes modes, PetscBool *wanted)
 {
   PetscFunctionBeginUser;
-  *wanted = modes->sensitivities;
+  *wanted = modes->sensitivities || modes->may_move ? PETSC_TRUE : PETSC_FALSE; /* which another reference needs */
   for (PetscInt i = 0; i < modes->n_changes; i++)
     if (ChangeHasParameter(modes, i)) *wanted = PETSC_TRUE;
   PetscFunctionReturn(0);

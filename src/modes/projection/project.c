@@ -21,6 +21,7 @@
 #include "solver/block/orthonormal.h"
 
 #define DAMPING_WEAK     0.9
+#define PROJECT_FAR      2     /* times a target: modes above this lie far above it */
 #define PROJECT_ATTEMPTS 3     /* with ever more undamped modes */
 #define PROJECT_RIGHT    1e-14 /* backward errors of settled right and left vectors */
 #define PROJECT_LEFT     1e-11
@@ -33,6 +34,7 @@ static const char why_guard[]   = "damping moves modes by more than the guard";
 static const char why_strong[]  = "damping is strong"; /* of laws, which may be weak beyond more modes */
 static const char why_missing[] = "the search on the projected problem misses modes that its contour integral counts";
 static const char why_edge[]    = "a mode lies on the edge of the window, where none can be counted: move the band";
+static const char why_far[]     = "modes lie far above the target"; /* said nowhere: it is done again */
 static const char why_differ[]  = "undamped right and left modes differ";
 
 /* Removes what lies farther from the shift than the distance */
@@ -56,6 +58,21 @@ static PetscInt CountInBand(const Window *window, const Spectrum *s)
   return n;
 }
 
+/* The middle of the modes nearest to the target, rad/s, where some lie far above it, or 0: stiffness that depends on
+   the frequency is best known there, as C with the loss of a low target stops modes far above it */
+static PetscReal MiddleOfFar(const Window *window, const Spectrum *s)
+{
+  const PetscReal d   = WindowNearest(window, s) * (1 + PETSC_SMALL);
+  PetscReal       low = PETSC_MAX_REAL, high = 0;
+
+  for (PetscInt i = 0; i < s->n; i++) {
+    if (s->omega[i] <= window->known.scale || PetscAbsReal(s->omega[i] - window->target) > d) continue;
+    low  = PetscMin(low, s->omega[i]);
+    high = PetscMax(high, s->omega[i]);
+  }
+  return high > PROJECT_FAR * window->target ? (low + high) / 2 : 0;
+}
+
 /* Undamped right and left vectors of the window and a guard, as far as both reach; complete = none is missing */
 static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped, Window *window, ShiftInvert *si,
                                     PetscReal *reach, PetscBool *complete)
@@ -67,6 +84,8 @@ static PetscErrorCode SolveUndamped(Modes modes, const PencilMatrices *undamped,
 
   PetscFunctionBeginUser;
   PetscCall(ModesSolveRight(modes, undamped, window, si));
+  if (modes->may_move) window->route.middle = MiddleOfFar(window, &modes->right);
+  if (window->route.middle > 0) PetscFunctionReturn(0);
   window->route.counted = counted;
   *reach                = right->reach;
   *complete             = !counted || CountInBand(window, right) == window->known.expected ? PETSC_TRUE : PETSC_FALSE;
@@ -244,8 +263,8 @@ PetscErrorCode ProjectSolve(Modes modes, const PencilMatrices *pencil, Window *w
     PetscCall(SubspaceTruncate(&p.space, 0));
     PetscCall(SolveUndamped(modes, &undamped, window, &p.si, &p.reach, &complete));
     n_found = modes->right.n;
-    why     = complete ? NULL : why_differ;
-    if (complete) PetscCall(AddDamping(&p, window, &why));
+    why     = window->route.middle > 0 ? why_far : complete ? NULL : why_differ;
+    if (!why) PetscCall(AddDamping(&p, window, &why));
   }
   *done = why ? PETSC_FALSE : PETSC_TRUE;
   if (why && why != why_whole) PetscCall(PetscStrncpy(window->route.why, why, sizeof(window->route.why)));
