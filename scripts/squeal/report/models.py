@@ -77,7 +77,7 @@ def modes_at(model, matrices, p):
     K, C, M = pencil_at(model, matrices, p)
     n, h = len(K), model["high"]
     if C.any():
-        A = numpy.block([[numpy.zeros((n, n)), h * numpy.eye(n)], numpy.linalg.solve(M, numpy.hstack([-K / h, -C]))])
+        A = numpy.vstack([numpy.eye(n, 2 * n, n) * h, numpy.linalg.solve(M, numpy.hstack([-K / h, -C]))])
         values, vectors = numpy.linalg.eig(A)
     else:
         kappa, vectors = numpy.linalg.eig(numpy.linalg.solve(M, K))
