@@ -40,6 +40,36 @@ static PetscErrorCode TestDivergence(int *failed)
   PetscFunctionReturn(0);
 }
 
+/* Breaks when: of more eigenvalues than places one that grows without oscillation is dropped. With mu = 5 and a branch of 4 and 1 s
+   on the first mode (s - 1) (s^2 + 2 s + 3) = 0, by hand, beside +- 2 i and what decays at -1 */
+static PetscErrorCode TestBranch(int *failed)
+{
+  PetscReal       omega2[2] = {1, 4}, P[6] = {1, 0, 1, 0, 0, 0}, W[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscReal       S[4] = {1, 0, 0, 0}, Sm[6] = {0}, Sx[9] = {0};
+  PetscReal       gap[1]    = {0}, sigma[4], omega[4];
+  FrictionLaw     law       = {.speed = 1, .parameter = {5}};
+  const PetscBool closed[1] = {PETSC_TRUE};
+  ReducedBranch   branch    = {.n = 1, .stiff = {4}, .time = {1}, .S = S, .Sm = Sm, .Sx = Sx};
+  ReducedModel    model     = {.m          = 2,
+                               .n_pairs    = 1,
+                               .n_ports    = 3,
+                               .omega2     = omega2,
+                               .P          = P,
+                               .W          = W,
+                               .gap        = gap,
+                               .friction   = &law,
+                               .n_branches = 1,
+                               .branch     = &branch};
+  MapFastest      fastest;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReducedLinearise(&model, closed, NULL, PETSC_FALSE, sigma, omega));
+  MapModesJudge(4, sigma, omega, &fastest);
+  *failed += CheckClose("divergence beside a branch", fastest.growth, 1, 1e-13);
+  *failed += CheckClose("does not oscillate", fastest.freq, 0, 0);
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: a rigid mode in rounding counts as divergence, an overdamped one as the fastest, or modes beyond those that are
    listed displace faster ones */
 static int TestLists(void)
@@ -171,6 +201,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscFunctionBeginUser;
   (void)size;
   PetscCall(TestDivergence(failed));
+  PetscCall(TestBranch(failed));
   *failed += TestLists() + TestLine() + TestEnds() + TestSpread();
   PetscFunctionReturn(0);
 }

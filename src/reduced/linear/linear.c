@@ -255,14 +255,35 @@ static PetscErrorCode ClosedFill(ClosedPairs *c, const PetscReal lambda_n[], Pet
   PetscFunctionReturn(0);
 }
 
-/* The same with branches: A = [0 1 0; -K -C -E_j B; 0 1 -1 / tau_j], B of each part behind K and C. What oscillates
-   comes first of the 2 m that are handed out; the others decay, most of them as branches do. */
+/* Of n eigenvalues the 2 m that are handed out, by falling growth: what oscillates or grows, then real ones that decay,
+   most of them as branches do */
+static PetscErrorCode BranchesKeep(PetscInt n, const PetscReal w[], PetscInt m, PetscReal sigma[], PetscReal omega[])
+{
+  PetscInt kept = 0, *order;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &order));
+  for (PetscInt k = 0; k < n; k++) order[k] = k;
+  PetscCall(PetscSortRealWithPermutation(n, w, order));
+  for (int decays = 0; decays < 2; decays++)
+    for (PetscInt i = n - 1; i >= 0 && kept < 2 * m; i--) {
+      const PetscInt k = order[i];
+
+      if ((w[n + k] == 0 && w[k] <= 0) != decays) continue;
+      sigma[kept]   = w[k];
+      omega[kept++] = w[n + k];
+    }
+  PetscCall(PetscFree(order));
+  PetscFunctionReturn(0);
+}
+
+/* The same with branches: A = [0 1 0; -K -C -E_j B; 0 1 -1 / tau_j], B of each part behind K and C */
 static PetscErrorCode BranchesEigen(const ReducedModel *model, PetscReal *const system[], PetscReal sigma[],
                                     PetscReal omega[])
 {
   const PetscInt m = model->m, n = m * (2 + ReducedBranches(model));
   PetscReal     *A, *w;
-  PetscInt       at = 2 * m, kept = 0;
+  PetscInt       at = 2 * m;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(n * n, &A, 2 * n, &w));
@@ -278,12 +299,7 @@ static PetscErrorCode BranchesEigen(const ReducedModel *model, PetscReal *const 
           A[m + l + n * (at + k)] = -model->branch[i].stiff[j] * system[2 + i][l + m * k];
       }
   PetscCall(DenseEigen(n, A, w, w + n, NULL, NULL));
-  for (int oscillates = 1; oscillates >= 0; oscillates--)
-    for (PetscInt k = 0; k < n && kept < 2 * m; k++) {
-      if ((w[n + k] != 0) != oscillates) continue;
-      sigma[kept]   = w[k];
-      omega[kept++] = w[n + k];
-    }
+  PetscCall(BranchesKeep(n, w, m, sigma, omega));
   PetscCall(PetscFree2(A, w));
   PetscFunctionReturn(0);
 }
