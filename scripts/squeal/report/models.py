@@ -150,8 +150,10 @@ def model_part(folder, room):
         raise BadInput(f"{path}: {len(text) / 1e6:.1f} MB are too much for the page")
     name = f"{folder.key}-model"
     table = tag("table", tag("thead", tag("tr", [tag("th", head) for head in HEADS])), tag("tbody"))
-    said = (f"{count(model['n_used'], 'vector')}, and {count(model['n'] - model['n_used'], 'further one')} for the estimate of its error "
-            "(an estimate, no bound). The modes are computed here, in the browser.")
+    further = model["n"] - model["n_used"]
+    estimate = (f"and {count(further, 'further one')} for the estimate of its error (an estimate, no bound)" if further else
+                "and none further to estimate errors of single modes by")
+    said = f"{count(model['n_used'], 'vector')}, {estimate}. The modes are computed here, in the browser."
     picture, vectors = moving(folder, f"{folder.key}-vectors", model, snaps, room - len(text))
     said += " A click on a row shows how that mode moves." if vectors else ""
     place = tag("div", [slider(entry) for entry in model["parameters"]], tag("button", "The scene's own values", type="button"),

@@ -98,7 +98,8 @@ function mode_texts(model, mode) {
   const error = mode.error + model.error * size + 1e-9 * size;
   const limit = Math.max(model.limit_growth, model.limit_ratio * size);
   const state = mode.growth > Math.max(error, limit) ? "unstable" : mode.growth > error ? "neutral" : "stable";
-  return [mode.freq.toFixed(3), mode.growth === 0 ? "0" : mode.growth.toPrecision(5), mode.error.toExponential(1), state];
+  const told = model.n > model.n_used ? mode.error.toExponential(1) : "not estimated";
+  return [mode.freq.toFixed(3), mode.growth === 0 ? "0" : mode.growth.toPrecision(5), told, state];
 }
 
 // Rows for all modes; those that there are serve again, and only what changes is written
