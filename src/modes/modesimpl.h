@@ -383,8 +383,6 @@ PETSC_INTERN PetscErrorCode SavedView(Modes modes, PetscViewer viewer);
    their vectors where those of the eigensolver are bad. Errors:
    PETSC_ERR_NOT_CONVERGED where K has no such vector */
 PETSC_INTERN PetscErrorCode NullVectorsRefine(Modes modes, const PencilMatrices *damped, const Window *window);
-/* Makes x[j] M-orthonormal to those before it; work = M x[j]; *rest = what is left of its length, may be NULL */
-PETSC_INTERN PetscErrorCode NullOrthonormalise(Mat M, PetscInt j, Vec x[], Vec work, PetscReal *rest);
 /* n vectors x of the null space of K, or of K', M-orthonormal, by modes->null, which NullFactor makes where it is not
    there; error [n] is |K x| / (|K| |x|) */
 PETSC_INTERN PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Window *window);

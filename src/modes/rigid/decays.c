@@ -13,9 +13,8 @@
 #define DECAY_RIGID 0.5 /* of |x| in M: a rigid motion */
 #define DECAY_MOST  0.9 /* of lambda: a larger correction is that of a zero */
 /* |b - alpha a| / |b|: both parts of x are of one decay, which rounding has made a pair of conjugates */
-#define DECAY_ONE   1e-4
-#define DECAY_APART 1e-2 /* what is left of a null vector's length beside those before it, at least */
-#define DECAY_NULL  100  /* roundings of sum_i |K_ii| y_i^2, the most that y'K y of a null vector is */
+#define DECAY_ONE  1e-4
+#define DECAY_NULL 100 /* roundings of sum_i |K_ii| y_i^2, the most that y'K y of a null vector is */
 
 /* What the left null vectors y [n] see of a pencil; work [2] */
 typedef struct {
@@ -46,27 +45,6 @@ static PetscErrorCode DecayIsNull(Mat K, Vec y, Vec work[], PetscBool *null)
   PetscFunctionReturn(0);
 }
 
-/* The left null vectors among those of the eigenvalues next to zero, which takes no factors */
-static PetscErrorCode DecaysTakeNull(Modes modes, const Window *window, Decays *d)
-{
-  const Spectrum *s = d->pencil->symmetric ? &modes->right : &modes->left_spectrum;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; i++)
-    for (int part = 0; part < (s->xi[i] ? 2 : 1) && d->n < window->known.rigid; part++) {
-      PetscReal rest;
-      PetscBool null;
-
-      if (hypot(s->sigma[i], s->omega[i]) > window->known.scale) continue;
-      PetscCall(VecCopy(part ? s->xi[i] : s->xr[i], d->y[d->n]));
-      PetscCall(NullOrthonormalise(d->pencil->M, d->n, d->y, d->work[0], &rest));
-      PetscCall(DecayIsNull(d->pencil->K, d->y[d->n], d->work, &null));
-      if (null && rest > DECAY_APART) d->n++;
-    }
-  if (d->n < window->known.rigid) d->n = 0;
-  PetscFunctionReturn(0);
-}
-
 /* The left null vectors */
 static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, const Window *window, Decays *d)
 {
@@ -74,8 +52,6 @@ static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, 
   PetscBool  null;
 
   PetscFunctionBeginUser;
-  PetscCall(DecaysTakeNull(modes, window, d));
-  if (d->n) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(window->known.rigid, &error));
   PetscCall(NullFactor(modes, pencil, window));
   PetscCall(NullIterate(modes, pencil, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, window->known.rigid, d->y, error));

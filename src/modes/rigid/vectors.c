@@ -19,14 +19,12 @@
 #define NULL_LARGEST  1e-6  /* above it there is no such vector */
 #define NULL_MAX_STEP 8
 
-/* Twice for the sake of rounding */
-PetscErrorCode NullOrthonormalise(Mat M, PetscInt j, Vec x[], Vec work, PetscReal *rest)
+/* Makes x[j] M-orthonormal to those before it, twice for the sake of rounding; work = M x[j] */
+static PetscErrorCode NullOrthonormalise(Mat M, PetscInt j, Vec x[], Vec work)
 {
-  PetscScalar dot, whole;
+  PetscScalar dot;
 
   PetscFunctionBeginUser;
-  PetscCall(MatMult(M, x[j], work));
-  PetscCall(VecDot(work, x[j], &whole));
   for (int pass = 0; pass < 2; pass++)
     for (PetscInt i = 0; i < j; i++) {
       PetscCall(MatMult(M, x[j], work));
@@ -36,7 +34,6 @@ PetscErrorCode NullOrthonormalise(Mat M, PetscInt j, Vec x[], Vec work, PetscRea
   PetscCall(MatMult(M, x[j], work));
   PetscCall(VecDot(work, x[j], &dot));
   PetscCall(VecScale(x[j], 1 / PetscSqrtReal(dot)));
-  if (rest) *rest = PetscSqrtReal(dot / whole);
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +84,7 @@ PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool 
       else
         PetscCall(MatMult(pencil->M, x[j], work));
       PetscCall(ShiftInvertSolve(&modes->null, transposed, work, x[j]));
-      PetscCall(NullOrthonormalise(pencil->M, j, x, work, NULL));
+      PetscCall(NullOrthonormalise(pencil->M, j, x, work));
     }
     PetscCall(NullMeasure(pencil->K, transposed, n, x, work, error));
     worst = 0;

@@ -25,6 +25,8 @@
 #include "contact/compliance/complianceimpl.h"
 
 #define CHORD_MAX_IT   40
+#define CHORD_BEYOND   1e9 /* times the square of the tolerance: what is solved is made as good, 1e-15 for 1e-12 */
+#define CHORD_NONE     -2  /* pair of the worst residual where no iterate solves the laws */
 #define CHORD_RENEWALS 8   /* of the factors in a step */
 #define CHORD_SLOW     0.5 /* residual over the one before, of an iteration without change of status */
 #define CHORD_PATIENCE 4   /* slow iterations */
@@ -141,16 +143,36 @@ static PetscErrorCode ChordPrepare(ContactCompliance c, PetscBool worth, PetscIn
   PetscFunctionReturn(0);
 }
 
+/* Keeps the best l that solves the laws; *done = that is as good as rounding allows, or falls no more */
+static PetscErrorCode ChordKeep(ContactCompliance c, const ComplianceMiss *miss, PetscReal last, ComplianceMiss *best,
+                                PetscBool *done)
+{
+  PetscFunctionBeginUser;
+  *done = PETSC_FALSE;
+  if (ComplianceIsSolved(c, miss) && (best->worst == CHORD_NONE || miss->largest < best->largest)) {
+    *best = *miss;
+    PetscCall(PetscArraycpy(c->best, c->l, 3 * c->n));
+  }
+  if (best->worst == CHORD_NONE) PetscFunctionReturn(0);
+  if (best->largest <= PetscMin(c->rtol, CHORD_BEYOND * c->rtol * c->rtol) * best->scale + best->noise ||
+      !(miss->norm < CHORD_SLOW * last))
+    *done = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+/* Ends with the iterate of least miss, which need not be the last. */
 PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
 {
-  PetscInt  slow = 0, renewals = 0;
-  PetscBool good = PETSC_TRUE, worth = PETSC_FALSE;
+  PetscInt       slow = 0, renewals = 0;
+  PetscBool      good = PETSC_TRUE, worth = PETSC_FALSE, done;
+  ComplianceMiss best = {.worst = CHORD_NONE};
 
   PetscFunctionBeginUser;
   PetscCall(ComplianceMove(c));
   ComplianceMeasure(c, miss);
+  PetscCall(ChordKeep(c, miss, PETSC_MAX_REAL, &best, &done));
   c->chord.n_mixed = -1;
-  for (PetscInt it = 0; it < CHORD_MAX_IT && slow <= CHORD_PATIENCE && !ComplianceIsSolved(c, miss); it++) {
+  for (PetscInt it = 0; it < CHORD_MAX_IT && slow <= CHORD_PATIENCE && !done; it++) {
     const ComplianceMiss last = *miss;
 
     if (ChordChoose(c)) c->chord.n_mixed = -1;
@@ -165,6 +187,11 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
     c->report.iterations++;
     slow += !(miss->norm < CHORD_SLOW * last.norm);
     worth = ChordIsWorth(c, miss, last.largest);
+    PetscCall(ChordKeep(c, miss, last.norm, &best, &done));
   }
+  if (best.worst == CHORD_NONE || miss->largest <= best.largest) PetscFunctionReturn(0);
+  *miss = best;
+  PetscCall(PetscArraycpy(c->l, c->best, 3 * c->n));
+  PetscCall(ComplianceMove(c));
   PetscFunctionReturn(0);
 }
