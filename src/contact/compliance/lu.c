@@ -74,43 +74,14 @@ PetscReal ComplianceLUFactor(PetscInt n, PetscReal A[])
   return least / largest;
 }
 
-/* Takes columns k .. k + LU_BLOCK - 1 of LU times their x off rows from .. to - 1 of x */
-INTO_VERSIONS void LUTakeColumns(PetscInt n, const PetscReal *restrict P, const PetscReal f[], PetscInt from,
-                                 PetscInt to, PetscReal *restrict x)
-{
-  for (PetscInt i = from; i < to; i++) {
-    PetscReal sum = 0;
-
-    for (PetscInt j = 0; j < LU_BLOCK; j++) sum += P[j * n + i] * f[j];
-    x[i] -= sum;
-  }
-}
-
 VERSIONS
-/* x := A^-1 x, LU_BLOCK columns at a time; the last columns that make no block are first on the way back */
 void ComplianceLUSolve(PetscInt n, const PetscReal *restrict LU, PetscReal *restrict x)
 {
-  const PetscInt whole = n / LU_BLOCK * LU_BLOCK;
-  PetscReal      f[LU_BLOCK];
-
-  for (PetscInt k = 0; k < n; k += LU_BLOCK) {
-    const PetscInt end = PetscMin(n, k + LU_BLOCK);
-
-    for (PetscInt j = k; j < end; j++)
-      for (PetscInt i = j + 1; i < end; i++) x[i] -= LU[j * n + i] * x[j];
-    for (PetscInt j = k; j < end && end < n; j++) f[j - k] = x[j];
-    if (end < n) LUTakeColumns(n, &LU[k * n], f, end, n, x);
-  }
-  for (PetscInt j = n - 1; j >= whole; j--) {
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = j + 1; i < n; i++) x[i] -= LU[j * n + i] * x[j];
+  for (PetscInt j = n - 1; j >= 0; j--) {
     x[j] /= LU[j * n + j];
     for (PetscInt i = 0; i < j; i++) x[i] -= LU[j * n + i] * x[j];
-  }
-  for (PetscInt k = whole - LU_BLOCK; k >= 0; k -= LU_BLOCK) {
-    for (PetscInt j = k + LU_BLOCK - 1; j >= k; j--) {
-      f[j - k] = x[j] /= LU[j * n + j];
-      for (PetscInt i = k; i < j; i++) x[i] -= LU[j * n + i] * x[j];
-    }
-    LUTakeColumns(n, &LU[k * n], f, 0, k, x);
   }
 }
 

@@ -19,7 +19,7 @@
 #define CHORD_PIVOT 1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
 
 /* Row of an index at its pair */
-INTO_VERSIONS void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3])
+static inline void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3])
 {
   const ComplianceFrame *f    = &c->chord.frame[i / 4];
   const PetscInt         kind = i % 4;
@@ -30,7 +30,7 @@ INTO_VERSIONS void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3
 }
 
 /* l of a unit of an index: friction follows the normal force */
-INTO_VERSIONS void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t[3])
+static inline void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t[3])
 {
   const ComplianceFrame *f = &c->chord.frame[j / 4];
 
@@ -40,7 +40,8 @@ INTO_VERSIONS void ChordAlong(const ContactCompliance c, PetscInt j, PetscReal t
 }
 
 /* y := what a unit of index j moves, [3 n] */
-INTO_VERSIONS void ImageOf(const ContactCompliance c, PetscInt j, PetscReal y[])
+VERSIONS
+static void ChordImage(const ContactCompliance c, PetscInt j, PetscReal y[])
 {
   const PetscInt   N = 3 * c->n, p = j / 4;
   const PetscReal *W = &c->W[3 * p * N];
@@ -49,11 +50,6 @@ INTO_VERSIONS void ImageOf(const ContactCompliance c, PetscInt j, PetscReal y[])
   ChordAlong(c, j, t);
   for (int d = 0; d < 3; d++) t[d] *= c->kappa[p];
   for (PetscInt i = 0; i < N; i++) y[i] = t[0] * W[i] + t[1] * W[N + i] + t[2] * W[2 * N + i];
-}
-
-static VERSIONS void ChordImage(const ContactCompliance c, PetscInt j, PetscReal y[])
-{
-  ImageOf(c, j, y);
 }
 
 /* A(i, j), y being the image of j */
@@ -121,12 +117,12 @@ static PetscErrorCode ChordReserve(ContactCompliance c)
 }
 
 /* Column j of the base */
-static VERSIONS void ChordSetColumn(ContactCompliance c, PetscInt j)
+static void ChordSetColumn(ContactCompliance c, PetscInt j)
 {
-  const ComplianceChord *h = &c->chord;
-  PetscReal *restrict A    = &h->LU[j * h->m];
+  ComplianceChord *h = &c->chord;
+  PetscReal       *A = &h->LU[j * h->m];
 
-  ImageOf(c, h->index[j], c->force);
+  ChordImage(c, h->index[j], c->force);
   for (PetscInt i = 0; i < h->m; i++) {
     const PetscReal *y = &c->force[h->at[i]], *r = &h->row[3 * i];
 
