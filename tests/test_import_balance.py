@@ -17,15 +17,9 @@ from squeal.tables import BadInput
 
 import decks_abaqus
 import numpy as np
+from test_import_keywords import FAILED, check
 
 SAME = 1e-12  # relative: rounding of sums over at most 64 points
-FAILED = []
-
-
-def check(about, kept, shown=""):
-    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
-    if not kept:
-        FAILED.append(about)
 
 
 def close(one, other, scale=1.0):

@@ -23,16 +23,10 @@ from squeal.decks.joined.frames import axes_of, carried, matrices, released
 import numpy as np
 from scipy.linalg import eigh
 from served import starter
+from test_import_keywords import FAILED, check
 
-FAILED = []
 YOUNG, POISSON, DENSITY = 210000.0, 0.3, 7.8e-9
 A, B, PIECES = 10.0, 6.0, 10  # mm, along y and z; elements and beams of each half of the bar
-
-
-def check(about, kept, shown=""):
-    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
-    if not kept:
-        FAILED.append(about)
 
 
 def one_beam(length, along=(0, 1, 0), line=(1, 0, 0), n=1):

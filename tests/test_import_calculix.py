@@ -24,9 +24,8 @@ from squeal.tables import BadInput
 import h5py
 import numpy as np
 from served import starter
-from test_import_keywords import scene
+from test_import_keywords import FAILED, check, scene
 
-FAILED = []
 HEAD = "*HEADING\nbar\n"
 NODES = "*NODE\n" + "".join(f"{4 * k + i}, {10 * k}, {y}, {z}\n" for k in range(3)
                             for i, (y, z) in enumerate(((0, 0), (10, 0), (10, 10), (0, 10)), 1))
@@ -38,12 +37,6 @@ HELD = "*BOUNDARY\nFIX, 1, 3\n"
 STEP = "*STEP\n*FREQUENCY\n6\n*END STEP\n"
 PLAIN = HEAD + NODES + ELEMENTS + SETS + MATERIAL + SECTION + HELD + STEP
 FIRST = 18898.56  # Hz, of squeal with these two elements; CalculiX 2.20 has 19073 with its own incompatible modes
-
-
-def check(about, kept, shown=""):
-    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
-    if not kept:
-        FAILED.append(about)
 
 
 def brought(folder, text, name="deck"):

@@ -17,7 +17,6 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from squeal.decks.convert import convert
 
 import decks
 import decks_joined
@@ -25,23 +24,9 @@ import numpy as np
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import eigsh
 from served import starter
-from test_import_keywords import scene
+from test_import_keywords import FAILED, brought, check
 
 CALCULIX, SAME, COUNT = 1e-8, 1e-9, 8
-FAILED = []
-
-
-def check(about, kept, shown=""):
-    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
-    if not kept:
-        FAILED.append(about)
-
-
-def brought(folder, text, ending="inp"):
-    """Lines that are printed when a deck is brought in, and options of the scene."""
-    (folder / f"deck.{ending}").write_text(text)
-    lines = convert(folder / f"deck.{ending}", "mm-t-s", folder / "deck")
-    return lines, scene(folder, "deck")[0]
 
 
 def frequencies(folder, program):

@@ -62,6 +62,13 @@ def same(wanted, found):
         return wanted == found
 
 
+def brought(folder, text, ending="inp"):
+    """Lines that are printed when a deck in mm, t, s is brought in, and options of the scene."""
+    (folder / f"deck.{ending}").write_text(text)
+    lines = convert(folder / f"deck.{ending}", "mm-t-s", folder / "deck")
+    return lines, scene(folder, "deck")[0]
+
+
 def check_scene(folder, case):
     """One case: files, the scene, what is listed."""
     for name, text in case.FILES.items():

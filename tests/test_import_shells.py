@@ -22,17 +22,11 @@ from squeal.tables import BadInput
 
 import numpy as np
 from served import starter
+from test_import_keywords import FAILED, check
 
-FAILED = []
 LENGTH, WIDTH, THICK, COUNT = 200.0, 100.0, 2.0, 6
 SAME = 1e-7
 YOUNG, POISSON, DENSITY = 210e3, 0.3, 7.8e-9
-
-
-def check(about, kept, shown=""):
-    print(f"{'ok    ' if kept else 'FAILED'} {about} {'' if kept else shown}")
-    if not kept:
-        FAILED.append(about)
 
 
 def flat(u, v):

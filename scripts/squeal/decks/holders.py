@@ -272,7 +272,8 @@ def add_contacts(assembly):
 def add_ties(assembly):
     """Surfaces of meshes that do not match, glued."""
     deck, surfaces = assembly.deck, assembly.deck.surfaces
-    for tie in leave_mirrors(deck, deck.ties, "tie"):
+    deck.ties = leave_mirrors(deck, deck.ties, "tie")
+    for tie in deck.ties:
         empty = [name for name in (tie.slave, tie.master) if not len(surfaces[name][0])]
         if empty:
             deck.note(tie.place, f"{tie.words}: {empty[0]} has no faces; NOT TIED: the bodies stay apart")

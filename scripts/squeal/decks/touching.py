@@ -3,7 +3,6 @@ their tension and shortening. Of contacts or ties that are given both ways one c
 
 import numpy
 
-from .holders import leave_mirrors
 from .mesh.integrals import areas
 
 KINDS = ("contacts", "ties", "bolts")
@@ -21,7 +20,7 @@ def of_deck(deck, faces_of, x, units):
         return [[area_of(x, faces_of(numpy.unique(side, axis=0))) for side in both] for both in faces if all(map(len, both))]
 
     bolts = [(bolt.tension * units.force, 0.0 if bolt.tension else bolt.shortening * units.length) for bolt, _ in deck.bolts]
-    return dict(zip(KINDS, map(summed, (rows(deck.contacts), rows(leave_mirrors(deck, deck.ties, "tie")), bolts))))
+    return dict(zip(KINDS, map(summed, (rows(deck.contacts), rows(deck.ties), bolts))))
 
 
 def of_scene(scene, words, sets, x):
