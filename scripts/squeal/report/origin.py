@@ -14,7 +14,7 @@ FACTS = {"completeness": "completeness of the modes", "cost": "cost", "end": "en
 def scene_section(folder, source, bodies):
     """Words and picture; `source`: of the data_script() that has the bodies."""
     words = scene_words(folder.scene) if folder.scene else missing(f"No words about the scene: {folder.why}.")
-    picture = missing("No picture of the scene: the folder has no fields of the bodies (*.h5).")
+    picture = missing("No picture of the scene: folders of modes, of a sliding state and of a run in time have the bodies.")
     if bodies:
         size = " × ".join(f"{1e3 * extent:.4g}" for extent in bodies.extent)
         where = viewer(f"{folder.key}-bodies", source, "the bodies; drag to turn them", still=True)
