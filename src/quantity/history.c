@@ -116,10 +116,9 @@ double RampValue(const Ramp *ramp, double t)
 
 double RampRate(const Ramp *ramp, double t)
 {
-  const double s     = t - ramp->delay;
-  const double slope = s < 0 || s >= ramp->length ? 0 : 1 / ramp->length;
-  const double rising =
-    ramp->shape == RAMP_SMOOTH ? 0.5 * RAMP_PI * sin(RAMP_PI * RampPlace(ramp, t)) * slope : slope;
+  const double s      = t - ramp->delay;
+  const double slope  = s < 0 || s >= ramp->length ? 0 : 1 / ramp->length;
+  const double rising = ramp->shape == RAMP_SMOOTH ? 0.5 * RAMP_PI * sin(RAMP_PI * RampPlace(ramp, t)) * slope : slope;
 
   if (!RampVaries(ramp)) return rising;
   return rising * HistoryFactor(ramp, s) + RampPart(ramp, t) * HistoryRate(ramp, s);

@@ -2,7 +2,6 @@
    Ramps and what they come to from the options of their owner, and in words.
 */
 #include "ramp.h"
-#include "base/csv.h"
 
 static const char *const shapes[] = {[RAMP_LINEAR] = "linear", [RAMP_SMOOTH] = "smooth", NULL};
 
@@ -62,63 +61,6 @@ PetscErrorCode RampSwings(const char name[], PetscBool *swings)
   PetscFunctionReturn(0);
 }
 
-/* Rows of the file on one rank; a fault in csv where they are no history */
-static PetscErrorCode TableRead(Csv *csv, Ramp *ramp)
-{
-  static const char *const columns[] = {"time_s", "factor"};
-  PetscInt                 room      = 0;
-
-  PetscFunctionBeginUser;
-  CsvOpen(csv, ramp->file, 2, columns, 2);
-  while (CsvNext(csv)) {
-    const PetscReal time = CsvReal(csv, 0, PETSC_FALSE), factor = CsvReal(csv, 1, PETSC_FALSE);
-
-    if (csv->fault[0]) break;
-    if (ramp->n ? time <= ramp->time[ramp->n - 1] : time != 0) {
-      PetscCall(PetscSNPrintf(csv->fault, sizeof(csv->fault), "line %d: time_s %.6g: %s", (int)csv->line, (double)time,
-                              ramp->n ? "times must rise" : "times must begin at 0"));
-      break;
-    }
-    if (ramp->n == room) {
-      room = PetscMax(64, 2 * room);
-      PetscCall(PetscRealloc((size_t)room * sizeof(*ramp->time), &ramp->time));
-      PetscCall(PetscRealloc((size_t)room * sizeof(*ramp->factor), &ramp->factor));
-    }
-    ramp->time[ramp->n]     = time;
-    ramp->factor[ramp->n++] = factor;
-  }
-  if (!csv->fault[0] && ramp->n < 2)
-    PetscCall(PetscSNPrintf(csv->fault, sizeof(csv->fault),
-                            "it has %" PetscInt_FMT " rows: two times are needed at least", ramp->n));
-  CsvClose(csv);
-  PetscFunctionReturn(0);
-}
-
-/* The same on all ranks, and the integral of the factor */
-static PetscErrorCode TableShare(MPI_Comm comm, const char name[], Ramp *ramp)
-{
-  PetscMPIInt rank, count;
-  Csv         csv = {.stream = NULL};
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(TableRead(&csv, ramp));
-  PetscCallMPI(MPI_Bcast(csv.fault, sizeof(csv.fault), MPI_CHAR, 0, comm));
-  if (csv.fault[0]) PetscCall(RampDestroy(ramp));
-  PetscCheck(!csv.fault[0], comm, PETSC_ERR_USER_INPUT, "-%s_history %s: %s", name, ramp->file, csv.fault);
-  PetscCallMPI(MPI_Bcast(&ramp->n, 1, MPIU_INT, 0, comm));
-  PetscCall(PetscMPIIntCast(ramp->n, &count));
-  if (rank) PetscCall(PetscMalloc1(ramp->n, &ramp->time));
-  if (rank) PetscCall(PetscMalloc1(ramp->n, &ramp->factor));
-  PetscCallMPI(MPI_Bcast(ramp->time, count, MPIU_REAL, 0, comm));
-  PetscCallMPI(MPI_Bcast(ramp->factor, count, MPIU_REAL, 0, comm));
-  PetscCall(PetscCalloc1(ramp->n, &ramp->area));
-  for (PetscInt i = 1; i < ramp->n; i++)
-    ramp->area[i] =
-      ramp->area[i - 1] + 0.5 * (ramp->factor[i - 1] + ramp->factor[i]) * (ramp->time[i] - ramp->time[i - 1]);
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode RampSetUp(MPI_Comm comm, const char name[], Ramp *ramp)
 {
   PetscFunctionBeginUser;
@@ -127,7 +69,7 @@ PetscErrorCode RampSetUp(MPI_Comm comm, const char name[], Ramp *ramp)
              "-%s_frequency and -%s_history are given; give one of them", name, name);
   PetscCheck(ramp->length == 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_ramp and -%s_history are given; let the table begin with the ramp", name, name);
-  PetscCall(TableShare(comm, name, ramp));
+  PetscCall(RampReadTable(comm, name, ramp));
   PetscFunctionReturn(0);
 }
 

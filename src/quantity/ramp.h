@@ -42,6 +42,9 @@ PETSC_INTERN double RampValue(const Ramp *ramp, double t);
 PETSC_INTERN double RampRate(const Ramp *ramp, double t);
 PETSC_INTERN double RampIntegral(const Ramp *ramp, double t);
 
+/* twocolumns.c - the rows of its file, -<name>_history, on all ranks. Collective */
+PETSC_INTERN PetscErrorCode RampReadTable(MPI_Comm comm, const char name[], Ramp *ramp);
+
 /*@
    RampSetFromOptions - reads the history of a name; title heads it in -help, before the name. Collective.
 
@@ -57,6 +60,15 @@ PETSC_INTERN PetscErrorCode RampSetFromOptions(MPI_Comm comm, const char title[]
 
 /*@ RampSetUp - reads the table of one whose rows are read, and checks both. Collective. @*/
 PETSC_INTERN PetscErrorCode RampSetUp(MPI_Comm comm, const char name[], Ramp *ramp);
+
+/*@ RampReadTemperature - the table g(T(t)) of a temperature over time and a factor over temperature, files
+   time_s,temperature and temperature,factor, -<name>_temperature_history and -<name>_mu_temperature (twocolumns.c).
+   Collective.
+
+   Errors: PETSC_ERR_USER_INPUT for tables that are none, for factors below zero, for temperatures that the second has
+   not. @*/
+PETSC_INTERN PetscErrorCode RampReadTemperature(MPI_Comm comm, const char name[], const char history[],
+                                                const char factors[], Ramp *ramp);
 
 /*@
    RampCheckSteps - that steps of dt (s) see its swing and its table (resolved.c). Collective.

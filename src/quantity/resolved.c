@@ -12,15 +12,17 @@ static PetscErrorCode SwingCheck(MPI_Comm comm, const char name[], const Ramp *r
   const PetscReal steps = 1 / (ramp->frequency * dt);
 
   PetscFunctionBeginUser;
-  PetscCheck(steps >= fewest * (1 - PETSC_SQRT_MACHINE_EPSILON), comm, PETSC_ERR_USER_INPUT,
-             "-%s_frequency %.6g Hz: steps of %.6g s are %.3g a cycle, which would show it as a slower swing: give at most "
-             "%.6g Hz, or a smaller -ts_dt",
-             name, ramp->frequency, (double)dt, (double)steps, (double)(1 / (fewest * dt)));
+  PetscCheck(
+    steps >= fewest * (1 - PETSC_SQRT_MACHINE_EPSILON), comm, PETSC_ERR_USER_INPUT,
+    "-%s_frequency %.6g Hz: steps of %.6g s are %.3g a cycle, which would show it as a slower swing: give at most "
+    "%.6g Hz, or a smaller -ts_dt",
+    name, ramp->frequency, (double)dt, (double)steps, (double)(1 / (fewest * dt)));
   if (steps < few)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "squeal: warning: -%s_frequency %.6g Hz: steps of %.6g s are %.3g a cycle, ten show its curve: "
-                           "take a smaller -ts_dt\n",
-                           name, ramp->frequency, (double)dt, (double)steps));
+    PetscCall(
+      PetscFPrintf(comm, stderr,
+                   "squeal: warning: -%s_frequency %.6g Hz: steps of %.6g s are %.3g a cycle, ten show its curve: "
+                   "take a smaller -ts_dt\n",
+                   name, ramp->frequency, (double)dt, (double)steps));
   PetscFunctionReturn(0);
 }
 
@@ -35,7 +37,7 @@ static PetscReal BetweenSteps(const Ramp *ramp, PetscReal time, PetscReal dt)
 static PetscErrorCode RowsCheck(MPI_Comm comm, const char name[], const Ramp *ramp, PetscReal dt)
 {
   PetscReal largest = 0, worst = 0;
-  PetscInt  at      = 0;
+  PetscInt  at = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < ramp->n; i++) largest = PetscMax(largest, PetscAbsReal(ramp->factor[i]));
@@ -46,11 +48,12 @@ static PetscErrorCode RowsCheck(MPI_Comm comm, const char name[], const Ramp *ra
     worst = PetscMax(worst, off);
   }
   if (worst > unseen * largest)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "squeal: warning: -%s_history %s: its factor %.6g at %.6g s is between two steps of %.6g s, which "
-                           "make %.6g of it: take a smaller -ts_dt, or a table that they can follow\n",
-                           name, ramp->file, (double)ramp->factor[at], (double)ramp->time[at], (double)dt,
-                           (double)BetweenSteps(ramp, ramp->delay + ramp->time[at], dt)));
+    PetscCall(
+      PetscFPrintf(comm, stderr,
+                   "squeal: warning: -%s_history %s: its factor %.6g at %.6g s is between two steps of %.6g s, which "
+                   "make %.6g of it: take a smaller -ts_dt, or a table that they can follow\n",
+                   name, ramp->file, (double)ramp->factor[at], (double)ramp->time[at], (double)dt,
+                   (double)BetweenSteps(ramp, ramp->delay + ramp->time[at], dt)));
   PetscFunctionReturn(0);
 }
 

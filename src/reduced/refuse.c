@@ -52,7 +52,8 @@ PetscErrorCode ReducedRefuseVarying(ReducedRun r, const char by[])
 
     PetscCall(ContactProjectorGetSteady(r->run.projector, i, &steady));
     PetscCheck(steady, r->comm, PETSC_ERR_SUP,
-               "-%s_frequency, _history or _mu_history: %s has sliding and friction that stay; leave it out",
+               "-%s_frequency, _history, _mu_history or _temperature_history: %s has sliding and friction that stay; "
+               "leave it out",
                r->run.interfaces[i].name, by);
   }
   PetscFunctionReturn(0);

@@ -24,6 +24,8 @@ typedef struct {
   PetscReal speed;    /* of the master about it, rad/s, or of the slave along it, m/s */
   Ramp      ramp;     /* of the speed */
   Ramp      friction; /* of the coefficient */
+  /* files of a temperature over time, and of the factor of the coefficient over temperature; "" for none */
+  char temperature[PETSC_MAX_PATH_LEN], factors[PETSC_MAX_PATH_LEN];
 } ContactSliding;
 
 /* Whether the coefficient is the same at all times */

@@ -11,9 +11,22 @@ static const Quantity forces[] = {
    "ranks that solve the contact pairs: one, all, or all only from 1,000 pairs on and where that is faster (auto)",
    NULL, QUANTITY_WORD, QUANTITY_AT(struct _p_ContactProjector, ranks), .words = ranks},
 };
+static const char *FactorsIdle(const void *sliding, const QuantityRun *run)
+{
+  (void)run;
+  return ((const ContactSliding *)sliding)->temperature[0] ? NULL : "not used without -@temperature_history";
+}
+
 static const Quantity sliding[] = {
   {"-kinematics", "add the sliding velocity, or move the master", NULL, QUANTITY_WORD,
    QUANTITY_AT(ContactSliding, turning), .words = kinematics},
+  {"-temperature_history",
+   "file of time_s,temperature, straight between its rows: friction changes with it by -..._mu_temperature", NULL,
+   QUANTITY_PATH, QUANTITY_AT(ContactSliding, temperature), .path = "file", .in = RUN_HISTORY},
+  {"-mu_temperature",
+   "file of temperature,factor: of the friction coefficient at a temperature of -..._temperature_history, in its unit; "
+   "straight between its rows",
+   NULL, QUANTITY_PATH, QUANTITY_AT(ContactSliding, factors), .path = "file", .in = RUN_HISTORY, .idle = FactorsIdle},
 };
 
 const QuantityTable projector_quantities = {"Contact forces in dynamics", "projector.h",

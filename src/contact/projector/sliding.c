@@ -35,6 +35,28 @@ static PetscErrorCode SlidingNameFriction(const ContactInterface *c, size_t size
   PetscFunctionReturn(0);
 }
 
+/* Friction by a temperature; raises the error where something else gives it a history, too */
+static PetscErrorCode SlidingSetTemperature(MPI_Comm comm, const ContactInterface *c, ContactSliding *sliding)
+{
+  Ramp *friction = &sliding->friction;
+
+  PetscFunctionBeginUser;
+  PetscCheck(
+    sliding->factors[0], comm, PETSC_ERR_USER_INPUT,
+    "-%s_temperature_history does nothing without -%s_mu_temperature, a file of temperature,factor: friction is "
+    "what follows a temperature in time",
+    c->name, c->name);
+  PetscCheck(!friction->file[0] && !(friction->frequency > 0) && friction->length == 0 && friction->delay == 0, comm,
+             PETSC_ERR_USER_INPUT, "-%s_temperature_history and -%s_mu_%s are given; give one of them", c->name,
+             c->name,
+             friction->file[0]         ? "history"
+             : friction->frequency > 0 ? "frequency"
+             : friction->length > 0    ? "ramp"
+                                       : "delay");
+  PetscCall(RampReadTemperature(comm, c->name, sliding->temperature, sliding->factors, friction));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SlidingSetUp(MPI_Comm comm, const ContactInterface *c, ContactSliding *sliding)
 {
   char      name[160];
@@ -43,7 +65,10 @@ PetscErrorCode SlidingSetUp(MPI_Comm comm, const ContactInterface *c, ContactSli
   PetscFunctionBeginUser;
   PetscCall(SlidingNameFriction(c, sizeof(name), name));
   PetscCall(RampSetUp(comm, c->name, &sliding->ramp));
-  PetscCall(RampSetUp(comm, name, &sliding->friction));
+  if (sliding->temperature[0])
+    PetscCall(SlidingSetTemperature(comm, c, sliding));
+  else
+    PetscCall(RampSetUp(comm, name, &sliding->friction));
   for (PetscInt i = 0; i < sliding->friction.n; i++) least = PetscMin(least, sliding->friction.factor[i]);
   PetscCheck(!(sliding->friction.frequency > 0) && least >= 0, comm, PETSC_ERR_USER_INPUT,
              "-%s_%s: friction would become negative; give factors of time_s,factor that are not, by -%s_history", name,
@@ -147,6 +172,7 @@ PetscErrorCode ContactProjectorCheckSteps(ContactProjector p, PetscReal dt)
     const ContactInterface *c = &p->contact->interfaces[i];
 
     PetscCall(SlidingNameFriction(c, sizeof(name), name));
+    if (p->sliding[i].temperature[0]) PetscCall(PetscSNPrintf(name, sizeof(name), "%s_temperature", c->name));
     PetscCall(RampCheckSteps(p->contact->comm, c->name, &p->sliding[i].ramp, dt));
     PetscCall(RampCheckSteps(p->contact->comm, name, &p->sliding[i].friction, dt));
   }

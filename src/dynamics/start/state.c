@@ -56,10 +56,14 @@ static PetscErrorCode StartCheckHistories(Dynamics d)
         StartCheckFactor(d, scene->motions[i].name, "_history", RampValue(ExternalGetMotion(d->external, i), 0)));
   for (PetscInt i = 0; i < d->n_interfaces && d->projector; i++) {
     PetscReal speed, friction;
+    PetscBool warms;
+    char      option[160];
 
     PetscCall(ContactProjectorGetFactors(d->projector, i, 0, &speed, &friction));
     PetscCall(StartCheckFactor(d, d->interfaces[i].name, "_frequency or _history", speed));
-    PetscCall(StartCheckFactor(d, d->interfaces[i].name, "_mu_history", friction));
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_temperature_history", d->interfaces[i].name));
+    PetscCall(PetscOptionsHasName(NULL, NULL, option, &warms));
+    PetscCall(StartCheckFactor(d, d->interfaces[i].name, warms ? "_mu_temperature" : "_mu_history", friction));
   }
   PetscFunctionReturn(0);
 }
