@@ -124,7 +124,8 @@ static PetscErrorCode TrainGet(void *ctx, PetscInt i, PetscReal p[])
 /* The statuses of these points are the classes that the pencil knows; each point is at its own */
 static PetscErrorCode DesignFit(Design d)
 {
-  PetscReal *points;
+  const PetscInt n = d->cube.n + d->uncertain.n;
+  PetscReal     *points;
 
   PetscFunctionBeginUser;
   d->box.many = PETSC_TRUE; /* all scenarios of each design */
@@ -135,6 +136,7 @@ static PetscErrorCode DesignFit(Design d)
   for (PetscInt i = 0; i < d->n_train; i++) {
     PetscCall(TrainGet(d, i, &points[i * d->box.n_parameters]));
     BoxPutStatus(&d->box, i, &points[i * d->box.n_parameters]);
+    if (d->box.statics) PetscCall(DesignKnow(d, &d->train[i * n], &d->train[i * n + d->cube.n], d->box.status[i]));
   }
   /* of the scene's own design */
   if (d->box.statics) PetscCall(PetscArraycpy(d->status, d->box.status, d->n_scenarios));
@@ -192,6 +194,8 @@ PetscErrorCode DesignDestroy(Design *design)
   if (!d) PetscFunctionReturn(0);
   PetscCall(PetscFree3(d->scenario, d->status, d->apart));
   PetscCall(PetscFree(d->train));
+  PetscCall(PetscFree(d->known));
+  PetscCall(PetscFree(d->known_status));
   PetscCall(PetscFree(d->cut));
   PetscCall(PetscFree(d->point));
   PetscCall(PetscFree(d->corner));

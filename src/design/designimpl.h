@@ -47,6 +47,8 @@ struct _p_Design {
   PetscInt      *status, *apart; /* [n_scenarios] classes of the design looked at (box.h) */
   PetscReal     *train;          /* [n_train][cube.n + uncertain.n] t of the points of the basis */
   PetscInt       n_train;
+  PetscReal     *known; /* [n_known][cube.n + uncertain.n] t of all points whose own status is a class, and which */
+  PetscInt       n_known, *known_status;
   PetscReal      mass_slope[CUBE_MAX_VARIABLES]; /* d (m / m(0)) / d z */
   PetscReal      mass;                           /* kg of the moving unknowns, of the scene */
   PetscInt       n_cuts, n_points, best, n_full; /* full solutions: beside those of the basis */
@@ -76,6 +78,8 @@ PETSC_INTERN PetscErrorCode DesignScenarios(Design design);
    the contact status of the worst one until statuses are found */
 PETSC_INTERN PetscErrorCode DesignAddScenario(Design design, const PetscReal t[], PetscBool *added);
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
+/* A point with a status of its own */
+PETSC_INTERN PetscErrorCode DesignKnow(Design design, const PetscReal z[], const PetscReal t[], PetscInt status);
 /* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */
 PETSC_INTERN PetscErrorCode DesignFindStatuses(Design design, const PetscReal z[], PetscBool *changed);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);

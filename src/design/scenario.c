@@ -54,6 +54,19 @@ void DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], 
   CubeMove(&d->uncertain, t, p);
 }
 
+PetscErrorCode DesignKnow(Design d, const PetscReal z[], const PetscReal t[], PetscInt status)
+{
+  const PetscInt n = d->cube.n + d->uncertain.n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)((d->n_known + 1) * n) * sizeof(*d->known), &d->known));
+  PetscCall(PetscRealloc((size_t)(d->n_known + 1) * sizeof(*d->known_status), &d->known_status));
+  PetscCall(PetscArraycpy(&d->known[d->n_known * n], z, d->cube.n));
+  PetscCall(PetscArraycpy(&d->known[d->n_known * n + d->cube.n], t, d->uncertain.n));
+  d->known_status[d->n_known++] = status;
+  PetscFunctionReturn(0);
+}
+
 /* A design whose statuses are asked for */
 typedef struct {
   Design           design;
@@ -84,8 +97,10 @@ PetscErrorCode DesignFindStatuses(Design d, const PetscReal z[], PetscBool *chan
   PetscCall(PetscMalloc1(d->n_scenarios, &before));
   PetscCall(PetscArraycpy(before, d->status, d->n_scenarios));
   PetscCall(BoxFindClasses(&d->box, d->n_scenarios, ScenarioGet, &(DesignAt){d, z}, d->status, d->apart));
-  for (PetscInt i = 0; i < d->n_scenarios; i++)
+  for (PetscInt i = 0; i < d->n_scenarios; i++) {
     if (before[i] != d->status[i]) *changed = PETSC_TRUE;
+    if (!d->apart[i]) PetscCall(DesignKnow(d, z, &d->scenario[i * d->uncertain.n], d->status[i]));
+  }
   PetscCall(PetscFree(before));
   PetscFunctionReturn(0);
 }

@@ -77,16 +77,29 @@ static PetscErrorCode CornersWrite(Design d, Results results)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ModelPoint(void *ctx, PetscInt i, PetscReal p[])
+{
+  const Design     d = ctx;
+  const PetscReal *t = &d->known[i * (d->cube.n + d->uncertain.n)];
+
+  PetscFunctionBeginUser;
+  DesignParameters(d, t, &t[d->cube.n], p);
+  BoxPutClass(&d->box, d->known_status[i], p);
+  PetscFunctionReturn(0);
+}
+
 /* The model over both boxes, for the page */
 static PetscErrorCode DesignWriteModel(Design d, Results results)
 {
-  PetscInt  parameter[2 * CUBE_MAX_MOVED], n;
+  PetscInt  parameter[2 * CUBE_MAX_MOVED], variable[2 * CUBE_MAX_MOVED], n;
   PetscReal lower[2 * CUBE_MAX_MOVED], upper[2 * CUBE_MAX_MOVED];
+  BoxVaried varied = {0, parameter, variable, lower, upper, d->n_known, ModelPoint, d};
 
   PetscFunctionBeginUser;
-  n = CubeMoved(&d->cube, parameter, lower, upper);
-  n += CubeMoved(&d->uncertain, &parameter[n], &lower[n], &upper[n]);
-  PetscCall(BoxExport(&d->box, &(BoxVaried){n, parameter, lower, upper}, results));
+  n        = CubeMoved(&d->cube, parameter, variable, lower, upper);
+  varied.n = n + CubeMoved(&d->uncertain, &parameter[n], &variable[n], &lower[n], &upper[n]);
+  for (PetscInt i = n; i < varied.n; i++) variable[i] += d->cube.n;
+  PetscCall(BoxExport(&d->box, &varied, results));
   PetscFunctionReturn(0);
 }
 

@@ -160,13 +160,14 @@ PetscErrorCode CubeRead(MPI_Comm comm, Operators operators, CubeState state, con
   PetscFunctionReturn(0);
 }
 
-PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscReal lower[], PetscReal upper[])
+PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscInt variable[], PetscReal lower[], PetscReal upper[])
 {
   PetscInt n = 0;
 
   for (PetscInt k = 0; k < cube->n; k++)
     for (PetscInt m = 0; m < cube->n_moved[k]; m++) {
       parameter[n] = cube->moved[k][m];
+      variable[n]  = k;
       lower[n]     = cube->lower[k][m];
       upper[n]     = cube->upper[k][m];
       n++;

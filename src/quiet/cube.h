@@ -46,8 +46,9 @@ PETSC_INTERN PetscReal CubeValue(const Cube *cube, PetscInt k, PetscReal t);
    [n] to it */
 PETSC_INTERN PetscReal CubeDistance(const Cube *cube, const PetscReal t[]);
 PETSC_INTERN PetscReal CubeNear(const Cube *cube, const PetscReal low[], const PetscReal high[]);
-/* Indices and ends of all parameters that move: [CUBE_MAX_MOVED] each; how many there are */
+/* Indices, variables and ends of all parameters that move: [CUBE_MAX_MOVED] each; how many there are */
 #define CUBE_MAX_MOVED 64
-PETSC_INTERN PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscReal lower[], PetscReal upper[]);
+PETSC_INTERN PetscInt CubeMoved(const Cube *cube, PetscInt parameter[], PetscInt variable[], PetscReal lower[],
+                                PetscReal upper[]);
 /* The names of all options that vary, with commas: for what a run reads */
 PETSC_INTERN PetscErrorCode CubeVaried(const CubeOptions *options, size_t size, char varied[]);

@@ -118,12 +118,12 @@ static PetscErrorCode CellsWrite(Quiet q, Results results)
 /* The model, for the page */
 static PetscErrorCode ModelWrite(Quiet q, Results results)
 {
-  PetscInt  parameter[CUBE_MAX_MOVED];
+  PetscInt  parameter[CUBE_MAX_MOVED], variable[CUBE_MAX_MOVED];
   PetscReal lower[CUBE_MAX_MOVED], upper[CUBE_MAX_MOVED];
-  BoxVaried varied = {0, parameter, lower, upper};
+  BoxVaried varied = {.parameter = parameter, .variable = variable, .lower = lower, .upper = upper};
 
   PetscFunctionBeginUser;
-  varied.n = CubeMoved(&q->cube, parameter, lower, upper);
+  varied.n = CubeMoved(&q->cube, parameter, variable, lower, upper);
   PetscCall(BoxExport(&q->box, &varied, results));
   PetscFunctionReturn(0);
 }

@@ -191,18 +191,31 @@ static PetscErrorCode SamplesVerifyWrite(Sample s, Results results)
   PetscFunctionReturn(0);
 }
 
+/* Sample i; behind them the scene's own values */
+static PetscErrorCode ModelPoint(void *ctx, PetscInt i, PetscReal p[])
+{
+  const Sample s = ctx;
+
+  PetscFunctionBeginUser;
+  if (i < s->n)
+    PetscCall(SampleParameters(s, i, p));
+  else
+    PetscCall(PetscArraycpy(p, s->box.nominal, s->box.n_parameters));
+  PetscFunctionReturn(0);
+}
+
 /* The model, for the page, over what the samples have */
 static PetscErrorCode SampleModelWrite(Sample s, Results results)
 {
-  PetscInt   n = 0, *parameter;
+  PetscInt   n = 0, *parameter, *variable;
   PetscReal *lower, *upper, *p;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n_variables; k++) n += s->variable[k].n_names;
-  PetscCall(PetscMalloc4(n, &parameter, n, &lower, n, &upper, s->box.n_parameters, &p));
+  PetscCall(PetscMalloc5(n, &parameter, n, &variable, n, &lower, n, &upper, s->box.n_parameters, &p));
   n = 0;
   for (PetscInt k = 0; k < s->n_variables; k++)
-    for (PetscInt m = 0; m < s->variable[k].n_names; m++) parameter[n++] = s->variable[k].moved[m];
+    for (PetscInt m = 0; m < s->variable[k].n_names; m++, n++) parameter[n] = s->variable[k].moved[m], variable[n] = k;
   for (PetscInt i = 0; i < s->n; i++) {
     PetscCall(SampleParameters(s, i, p));
     for (PetscInt j = 0; j < n; j++) {
@@ -210,8 +223,8 @@ static PetscErrorCode SampleModelWrite(Sample s, Results results)
       upper[j] = i ? PetscMax(upper[j], p[parameter[j]]) : p[parameter[j]];
     }
   }
-  PetscCall(BoxExport(&s->box, &(BoxVaried){n, parameter, lower, upper}, results));
-  PetscCall(PetscFree4(parameter, lower, upper, p));
+  PetscCall(BoxExport(&s->box, &(BoxVaried){n, parameter, variable, lower, upper, s->n + 1, ModelPoint, s}, results));
+  PetscCall(PetscFree5(parameter, variable, lower, upper, p));
   PetscFunctionReturn(0);
 }
 

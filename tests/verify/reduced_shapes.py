@@ -18,7 +18,8 @@ import scipy.linalg
 sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[2] / "scripts")]
 from browser import Browser, find_browser
 from squeal.mesh.bodies import Scene, Skin
-from verify.reduced_model import read, until
+from squeal.report.model_file import ReducedModel
+from verify.reduced_model import until
 
 SHOWN = """(() => {
   const stage = stages[document.querySelector('.sliders').dataset.shapes], {re, im, title} = stage.bodies.shapes[0];
@@ -35,14 +36,10 @@ def far(a, b):
 
 def in_model(folder):
     """Eigenvalues and shapes [nodes][3] of the model at the scene's own values."""
-    model, matrices = read(folder / "reduced_model.bin")
-    n, p = model["n_used"], [entry["value"] for entry in model["parameters"]]
-    sums = {kind: numpy.zeros((n, n)) for kind in "KCM"}
-    for term, matrix in zip(model["terms"], matrices):
-        c = term["scale"] * numpy.prod([(abs(p[i]) if absolute else p[i])**power for i, power, absolute in term["factors"]])
-        sums[term["kind"]] += c * matrix[:n, :n]
-    assert not sums["C"].any()
-    kappa, vectors = scipy.linalg.eig(sums["K"], sums["M"])
+    model = ReducedModel(folder / "reduced_model.bin")
+    n, (K, C, M) = model.head["n_used"], model.at([entry["value"] for entry in model.head["parameters"]])
+    assert not C.any()
+    kappa, vectors = scipy.linalg.eig(K, M)
     values = 1j * numpy.sqrt(kappa)  # of each pair of conjugates of kappa one that grows and one that decays
     with h5py.File(folder / "reduced_shapes.h5") as file:
         V = numpy.stack([file[f"VTKHDF/PointData/vector_{k:03d}"][:] for k in range(1, n + 1)], axis=2)

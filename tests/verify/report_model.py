@@ -42,14 +42,11 @@ def head(pattern, text):
 
 
 def damped(folder):
-    """Damping in proportion to the mass: terms are K, C, M, then those that vary."""
-    numbers(lambda v: v.__setitem__(slice(n2(folder), 2 * n2(folder)), 10 * v[2 * n2(folder):3 * n2(folder)]))(folder)
+    """Damping in proportion to the mass: terms are K, whole, C and M, triangles, then those that vary."""
+    n = int(re.search(rb'"n": (\d+)', (folder / MODEL).read_bytes())[1])
+    first, size = n**2, n * (n + 1) // 2
+    numbers(lambda v: v.__setitem__(slice(first, first + size), 10 * v[first + size:first + 2 * size]))(folder)
     head(rb'"C", "scale": 0', b'"C", "scale": 1')(folder)
-
-
-def n2(folder):
-    """Numbers of a matrix."""
-    return int(re.search(rb'"n": (\d+)', (folder / MODEL).read_bytes())[1])**2
 
 
 def third(change):

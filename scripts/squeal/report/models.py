@@ -5,7 +5,6 @@ Shapes of the modes at some points of the box, V X, need fewer directions than t
 vectors U of these a mode x moves as U (U'V) x."""
 
 import base64
-import json
 import zlib
 
 import numpy
@@ -13,85 +12,49 @@ import numpy
 from ..mesh.bodies import Scene, opened, sound
 from ..tables import BadInput
 from .markup import Markup, Part, count, figures, missing, section, tag
+from .model_file import ReducedModel
 from .shapes import FULL, Bodies, Shape, data_script, packed, viewer
 
 BEYOND = 0.25  # of the range, on either side: how far sliders reach
 STEPS = 400
 POINTS = 6  # of the box beside the scene's own, whose modes' shapes are taken
 SHAPE_ERROR = 0.01  # of the length of a shape, that directions left out may be
-LARGEST = 1e100  # number of a matrix
-LIMITS = "low", "high", "limit_ratio", "limit_growth", "error"
 ABSENT = "No shapes: reduced_shapes.h5 is not there. It is left out above 96 MB, without a mesh, and with -output_fields 0."
 HEADS = "frequency, Hz", "growth, 1/s", "error, rad/s", "state"
 
 
-def read_model(path):
-    """What its first line says, the matrices [terms][n][n], and all bytes."""
-    data = path.read_bytes()
-    try:
-        model = json.loads(data[:data.index(b"\n")])
-        n = model["n"]
-        matrices = numpy.frombuffer(data[data.index(b"\n") + 1:]).reshape(len(model["terms"]), n, n).transpose(0, 2, 1)
-        check_head(model)
-    except (ValueError, KeyError, TypeError, IndexError, OverflowError):
-        raise BadInput(f"{path}: is no reduced model, or is not whole") from None
-    if not (abs(matrices) < LARGEST).all():
-        raise BadInput(f"{path}: a matrix has values that are no numbers or above {LARGEST:g}; was the file damaged?")
-    return model, matrices, data
-
-
-def check_head(model):
-    """ValueError, KeyError or TypeError where what is read of it cannot be."""
-    ranges = [[float(entry[key]) for key in ("lower", "value", "upper")] for entry in model["parameters"]]
-    powers = [float(power) for term in model["terms"] for i, power, absolute in term["factors"] if ranges[i] and absolute in (0, 1)]
-    numbers = [*powers, *(float(term["scale"]) for term in model["terms"]), *(x for values in ranges for x in values),
-               *(float(model[key]) for key in LIMITS)]
-    named = all(entry["name"] + entry["unit"] for entry in model["parameters"]) and {term["kind"] for term in model["terms"]} <= set("KCM")
-    if not (named and 0 < model["n_used"] <= model["n"] and numpy.isfinite(numbers).all() and all(low < high for low, _, high in ranges)):
-        raise ValueError
-
-
-def slider(entry):
-    """One parameter."""
+def slider(entry, contact):
+    """One parameter; contact: with a bar of where its status holds."""
     low, high = entry["lower"], entry["upper"]
     reach = BEYOND * (high - low)
     first = low - reach if low <= 0 else max(low - reach, 0.1 * low)
-    return tag("label", f"{entry['name']} {entry['unit']}".strip(),
+    return tag("label", tag("span", f"{entry['name']} {entry['unit']}".strip(), class_="name"),
                tag("input", type="range", min=f"{first:.10g}", max=f"{high + reach:.10g}", step="any", value=f"{entry['value']:.17g}"),
                tag("output", figures(entry["value"], 5)),
-               tag("span", f"made for {figures(low, 4)} to {figures(high, 4)}", class_="made"))
+               tag("span", f"made for {figures(low, 4)} to {figures(high, 4)}", class_="made"),
+               tag("span", class_="holds", aria_hidden="true") if contact else None)
 
 
-def pencil_at(model, matrices, p):
-    """K, C, M on the vectors in use."""
-    n = model["n_used"]
-    sums = {kind: numpy.zeros((n, n)) for kind in "KCM"}
-    for term, matrix in zip(model["terms"], matrices):
-        factors = [(abs(p[i]) if absolute else p[i])**power for i, power, absolute in term["factors"]]
-        sums[term["kind"]] += term["scale"] * numpy.prod(factors) * matrix[:n, :n]
-    return sums["K"], sums["C"], sums["M"]
-
-
-def modes_at(model, matrices, p):
+def modes_at(model, p):
     """Vectors [n_used][modes] of the band."""
-    K, C, M = pencil_at(model, matrices, p)
-    n, h = len(K), model["high"]
+    K, C, M = model.at(p)
+    n, h = len(K), model.head["high"]
     if C.any():
         A = numpy.vstack([numpy.eye(n, 2 * n, n) * h, numpy.linalg.solve(M, numpy.hstack([-K / h, -C]))])
         values, vectors = numpy.linalg.eig(A)
     else:
         kappa, vectors = numpy.linalg.eig(numpy.linalg.solve(M, K))
         values = 1j * numpy.sqrt(kappa.astype(complex))
-    inside = (abs(values.imag) >= model["low"]) & (abs(values.imag) <= h)
+    inside = (abs(values.imag) >= model.head["low"]) & (abs(values.imag) <= h)
     return vectors[:n, inside]
 
 
-def snapshots(model, matrices):
+def snapshots(model):
     """Coordinates of the modes at some points of the box, real and imaginary parts, columns of length 1."""
-    low, high, own = (numpy.array([entry[key] for entry in model["parameters"]]) for key in ("lower", "upper", "value"))
+    low, high, own = (numpy.array([entry[key] for entry in model.head["parameters"]]) for key in ("lower", "upper", "value"))
     points = [own, *(low + (high - low) * numpy.random.default_rng(1).random((POINTS, len(low))))]
     with numpy.errstate(all="ignore"):  # what is not finite is an error of eig
-        vectors = numpy.hstack([modes_at(model, matrices, p) for p in points])
+        vectors = numpy.hstack([modes_at(model, p) for p in points])
     columns = numpy.hstack([vectors.real, vectors.imag])
     return columns / numpy.maximum(numpy.linalg.norm(columns, axis=0), 1e-300)
 
@@ -110,7 +73,7 @@ def directions_of(path, disc, model, snaps, room):
         scene = Scene(file, disc)
         bodies = Bodies(scene)
         V = numpy.stack([bodies.moved(shape_of(path, f"vector_{k:03d}", scene.shapes, scene)).ravel()
-                         for k in range(1, model["n_used"] + 1)], axis=1)
+                         for k in range(1, model.head["n_used"] + 1)], axis=1)
     moved = V @ snaps
     U, size, _ = numpy.linalg.svd(moved / numpy.maximum(numpy.linalg.norm(moved, axis=0), 1e-300), full_matrices=False)
     left = numpy.sqrt(numpy.cumsum(size[::-1]**2)[::-1] / moved.shape[1])
@@ -137,28 +100,44 @@ def moving(folder, name, model, snaps, room):
     return [script, viewer(f"{name}-viewer", name, "moving shape of the chosen mode; drag to turn it")], name
 
 
+def contact_text(contact):
+    """By which rule a place has its contact status."""
+    if not contact:
+        return None
+    far = contact.left_out()
+    kept, others = int((far == 0).sum()), far[far > 0]
+    said = (f" Of these points {kept} have the status of the nearest other one, {len(others)} one that differs in "
+            f"{figures(numpy.median(others), 3)} pairs (median), {int(others.max())} at most.") if len(others) else ""
+    return tag("p", f"Which of {contact.pairs} contact pairs are closed differs over the box: {len(contact.closed)} statuses. The sliders "
+               f"take the status of the nearest of {len(contact.points)} points whose sliding state was solved, distances in parts of each "
+               f"range; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark where "
+               "the present one holds, with the other sliders as they are.")
+
+
 def model_part(folder, room):
     """All of it."""
     path = folder.path / "reduced_model.bin"
-    model, matrices, data = read_model(path)
+    model = ReducedModel(path)
     try:
-        snaps = snapshots(model, matrices)
+        snaps = snapshots(model)
     except numpy.linalg.LinAlgError as error:
         raise BadInput(f"{path}: has no modes at some values of its parameters: {error}; was the file damaged?") from None
-    text = base64.b64encode(zlib.compress(data, 6)).decode()
+    text = base64.b64encode(zlib.compress(model.data, 6)).decode()
     if len(text) > max(room, 3e6):
         raise BadInput(f"{path}: {len(text) / 1e6:.1f} MB are too much for the page")
-    name = f"{folder.key}-model"
-    table = tag("table", tag("thead", tag("tr", [tag("th", head) for head in HEADS])), tag("tbody"))
-    further = model["n"] - model["n_used"]
+    name, head = f"{folder.key}-model", model.head
+    table = tag("table", tag("thead", tag("tr", [tag("th", title) for title in HEADS])), tag("tbody"))
+    further = head["n"] - head["n_used"]
     estimate = (f"and {count(further, 'further one')} for the estimate of its error (an estimate, no bound)" if further else
                 "and none further to estimate errors of single modes by")
-    said = f"{count(model['n_used'], 'vector')}, {estimate}. The modes are computed here, in the browser."
+    said = f"{count(head['n_used'], 'vector')}, {estimate}. The modes are computed here, in the browser."
     picture, vectors = moving(folder, f"{folder.key}-vectors", model, snaps, room - len(text))
     said += " A click on a row shows how that mode moves." if vectors else ""
-    place = tag("div", [slider(entry) for entry in model["parameters"]], tag("button", "The scene's own values", type="button"),
-                tag("p", "", class_="beyond-line", role="status"), tag("p", "", class_="said"), tag("div", table, class_="scroll"),
+    place = tag("div", [slider(entry, model.contact) for entry in head["parameters"]],
+                tag("button", "The scene's own values", type="button"), tag("p", "", class_="beyond-line", role="status"),
+                tag("p", "", class_="contact-line", role="status") if model.contact else None,
+                tag("p", "", class_="said"), tag("div", table, class_="scroll"),
                 class_="sliders", data_source=f"{name}-data", data_shapes=vectors and f"{vectors}-viewer")
-    content = section(name, "The model", tag("p", said), place, picture,
+    content = section(name, "The model", tag("p", said), contact_text(model.contact), place, picture,
                       tag("script", Markup(text), type="application/octet-stream", id=f"{name}-data"))
     return Part(content)

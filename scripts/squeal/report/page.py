@@ -19,7 +19,7 @@ from .transients import transient_part
 from .vibrations import cycle_part, map_part
 
 HERE = Path(__file__).resolve().parent
-WORKER = "dense", "hessenberg", "follow", "reduced"  # what computes the modes of a reduced model
+WORKER = "dense", "hessenberg", "follow", "statuses", "reduced"  # what computes the modes of a reduced model
 LARGEST = 10e6  # bytes of the page
 SHARES = 0.7, 0.35, 0.15, 0.0  # of them for shapes: the first one with which the page is not larger
 TITLES = {"modes": "Modes", "static": "Sliding state", "sweep": "Sweep", "transient": "In time",

@@ -44,7 +44,14 @@ function overMass(block, A) {
   return A;
 }
 
-// The vectors first .. first + n - 1: rows of the terms over their mass, M_bb^-1 A_b, once where M is the same at all values
+// M_bb^-1 A_b, made once where M is the same at all values, and for all statuses
+function termOver(model, block, A) {
+  const key = model.made.get(A) ?? {};
+  if (!model.made.has(A)) model.made.set(A, key);
+  return key[block.first] ??= overMass(block, rowsOf(model, A, block.first, block.n));
+}
+
+// The vectors first .. first + n - 1: rows of the terms over their mass
 function blockOf(model, pencil, first, n) {
   const fixed = model.terms.every(term => term.kind !== "M" || !term.factors.length), key = `block${first}`;
   const block = model[key] ||= {first, n, K: new Float64Array(n * model.n), C: new Float64Array(n * model.n), forms: {}};
@@ -52,7 +59,7 @@ function blockOf(model, pencil, first, n) {
   block.LU = rowsOf(model, pencil.M, first, n).subarray(first * n, (first + n) * n).slice();
   block.order = factorReal(n, block.LU);
   block.M = overMass(block, rowsOf(model, pencil.M, first, n));
-  block.terms = fixed && model.terms.map(({kind}, t) => kind === "M" ? null : overMass(block, rowsOf(model, model.matrices[t], first, n)));
+  block.terms = fixed && model.terms.map(({kind}, t) => kind === "M" ? null : termOver(model, block, model.matrices[t]));
   // vectors of a basis that is orthonormal in M have no mass in common
   block.apart = block.M.every((value, k) => Math.abs(value) < 1e-12 || k >= first * n && k < (first + n) * n);
   return block;
@@ -263,14 +270,21 @@ function estimate(pencil, own, rest, {lambda, s, x, w, slope}) {
 }
 
 // Modes of the band at p, by frequency: {freq, growth, error} in Hz, 1/s, rad/s; x of that nearest to {freq, growth} `chosen`. `moving`:
-// followed from those before where they can be, which model.followed tells
-function modesAt(model, p, {chosen = null, moving = false} = {}) {
-  const pencil = pencilAt(model, p), own = formOf(model, pencil, p, 0, model.n_used), modes = [];
+// followed from those before where they can be, which model.followed tells; model.status: the contact status that they are of, null
+// where it is the same everywhere
+function modesAt(model, p, options = {}) {
+  model.status = model.contact ? statusAt(model, p) : null;
+  return modesOf(model, model.status ? modelOf(model, model.status.number) : model, p, options);
+}
+
+// The same of the model of a status, `at`
+function modesOf(model, at, p, {chosen = null, moving = false}) {
+  const pencil = pencilAt(at, p), own = formOf(at, pencil, p, 0, model.n_used), modes = [];
   let found = moving && model.before?.length ? follow(model, pencil, own, model.before) : null;
   model.followed = found !== null;
   found ??= candidates(model, own).map(mode => refine(pencil, own, mode));
   model.before = found;
-  const rest = model.n > model.n_used ? formOf(model, pencil, p, model.n_used, model.n - model.n_used) : null;
+  const rest = model.n > model.n_used ? formOf(at, pencil, p, model.n_used, model.n - model.n_used) : null;
   for (const mode of found) {
     const {lambda: [a, b], x, s} = mode;
     if (b < model.low || b > model.high) continue;
@@ -286,13 +300,32 @@ function modesAt(model, p, {chosen = null, moving = false} = {}) {
   return modes.map(mode => mode === nearest ? mode : {...mode, x: undefined});
 }
 
-// The model of a file's bytes: a line of JSON, then the matrices as float64
+// A lower triangle by columns as a symmetric matrix
+function whole(n, triangle) {
+  const A = new Float64Array(n * n);
+  for (let j = 0, at = 0; j < n; j++) for (let i = j; i < n; i++, at++) A[j * n + i] = A[i * n + j] = triangle[at];
+  return A;
+}
+
+// Matrix of a term, or its rows; take(m): the next m numbers
+function readTerm({n, matrices}, {symmetric, closed, along, rows}, take) {
+  if (!closed) return symmetric ? whole(n, take(n * (n + 1) / 2)) : take(n * n);
+  const right = rows === undefined ? take(closed.length * n) : matrices[rows].right, own = take(closed.length * (along ? 1 : n));
+  return along ? {closed, right, weight: own} : {closed, right, left: own};
+}
+
+// The model of a file's bytes: a line of JSON, then float64
 function readModel(buffer) {
   const bytes = new Uint8Array(buffer), end = bytes.indexOf(10), model = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
-  const size = model.n * model.n, numbers = new Float64Array(buffer.slice(end + 1));
-  if (numbers.length !== size * model.terms.length) throw new Error("the model is not whole");
-  model.matrices = model.terms.map((_, t) => numbers.subarray(t * size, (t + 1) * size));
+  const numbers = new Float64Array(buffer.slice(end + 1));
+  let from = 0;
+  const take = m => { from += m; return numbers.subarray(from - m, from); };
+  model.matrices = [];
+  for (const term of model.terms) model.matrices.push(readTerm(model, term, take));
+  if (model.contact) model.contact = readContact(model, model.contact, take(model.contact.points * (model.parameters.length + 1)));
+  if (from !== numbers.length) throw new Error("the model is not whole");
+  model.made = new WeakMap();
   return model;
 }
 
-if (typeof module !== "undefined") module.exports = {readModel, modesAt, pencilAt};
+if (typeof module !== "undefined") module.exports = {readModel, modesAt, statusAt, statusesAlong};

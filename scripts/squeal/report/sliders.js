@@ -11,8 +11,9 @@ async function inflated(text) {
 
 const REST = 250;  // ms without a move
 
-// A worker that answers {p, moving, chosen} with {modes, followed, n, took} or {fault}: n evaluations took so many ms, several where one
-// is too quick to be timed. A busy one gets the newest question when it is done
+// A worker that answers {p, moving, chosen} with {modes, followed, status, along, n, took} or {fault}: n evaluations took so many ms, several
+// where one is too quick to be timed; along: which contact status holds where along each parameter. A busy one gets the newest question when
+// it is done
 function asker(buffer, answer) {
   const code = document.getElementById("reduced-code").textContent + `
     let model = null;
@@ -22,7 +23,9 @@ function asker(buffer, answer) {
         const begun = performance.now();
         let modes, n = 0;
         do { modes = modesAt(model, data.p, data); n++; } while (data.several && n < 200 && performance.now() - begun < 30);
-        postMessage({p: data.p, modes, moving: data.moving, followed: model.followed, n, took: performance.now() - begun});
+        const took = performance.now() - begun, {followed, status} = model;
+        const along = status && data.p.map((_, i) => statusesAlong(model, data.p, i));
+        postMessage({p: data.p, modes, moving: data.moving, followed, status, along, n, took});
       } catch (error) { postMessage({fault: error.message}); }
     };`;
   const worker = new Worker(URL.createObjectURL(new Blob([code], {type: "text/javascript"})));
@@ -117,6 +120,18 @@ function show_modes(body, model, modes) {
 
 const range = entry => `${Number(entry.lower.toPrecision(5))} to ${Number(entry.upper.toPrecision(5))}`;
 
+// Where along a slider a contact status holds, as parts of a bar: its own dark
+function show_holds(input, along, number) {
+  const low = Number(input.min), high = Number(input.max), bar = input.parentElement.querySelector(".holds");
+  const part = value => (Math.min(Math.max(value, low), high) - low) / (high - low);
+  bar.replaceChildren(...along.map(([from, status], k) => {
+    const left = part(from), right = part(along[k + 1]?.[0] ?? Infinity), span = document.createElement("span");
+    Object.assign(span.style, {left: `${100 * left}%`, width: `${100 * (right - left)}%`});
+    span.classList.toggle("own", status === number);
+    return span;
+  }).filter(span => parseFloat(span.style.width) > 0));
+}
+
 // Sliders of one model: its elements, what was asked and answered last
 class Sliders {
   constructor(place, buffer) {
@@ -124,7 +139,8 @@ class Sliders {
     Object.assign(this, {place, chosen: {freq: 0, growth: 1e9}, rates: [new Rate(), new Rate()], resting: 0});
     this.model = JSON.parse(new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(10))));
     this.inputs = [...place.querySelectorAll("input[type=range]")];
-    [this.body, this.said, this.beyond] = ["tbody", ".said", ".beyond-line"].map(name => place.querySelector(name));
+    [this.body, this.said, this.beyond, this.contact] =
+      ["tbody", ".said", ".beyond-line", ".contact-line"].map(name => place.querySelector(name));
     this.shapes = place.dataset.shapes ? new Shapes(stages[place.dataset.shapes]) : null;
     place.dataset.answers = 0;
     this.ask = asker(buffer, answer => this.show(answer));
@@ -153,16 +169,17 @@ class Sliders {
     this.ask({p: inputs.map(input => Number(input.value)), moving, chosen: shapes && chosen, several: !moving && !rates[0].value});
   }
 
-  show({p, modes, fault, moving, followed, ...effort}) {
+  show({p, modes, fault, moving, followed, status, along, ...effort}) {
     const {place, rates} = this, rate = rates[moving ? 1 : 0];
     if (fault) { this.said.textContent = `not computed: ${fault}`; return; }
     rate.add(effort);
     show_modes(this.body, this.model, modes);
     this.showBeyond(p);
+    if (status) this.showStatus(status, along);
     this.said.textContent = `${modes.length} mode${modes.length === 1 ? "" : "s"} in the band, ` +
       `${followed ? "followed from those before until the slider rests, which may miss one that comes; " : ""}${rate.text()}`;
     this.showShape(modes);
-    Object.assign(place, {modes, asked: p});
+    Object.assign(place, {modes, asked: p, status, along});
     place.dataset.moving = moving;
     place.dataset.answers++;
     place.dataset.state = "done";
@@ -174,6 +191,13 @@ class Sliders {
     this.inputs.forEach((input, i) => input.parentElement.classList.toggle("beyond", outside.includes(this.model.parameters[i])));
     this.beyond.textContent = outside.length ? "Outside of what the model was made for: " +
       outside.map(entry => `${entry.name}, ${range(entry)}`).join("; ") + ". It extrapolates, and its errors are not known." : "";
+  }
+
+  showStatus({number, far, closed}, along) {
+    const {pairs, statuses} = this.model.contact;
+    this.contact.textContent = `Contact status ${number + 1} of ${statuses.length}: ${closed} of ${pairs} pairs closed, as at ` +
+      (far < 1e-9 ? "this point, which was solved." : `the nearest point that was solved, ${far.toPrecision(2)} of the ranges away.`);
+    this.inputs.forEach((input, i) => show_holds(input, along[i], number));
   }
 
   // The mode that has its vector

@@ -75,14 +75,18 @@ PETSC_INTERN PetscErrorCode BoxFit(Box *box, PetscInt n, const PetscReal points[
 /* compress.c - makes a model of fewer vectors from the modes of some of the points, estimated within rtol at all of
    them; none where that saves nothing. Collective. */
 PETSC_INTERN PetscErrorCode BoxCompress(Box *box, PetscInt n, const PetscReal points[]);
-/* export.c - parameters of the operators that vary, and where between */
+/* export.c - parameters of the operators that vary, where between, and which of them move in step; points whose contact
+   statuses are known, all parameters of each */
 typedef struct {
   PetscInt         n;
-  const PetscInt  *parameter;
+  const PetscInt  *parameter, *variable; /* [n] of the same variable: in step; NULL: each by itself */
   const PetscReal *lower, *upper;
+  PetscInt         n_points;
+  StaticsPoint     get;
+  void            *ctx;
 } BoxVaried;
 /* Writes reduced_model.bin, of the model of fewer vectors where there is one; nothing where it is too large for a page,
-   where a coefficient is no monomial, or where the contact status differs between points. Collective. */
+   which the run says, or where a coefficient is no monomial. Collective. */
 PETSC_INTERN PetscErrorCode BoxExport(const Box *box, const BoxVaried *varied, Results results);
 /* shapes.c - writes reduced_shapes.h5, the vectors of that model on the mesh; nothing where they are too large, without
    a mesh, or with -output_fields 0. Collective. */

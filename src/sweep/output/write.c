@@ -273,40 +273,51 @@ static const SweepTable sensitivity_table = {
   SensitivityRows,
 };
 
+static PetscErrorCode ModelPlace(void *ctx, PetscInt i, PetscReal p[])
+{
+  const SweepGrid *grid = ctx;
+
+  PetscFunctionBeginUser;
+  GridFill(grid, &grid->place[i], p);
+  PetscFunctionReturn(0);
+}
+
 /* The reduced model over the ranges of the axes, for the page; none where a value of an axis is the only one */
 static PetscErrorCode SweepWriteModel(Sweep sweep, Results results)
 {
-  const SweepGrid *grid      = &sweep->grid;
-  Box              box       = {.comm         = sweep->comm,
-                                .operators    = sweep->operators,
-                                .nominal      = grid->base,
-                                .n_parameters = grid->n_parameters,
-                                .window       = sweep->window,
-                                .limit        = sweep->limit,
-                                .groups_of    = {.n_groups = grid->n_groups}};
-  BoxVaried        varied    = {0, NULL, NULL, NULL};
-  PetscInt        *parameter = NULL, n = 0;
-  PetscReal       *ends = NULL;
+  SweepGrid *grid      = &sweep->grid;
+  Box        box       = {.comm         = sweep->comm,
+                          .operators    = sweep->operators,
+                          .nominal      = grid->base,
+                          .n_parameters = grid->n_parameters,
+                          .window       = sweep->window,
+                          .limit        = sweep->limit,
+                          .statuses     = sweep->statuses,
+                          .groups_of    = {.n_groups = grid->n_groups, .closed = grid->closed}};
+  BoxVaried  varied    = {.n_points = grid->n_places, .get = ModelPlace, .ctx = grid};
+  PetscInt  *parameter = NULL, *axis = NULL, n = 0;
+  PetscReal *ends = NULL;
 
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < grid->n_axes; a++) {
     if (grid->n[a] < 2) PetscFunctionReturn(0);
     n += grid->n_moved[a];
   }
-  PetscCall(PetscMalloc2(n, &parameter, 2 * n, &ends));
+  PetscCall(PetscMalloc3(n, &parameter, n, &axis, 2 * n, &ends));
   for (PetscInt a = 0; a < grid->n_axes; a++)
     for (PetscInt m = 0; m < grid->n_moved[a]; m++, varied.n++) {
       parameter[varied.n] = grid->parameter[a][m];
+      axis[varied.n]      = a;
       ends[varied.n] = ends[n + varied.n] = grid->value[a][0];
       for (PetscInt i = 1; i < grid->n[a]; i++) {
         ends[varied.n]     = PetscMin(ends[varied.n], grid->value[a][i]);
         ends[n + varied.n] = PetscMax(ends[n + varied.n], grid->value[a][i]);
       }
     }
-  varied.parameter = parameter, varied.lower = ends, varied.upper = ends + n;
-  box.basis        = sweep->basis;
+  varied.parameter = parameter, varied.variable = axis, varied.lower = ends, varied.upper = ends + n;
+  box.basis = sweep->basis;
   PetscCall(BoxExport(&box, &varied, results));
-  PetscCall(PetscFree2(parameter, ends));
+  PetscCall(PetscFree3(parameter, axis, ends));
   PetscFunctionReturn(0);
 }
 
