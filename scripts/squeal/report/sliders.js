@@ -11,9 +11,9 @@ async function inflated(text) {
 
 const REST = 250;  // ms without a move
 
-// A worker that answers {p, moving, chosen} with {modes, followed, status, along, n, took} or {fault}: n evaluations took so many ms, several
-// where one is too quick to be timed; along: which contact status holds where along each parameter. A busy one gets the newest question when
-// it is done
+// A worker that answers {p, moving, chosen} with {modes, followed, status, along, n, took} or {fault}: n evaluations took so many ms,
+// several where one is too quick to be timed; along: which contact status holds where along each parameter. A busy one gets the newest
+// question when it is done
 function asker(buffer, answer) {
   const code = document.getElementById("reduced-code").textContent + `
     let model = null;

@@ -1,8 +1,8 @@
 // Contact statuses of a reduced model: which pairs are closed differs over the box. A place has the status of the nearest point whose own
 // is known, distances in parts of the range of each parameter. It stands behind dense.js. No DOM.
 //
-//   K = sum_t c_t(p) A_t + sum_t c_t(p) sum_r closed_r left_r' right_r:   with the rows that are closed summed, a status is a model like any
-//   other, whose matrices are made once
+//   K = sum_t c_t(p) A_t + sum_t c_t(p) sum_r closed_r left_r' right_r:   with the rows that are closed summed, a status is a model
+//   like any other, whose matrices are made once
 "use strict";
 
 const KEPT = 4;  // models of statuses that are kept
