@@ -36,7 +36,7 @@ struct _p_Design {
   Box       box;
   /* set by options */
   CubeOptions options, uncertain_options;
-  PetscInt    n_inside, n_corners, max_designs;
+  PetscInt    n_inside, n_corners, max_designs, n_starts;
   PetscBool   corners_given;
   PetscReal   probability, margin, mass_weight;
   char        varied[2 * CUBE_MAX_TEXT];
@@ -57,11 +57,15 @@ struct _p_Design {
   DesignCorner  *corner;
   PetscBool      found, again; /* again: the last one that was found goes on with one more scenario */
   PetscInt       n_rejected;   /* designs that a corner in full was unstable of */
+  PetscInt       n_elsewhere;  /* designs of -design_starts that were looked at */
+  PetscReal      elsewhere;    /* least excess of them, with the statuses of the last designs */
   PetscLogDouble seconds[3];   /* basis, designs, corners */
 };
 
 extern const QuantityTable design_quantities;
 
+/* starts.c - designs spread over the box, the least bad ones first: z [n][cube.n], excess [n], n at most. Collective */
+PETSC_INTERN PetscErrorCode DesignStarts(Design design, PetscInt *n, PetscReal z[], PetscReal excess[]);
 /* search.c - the designs; called again it goes on behind one that was rejected */
 PETSC_INTERN PetscErrorCode DesignSearch(Design design);
 /* The design that was found is none: the corner that says so becomes a scenario, or where it is one already the next
@@ -80,6 +84,10 @@ PETSC_INTERN PetscErrorCode DesignAddScenario(Design design, const PetscReal t[]
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
 /* A point with a status of its own */
 PETSC_INTERN PetscErrorCode DesignKnow(Design design, const PetscReal z[], const PetscReal t[], PetscInt status);
+/* The largest excess at z with the statuses of the design before, or one scenario's that is above the bound. `order` has
+   all scenarios, those first that were above one before. Collective */
+PETSC_INTERN PetscErrorCode DesignGlance(Design design, const PetscReal z[], PetscReal bound, PetscInt order[],
+                                         PetscReal *excess);
 /* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */
 PETSC_INTERN PetscErrorCode DesignFindStatuses(Design design, const PetscReal z[], PetscBool *changed);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);

@@ -254,3 +254,27 @@ PetscErrorCode DesignLook(Design d, PetscBool keep, DesignPoint *point)
   PetscCall(PetscFree(s));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode DesignGlance(Design d, const PetscReal z[], PetscReal bound, PetscInt order[], PetscReal *excess)
+{
+  const PetscInt n = d->n_scenarios, step = d->box.groups.n_groups;
+  PetscMPIInt    rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  *excess = PETSC_NINFINITY;
+  for (PetscInt first = 0; first < n && *excess <= bound; first += step) {
+    Scenario s = {.excess = PETSC_NINFINITY};
+
+    for (PetscInt k = first; k < PetscMin(n, first + step); k++) {
+      s.index = order[k];
+      if (PointGroupsOwner(&d->box.groups, k) == rank) PetscCall(ScenarioLook(d, z, &s));
+      PetscCallMPI(MPI_Bcast(&s.excess, 1, MPIU_REAL, PointGroupsOwner(&d->box.groups, k), d->comm));
+      *excess = PetscMax(*excess, s.excess);
+      if (s.excess <= bound) continue;
+      PetscCall(PetscArraymove(&order[1], order, k));
+      order[0] = s.index;
+    }
+  }
+  PetscFunctionReturn(0);
+}

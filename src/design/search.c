@@ -1,5 +1,6 @@
 /*
-   The designs one after the other. First the cuts of those before lead to a good one. From the scene to that the limit
+   The designs one after the other. First the cuts of those before lead to a good one; where they do not, designs spread
+   over the box are looked at, and the least bad ones begin anew. From the scene to that the limit
    is crossed somewhere: there, found by halving, the cuts are sharp, and the next design from these is tried.
    As long as that is good, and nearer to the scene, it goes on.
 */
@@ -10,6 +11,7 @@
 #define LEAST_RADIUS 1e-3
 #define GAIN         2e-3 /* of the goal, that another design must promise */
 #define HALF_TURNS   14   /* halvings of the way from a bad design to a good one */
+#define STARTS       3    /* designs elsewhere that are begun with */
 
 /* Change and mass of a design beside the scene */
 static void PointMeasure(const Design d, DesignPoint *point)
@@ -103,6 +105,28 @@ static PetscErrorCode SearchGood(Design d)
   PetscFunctionReturn(0);
 }
 
+/* From the least bad designs of the whole box, each with cuts of its own: those of others may exclude where it leads */
+static PetscErrorCode SearchElsewhere(Design d)
+{
+  PetscInt  n = STARTS;
+  PetscReal z[STARTS * CUBE_MAX_VARIABLES], excess[STARTS];
+
+  PetscFunctionBeginUser;
+  if (d->found || d->n_elsewhere || !d->n_starts) PetscFunctionReturn(0);
+  PetscCall(DesignStarts(d, &n, z, excess));
+  for (PetscInt i = 0; i < n && !d->found && d->n_points < d->max_designs; i++) {
+    DesignPoint *point;
+
+    d->n_cuts = 0;
+    d->again  = PETSC_FALSE;
+    PetscCall(DesignTry(d, &z[i * d->cube.n], &point));
+    d->best  = d->n_points - 1;
+    d->found = point->good;
+    if (!d->found) PetscCall(SearchGood(d));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* bad := a bad design next to the limit on the way to the best one, whose cuts are kept; older ones that the best one
    does not keep are dropped */
 static PetscErrorCode SearchEdge(Design d, PetscReal bad[])
@@ -186,6 +210,7 @@ PetscErrorCode DesignSearch(Design d)
   if (!d->point) PetscCall(PetscCalloc1(d->max_designs, &d->point));
   PetscCall(ProgressBegin(&progress, "designs", 2));
   PetscCall(SearchGood(d));
+  PetscCall(SearchElsewhere(d));
   PetscCall(ProgressStep(&progress));
   if (d->found) PetscCall(SearchBetter(d));
   PetscCall(ProgressEnd(&progress));

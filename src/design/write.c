@@ -186,9 +186,15 @@ PetscErrorCode DesignView(Design d, PetscViewer viewer)
                                      "no design was found in %" PetscInt_FMT
                                      " tries: the best one, number %" PetscInt_FMT ", has %" PetscInt_FMT
                                      " unstable scenarios, largest growth beyond the limit %.4g "
-                                     "1/s%s; widen -design_percent, or raise -design_max\n",
+                                     "1/s%s; widen -design_percent, or raise -design_max or -design_starts\n",
                                      d->n_points, d->best + 1, best->n_scenarios, (double)best->excess,
                                      best->n_scenarios ? "" : ", but in full it has one"));
+  if (d->n_elsewhere)
+    PetscCall(PetscViewerASCIIPrintf(viewer,
+                                     "looked at elsewhere: %" PetscInt_FMT
+                                     " designs spread over the box, largest growth "
+                                     "beyond the limit %.4g 1/s at the least bad one\n",
+                                     d->n_elsewhere, (double)d->elsewhere));
   PetscCall(FoundView(d, best, viewer));
   if (d->box.statics) PetscCall(DesignStateView(d, best, viewer));
   if (d->box.whole)
