@@ -5,12 +5,14 @@ Shapes of the modes at some points of the box, V X, need fewer directions than t
 vectors U of these a mode x moves as U (U'V) x."""
 
 import base64
+import json
+import math
 import zlib
 
 import numpy
 
 from ..mesh.bodies import Scene, opened, sound
-from ..tables import BadInput
+from ..tables import BadInput, header, optional, read_table
 from .markup import Markup, Part, count, figures, missing, section, tag
 from .model_file import ReducedModel
 from .shapes import FULL, Bodies, Shape, data_script, packed, viewer
@@ -100,6 +102,25 @@ def moving(folder, name, model, snaps, room):
     return [script, viewer(f"{name}-viewer", name, "moving shape of the chosen mode; drag to turn it")], name
 
 
+def known_places(folder):
+    """Values of parameters by their names: of a design that was found, of a dangerous point."""
+    design, quiet = folder.path / "design.csv", folder.path / "quiet.csv"
+    if design.exists():
+        rows = read_table(design, dict.fromkeys(header(design), optional))
+        yield "The design's values", next((row for row in rows if row["found"] == 1), {})
+    if quiet.exists():
+        yield "The nearest dangerous point", {row["variable"]: row["danger"] for row in read_table(quiet, {"variable": str, "danger": optional})}
+
+
+def places(folder, entries):
+    """Buttons that set all sliders; what a place does not name is the scene's own."""
+    buttons = [("The scene's own values", [entry["value"] for entry in entries])]
+    for title, there in known_places(folder):
+        if any(math.isfinite(there.get(entry["name"], math.nan)) for entry in entries):
+            buttons.append((title, [there.get(entry["name"], entry["value"]) for entry in entries]))
+    return [tag("button", title, type="button", data_values=json.dumps(values)) for title, values in buttons]
+
+
 def contact_text(contact):
     """By which rule a place has its contact status."""
     if not contact:
@@ -134,7 +155,7 @@ def model_part(folder, room):
     picture, vectors = moving(folder, f"{folder.key}-vectors", model, snaps, room - len(text))
     said += " A click on a row shows how that mode moves." if vectors else ""
     place = tag("div", [slider(entry, model.contact) for entry in head["parameters"]],
-                tag("button", "The scene's own values", type="button"), tag("p", "", class_="beyond-line", role="status"),
+                tag("div", places(folder, head["parameters"]), class_="places"), tag("p", "", class_="beyond-line", role="status"),
                 tag("p", "", class_="contact-line", role="status") if model.contact else None,
                 tag("p", "", class_="said"), tag("div", table, class_="scroll"),
                 class_="sliders", data_source=f"{name}-data", data_shapes=vectors and f"{vectors}-viewer")

@@ -150,8 +150,8 @@ class Sliders {
 
   listen() {
     for (const input of this.inputs) input.addEventListener("input", () => this.look(true));
-    this.place.querySelector("button").addEventListener("click", () => {
-      this.inputs.forEach((input, i) => { input.value = this.model.parameters[i].value; });
+    for (const button of this.place.querySelectorAll(".places button")) button.addEventListener("click", () => {
+      JSON.parse(button.dataset.values).forEach((value, i) => { this.inputs[i].value = value; });
       this.look(false);
     });
     if (this.shapes) this.body.addEventListener("click", ({target}) => {
