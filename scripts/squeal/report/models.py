@@ -109,7 +109,8 @@ def known_places(folder):
         rows = read_table(design, dict.fromkeys(header(design), optional))
         yield "The design's values", next((row for row in rows if row["found"] == 1), {})
     if quiet.exists():
-        yield "The nearest dangerous point", {row["variable"]: row["danger"] for row in read_table(quiet, {"variable": str, "danger": optional})}
+        rows = read_table(quiet, {"variable": str, "danger": optional})
+        yield "The nearest dangerous point", {row["variable"]: row["danger"] for row in rows}
 
 
 def places(folder, entries):
