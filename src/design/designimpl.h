@@ -64,8 +64,14 @@ struct _p_Design {
 
 extern const QuantityTable design_quantities;
 
-/* starts.c - designs spread over the box, the least bad ones first: z [n][cube.n], excess [n], n at most. Collective */
-PETSC_INTERN PetscErrorCode DesignStarts(Design design, PetscInt *n, PetscReal z[], PetscReal excess[]);
+/* starts.c - the least bad ones of designs spread over the box, by excess */
+#define DESIGN_STARTS 3
+typedef struct {
+  PetscInt  n;
+  PetscReal z[DESIGN_STARTS][CUBE_MAX_VARIABLES], excess[DESIGN_STARTS];
+} DesignList;
+/* Collective */
+PETSC_INTERN PetscErrorCode DesignStarts(Design design, DesignList *starts);
 /* search.c - the designs; called again it goes on behind one that was rejected */
 PETSC_INTERN PetscErrorCode DesignSearch(Design design);
 /* The design that was found is none: the corner that says so becomes a scenario, or where it is one already the next
@@ -84,8 +90,8 @@ PETSC_INTERN PetscErrorCode DesignAddScenario(Design design, const PetscReal t[]
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
 /* A point with a status of its own */
 PETSC_INTERN PetscErrorCode DesignKnow(Design design, const PetscReal z[], const PetscReal t[], PetscInt status);
-/* The largest excess at z with the statuses of the design before, or one scenario's that is above the bound. `order` has
-   all scenarios, those first that were above one before. Collective */
+/* The largest excess at z with the statuses of the design before, or one scenario's that is above the bound. `order`
+   has all scenarios, those first that were above one before. Collective */
 PETSC_INTERN PetscErrorCode DesignGlance(Design design, const PetscReal z[], PetscReal bound, PetscInt order[],
                                          PetscReal *excess);
 /* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */

@@ -11,7 +11,6 @@
 #define LEAST_RADIUS 1e-3
 #define GAIN         2e-3 /* of the goal, that another design must promise */
 #define HALF_TURNS   14   /* halvings of the way from a bad design to a good one */
-#define STARTS       3    /* designs elsewhere that are begun with */
 
 /* Change and mass of a design beside the scene */
 static void PointMeasure(const Design d, DesignPoint *point)
@@ -108,18 +107,17 @@ static PetscErrorCode SearchGood(Design d)
 /* From the least bad designs of the whole box, each with cuts of its own: those of others may exclude where it leads */
 static PetscErrorCode SearchElsewhere(Design d)
 {
-  PetscInt  n = STARTS;
-  PetscReal z[STARTS * CUBE_MAX_VARIABLES], excess[STARTS];
+  DesignList starts;
 
   PetscFunctionBeginUser;
   if (d->found || d->n_elsewhere || !d->n_starts) PetscFunctionReturn(0);
-  PetscCall(DesignStarts(d, &n, z, excess));
-  for (PetscInt i = 0; i < n && !d->found && d->n_points < d->max_designs; i++) {
+  PetscCall(DesignStarts(d, &starts));
+  for (PetscInt i = 0; i < starts.n && !d->found && d->n_points < d->max_designs; i++) {
     DesignPoint *point;
 
     d->n_cuts = 0;
     d->again  = PETSC_FALSE;
-    PetscCall(DesignTry(d, &z[i * d->cube.n], &point));
+    PetscCall(DesignTry(d, starts.z[i], &point));
     d->best  = d->n_points - 1;
     d->found = point->good;
     if (!d->found) PetscCall(SearchGood(d));

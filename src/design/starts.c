@@ -6,43 +6,44 @@
 #include "designimpl.h"
 #include "sample/draw/sequence.h"
 
-/* Puts a design into the list [n] of those that are the least bad, of room for `most` */
-static void StartsInsert(PetscInt size, PetscInt most, const PetscReal z[], PetscReal own, PetscInt *n,
-                         PetscReal list[], PetscReal excess[])
+/* Puts a design into the list, where it is one of the least bad ones */
+static PetscErrorCode StartsInsert(PetscInt size, const PetscReal z[], PetscReal excess, DesignList *list)
 {
-  PetscInt at = *n;
-
-  if (*n == most && own >= excess[most - 1]) return;
-  if (*n == most) at = most - 1;
-  for (; at > 0 && excess[at - 1] > own; at--) {
-    excess[at] = excess[at - 1];
-    for (PetscInt k = 0; k < size; k++) list[at * size + k] = list[(at - 1) * size + k];
-  }
-  excess[at] = own;
-  for (PetscInt k = 0; k < size; k++) list[at * size + k] = z[k];
-  if (*n < most) ++*n;
-}
-
-PetscErrorCode DesignStarts(Design d, PetscInt *n, PetscReal z[], PetscReal excess[])
-{
-  const PetscInt most     = *n;
-  Sequence       sequence = {SEQUENCE_SOBOL, 3, PetscMax(1, d->n_starts), d->cube.n, NULL};
-  PetscReal      point[CUBE_MAX_VARIABLES], own;
-  PetscInt      *order;
+  PetscInt at = PetscMin(list->n, DESIGN_STARTS - 1);
 
   PetscFunctionBeginUser;
-  *n = 0;
+  if (list->n == DESIGN_STARTS && excess >= list->excess[at]) PetscFunctionReturn(0);
+  for (; at > 0 && list->excess[at - 1] > excess; at--) {
+    list->excess[at] = list->excess[at - 1];
+    PetscCall(PetscArraycpy(list->z[at], list->z[at - 1], size));
+  }
+  list->excess[at] = excess;
+  PetscCall(PetscArraycpy(list->z[at], z, size));
+  list->n = PetscMin(list->n + 1, DESIGN_STARTS);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DesignStarts(Design d, DesignList *starts)
+{
+  Sequence  sequence = {SEQUENCE_SOBOL, 3, PetscMax(1, d->n_starts), d->cube.n, NULL};
+  PetscReal z[CUBE_MAX_VARIABLES], excess;
+  PetscInt *order;
+
+  PetscFunctionBeginUser;
+  starts->n = 0;
   PetscCall(PetscMalloc1(d->n_scenarios, &order));
   for (PetscInt i = 0; i < d->n_scenarios; i++) order[i] = i;
   PetscCall(SequenceSetUp(&sequence));
   for (PetscInt i = 0; i < d->n_starts; i++) {
-    SequencePoint(&sequence, i, point);
-    for (PetscInt k = 0; k < d->cube.n; k++) point[k] = 2 * point[k] - 1;
-    PetscCall(DesignGlance(d, point, *n == most ? excess[most - 1] : PETSC_INFINITY, order, &own));
-    StartsInsert(d->cube.n, most, point, own, n, z, excess);
+    const PetscReal bound = starts->n == DESIGN_STARTS ? starts->excess[DESIGN_STARTS - 1] : PETSC_INFINITY;
+
+    SequencePoint(&sequence, i, z);
+    for (PetscInt k = 0; k < d->cube.n; k++) z[k] = 2 * z[k] - 1;
+    PetscCall(DesignGlance(d, z, bound, order, &excess));
+    PetscCall(StartsInsert(d->cube.n, z, excess, starts));
   }
   d->n_elsewhere += d->n_starts;
-  if (*n) d->elsewhere = excess[0];
+  if (starts->n) d->elsewhere = starts->excess[0];
   PetscCall(SequenceDestroy(&sequence));
   PetscCall(PetscFree(order));
   PetscFunctionReturn(0);

@@ -77,7 +77,7 @@ static PetscErrorCode CornersWrite(Design d, Results results)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ModelPoint(void *ctx, PetscInt i, PetscReal p[])
+static PetscErrorCode DesignPlace(void *ctx, PetscInt i, PetscReal p[])
 {
   const Design     d = ctx;
   const PetscReal *t = &d->known[i * (d->cube.n + d->uncertain.n)];
@@ -93,7 +93,7 @@ static PetscErrorCode DesignWriteModel(Design d, Results results)
 {
   PetscInt  parameter[2 * CUBE_MAX_MOVED], variable[2 * CUBE_MAX_MOVED], n;
   PetscReal lower[2 * CUBE_MAX_MOVED], upper[2 * CUBE_MAX_MOVED];
-  BoxVaried varied = {0, parameter, variable, lower, upper, d->n_known, ModelPoint, d};
+  BoxVaried varied = {0, parameter, variable, lower, upper, d->n_known, DesignPlace, d};
 
   PetscFunctionBeginUser;
   n        = CubeMoved(&d->cube, parameter, variable, lower, upper);

@@ -192,7 +192,7 @@ static PetscErrorCode SamplesVerifyWrite(Sample s, Results results)
 }
 
 /* Sample i; behind them the scene's own values */
-static PetscErrorCode ModelPoint(void *ctx, PetscInt i, PetscReal p[])
+static PetscErrorCode SamplePlace(void *ctx, PetscInt i, PetscReal p[])
 {
   const Sample s = ctx;
 
@@ -223,7 +223,7 @@ static PetscErrorCode SampleModelWrite(Sample s, Results results)
       upper[j] = i ? PetscMax(upper[j], p[parameter[j]]) : p[parameter[j]];
     }
   }
-  PetscCall(BoxExport(&s->box, &(BoxVaried){n, parameter, variable, lower, upper, s->n + 1, ModelPoint, s}, results));
+  PetscCall(BoxExport(&s->box, &(BoxVaried){n, parameter, variable, lower, upper, s->n + 1, SamplePlace, s}, results));
   PetscCall(PetscFree5(parameter, variable, lower, upper, p));
   PetscFunctionReturn(0);
 }

@@ -8,8 +8,8 @@
        "contact": {"pairs", "always", "groups": [pairs], "statuses": ["01", ...], "points"}}
 
    low and high in rad/s. A parameter is one option, or several that move in step, "a+b", in proportion to the value of
-   the first. Terms that no parameter changes are one for each of K, C and M. A term is n x n by columns, a symmetric one
-   its lower triangle.
+   the first. Terms that no parameter changes are one for each of K, C and M. A term is n x n by columns, a symmetric
+   one its lower triangle.
 
    "contact" is there where pairs are closed at some points and open at others. They are groups that open and close
    together; a status is which of them are closed. A term with "closed": [group of each row] has rows in place of a

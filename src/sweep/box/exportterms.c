@@ -178,7 +178,7 @@ static PetscErrorCode RowsWeigh(PetscInt n, ExportTerm *t)
 }
 
 /* An earlier term with the same right rows */
-static void RowsShare(const ExportTerms *terms, ExportTerm *t)
+static void RowsFindSame(const ExportTerms *terms, ExportTerm *t)
 {
   for (PetscInt s = 0; &terms->term[s] < t && t->rows_of < 0; s++) {
     const ExportTerm *one  = &terms->term[s];
@@ -209,7 +209,7 @@ static PetscErrorCode TermsFinish(ExportTerms *terms)
     if (one->A && one->symmetric) TrianglePack(terms->n, one->A);
     if (one->A) continue;
     PetscCall(RowsWeigh(terms->n, one));
-    RowsShare(terms, one);
+    RowsFindSame(terms, one);
   }
   PetscFunctionReturn(0);
 }

@@ -273,7 +273,7 @@ static const SweepTable sensitivity_table = {
   SensitivityRows,
 };
 
-static PetscErrorCode ModelPlace(void *ctx, PetscInt i, PetscReal p[])
+static PetscErrorCode SweepModelPlace(void *ctx, PetscInt i, PetscReal p[])
 {
   const SweepGrid *grid = ctx;
 
@@ -294,7 +294,7 @@ static PetscErrorCode SweepWriteModel(Sweep sweep, Results results)
                           .limit        = sweep->limit,
                           .statuses     = sweep->statuses,
                           .groups_of    = {.n_groups = grid->n_groups, .closed = grid->closed}};
-  BoxVaried  varied    = {.n_points = grid->n_places, .get = ModelPlace, .ctx = grid};
+  BoxVaried  varied    = {.n_points = grid->n_places, .get = SweepModelPlace, .ctx = grid};
   PetscInt  *parameter = NULL, *axis = NULL, n = 0;
   PetscReal *ends = NULL;
 
