@@ -30,7 +30,7 @@ def slider(entry, contact):
     low, high = entry["lower"], entry["upper"]
     reach = BEYOND * (high - low)
     first = low - reach if low <= 0 else max(low - reach, 0.1 * low)
-    return tag("label", tag("span", f"{entry['name']} {entry['unit']}".strip(), class_="name"),
+    return tag("label", tag("span", f"{entry['name'].replace('+', ' + ')} {entry['unit']}".strip(), class_="name"),
                tag("input", type="range", min=f"{first:.10g}", max=f"{high + reach:.10g}", step="any", value=f"{entry['value']:.17g}"),
                tag("output", figures(entry["value"], 5)),
                tag("span", f"made for {figures(low, 4)} to {figures(high, 4)}", class_="made"),
@@ -128,8 +128,8 @@ def contact_text(contact):
         return None
     far = contact.left_out()
     kept, others = int((far == 0).sum()), far[far > 0]
-    said = (f" Of these points {kept} have the status of the nearest other one, {len(others)} one that differs in "
-            f"{figures(numpy.median(others), 3)} pairs (median), {int(others.max())} at most.") if len(others) else ""
+    said = (f" Of these points {kept} have the status of the nearest other one, for {len(others)} it differs by up to "
+            f"{count(int(others.max()), 'pair')} (median {figures(numpy.median(others), 3)}).") if len(others) else ""
     return tag("p", f"Which of {contact.pairs} contact pairs are closed differs over the box: {len(contact.closed)} statuses. The sliders "
                f"take the status of the nearest of {len(contact.points)} points whose sliding state was solved, distances in parts of each "
                f"range; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark where "
