@@ -61,11 +61,31 @@ static PetscErrorCode NodeTake(MortarPairs *m, const ContactFacet *s, int j, Pet
       PetscReal sum = 0;
 
       for (int k = 0; k < s->n; k++) sum += c * m->facet.dual[j][k] * block->cross[k][l];
-      PetscCall(MortarEntryAdd(&m->under, p, m->mortar.master->vertex[master->node[l]], master->unknowns[l], sum));
-      for (int d = 0; d < 3; d++) m->off[p][d] += sum * (master->x[l][d] - m->pair[p].x[d]);
+      PetscCall(MortarMasterAdd(m, p, master, l, sum));
     }
   }
   PetscFunctionReturn(0);
+}
+
+/* Whether a face has nodes of this rank */
+static PetscBool FaceIsHere(const MortarPairs *m, PetscInt f)
+{
+  const ContactFacet *s = &m->mortar.slave->facet[f];
+
+  for (int j = 0; j < s->n; j++)
+    if (m->of[s->node[j]] >= 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whether this rank needs the integrals of a face: at its nodes, or at sides that it shares with a face of theirs */
+static PetscBool FaceIsNeeded(const MortarPairs *m, PetscInt f)
+{
+  const ContactFacet *s = &m->mortar.slave->facet[f];
+
+  if (FaceIsHere(m, f)) return PETSC_TRUE;
+  for (int i = 0; i < ContactFacetCorners(s) && m->edges; i++)
+    if (s->beside[i] >= 0 && FaceIsHere(m, s->beside[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Takes what lies over the master of a facet all over it, and keeps how much others have */
@@ -73,13 +93,12 @@ static PetscErrorCode FacetsTake(MortarPairs *m)
 {
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < m->mortar.slave->n_facets; f++) {
-    const ContactFacet *s    = &m->mortar.slave->facet[f];
-    PetscInt            here = 0;
+    const ContactFacet *s = &m->mortar.slave->facet[f];
 
-    for (int j = 0; j < s->n; j++) here += m->of[s->node[j]] >= 0;
-    if (!here) continue;
+    if (!FaceIsNeeded(m, f)) continue;
     PetscCall(MortarIntegrate(&m->mortar, f, &m->facet));
     MortarBorderAdd(&m->border, f, m->mortar.alpha, &m->facet.sums);
+    if (m->edges) PetscCall(MortarEdgesKeep(m, f));
     for (int j = 0; j < s->n && m->border.cover[f] == MORTAR_OVER; j++)
       if (m->of[s->node[j]] >= 0) PetscCall(NodeTake(m, s, j, m->of[s->node[j]], 1));
   }
@@ -89,11 +108,8 @@ static PetscErrorCode FacetsTake(MortarPairs *m)
 /* Keeps a facet of a tie that none takes, where the master under it is free; of the rank of one of its nodes */
 static PetscErrorCode FacetLose(MortarPairs *m, PetscInt f)
 {
-  PetscInt here = 0;
-
   PetscFunctionBeginUser;
-  for (int j = 0; j < m->mortar.slave->facet[f].n; j++) here += m->of[m->mortar.slave->facet[f].node[j]] >= 0;
-  if (!here) PetscFunctionReturn(0);
+  if (!FaceIsHere(m, f)) PetscFunctionReturn(0);
   PetscCall(MortarIntegrate(&m->mortar, f, &m->facet));
   for (PetscInt i = 0; i < m->facet.n; i++) {
     const ContactFacet *master = &m->mortar.master->facet[m->facet.block[i].facet];
@@ -160,7 +176,9 @@ PetscErrorCode MortarPairsMake(MPI_Comm comm, const ContactSurface *slave, const
   m->border.out = m->out;
   if (m->folds) m->mortar.facing = MORTAR_FOLD;
   PetscCall(MeansFind(m));
+  PetscCall(MortarEdgesCreate(m));
   PetscCall(FacetsTake(m));
+  if (m->edges) PetscCall(MortarEdgesTake(m));
   PetscCall(MortarBorderDecide(comm, m->of, &m->border));
   PetscCall(PartsTake(m));
   PetscCall(MortarSetSides(m));
@@ -175,6 +193,7 @@ PetscErrorCode MortarPairsDestroy(MortarPairs *m)
   PetscCall(PetscFree(m->under.entry));
   PetscCall(PetscFree(m->taken.entry));
   PetscCall(PetscFree(m->facet.block));
+  PetscCall(MortarEdgesDestroy(m));
   PetscCall(MortarBorderDestroy(&m->border));
   PetscCall(MortarDestroy(&m->mortar));
   PetscFunctionReturn(0);

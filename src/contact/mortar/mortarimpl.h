@@ -89,11 +89,14 @@ typedef struct {
   MortarEntry *entry;
 } MortarEntries;
 
+typedef struct MortarSideSums MortarSideSums; /* edges.c */
+
 /* The pairs of an interface, or of a tie, as they are made */
 typedef struct {
   Mortar                 mortar;
   MortarFacet            facet;
   MortarBorder           border;
+  MortarSideSums        *edges;   /* [slave facets], NULL where no face needs them */
   ContactPair           *pair;    /* [n_pairs] */
   const ContactPairFoot *feet;    /* [n_pairs] of a contact, which tell places; NULL of a tie */
   PetscInt               n_pairs; /* of all slave nodes of this rank */
@@ -129,6 +132,15 @@ PETSC_INTERN PetscErrorCode MortarPairsDestroy(MortarPairs *m);
    has */
 PETSC_INTERN PetscErrorCode MortarSumsCheck(MPI_Comm comm, const char what[], const char name[], const char slave[],
                                             const char master[], const MortarPairs *m);
+/* sides.c - adds weight (m^2) at node l of a facet of the master to pair p */
+PETSC_INTERN PetscErrorCode MortarMasterAdd(MortarPairs *m, PetscInt p, const ContactFacet *master, int l,
+                                            PetscReal weight);
+/* edges.c - linear pressures at the sides of faces of second order: what faces all over the master have there, of a
+   face as it is integrated, then given to the nodes of this rank */
+PETSC_INTERN PetscErrorCode MortarEdgesCreate(MortarPairs *m);
+PETSC_INTERN PetscErrorCode MortarEdgesKeep(MortarPairs *m, PetscInt f);
+PETSC_INTERN PetscErrorCode MortarEdgesTake(MortarPairs *m);
+PETSC_INTERN PetscErrorCode MortarEdgesDestroy(MortarPairs *m);
 /* sides.c - u~ of a node of the slave as a sum over nodes, itself first; their number */
 PETSC_INTERN int MortarMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES]);
 /* sides.c - sum_k v_k x_k - sum_l w_l x_l of a pair, m */

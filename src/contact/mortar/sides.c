@@ -18,6 +18,14 @@ PetscErrorCode MortarEntryAdd(MortarEntries *list, PetscInt pair, PetscInt numbe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MortarMasterAdd(MortarPairs *m, PetscInt p, const ContactFacet *master, int l, PetscReal weight)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MortarEntryAdd(&m->under, p, m->mortar.master->vertex[master->node[l]], master->unknowns[l], weight));
+  for (int d = 0; d < 3; d++) m->off[p][d] += weight * (master->x[l][d] - m->pair[p].x[d]);
+  PetscFunctionReturn(0);
+}
+
 static int EntryCompare(const void *left, const void *right)
 {
   const MortarEntry *a = (const MortarEntry *)left, *b = (const MortarEntry *)right;

@@ -19,7 +19,8 @@
       alpha = 1/12 (six nodes),   1/5 (eight nodes),   0 (nine nodes, there at all of them).
 
    At sides of six and eight nodes it cannot: N~_s vanishes on the other sides, hence is a multiple of N_s, and int N_s
-   x dA lies within the face. D_j > 0 on whole faces; on parts of one it may be negative (border.c).
+   x dA lies within the face; functions beyond the faces around a node mend it (contact/mortar/edges.c). D_j > 0 on
+   whole faces; on parts of one it may be negative (border.c).
 
    Points are mapped along that normal to both facets. Facets with straight sides are cut exactly, and integrals of flat
    ones whose map is affine are exact with rules of that degree. Those of curved sides are fans of triangles.
@@ -37,6 +38,13 @@
 static inline double SegmentAlpha(int has_six, int has_eight)
 {
   return has_eight ? 1 / 5.0 : has_six ? 1 / 12.0 : 0;
+}
+
+/* theta: how far the centre int N~_s x dA / D_s of a side lies within a face, over the way from the side's middle to
+   that of what is opposite, on affine maps; 0 of first order */
+static inline double SegmentInward(int n, double alpha)
+{
+  return n == 6 ? 1 / 5.0 : n == 8 ? 1 / 3.0 : n == 9 ? 2 * alpha / (1 + 4 * alpha) : 0;
 }
 
 /* A facet seen along the normal: places of its nodes in the plane, and convex pieces [n][corners], counter-clockwise */
