@@ -71,16 +71,23 @@ def scatter(folder, rows, growth, samples, name, k):
     return Chart(f"growth over {name}", Axis.about(name, values), [panel]).markup(f"{folder.key}-scatter-{k}", "half")
 
 
+def bars_of(index, of, key):
+    """Value and error of branches and variables, where there are any."""
+    return {(row["branch"], row["variable"]): (row[key], row[f"{key}_error"]) for row in index if row["of"] == of and math.isfinite(row[key])}
+
+
 def tornado(folder, rows, index, names):
-    """Bars of what matters, the most important on top."""
+    """Bars of what matters, the most important on top; of the frequency where growth is the same everywhere."""
     total = any(math.isfinite(row["total"]) for row in index)
     key = "total" if total else "slope"
-    bars = {(row["branch"], row["variable"]): (row[key], row[f"{key}_error"]) for row in index if row["of"] == "growth_rad_s"}
+    bars, of = bars_of(index, "growth_rad_s", key), "growth"
+    if not any((row["branch"], name) in bars for row in rows for name in names):
+        bars, of = bars_of(index, "freq_hz", key), "frequency, as growth is the same in all"
     none = (math.nan, math.nan)
     order = sorted(names, key=lambda name: max((abs(numpy.nan_to_num(bars.get((row["branch"], name), none)[0])) for row in rows),
                                                default=0))
     panel = Panel(Axis("", -0.6, len(order) - 0.4), 40 + 34 * len(order))
-    largest = max([abs(value) for value, _ in bars.values() if math.isfinite(value)], default=0) or 1
+    largest = max([abs(value) for (branch, _), (value, _) in bars.items() if branch in {row["branch"] for row in rows}], default=0) or 1
     for k, (row, colour) in enumerate(zip(rows, COLOURS)):
         for place, name in enumerate(order):
             value, error = bars.get((row["branch"], name), none)
@@ -88,11 +95,12 @@ def tornado(folder, rows, index, names):
             if math.isfinite(value):
                 panel.boxes(numpy.array([[min(value, 0), max(value, 0)]]), numpy.array([[low, low + 0.8 / len(rows)]]), [colour],
                             [f"{row['label']}, {name}: {figures(value, 3)} ± {figures(error, 2)}"])
+    left = -0.7 * largest if total else -1.05 * largest
     for place, name in enumerate(order):
-        panel.label(-0.95 * largest, place, name)
+        panel.label(0.5 * left if total else 0.9 * left, place, name)
     panel.rule(x=0)
-    title = "total index of Sobol of the growth" if total else "standardised slope of the growth"
-    chart = Chart(title, Axis(title, -1.05 * largest, 1.05 * largest), [panel])
+    title = f"{'total index of Sobol' if total else 'standardised slope'} of the {of}"
+    chart = Chart(title, Axis(title, left, 1.05 * largest), [panel])
     return figure(f"{folder.key}-tornado", "What matters", chart.markup(f"{folder.key}-tornado-chart", "half"),
                   "Each with its standard error where it is touched.", folder.command("plot/sample"))
 
