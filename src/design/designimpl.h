@@ -90,10 +90,10 @@ PETSC_INTERN PetscErrorCode DesignAddScenario(Design design, const PetscReal t[]
 PETSC_INTERN PetscErrorCode DesignLook(Design design, PetscBool keep, DesignPoint *point);
 /* A point with a status of its own */
 PETSC_INTERN PetscErrorCode DesignKnow(Design design, const PetscReal z[], const PetscReal t[], PetscInt status);
-/* The largest excess at z with the statuses of the design before, or one scenario's that is above the bound. `order`
-   has all scenarios, those first that were above one before. Collective */
+/* The largest excess at z with the statuses of the design before, scenarios in this order, which puts in front those
+   that end it: one with an excess above the bound, or, where `unstable` is asked for, an unstable mode. Collective */
 PETSC_INTERN PetscErrorCode DesignGlance(Design design, const PetscReal z[], PetscReal bound, PetscInt order[],
-                                         PetscReal *excess);
+                                         PetscReal *excess, PetscBool *unstable);
 /* The contact statuses of all scenarios at z become those that designs are looked at with. Collective */
 PETSC_INTERN PetscErrorCode DesignFindStatuses(Design design, const PetscReal z[], PetscBool *changed);
 PETSC_INTERN void           DesignParameters(const Design d, const PetscReal z[], const PetscReal t[], PetscReal p[]);

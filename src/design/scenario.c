@@ -255,23 +255,27 @@ PetscErrorCode DesignLook(Design d, PetscBool keep, DesignPoint *point)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DesignGlance(Design d, const PetscReal z[], PetscReal bound, PetscInt order[], PetscReal *excess)
+PetscErrorCode DesignGlance(Design d, const PetscReal z[], PetscReal bound, PetscInt order[], PetscReal *excess,
+                            PetscBool *unstable)
 {
   const PetscInt n = d->n_scenarios, step = d->box.groups.n_groups;
+  PetscBool      enough = PETSC_FALSE;
   PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
   *excess = PETSC_NINFINITY;
-  for (PetscInt first = 0; first < n && *excess <= bound; first += step) {
-    Scenario s = {.excess = PETSC_NINFINITY};
-
+  if (unstable) *unstable = PETSC_FALSE;
+  for (PetscInt first = 0; first < n && !enough; first += step) {
     for (PetscInt k = first; k < PetscMin(n, first + step); k++) {
-      s.index = order[k];
+      Scenario s = {.index = order[k]};
+
       if (PointGroupsOwner(&d->box.groups, k) == rank) PetscCall(ScenarioLook(d, z, &s));
-      PetscCallMPI(MPI_Bcast(&s.excess, 1, MPIU_REAL, PointGroupsOwner(&d->box.groups, k), d->comm));
+      PetscCallMPI(MPI_Bcast(&s, (PetscMPIInt)sizeof(s), MPI_BYTE, PointGroupsOwner(&d->box.groups, k), d->comm));
       *excess = PetscMax(*excess, s.excess);
-      if (s.excess <= bound) continue;
+      if (unstable && s.n_unstable) *unstable = PETSC_TRUE;
+      if (s.excess <= bound && !(unstable && s.n_unstable)) continue;
+      enough = PETSC_TRUE;
       PetscCall(PetscArraymove(&order[1], order, k));
       order[0] = s.index;
     }

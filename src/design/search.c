@@ -125,26 +125,50 @@ static PetscErrorCode SearchElsewhere(Design d)
   PetscFunctionReturn(0);
 }
 
+/* Whether a design may be taken; where one unstable scenario decides, those come first that were unstable before */
+static PetscErrorCode IsGood(Design d, const PetscReal z[], PetscInt order[], PetscBool *good)
+{
+  DesignPoint point = {.n_unstable = 0};
+  PetscReal   excess;
+  PetscBool   unstable;
+
+  PetscFunctionBeginUser;
+  if (d->probability > 0) {
+    PetscCall(PetscArraycpy(point.z, z, d->cube.n));
+    PetscCall(DesignLook(d, PETSC_FALSE, &point));
+    *good = IsAllowed(d, &point);
+  } else {
+    PetscCall(DesignGlance(d, z, PETSC_INFINITY, order, &excess, &unstable));
+    *good = unstable ? PETSC_FALSE : PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
 /* bad := a bad design next to the limit on the way to the best one, whose cuts are kept; older ones that the best one
    does not keep are dropped */
 static PetscErrorCode SearchEdge(Design d, PetscReal bad[])
 {
-  const PetscReal *good = d->point[d->best].z;
+  const PetscReal *best = d->point[d->best].z;
   PetscReal        good_end[CUBE_MAX_VARIABLES];
   DesignPoint      middle;
+  PetscInt        *order;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(good_end, good, d->cube.n));
+  PetscCall(PetscMalloc1(d->n_scenarios, &order));
+  for (PetscInt i = 0; i < d->n_scenarios; i++) order[i] = i;
+  PetscCall(PetscArraycpy(good_end, best, d->cube.n));
   for (int turn = 0; turn < HALF_TURNS; turn++) {
-    middle = (DesignPoint){.n_unstable = 0};
+    PetscBool good;
+
     for (PetscInt k = 0; k < d->cube.n; k++) middle.z[k] = 0.5 * (bad[k] + good_end[k]);
-    PetscCall(DesignLook(d, PETSC_FALSE, &middle));
-    PetscCall(PetscArraycpy(IsAllowed(d, &middle) ? good_end : bad, middle.z, d->cube.n));
+    PetscCall(IsGood(d, middle.z, order, &good));
+    PetscCall(PetscArraycpy(good ? good_end : bad, middle.z, d->cube.n));
   }
   DesignForget(d, good_end);
   middle = (DesignPoint){.n_unstable = 0};
   PetscCall(PetscArraycpy(middle.z, bad, d->cube.n));
   PetscCall(DesignLook(d, PETSC_TRUE, &middle));
+  PetscCall(PetscFree(order));
   PetscFunctionReturn(0);
 }
 

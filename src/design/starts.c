@@ -39,7 +39,7 @@ PetscErrorCode DesignStarts(Design d, DesignList *starts)
 
     SequencePoint(&sequence, i, z);
     for (PetscInt k = 0; k < d->cube.n; k++) z[k] = 2 * z[k] - 1;
-    PetscCall(DesignGlance(d, z, bound, order, &excess));
+    PetscCall(DesignGlance(d, z, bound, order, &excess, NULL));
     PetscCall(StartsInsert(d->cube.n, z, excess, starts));
   }
   d->n_elsewhere += d->n_starts;
