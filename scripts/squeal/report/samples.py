@@ -73,7 +73,8 @@ def scatter(folder, rows, growth, samples, name, k):
 
 def bars_of(index, of, key):
     """Value and error of branches and variables, where there are any."""
-    return {(row["branch"], row["variable"]): (row[key], row[f"{key}_error"]) for row in index if row["of"] == of and math.isfinite(row[key])}
+    chosen = [row for row in index if row["of"] == of and math.isfinite(row[key])]
+    return {(row["branch"], row["variable"]): (row[key], row[f"{key}_error"]) for row in chosen}
 
 
 def tornado(folder, rows, index, names):
