@@ -23,27 +23,42 @@ typedef struct {
   PetscReal     cone[2]; /* friction over the normal force */
 } ReducedRelaxed;
 
+/* z(dt) = E z + F g of a mode alone: columns of eta, rate, g; half of its Q, what stands twice in it doubled */
+typedef struct {
+  PetscReal E[3][2], Q[6];
+} ReducedAlone;
+
+/* Modes that damping couples, and those alone (step/coupled.c) */
+typedef struct {
+  PetscInt      n, n_alone, *mode; /* [m] the coupled ones, then the others, each ascending */
+  PetscReal    *E, *F, *Q;         /* [2 n][2 n], [n][2 n]; [3 n][3 n], NULL until works are asked for */
+  PetscReal    *Cm, *HC;           /* [3 n_pairs][n], [n][3 n_pairs]; NULL undamped */
+  ReducedAlone *own;               /* [n_alone] */
+  PetscReal    *x, *y;             /* work: [3 n] */
+} ReducedCoupled;
+
 struct _p_ReducedStepper {
   const ReducedModel *model;
   PetscReal           dt, rtol, w; /* s; -; frequency that balances the exponential, rad/s */
   PetscReal          *E, *F;       /* [2 m][2 m], [m][2 m]: z(dt) = E z + F g, by columns */
-  PetscReal          *Q;           /* [3 m][3 m] of the work of damping; NULL without, and until works are asked for */
+  ReducedCoupled      coupled;     /* these, and Q, by modes that damping couples and those that it does not */
   PetscReal          *W;           /* [3 n_pairs][3 n_pairs] compliance of the pairs in a step, m/N */
   PetscInt   rank, *chosen; /* [rank] ports on which q is sought, all where W is regular or nothing damps; the others */
   PetscReal *combined;      /* [n - rank][rank]: what a force on one of the others is on the chosen ones */
   PetscReal *HW, *HC; /* [3 n_pairs]^2, [m][3 n_pairs] H W and H Cm' of the residual (step/residual.c); NULL undamped */
-  PetscReal *R,
-    *G; /* [3 n_pairs]^2, NULL undamped; [3 n_pairs][2 m]: q_{n+1} and z(dt) of unit forces of the pairs at t_{n+1} */
+  /* [3 n_pairs]^2, NULL undamped; [3 n_pairs][2 m]: q_{n+1} and z(dt) of unit forces of the pairs at t_{n+1}; while W
+     is made, G where the model is sparse */
+  PetscReal            *R, *G;
   ContactCompliance     laws;                    /* NULL without pairs */
   struct _p_SparseLaws *sparse;                  /* what laws are solved on where W has no numbers, else NULL */
   PetscReal            *x, *next, *product;      /* work: [3 m] z and g; [3 m] z(dt); [3 m] */
   PetscReal            *mean, *free, *slip0, *r; /* work: [n_ports], [3 n_pairs], [2 n_pairs], [3 n_pairs] */
   PetscReal            *q, *dq, *slip, *port;    /* work: [3 n_pairs] q_{n+1}, its change, gaps and slips; [n_ports] */
   ReducedRelaxed       *relaxed;                 /* [n_pairs] */
-  ReducedModel          damped; /* with branches: the model with their dampers, which `model` is then */
-  PetscReal            *A;      /* [rank][rank] LU factors of H^-1, kept for forces of branches; else NULL */
-  PetscBLASInt         *pivot;  /* [rank] */
-  PetscReal            *known, *elongation; /* [m + 3 n_pairs] forces of branches that a step knows; work */
+  ReducedModel  damped; /* the model with damping as steps have it, which `model` is then: coupled.c, branches.c */
+  PetscReal    *A;      /* [rank][rank] LU factors of H^-1, kept for forces of branches; else NULL */
+  PetscBLASInt *pivot;  /* [rank] */
+  PetscReal    *known, *elongation; /* [m + 3 n_pairs] forces of branches that a step knows; work */
 };
 
 /* An eigenvalue of the mesh about the sliding state beside that of the reduced model, rad/s */
@@ -166,6 +181,9 @@ PETSC_INTERN void ReducedTimes(const DenseBlock *A, const DenseBlock *X, PetscRe
 PETSC_INTERN void ReducedTimesTransposed(const DenseBlock *A, const DenseBlock *X, PetscReal Y[]);
 /* Makes A [N][N] symmetric to the last bit */
 PETSC_INTERN void ReducedSymmetrise(PetscInt N, PetscReal A[]);
+/* y += A lambda of the pairs that carry, A [3 n_pairs][rows] */
+PETSC_INTERN void ReducedAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[],
+                                     const PetscReal lambda[], PetscReal y[]);
 /* y += X coefficients. Collective */
 PETSC_INTERN PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y);
 
@@ -318,6 +336,20 @@ PETSC_INTERN void           ReducedStepperKnowBranches(ReducedStepper stepper, c
 PETSC_INTERN PetscErrorCode ReducedStepperDragBranches(ReducedStepper stepper);
 /* Elongations at the end of the step, and the work, J, that was done on the forces that it knew */
 PETSC_INTERN PetscReal ReducedStepperAdvanceBranches(ReducedStepper stepper, ReducedState *state);
+
+/* step/coupled.c - the model with damping of the stepper's own; what is coupled in it, before E and F are made; the
+   blocks of these, HC and Cm; of Q [3 m][3 m]. Errors of none but memory. */
+PETSC_INTERN PetscErrorCode ReducedStepperOwnDamping(ReducedStepper stepper);
+PETSC_INTERN PetscErrorCode ReducedStepperFindCoupled(ReducedStepper stepper);
+PETSC_INTERN PetscErrorCode ReducedStepperSetCoupled(ReducedStepper stepper);
+PETSC_INTERN PetscErrorCode ReducedStepperSetCoupledDamping(ReducedStepper stepper, const PetscReal Q[]);
+PETSC_INTERN PetscErrorCode ReducedStepperDestroyCoupled(ReducedStepper stepper);
+/* next = E z + F g, x = (z, g); next += F g; dq -= H Cm'(change of eta) / dt; g += scale Cm dq; x'Q x, J */
+PETSC_INTERN void      ReducedStepperMove(ReducedStepper stepper, const PetscReal x[], PetscReal next[]);
+PETSC_INTERN void      ReducedStepperPush(ReducedStepper stepper, const PetscReal g[], PetscReal next[]);
+PETSC_INTERN void      ReducedStepperDelay(ReducedStepper stepper, const PetscReal change[], PetscReal dq[]);
+PETSC_INTERN void      ReducedStepperDrag(ReducedStepper stepper, PetscReal scale, const PetscReal dq[], PetscReal g[]);
+PETSC_INTERN PetscReal ReducedStepperDampingForm(ReducedStepper stepper, const PetscReal x[]);
 
 /* stepper.c - Q of the work of damping, where it is not there yet: only who asks for works needs it */
 PETSC_INTERN PetscErrorCode ReducedStepperSetDamping(ReducedStepper stepper);

@@ -37,6 +37,22 @@ void ReducedBlockTimes(const DenseBlock *A, PetscBool transposed, PetscReal scal
     BLASgemv_(transposed ? "T" : "N", &rows, &columns, &scale, A->A, &stride, x, &unit, &one, y, &unit);
 }
 
+static inline PetscBool Carries(const PetscReal l[3])
+{
+  return l[0] != 0 || l[1] != 0 || l[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Runs of pairs that carry at once, since most pairs of a rattling contact are open and have no forces. */
+void ReducedAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[], const PetscReal lambda[],
+                        PetscReal y[])
+{
+  for (PetscInt i = 0, end; i < model->n_pairs; i = end + 1) {
+    while (i < model->n_pairs && !Carries(&lambda[3 * i])) i++;
+    for (end = i; end < model->n_pairs && Carries(&lambda[3 * end]);) end++;
+    ReducedBlockTimes(&(DenseBlock){&A[3 * i * rows], rows, 3 * (end - i), rows}, PETSC_FALSE, 1, &lambda[3 * i], y);
+  }
+}
+
 PetscErrorCode ReducedAddCombination(Mat X, const PetscReal coefficients[], Vec y)
 {
   PetscInt n;

@@ -26,12 +26,11 @@ PetscErrorCode ReducedStepperSetBranches(ReducedStepper s)
 
   PetscFunctionBeginUser;
   if (!model->n_branches) PetscFunctionReturn(0);
-  s->damped = *model;
-  PetscCall(PetscCalloc3(m * m, &s->damped.C, n * m, &s->damped.Cm, n * n, &s->damped.Cx));
+  PetscCall(ReducedStepperOwnDamping(s));
+  if (!s->damped.C) PetscCall(PetscCalloc1(m * m, &s->damped.C));
+  if (!s->damped.Cm) PetscCall(PetscCalloc1(n * m, &s->damped.Cm));
+  if (!s->damped.Cx) PetscCall(PetscCalloc1(n * n, &s->damped.Cx));
   PetscCall(PetscCalloc2(m + n, &s->known, m + n, &s->elongation));
-  if (model->C) BranchAdd(m * m, 1, model->C, s->damped.C);
-  if (model->Cm) BranchAdd(n * m, 1, model->Cm, s->damped.Cm);
-  if (model->Cx) BranchAdd(n * n, 1, model->Cx, s->damped.Cx);
   for (PetscInt i = 0; i < model->n_branches; i++) {
     const ReducedBranch *b = &model->branch[i];
 
@@ -43,7 +42,6 @@ PetscErrorCode ReducedStepperSetBranches(ReducedStepper s)
       BranchAdd(n * n, damper, b->Sx, s->damped.Cx);
     }
   }
-  s->model = &s->damped;
   PetscFunctionReturn(0);
 }
 

@@ -30,19 +30,17 @@ static void StepperRespond(ReducedStepper s)
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] = 0;
   ReducedBlockTimes(&(DenseBlock){model->P, m, model->n_ports, m}, PETSC_FALSE, 1, s->mean, &s->x[2 * m]);
   for (PetscInt k = 0; k < m && s->known; k++) s->x[2 * m + k] -= s->known[k];
-  for (PetscInt i = 0; i < 2 * m; i++) s->next[i] = 0;
-  ReducedBlockTimes(&(DenseBlock){s->E, 2 * m, 2 * m, 2 * m}, PETSC_FALSE, 1, s->x, s->next);
-  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, &s->x[2 * m], s->next);
+  ReducedStepperMove(s, s->x, s->next);
 }
 
 /* Adds -Cm dq / dt to g, and what it changes to next */
 static void StepperDrag(ReducedStepper s)
 {
-  const PetscInt m = s->model->m, n = 3 * s->model->n_pairs;
+  const PetscInt m = s->model->m;
 
   for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
-  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->dq, s->product);
-  ReducedBlockTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, PETSC_FALSE, 1, s->product, s->next);
+  ReducedStepperDrag(s, -1 / s->dt, s->dq, s->product);
+  ReducedStepperPush(s, s->product, s->next);
   for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] += s->product[k];
 }
 
@@ -62,12 +60,13 @@ static PetscErrorCode StepperSolveResidual(ReducedStepper s, const ReducedState 
     s->r[i] = s->mean[i] - state->q[i]; /* work */
   }
   if (!model->Cm) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < m; k++) s->product[k] = -(s->next[k] - s->x[k]) / s->dt;
+  for (PetscInt k = 0; k < m; k++) s->product[k] = s->next[k] - s->x[k];
   if (s->sparse) {
+    for (PetscInt k = 0; k < m; k++) s->product[k] /= -s->dt;
     PetscCall(SparseLawsFree(s->sparse, s->r, s->product, s->dq));
   } else {
     ReducedBlockTimes(&(DenseBlock){s->HW, n, n, n}, PETSC_FALSE, 1, s->r, s->dq);
-    ReducedBlockTimes(&(DenseBlock){s->HC, n, m, n}, PETSC_FALSE, 1, s->product, s->dq);
+    ReducedStepperDelay(s, s->product, s->dq);
   }
   PetscCall(ReducedStepperDragBranches(s));
   for (PetscInt i = 0; i < n; i++) s->q[i] += s->dq[i];
@@ -84,43 +83,36 @@ static void StepperSetMean(ReducedStepper s, const ReducedState *state, PetscBoo
     s->mean[i] = 0.5 * (state->last[i] + (i < n && without ? 0 : state->p[i]));
 }
 
-static inline PetscBool Carries(const PetscReal l[3])
-{
-  return l[0] != 0 || l[1] != 0 || l[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
-}
-
-/* y += A lambda of the pairs that carry, A [3 n_pairs][rows]: runs of them at once, since most pairs of a rattling
-   contact are open and have no forces. */
-static void StepperAddCarrying(const ReducedModel *model, PetscInt rows, const PetscReal A[], const PetscReal lambda[],
-                               PetscReal y[])
-{
-  for (PetscInt i = 0, end; i < model->n_pairs; i = end + 1) {
-    while (i < model->n_pairs && !Carries(&lambda[3 * i])) i++;
-    for (end = i; end < model->n_pairs && Carries(&lambda[3 * end]);) end++;
-    ReducedBlockTimes(&(DenseBlock){&A[3 * i * rows], rows, 3 * (end - i), rows}, PETSC_FALSE, 1, &lambda[3 * i], y);
-  }
-}
-
-/* lambda_{n+1} joins what the step has without it, by what the stepper made of it once: z(dt) += G lambda, q_{n+1} +=
-   R lambda, and where works are asked for the forces on the modes, g += P'lambda / 2 - Cm R lambda / dt, a half since
-   the mean force of the step counts */
-static PetscErrorCode StepperAddForces(ReducedStepper s, const ReducedState *state, PetscBool works)
+/* lambda_{n+1} joins what the step has without it: g = P'lambda / 2, a half since the mean force of the step counts,
+   makes q_{n+1} change by dq = H W lambda / 2 - H Cm'(F g) / dt, which drags, g -= Cm dq / dt; z(dt) += F g. */
+static PetscErrorCode StepperAddForces(ReducedStepper s, const ReducedState *state)
 {
   const ReducedModel *model = s->model;
   const PetscInt      m = model->m, n = 3 * model->n_pairs;
+  PetscReal          *g = &s->product[2 * m], *z = s->product;
 
   PetscFunctionBeginUser;
-  StepperAddCarrying(model, 2 * m, s->G, state->p, s->next);
-  for (PetscInt i = 0; i < n; i++) s->r[i] = s->HW ? 0 : state->p[i];
-  if (s->HW) StepperAddCarrying(model, n, s->R, state->p, s->r);
-  if (s->sparse && model->Cm) PetscCall(SparseLawsDrag(s->sparse, state->p, s->r, s->next));
+  for (PetscInt k = 0; k < 3 * m; k++) s->product[k] = 0;
+  for (PetscInt i = 0; i < n; i++) s->r[i] = model->Cm ? 0 : state->p[i];
+  ReducedAddCarrying(model, m, model->P, state->p, g);
+  for (PetscInt k = 0; k < m; k++) g[k] *= 0.5;
+  if (s->HW) {
+    ReducedAddCarrying(model, n, s->HW, state->p, s->r);
+    for (PetscInt i = 0; i < n; i++) s->r[i] *= 0.5;
+    ReducedStepperPush(s, g, z);
+    ReducedStepperDelay(s, z, s->r);
+    ReducedStepperDrag(s, -1 / s->dt, s->r, g);
+  }
+  ReducedStepperPush(s, g, s->next);
+  if (s->sparse && model->Cm) {
+    PetscCall(SparseLawsDrag(s->sparse, state->p, s->r, s->next));
+    ReducedStepperDrag(s, -1 / s->dt, s->r, g);
+  }
+  for (PetscInt k = 0; k < m; k++) s->x[2 * m + k] += g[k];
   for (PetscInt i = 0; i < n; i++) {
     s->q[i] += s->r[i];
     s->dq[i] += model->Cm ? s->r[i] : 0;
   }
-  if (!works) PetscFunctionReturn(0);
-  ReducedBlockTimes(&(DenseBlock){model->P, m, n, m}, PETSC_FALSE, 0.5, state->p, &s->x[2 * m]);
-  if (model->Cm) ReducedBlockTimes(&(DenseBlock){model->Cm, m, n, m}, PETSC_FALSE, -1 / s->dt, s->r, &s->x[2 * m]);
   PetscFunctionReturn(0);
 }
 
@@ -305,12 +297,12 @@ static PetscErrorCode StepperDamping(ReducedStepper s, PetscReal *taken)
 
   PetscFunctionBeginUser;
   *taken = 0;
-  if (!s->Q) PetscFunctionReturn(0);
-  work   = ReducedForm(3 * m, 3 * m, s->Q, s->x);
+  if (!s->coupled.Q) PetscFunctionReturn(0);
+  work   = ReducedStepperDampingForm(s, s->x);
   *taken = work;
   if (!s->model->Cm) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m; k++) s->product[k] = 0;
-  ReducedBlockTimes(&(DenseBlock){s->model->Cm, m, n, m}, PETSC_FALSE, 2, s->dq, s->product);
+  ReducedStepperDrag(s, 2, s->dq, s->product);
   for (PetscInt k = 0; k < m; k++) work += (s->next[k] - s->x[k]) * s->product[k] / s->dt;
   if (s->sparse) {
     PetscCall(SparseTimes(s->model->sparse, s->dq, NULL, s->r));
@@ -362,7 +354,7 @@ PetscErrorCode ReducedStep(ReducedStepper s, const ReducedDrive *drive, ReducedS
   PetscCall(StepperSetFree(s, drive, state));
   PetscCall(StepperSolveLaws(s, state, report));
   StepperSetMean(s, state, PETSC_FALSE);
-  PetscCall(StepperAddForces(s, state, report->works));
+  PetscCall(StepperAddForces(s, state));
   if (s->HW) ReducedStepperSettle(s, state->p);
   StepperAccount(s, state, report);
   if (report->works) report->external += StepperLoadWork(s, state);

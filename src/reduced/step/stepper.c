@@ -121,29 +121,29 @@ static PetscErrorCode StepperSetShortDamping(ReducedStepper s, PetscReal h, cons
 PetscErrorCode ReducedStepperSetDamping(ReducedStepper s)
 {
   const PetscInt m = s->model->m, n = 3 * m;
-  PetscReal     *B, *X, *Y;
+  PetscReal     *B, *X, *Y, *Q;
   int            k;
 
   PetscFunctionBeginUser;
-  if (!s->model->C || s->Q) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc3(n * n, &B, n * n, &X, n * n, &Y));
-  PetscCall(PetscCalloc1(n * n, &s->Q));
+  if (!s->model->C || s->coupled.Q) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc4(n * n, &B, n * n, &X, n * n, &Y, n * n, &Q));
   StepperSetGenerator(s->model, s->dt, s->w, n, B);
   k = StepperCountHalvings(n, B);
-  PetscCall(StepperSetShortDamping(s, PetscPowReal(2, -(PetscReal)k), B, X, s->Q));
+  PetscCall(StepperSetShortDamping(s, PetscPowReal(2, -(PetscReal)k), B, X, Q));
   for (; k > 0; k--) {
     const DenseBlock x = {X, n, n, n};
 
-    ReducedTimes(&(DenseBlock){s->Q, n, n, n}, &x, B);
+    ReducedTimes(&(DenseBlock){Q, n, n, n}, &x, B);
     ReducedTimesTransposed(&x, &(DenseBlock){B, n, n, n}, Y);
-    for (PetscInt i = 0; i < n * n; i++) s->Q[i] += Y[i];
+    for (PetscInt i = 0; i < n * n; i++) Q[i] += Y[i];
     ReducedTimes(&x, &x, Y);
     PetscCall(PetscArraycpy(X, Y, n * n));
   }
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt i = 0; i < n; i++)
-      s->Q[i + n * j] /= (i >= m && i < 2 * m ? s->w : 1) * (j >= m && j < 2 * m ? s->w : 1);
-  PetscCall(PetscFree3(B, X, Y));
+      Q[i + n * j] /= (i >= m && i < 2 * m ? s->w : 1) * (j >= m && j < 2 * m ? s->w : 1);
+  PetscCall(ReducedStepperSetCoupledDamping(s, Q));
+  PetscCall(PetscFree4(B, X, Y, Q));
   PetscFunctionReturn(0);
 }
 
@@ -202,23 +202,6 @@ static PetscErrorCode StepperSetCompliance(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
-/* G -= F Cm R / dt: forces on the modes of what R drags */
-static PetscErrorCode StepperAddDrag(ReducedStepper s)
-{
-  const ReducedModel *model = s->model;
-  const PetscInt      m = model->m, n = 3 * model->n_pairs;
-  PetscReal          *drag, *FD;
-
-  PetscFunctionBeginUser;
-  if (!s->R) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(m * n, &drag, 2 * m * n, &FD));
-  ReducedTimes(&(DenseBlock){model->Cm, m, n, m}, &(DenseBlock){s->R, n, n, n}, drag);
-  ReducedTimes(&(DenseBlock){s->F, 2 * m, m, 2 * m}, &(DenseBlock){drag, m, n, m}, FD);
-  for (PetscInt i = 0; i < 2 * m * n; i++) s->G[i] -= FD[i] / s->dt;
-  PetscCall(PetscFree2(drag, FD));
-  PetscFunctionReturn(0);
-}
-
 /* The solver of the contact laws on that compliance */
 static PetscErrorCode StepperSetLaws(ReducedStepper s)
 {
@@ -268,7 +251,9 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   s->dt    = dt;
   s->rtol  = rtol;
   PetscCall(ReducedStepperSetBranches(s));
-  s->w = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
+  PetscCall(ReducedStepperFindCoupled(s));
+  model = s->model;
+  s->w  = PetscMax(1 / dt, m ? PetscSqrtReal(model->omega2[m - 1]) : 0);
   PetscCall(PetscMalloc3(4 * m * m, &s->E, 2 * m * m, &s->F, model->sparse ? 0 : n * n, &s->W));
   PetscCall(PetscCalloc5(3 * m, &s->x, 3 * m, &s->next, 3 * m, &s->product, n, &s->free, n, &s->slip0));
   PetscCall(PetscCalloc3(model->n_ports, &s->mean, n, &s->r, model->n_ports, &s->port));
@@ -278,12 +263,15 @@ PetscErrorCode ReducedStepperCreate(const ReducedModel *model, PetscReal dt, Pet
   if (model->sparse) {
     PetscCall(StepperSetForces(s));
     PetscCall(StepperSetSparseLaws(s));
+    PetscCall(ReducedStepperSetCoupled(s));
     PetscFunctionReturn(0);
   }
   PetscCall(ReducedStepperSetResidual(s));
   PetscCall(StepperSetForces(s));
   PetscCall(StepperSetCompliance(s));
-  PetscCall(StepperAddDrag(s));
+  PetscCall(PetscFree(s->R));
+  PetscCall(PetscFree(s->G));
+  PetscCall(ReducedStepperSetCoupled(s));
   PetscCall(StepperSetLaws(s));
   PetscFunctionReturn(0);
 }
@@ -297,10 +285,9 @@ PetscErrorCode ReducedStepperDestroy(ReducedStepper *stepper)
   PetscCall(ContactComplianceDestroy(&s->laws));
   PetscCall(SparseLawsDestroy(&s->sparse));
   PetscCall(PetscFree3(s->E, s->F, s->W));
-  PetscCall(PetscFree(s->Q));
   PetscCall(PetscFree2(s->HW, s->HC));
   PetscCall(PetscFree2(s->A, s->pivot));
-  PetscCall(PetscFree3(s->damped.C, s->damped.Cm, s->damped.Cx));
+  PetscCall(ReducedStepperDestroyCoupled(s));
   PetscCall(PetscFree2(s->known, s->elongation));
   PetscCall(PetscFree(s->R));
   PetscCall(PetscFree(s->G));
