@@ -30,11 +30,12 @@
      failed   where the contact laws have no solution; the next point begins with its own sliding state
 
    Regime: stable; growth; cycle; sticking, a vibration in which all closed pairs stick together in more than 1 % of the
-   time; bistable, where rounding decides whether it vibrates.
+   time; quasi_periodic, a vibration whose slip speed has two basic lines (base/statistics/lines.h) over the windows
+   that its numbers are of; bistable, where rounding decides whether it vibrates.
    Growth, where at the end the rms still grows by half from a quarter of the time to the next; or where a mode grows,
    and over the last half the rms rises from window to window by more than -map_rtol, or no pair changes its status, so
-   that the motion is linear. Growth is that of the fastest mode about the sliding state, damping of friction included;
-   of divergence, a real eigenvalue, the frequency is 0.
+   that the motion is linear: it is not where friction changes with the slip. Growth is that of the fastest mode about
+   the sliding state, damping of friction included; of divergence, a real eigenvalue, the frequency is 0.
 
    Rounding. A motion that loses contact may be chaotic: what the reduced bodies differ by on other numbers of ranks
    then changes the amplitude, and may change the regime. A twin of a point begins 1e-9 apart, the size to which the

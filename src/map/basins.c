@@ -73,7 +73,7 @@ static MapPoint BasinPlace(Map map, PetscInt job)
 {
   const PetscInt point = job / map->n_disturbances;
 
-  return (MapPoint){.line = point / map->axis[0].n, .place = point % map->axis[0].n};
+  return (MapPoint){.line = point / map->axis[0].n, .place = point % map->axis[0].n, .second = {NAN, NAN}};
 }
 
 /* Jobs first .. first + n - 1 on the bodies of their lines, bodies[0] of `line`, or on one for all, shared among the
@@ -207,7 +207,7 @@ static PetscErrorCode BasinsLines(Map map, const PetscInt lines[2], MapBodies bo
 PetscErrorCode MapBasins(Map map, Results results)
 {
   const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1, each = map->n_disturbances * map->axis[0].n;
-  PetscInt       batch, first = 0;
+  PetscInt       batch, first                                         = 0;
   PetscMPIInt    size;
   ResultsTable   table[2];
   MapBodies     *bodies;

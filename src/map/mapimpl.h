@@ -19,7 +19,16 @@
 #define MAP_MAX_DISTURBANCES 10000
 #define MAP_MAX_STEPS        1e8 /* of a transient, whose record is kept until its regime is known */
 
-typedef enum { MAP_STABLE, MAP_GROWTH, MAP_STICKING, MAP_CYCLE, MAP_BISTABLE, MAP_UNKNOWN, MAP_N_REGIMES } MapRegime;
+typedef enum {
+  MAP_STABLE,
+  MAP_GROWTH,
+  MAP_STICKING,
+  MAP_CYCLE,
+  MAP_QUASI,
+  MAP_BISTABLE,
+  MAP_UNKNOWN,
+  MAP_N_REGIMES
+} MapRegime;
 typedef enum { MAP_DECAYS, MAP_SETTLED, MAP_STEADY, MAP_TIME, MAP_FAILED, MAP_N_ENDS } MapEnd;
 /* why a transient failed */
 typedef enum { MAP_NO_STATE, MAP_NO_FORCES, MAP_NO_NUMBER, MAP_MADE, MAP_N_FAULTS } MapFault;
@@ -40,8 +49,10 @@ typedef struct {
   MapEnd    end;
   MapFault  fault;            /* of one that failed */
   PetscReal freq, freq_error; /* Hz, of the main line; NAN without */
-  PetscReal mean, rms, peak;  /* of the normal force */
-  PetscReal open, stick;      /* shares of the time */
+  PetscReal
+    second[2]; /* Hz, of a quasi-periodic motion, whose first basic line is the main one: the other, its error */
+  PetscReal mean, rms, peak; /* of the normal force */
+  PetscReal open, stick;     /* shares of the time */
   PetscReal growth, mode_freq,
     index;         /* 1/s, Hz, of the fastest mode; the largest growth over angular frequency of all */
   PetscReal whole; /* growth with the inertia of what the modes leave out, of bodies that have it */
@@ -242,7 +253,7 @@ PETSC_INTERN PetscErrorCode MapMarchTry(MapMarch march, MapPoint *row);
    and its numbers: of the windows that agree, or the last half of all. Not collective */
 PETSC_INTERN PetscErrorCode MapMarchLinearise(MapMarch march, const ContactStatus status[], MapFastest *fastest);
 PETSC_INTERN PetscErrorCode MapMarchDiesOut(MapMarch march, PetscBool *dies);
-PETSC_INTERN void           MapMarchJudge(MapMarch march, MapPoint *row);
+PETSC_INTERN PetscErrorCode MapMarchJudge(MapMarch march, MapPoint *row);
 
 /* point/twins.c - what rounding changes of a point: room for twins; where the point begins, after its sliding state;
    after its transient the twins of it, from `begin`, its row before, and what they say, into the row. Not collective */

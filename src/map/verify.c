@@ -33,7 +33,7 @@ static void VerifyPlace(Map map, PetscInt k, MapPoint *row)
   const PetscInt n = map->axis[0].n * (map->n_axes > 1 ? map->axis[1].n : 1);
   const PetscInt i = (PetscInt)(((PetscReal)k + 0.5) * (PetscReal)n / (PetscReal)map->n_verify);
 
-  *row = (MapPoint){.line = i / map->axis[0].n, .place = i % map->axis[0].n};
+  *row = (MapPoint){.line = i / map->axis[0].n, .place = i % map->axis[0].n, .second = {NAN, NAN}};
 }
 
 /* The next points, of `most` lines, and their bodies: each line is reduced once for each cut-off */

@@ -5,8 +5,8 @@
 #include "base/text.h"
 
 static const char *const regimes[MAP_N_REGIMES] = {
-  [MAP_STABLE] = "stable", [MAP_GROWTH] = "growth",     [MAP_STICKING] = "sticking",
-  [MAP_CYCLE] = "cycle",   [MAP_BISTABLE] = "bistable", [MAP_UNKNOWN] = "unknown"};
+  [MAP_STABLE] = "stable",        [MAP_GROWTH] = "growth",     [MAP_STICKING] = "sticking", [MAP_CYCLE] = "cycle",
+  [MAP_QUASI] = "quasi_periodic", [MAP_BISTABLE] = "bistable", [MAP_UNKNOWN] = "unknown"};
 static const char *const ends[MAP_N_ENDS] = {[MAP_DECAYS]  = "decays",
                                              [MAP_SETTLED] = "settled",
                                              [MAP_STEADY]  = "steady",
@@ -20,14 +20,15 @@ PetscErrorCode MapTableOpen(Results results, ResultsTable *table)
     results, "map",
     "point,parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_peak_n,"
     "force_mean_n,open_share,stick_share,growth_rad_s,growth_freq_hz,index,error_estimate,steps,time_s,status,n_"
-    "growing,runs,runs_vibrating,regimes,decided_by,force_rms_p05_n,force_rms_p50_n,force_rms_p95_n,n_unstable",
+    "growing,runs,runs_vibrating,regimes,decided_by,force_rms_p05_n,force_rms_p50_n,force_rms_p95_n,n_unstable,"
+    "freq_2_hz,freq_2_error_hz",
     table));
   PetscFunctionReturn(0);
 }
 
 static PetscBool MapVibrates(const MapPoint *row)
 {
-  return row->regime == MAP_CYCLE || row->regime == MAP_STICKING ? PETSC_TRUE : PETSC_FALSE;
+  return row->regime == MAP_CYCLE || row->regime == MAP_STICKING || row->regime == MAP_QUASI ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether a point vibrates one way and is stable the other; its row of the other way is n places behind that of
@@ -61,18 +62,19 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
   const MapAxis  *x = &map->axis[0], *y = &map->axis[1];
   MapPoint        known       = *point;
   const MapPoint *r           = &known;
-  char            second[192] = ",", list[64];
+  char            second[192] = ",", list[96];
 
   PetscFunctionBeginUser;
   PetscCall(MapListRegimes(point, sizeof(list), list));
   if (r->end == MAP_FAILED)
-    known.freq = known.freq_error = known.rms = known.peak = known.mean = known.open = known.stick = known.error = NAN;
+    known.freq = known.freq_error = known.second[0] = known.second[1] = known.rms = known.peak = known.mean =
+      known.open = known.stick = known.error = NAN;
   if (map->n_axes > 1)
     PetscCall(PetscSNPrintf(second, sizeof(second), "%s,%.15g", y->moved[0].name, (double)y->value[r->line]));
   PetscCall(ResultsTableRow(
     table,
     "%d,%s,%.15g,%s,%s,%s,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%d,%.15g,%s,%d,%d,%d,%s,%s,"
-    "%.15g,%.15g,%.15g,%d",
+    "%.15g,%.15g,%.15g,%d,%.15g,%.15g",
     (int)(r->line * x->n + r->place + 1), x->moved[0].name, (double)x->value[r->place], second,
     map->direction == MAP_APART ? "apart"
     : r->down                   ? "down"
@@ -83,7 +85,8 @@ PetscErrorCode MapTableAdd(Map map, ResultsTable table, const MapPoint *point)
     r->regime == MAP_BISTABLE   ? "rounding"
     : MapHangsOnWay(map, point) ? "direction"
                                 : "",
-    (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2], (int)r->n_unstable));
+    (double)r->quantile[0], (double)r->quantile[1], (double)r->quantile[2], (int)r->n_unstable, (double)r->second[0],
+    (double)r->second[1]));
   PetscFunctionReturn(0);
 }
 
@@ -149,9 +152,11 @@ PetscErrorCode MapErrorsAdd(Map map, ResultsTable table, const char run[], const
 PetscErrorCode MapDisturbedOpen(Results results, ResultsTable *table)
 {
   PetscFunctionBeginUser;
-  PetscCall(ResultsTableOpen(
-    results, "map_disturbed",
-    "point,value,value_2,run,energy_j,regime,freq_hz,force_rms_n,error_estimate,steps,time_s,status", table));
+  PetscCall(
+    ResultsTableOpen(results, "map_disturbed",
+                     "point,value,value_2,run,energy_j,regime,freq_hz,force_rms_n,error_estimate,steps,time_s,status,"
+                     "freq_2_hz,freq_2_error_hz",
+                     table));
   PetscFunctionReturn(0);
 }
 
@@ -162,11 +167,11 @@ PetscErrorCode MapDisturbedAdd(Map map, ResultsTable table, PetscInt run, PetscR
 
   PetscFunctionBeginUser;
   PetscCall(MapSecond(map, r, second));
-  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%d,%.15g,%s,%.15g,%.15g,%.15g,%d,%.15g,%s",
+  PetscCall(ResultsTableRow(table, "%d,%.15g,%s,%d,%.15g,%s,%.15g,%.15g,%.15g,%d,%.15g,%s,%.15g,%.15g",
                             (int)(r->line * map->axis[0].n + r->place + 1), (double)map->axis[0].value[r->place],
                             second, (int)run, (double)energy, regimes[r->regime], (double)(r->freq + none),
                             (double)(r->rms + none), (double)(r->error + none), (int)r->steps, (double)r->time,
-                            ends[r->end]));
+                            ends[r->end], (double)(r->second[0] + none), (double)(r->second[1] + none)));
   PetscFunctionReturn(0);
 }
 

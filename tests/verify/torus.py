@@ -5,6 +5,8 @@
                            rub with mu = 0.2 + 0.2 exp(-(s / 0.1)^2) + 1.3 s: by solve_ivp (DOP853, rtol 1e-11), whose velocity sums of
                            k f_1 + l f_2, |k| + |l| <= 5, are fitted to by least squares in f_1 and f_2; each line to 1e-4
     torus.py one FOLDER    all lines are multiples of the first
+    torus.py map FOLDER    the same two lines in the first row of map.csv, with stated errors below 1e-4; its second
+                           row, where friction of the first mass grows by 4 s, has one
     torus.py made          signals with known lines"""
 
 import csv
@@ -67,6 +69,19 @@ def two(folder):
         all(abs(told[f"quasi_periodic_{i + 1}"] - found[i]["freq_hz"]) < 1e-6 for i in range(2))
 
 
+def map_rows(folder):
+    with (Path(folder) / "map.csv").open(newline="") as file:
+        first, second = csv.DictReader(file)
+    found = [float(first[name]) for name in ("freq_hz", "freq_2_hz", "freq_error_hz", "freq_2_error_hz")]
+    asked, left = reference(found[:2])
+    off = [abs(f - right) for f, right in zip(found, asked)]
+    print(f"{first['regime']}: {found[0]:.7f} and {found[1]:.7f} Hz, off by {off[0]:.1e} and {off[1]:.1e}, stated {found[2]:.1e} and "
+          f"{found[3]:.1e}, {left:.1e} of the reference left; then {second['regime']}, {second['freq_2_hz']}")
+    return first["regime"] == "quasi_periodic" and all(o <= TOLERANCE * f for o, f in zip(off, asked)) and left < 1e-3 and \
+        all(0 < stated <= TOLERANCE * f for stated, f in zip(found[2:], asked)) and \
+        (second["regime"], second["freq_2_hz"]) == ("cycle", "nan")
+
+
 def one(folder):
     found = lines(folder)
     print(f"{len(found)} lines, multiples {[line['k'] for line in found]} of {found[0]['freq_hz']:.7f} Hz")
@@ -89,4 +104,4 @@ def made():
 
 
 if __name__ == "__main__":
-    sys.exit(not {"two": two, "one": one, "made": made}[sys.argv[1]](*sys.argv[2:]))
+    sys.exit(not {"two": two, "one": one, "map": map_rows, "made": made}[sys.argv[1]](*sys.argv[2:]))

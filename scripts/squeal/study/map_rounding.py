@@ -10,7 +10,7 @@ from ..tables import BadInput
 
 SCENE = ROOT / "options/small_brake_map.yaml"
 GALLERY = "gallery"
-VIBRATES = {"cycle", "sticking", "growth"}
+VIBRATES = {"cycle", "sticking", "growth", "quasi_periodic"}
 CHANCE, STABLE = "bistable", "stable"
 MOVED = 1e-3  # relative
 

@@ -12,7 +12,8 @@ RUNS = {"value": float, "value_2": optional, "energy_j": float, "regime": str}
 BASINS = {"value": float, "value_2": optional, "regime": str, "runs": int, "of": int, "probability": float,
           "probability_low": float, "probability_high": float}
 LOOKS = {"stable": ("comes to rest", BLUE, "o"), "growth": ("still grows", GREEN, "^"), "cycle": ("squeals", VERMILION, "s"),
-         "sticking": ("squeals, and sticks", "#CC79A7", "D"), "unknown": ("unknown", INK, "x")}
+         "sticking": ("squeals, and sticks", "#CC79A7", "D"),
+         "quasi_periodic": ("squeals on two lines", "#E69F00", "v"), "unknown": ("unknown", INK, "x")}
 
 
 def draw_probabilities(axes, rows):

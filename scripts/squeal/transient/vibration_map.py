@@ -22,7 +22,7 @@ ERRORS = {"value": float, "value_2": optional, "run": str, "regime": str, "freq_
           "force_rms_error": optional}
 UNITS = {"young": "Pa", "pressure": "Pa", "force": "N", "speed": "m/s", "density": "kg/m^3", "stiffness": "N/m",
          "mu": "-", "alpha": "1/s", "beta": "s", "mu_slope": "s/m"}
-VIBRATES = "cycle", "sticking", "growth", "bistable"
+VIBRATES = "cycle", "sticking", "growth", "quasi_periodic", "bistable"
 STABLE, UNKNOWN = "#F1F1F1", "white"
 FEW = 6  # values of a parameter that are ticks of their own
 TOLD = "\u00b1: what another step, laws, cut-off change"

@@ -113,7 +113,7 @@ void MapChainPlace(Map map, PetscInt chain, PetscInt k, MapPoint *row)
   const PetscInt way = chain % map->n_ways, down = map->direction == MAP_BOTH ? way : map->direction == MAP_DOWN;
   const PetscInt place = map->direction == MAP_APART ? way : down ? map->n_linked - 1 - k : k;
 
-  *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down};
+  *row = (MapPoint){.line = chain / map->n_ways, .place = place, .down = down, .second = {NAN, NAN}};
 }
 
 /* Two neighbours of a chain where the transients of the first are each another one, and some of all die out and some

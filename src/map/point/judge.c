@@ -3,6 +3,7 @@
    numbers.
 */
 #include "map/mapimpl.h"
+#include "base/statistics/lines.h"
 
 #define MARCH_TINY  1e-9 /* of the mean force: a vibration that is rounding */
 #define MARCH_SMALL 0.01 /* of the mean force: a vibration that is small */
@@ -34,6 +35,14 @@ static PetscBool MarchIsKnown(const MapMarch w)
   return PETSC_TRUE;
 }
 
+/* Whether friction of some pair changes with its slip, so that a motion is not linear though no status changes */
+static PetscBool MarchIsCurved(const MapMarch w)
+{
+  for (PetscInt i = 0; i < w->bodies->model.n_pairs; i++)
+    if (FrictionVaries(&w->bodies->model.friction[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* n windows in turn in which the rms falls, in a linear or small motion about pairs whose eigenvalues all decay; a
    vibration that is rounding need not fall. */
 PetscErrorCode MapMarchDiesOut(MapMarch w, PetscBool *dies)
@@ -55,21 +64,23 @@ PetscErrorCode MapMarchDiesOut(MapMarch w, PetscBool *dies)
 
 /* What a transient that did not settle is. It grows where the rms of the last quarter of the windows is that much
    beyond the one before, or, where a mode grows, where it rises in each window of the last half, or where no pair
-   changed its status there, so that the motion is linear */
+   changed its status there, so that the motion is linear; friction that changes with the slip makes a motion curved,
+   which is stable where its rms falls */
 static MapRegime MarchTrend(const MapMarch w)
 {
-  const PetscInt   n      = w->n_windows;
-  const MapSample *s      = w->sample;
-  PetscBool        linear = MarchIsKnown(w), rises = PETSC_TRUE;
+  const PetscInt   n    = w->n_windows;
+  const MapSample *s    = w->sample;
+  PetscBool        calm = MarchIsKnown(w), rises = PETSC_TRUE, linear;
   PetscReal        error;
   const PetscReal  ratio =
     MapForceLevel(n / 4, &s[n - n / 4], &error) / MapForceLevel(n / 4, &s[n - 2 * (n / 4)], &error);
 
   for (PetscInt k = n - n / 2; k < n; k++) {
-    if (s[k].changed) linear = PETSC_FALSE;
+    if (s[k].changed) calm = PETSC_FALSE;
     if (s[k].rms <= (1 + w->map->rtol) * s[k - 1].rms) rises = PETSC_FALSE;
   }
-  if (linear && w->growth < 0) return MAP_STABLE;
+  linear = calm && !MarchIsCurved(w) ? PETSC_TRUE : PETSC_FALSE;
+  if (w->growth < 0 && (linear || (calm && ratio < 1 - w->map->rtol))) return MAP_STABLE;
   if (ratio >= MARCH_TREND || (w->growth > 0 && (linear || rises))) return MAP_GROWTH;
   if (ratio <= 1 / MARCH_TREND && w->growth < 0) return MAP_STABLE;
   return MAP_CYCLE;
@@ -90,17 +101,41 @@ static void MarchAverage(MapMarch w, PetscInt first, MapPoint *row)
   }
 }
 
-/* Numbers over the last window where it decays, the windows that agree where it settled, else the last half.
-   freq_error is the difference of the lines of two halves of these. */
-void MapMarchJudge(MapMarch w, MapPoint *row)
+/* The main line; freq_error is the difference of the lines of two halves. Of a vibration with two basic frequencies
+   both, over all windows as one record */
+static PetscErrorCode MarchFindLines(MapMarch w, MapPoint *row)
 {
-  const PetscInt  n = w->n, last = w->n_windows;
-  const PetscInt  first = row->end == MAP_DECAYS    ? last - 1
-                          : row->end == MAP_SETTLED ? last - MAP_SETTLED_WINDOWS
-                                                    : last / 2;
-  const PetscInt  half  = (last - first) / 2;
-  const PetscReal dt = w->dt, change = row->error;
+  const PetscInt   n = w->n, windows = w->n_windows - w->first, half = windows / 2;
+  const PetscReal *slip = &w->slip[n * w->first];
+  PetscBool        two  = PETSC_FALSE;
+  Line             line[2];
 
+  PetscFunctionBeginUser;
+  if (row->regime == MAP_STABLE) PetscFunctionReturn(0);
+  row->freq = MapForceLine(windows, n, slip, w->dt);
+  if (half)
+    row->freq_error =
+      PetscAbsReal(MapForceLine(half, n, slip, w->dt) - MapForceLine(half, n, &slip[n * (windows - half)], w->dt));
+  if (row->regime != MAP_GROWTH) PetscCall(LinesFindTwo(n * windows, slip, w->dt, line, &two));
+  if (!two) PetscFunctionReturn(0);
+  row->regime     = MAP_QUASI;
+  row->freq       = line[0].freq;
+  row->freq_error = line[0].error;
+  row->second[0]  = line[1].freq;
+  row->second[1]  = line[1].error;
+  PetscFunctionReturn(0);
+}
+
+/* Numbers over the last window where it decays, the windows that agree where it settled, else the last half. */
+PetscErrorCode MapMarchJudge(MapMarch w, MapPoint *row)
+{
+  const PetscInt  last   = w->n_windows;
+  const PetscInt  first  = row->end == MAP_DECAYS    ? last - 1
+                           : row->end == MAP_SETTLED ? last - MAP_SETTLED_WINDOWS
+                                                     : last / 2;
+  const PetscReal change = row->error;
+
+  PetscFunctionBeginUser;
   w->first = first;
   MarchAverage(w, first, row);
   row->rms    = MapForceLevel(last - first, &w->sample[first], &row->error);
@@ -110,9 +145,6 @@ void MapMarchJudge(MapMarch w, MapPoint *row)
   if (row->end == MAP_SETTLED) row->error = change;
   if (row->regime == MAP_CYCLE && row->stick > MAP_STICKING_SHARE) row->regime = MAP_STICKING;
   row->freq = row->freq_error = NAN;
-  if (row->regime == MAP_STABLE) return;
-  row->freq = MapForceLine(last - first, n, &w->slip[n * first], dt);
-  if (half)
-    row->freq_error = PetscAbsReal(MapForceLine(half, n, &w->slip[n * first], dt) -
-                                   MapForceLine(half, n, &w->slip[n * (last - half)], dt));
+  PetscCall(MarchFindLines(w, row));
+  PetscFunctionReturn(0);
 }

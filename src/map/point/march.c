@@ -75,7 +75,7 @@ static PetscErrorCode MarchRun(MapMarch w, MapPoint *row)
                                                                                   : MAP_TIME;
     if (row->end != MAP_TIME) break;
   }
-  MapMarchJudge(w, row);
+  PetscCall(MapMarchJudge(w, row));
   PetscFunctionReturn(0);
 }
 

@@ -139,8 +139,7 @@ static PetscErrorCode TwinRun(MapMarch w, PetscInt k, const MapPoint *begin, Map
 
 static PetscBool TwinVibrates(const MapPoint *run)
 {
-  return run->regime == MAP_CYCLE || run->regime == MAP_STICKING || run->regime == MAP_GROWTH ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+  return run->regime != MAP_STABLE && run->regime != MAP_UNKNOWN ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Whether run k is another one than the point's own */
@@ -187,7 +186,21 @@ static void TwinsEnlarge(MapMarch w, MapPoint *row)
 
     if (PetscAbsReal(run->rms - row->rms) > row->error * row->rms) row->error = PetscAbsReal(run->rms / row->rms - 1);
     if (PetscAbsReal(run->freq - row->freq) > row->freq_error) row->freq_error = PetscAbsReal(run->freq - row->freq);
+    row->second[1] = PetscMax(row->second[1], PetscAbsReal(run->second[0] - row->second[0]));
   }
+}
+
+/* A motion with two basic frequencies that not all runs have is a vibration like others; where all have it, the errors
+   are those of all */
+static void TwinsLookAtLines(const MapMarch w, MapPoint *row)
+{
+  if (row->regime != MAP_QUASI) return;
+  for (PetscInt k = 0; k < w->n_runs; k++)
+    if (w->run[k].regime != MAP_QUASI) row->regime = MAP_CYCLE;
+  for (PetscInt k = 0; k < w->n_runs; k++)
+    row->second[1] =
+      PetscMax(row->second[1], PetscMax(w->run[k].second[1], PetscAbsReal(w->run[k].second[0] - row->second[0])));
+  if (row->regime != MAP_QUASI) row->second[0] = row->second[1] = NAN;
 }
 
 /* Leaves the runs that vibrate */
@@ -259,6 +272,7 @@ static PetscErrorCode TwinsAverage(MapMarch w, MapPoint *row)
   row->rms   = PetscSqrtReal(row->rms);
   row->error = MapSpreadOfLevel(w->n_runs, w->n_levels, w->n_most, w->level);
   PetscCall(TwinsTakeLine(w, row));
+  TwinsLookAtLines(w, row);
   TwinsLookAtSticking(w, row);
   PetscFunctionReturn(0);
 }
