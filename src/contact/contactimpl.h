@@ -70,6 +70,8 @@ PETSC_INTERN void ContactPairTakeFoot(const ContactInterface *c, const ContactSu
 /* mortar/split.c - a pair for each side of the slave nodes at folds, from the first on; normals of the master at its
    folds. Collective. */
 PETSC_INTERN PetscErrorCode ContactMortarSplit(Contact contact, PetscInt interface, PetscInt first);
+/* mortar/split.c - nodes of the slave at folds that lie on the master with two sides or more. Collective. */
+PETSC_INTERN PetscErrorCode ContactFoldCount(Contact contact, PetscInt interface, PetscInt *n);
 /* mortar/mortar.c - sides, areas over the master (0 for none) and gaps of the pairs from the first on, which are those
    of all slave nodes of the interface and have their feet. Collective. */
 PETSC_INTERN PetscErrorCode ContactMortarPairs(Contact contact, PetscInt interface, PetscInt first);

@@ -260,3 +260,54 @@ PetscErrorCode ContactMortarSplit(Contact contact, PetscInt interface, PetscInt 
   PetscCall(ContactSurfaceDestroy(&slave));
   PetscFunctionReturn(0);
 }
+
+/* Whether a side of a slave node, which looks along a vector, lies on a master that looks towards it */
+static PetscErrorCode SideTouches(const ContactSurface *master, const PetscReal x[3], const PetscReal look[3],
+                                  PetscReal tolerance, ContactFacetList *near, PetscBool *touches)
+{
+  ContactFoot foot;
+
+  PetscFunctionBeginUser;
+  *touches = PETSC_FALSE;
+  PetscCall(MortarFootFind(master, x, look, near, &foot));
+  if (foot.facet < 0 || foot.across > FOLD_AT * master->facet[foot.facet].size) PetscFunctionReturn(0);
+  if (foot.distance > tolerance) PetscFunctionReturn(0);
+  if (FootLooks(&master->facet[foot.facet], foot.natural, look) > MORTAR_FOLD) *touches = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactFoldCount(Contact contact, PetscInt interface, PetscInt *n)
+{
+  const ContactInterface *c     = &contact->interfaces[interface];
+  ContactSurface          slave = {0};
+  const ContactSurface   *master;
+  ContactFacetList        near = {0};
+  PetscInt               *sides;
+  PetscReal(*look)[3];
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(ContactGetSurface(contact, interface, &master));
+  PetscCall(ContactSurfaceCreate(contact, c->slave, &slave));
+  PetscCall(MortarSplitSlave(&slave));
+  PetscCall(PetscCalloc1(slave.n_sorted, &sides));
+  PetscCall(PetscMalloc1(slave.n_nodes, &look));
+  MortarPlacesLook(&slave, look);
+  for (PetscInt f = 0; f < slave.n_facets && slave.n_nodes > slave.n_sorted; f++)
+    for (int j = 0; j < slave.facet[f].n; j++) {
+      const PetscInt place = slave.facet[f].node[j];
+      PetscBool      touches;
+      PetscInt       at;
+
+      if (Vec3Length(look[place]) == 0) continue;
+      PetscCall(PetscFindInt(slave.vertex[place], slave.n_sorted, slave.vertex, &at));
+      PetscCall(SideTouches(master, slave.facet[f].x[j], look[place], c->tolerance, &near, &touches));
+      for (int d = 0; d < 3; d++) look[place][d] = 0; /* each once */
+      if (touches && ++sides[at] == 2) (*n)++;
+    }
+  PetscCall(PetscFree(sides));
+  PetscCall(PetscFree(look));
+  PetscCall(PetscFree(near.facet));
+  PetscCall(ContactSurfaceDestroy(&slave));
+  PetscFunctionReturn(0);
+}

@@ -31,6 +31,23 @@ static PetscReal PairLean(const ContactFacet *facet, const ContactPair *pair, co
   return Vec3Dot(mean, pair->n);
 }
 
+/* Of pairs of nodes and points: warns of slave nodes at folds that press on the master with two sides, by one pair */
+static PetscErrorCode SlaveFoldWarn(Contact contact, PetscInt interface)
+{
+  const ContactInterface *c = &contact->interfaces[interface];
+  PetscInt                n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactFoldCount(contact, interface, &n));
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscFPrintf(contact->comm, stderr,
+                         "squeal: warning: contact %s: %" PetscInt_FMT " of the nodes of %s lie at its folds and touch "
+                         "%s on two sides, with one pair each, so that pressures beside them are off; give "
+                         "-%s_discretization mortar\n",
+                         c->name, n, c->slave, c->master, c->name));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactFoldWarn(Contact contact, PetscInt interface)
 {
   const ContactInterface *c = &contact->interfaces[interface];
@@ -38,6 +55,7 @@ PetscErrorCode ContactFoldWarn(Contact contact, PetscInt interface)
   PetscInt                n[2] = {0, 0}; /* that lean, of all */
 
   PetscFunctionBeginUser;
+  if (!contact->mortar[interface]) PetscCall(SlaveFoldWarn(contact, interface));
   PetscCall(ContactGetSurface(contact, interface, &surface));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair     *pair = &contact->pairs[p];
