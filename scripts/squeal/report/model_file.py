@@ -13,6 +13,20 @@ LARGEST = 1e100  # number of a matrix
 LIMITS = "low", "high", "limit_ratio", "limit_growth", "error"
 
 
+def number(value, kind=(int, float)):
+    """A number that JSON had; ValueError for anything else."""
+    if isinstance(value, bool) or not isinstance(value, kind):
+        raise ValueError
+    return value
+
+
+def whole(value):
+    """The same of a number of things."""
+    if number(value, int) < 0:
+        raise ValueError
+    return value
+
+
 class Numbers:
     """Numbers behind the first line, taken one array after the other."""
 
@@ -30,9 +44,10 @@ class Contact:
     """Statuses, and points [m][parameters] whose own is known."""
 
     def __init__(self, said, ranges, numbers):
-        self.pairs, self.always, self.groups = said["pairs"], said["always"], numpy.array(said["groups"], int)
+        self.pairs, self.always = whole(said["pairs"]), whole(said["always"])
+        self.groups = numpy.array([whole(n) for n in said["groups"]], int)
         self.closed = numpy.array([[int(letter) for letter in text] for text in said["statuses"]], int).reshape(-1, len(self.groups))
-        self.points = numbers.take(said["points"], len(ranges))
+        self.points = numbers.take(whole(said["points"]), len(ranges))
         self.status = numbers.take(said["points"]).astype(int)
         self.low, self.wide = numpy.array(ranges)[:, 0], numpy.array([high - low for low, _, high in ranges])
         self.places = (self.points - self.low) / self.wide
@@ -64,8 +79,8 @@ class Term:
     """One term: a matrix, or rows of pairs that are closed or open."""
 
     def __init__(self, said, n, numbers, earlier):
-        self.kind, self.scale, self.factors = said["kind"], float(said["scale"]), said["factors"]
-        self.closed = numpy.array(said["closed"], int) if "closed" in said else None
+        self.kind, self.scale, self.factors = said["kind"], said["scale"], said["factors"]
+        self.closed = numpy.array([whole(g) for g in said["closed"]], int) if "closed" in said else None
         if self.closed is None:
             self.matrix = self.triangle(n, numbers) if said.get("symmetric") else numbers.take(n, n).T
             self.arrays = [self.matrix]
@@ -78,8 +93,9 @@ class Term:
     @staticmethod
     def triangle(n, numbers):
         """A symmetric matrix of its lower triangle by columns."""
+        values = numbers.take(n * (n + 1) // 2)
         matrix, (j, i) = numpy.zeros((n, n)), numpy.triu_indices(n)
-        matrix[i, j] = matrix[j, i] = numbers.take(n * (n + 1) // 2)
+        matrix[i, j] = matrix[j, i] = values
         return matrix
 
     def at(self, p, closed):
@@ -104,7 +120,8 @@ class ReducedModel:
             for said in self.head["terms"]:
                 self.terms.append(Term(said, self.head["n"], numbers, self.terms))
             self.contact = Contact(self.head["contact"], ranges, numbers) if "contact" in self.head else None
-            if len(numbers.left):
+            groups = len(self.contact.groups) if self.contact else 0
+            if len(numbers.left) or any((term.closed >= groups).any() for term in self.terms if term.closed is not None):
                 raise ValueError
         except (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError):
             raise BadInput(f"{path}: is no reduced model, or is not whole") from None
@@ -123,11 +140,12 @@ class ReducedModel:
 
 def check_head(head):
     """Least value, own value, largest value of each parameter. ValueError, KeyError or TypeError where what is read of it cannot be."""
-    ranges = [[float(entry[key]) for key in ("lower", "value", "upper")] for entry in head["parameters"]]
-    powers = [float(power) for term in head["terms"] for i, power, absolute in term["factors"] if ranges[i] and absolute in (0, 1)]
-    numbers = [*powers, *(float(term["scale"]) for term in head["terms"]), *(x for values in ranges for x in values),
-               *(float(head[key]) for key in LIMITS)]
+    ranges = [[number(entry[key]) for key in ("lower", "value", "upper")] for entry in head["parameters"]]
+    factors = [factor for term in head["terms"] for factor in term["factors"]]
+    numbers = [*(number(power) for _, power, _ in factors), *(number(term["scale"]) for term in head["terms"]),
+               *(x for values in ranges for x in values), *(number(head[key]) for key in LIMITS)]
     named = all(entry["name"] + entry["unit"] for entry in head["parameters"]) and {term["kind"] for term in head["terms"]} <= set("KCM")
-    if not (named and 0 < head["n_used"] <= head["n"] and numpy.isfinite(numbers).all() and all(low < high for low, _, high in ranges)):
+    if not (named and all(whole(i) < len(ranges) and absolute in (0, 1) for i, _, absolute in factors) and
+            0 < whole(head["n_used"]) <= whole(head["n"]) and numpy.isfinite(numbers).all() and all(low < high for low, _, high in ranges)):
         raise ValueError
     return ranges
