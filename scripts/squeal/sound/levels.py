@@ -69,12 +69,23 @@ def main_line(pressure, step):
     return frequency, decibel((peak * weighting(frequency))**2 / 2)
 
 
+def frames(count, step, frame):
+    """Where frames of some length, s, begin and end; the last one has the rest."""
+    n = max(16, min(int(round(frame / step)), count))
+    return [(begin, begin + n if begin + 2 * n <= count else count) for begin in range(0, count - n + 1, n)]
+
+
+def course(pressure, step, frame):
+    """Loudness over time: (begin, end, s; dB; dB(A); main line, Hz) of frames."""
+    return [(begin * step, end * step, level(pressure[begin:end], step, False), level(pressure[begin:end], step),
+             main_line(pressure[begin:end], step)[0]) for begin, end in frames(len(pressure), step, frame)]
+
+
 def events(pressure, step, threshold, frame):
     """Noises as dynamometers count them: (begin, end, s; frequency, Hz; level, dB(A)) of runs of frames whose main line exceeds the
     threshold, with frequencies within 5 % of each other."""
-    n, found = max(16, min(int(round(frame / step)), len(pressure))), []
-    for begin in range(0, len(pressure) - n + 1, n):
-        end = begin + n if begin + 2 * n <= len(pressure) else len(pressure)  # the last one has the rest
+    found = []
+    for begin, end in frames(len(pressure), step, frame):
         frequency, size = main_line(pressure[begin:end], step)
         if size < threshold:
             continue

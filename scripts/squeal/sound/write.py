@@ -5,13 +5,14 @@ import wave
 import matplotlib.pyplot as plt
 import numpy
 from squeal.picture import BLUE, VERMILION, save_picture
-from squeal.tables import whole
+from squeal.tables import header, read_table, whole
 
 from .levels import level, main_line, shares, third_octaves, weighting, decibel
 
 RATE = 48000  # Hz, of the file
 DYNAMIC = 60  # dB that the spectrogram shows
 FRAME = 4e-3  # s of it: lines 250 Hz apart
+STICKING = 0.01  # of the rows
 
 
 def summary(name, pressure, step):
@@ -36,8 +37,24 @@ def write_wave(path, pressure, step):
     return full
 
 
-def draw(path, name, time, pressure, late):
-    """Third octaves and spectrum of the window, spectrogram of all."""
+def regimes(folder, ends):
+    """What the pairs of a transient do from frame to frame: rest (all that are closed stick), sticking (all do in more than 1 % of the
+    rows), sliding, open (none is closed in any row); "" where transient.csv does not tell."""
+    path = folder / "transient.csv"
+    if not path.exists() or not {"n_closed", "n_stick"} <= set(header(path)):
+        return [""] * len(ends)
+    rows, found = read_table(path, {"time_s": float, "n_closed": int, "n_stick": int}), []
+    for begin, end in ends:
+        own = [row for row in rows if begin <= row["time_s"] < end]
+        closed = [row for row in own if row["n_closed"]]
+        stick = sum(row["n_stick"] == row["n_closed"] for row in closed)
+        found.append("" if not own else "open" if not closed else "rest" if stick == len(own) else
+                     "sticking" if stick > STICKING * len(own) else "sliding")
+    return found
+
+
+def draw(path, name, time, pressure, late, levels):
+    """Third octaves and spectrum of the window, spectrogram of all with the level of each frame, (begin, end, dB, dB(A), ...)."""
     step = time[1] - time[0]
     figure, (bands, lines, image) = plt.subplots(3, 1, figsize=(9, 10), layout="constrained")
     rows = third_octaves(pressure[late], step)
@@ -62,5 +79,8 @@ def draw(path, name, time, pressure, late):
     image.set_ylim(0, 20000)
     image.set_xlabel("time, s")
     image.set_ylabel("frequency, Hz")
-    figure.colorbar(drawn, ax=image, label="dB to 1 Pa^2/Hz")
+    figure.colorbar(drawn, ax=image, label="dB to 1 Pa^2/Hz", pad=0.1)
+    loud = image.twinx()
+    loud.stairs([max(row[3], -DYNAMIC) for row in levels], [levels[0][0], *(row[1] for row in levels)], baseline=None, color="white")
+    loud.set_ylabel("level of frames (white), dB(A)")
     save_picture(figure, path, 120)
