@@ -151,12 +151,13 @@ PETSC_INTERN PetscErrorCode ComplianceDualDestroy(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceKrylovSolve(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceKrylovHold(ContactCompliance c, const PetscBool held[]);
 
-/* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the column
-   that an index adds, NULL where the store is full; the border for the present statuses; A dz against what its rows
-   miss, dz [4 n] */
+/* chord/base.c - the base becomes chord.index [m] with chord.frame; those of the present l, v; A0^-1 times the columns
+   that indices [n] add, not good where the store has no room; the border for the present statuses; A dz against what
+   its rows miss, dz [4 n] */
 PETSC_INTERN PetscErrorCode ComplianceChordSetBase(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordRenew(ContactCompliance c);
-PETSC_INTERN PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v);
+PETSC_INTERN PetscErrorCode ComplianceChordColumns(ContactCompliance c, PetscInt n, const PetscInt index[],
+                                                   PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good);
 PETSC_INTERN PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[]);
 
@@ -180,10 +181,11 @@ PETSC_INTERN PetscErrorCode ComplianceDestroySprings(ContactCompliance c);
 /* chord.c - Newton's method with factors of the steps before */
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
 
-/* lu.c - LU factors of A [n][n] in its place: smallest pivot over the largest; x := A^-1 x; y += the columns of W times
-   x, both [n], columns of N */
+/* lu.c - LU factors of A [n][n] in its place: smallest pivot over the largest; x := A^-1 x; the same of columns [n],
+   bitwise alike; y += the columns of W times x, both [n], columns of N */
 PETSC_INTERN PetscReal ComplianceLUFactor(PetscInt n, PetscReal A[]);
 PETSC_INTERN void      ComplianceLUSolve(PetscInt n, const PetscReal LU[], PetscReal x[]);
+PETSC_INTERN void      ComplianceLUSolveColumns(PetscInt n, const PetscReal LU[], PetscInt columns, PetscReal X[]);
 PETSC_INTERN void      ComplianceAddColumns(PetscInt N, const PetscReal W[], PetscInt n, const PetscInt column[],
                                             const PetscReal x[], PetscReal y[]);
 

@@ -73,6 +73,7 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
 {
   ComplianceChord *h = &c->chord;
   PetscInt         n_columns;
+  PetscBool        room;
 
   PetscFunctionBeginUser;
   if (ComplianceIsMap(c)) {
@@ -101,10 +102,7 @@ PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const
   PetscCall(PetscArraycpy((PetscReal *)h->frame, values, 4 * c->n));
   values += 4 * c->n;
   PetscCall(ComplianceChordSetBase(c));
-  for (PetscInt k = 0; k < n_columns && h->exists; k++) {
-    const PetscReal *v;
-
-    PetscCall(ComplianceChordColumn(c, (PetscInt)values[k], &v));
-  }
+  for (PetscInt k = 0; k < n_columns; k++) h->next[k] = (PetscInt)values[k];
+  if (h->exists) PetscCall(ComplianceChordColumns(c, n_columns, h->next, &room));
   PetscFunctionReturn(0);
 }

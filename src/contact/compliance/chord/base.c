@@ -200,25 +200,28 @@ PetscErrorCode ComplianceChordRenew(ContactCompliance c)
   PetscFunctionReturn(0);
 }
 
-/* A0^-1 times the column that index j adds: its column of A, or its unit vector where it is in the base; from the
-   store, or NULL where that is full */
-PetscErrorCode ComplianceChordColumn(ContactCompliance c, PetscInt j, const PetscReal **v)
+/* A0^-1 times the columns that indices [n] add: their columns of A, or unit vectors of those in the base. Those that
+   are not in the store join it together, for which the factors are read once; *good = there is room for them */
+PetscErrorCode ComplianceChordColumns(ContactCompliance c, PetscInt n, const PetscInt index[], PetscBool *good)
 {
-  ComplianceChord *h = &c->chord;
+  ComplianceChord *h     = &c->chord;
+  const PetscInt   first = h->n_columns;
+  PetscInt         more  = 0;
 
   PetscFunctionBeginUser;
-  *v = NULL;
-  if (h->column[j] < 0) {
-    PetscReal *x = &h->V[h->n_columns * h->m];
+  for (PetscInt k = 0; k < n; k++) more += h->column[index[k]] < 0;
+  *good = first + more <= h->most ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt k = 0; k < n && *good; k++) {
+    const PetscInt j = index[k];
+    PetscReal     *x = &h->V[h->n_columns * h->m];
 
-    if (h->n_columns == h->most) PetscFunctionReturn(0);
+    if (h->column[j] >= 0) continue;
     h->column[j] = h->n_columns++;
     ChordImage(c, j, c->force);
     for (PetscInt i = 0; i < h->m; i++) x[i] = h->place[j] < 0 ? ChordEntry(c, h->index[i], j, c->force) : 0;
     if (h->place[j] >= 0) x[h->place[j]] = 1;
-    ComplianceLUSolve(h->m, h->LU, x);
   }
-  *v = &h->V[h->column[j] * h->m];
+  ComplianceLUSolveColumns(h->m, h->LU, h->n_columns - first, &h->V[first * h->m]);
   PetscFunctionReturn(0);
 }
 
@@ -268,26 +271,21 @@ static PetscBool ChordCompare(ContactCompliance c, PetscInt n_want, const PetscI
   return PETSC_TRUE;
 }
 
-/* Column b of the Schur complement, false where there is no room for it */
-static PetscErrorCode ChordBorderColumn(ContactCompliance c, PetscInt n, PetscInt b, PetscBool *good)
+/* Column b of the Schur complement */
+static void ChordBorderColumn(ContactCompliance c, PetscInt n, PetscInt b)
 {
   ComplianceChord *h = &c->chord;
-  const PetscInt   j = h->border[b] = h->next[b];
-  const PetscReal *v;
+  const PetscInt   j = h->border[b];
+  const PetscReal *v = &h->V[h->column[j] * h->m];
 
-  PetscFunctionBeginUser;
-  PetscCall(ComplianceChordColumn(c, j, &v));
-  if (!v) *good = PETSC_FALSE;
-  if (!v) PetscFunctionReturn(0);
   ChordImage(c, j, c->force);
   for (PetscInt a = 0; a < n; a++) {
-    const PetscInt i = h->next[a];
+    const PetscInt i = h->border[a];
 
     h->S[b * n + a] = h->place[i] < 0 && h->place[j] < 0 ? ChordEntry(c, i, j, c->force) : 0;
   }
   ChordForce(c, v, c->force);
-  for (PetscInt a = 0; a < n; a++) h->S[b * n + a] -= ChordRowTimes(c, h->next[a], v, c->force);
-  PetscFunctionReturn(0);
+  for (PetscInt a = 0; a < n; a++) h->S[b * n + a] -= ChordRowTimes(c, h->border[a], v, c->force);
 }
 
 /* The border for the present statuses; *good = the factors serve */
@@ -304,7 +302,9 @@ PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good)
   if (same) PetscCall(PetscArraycmp(h->next, h->border, n, &same));
   if (same) PetscFunctionReturn(0);
   h->n_border = n;
-  for (PetscInt b = 0; b < n && *good; b++) PetscCall(ChordBorderColumn(c, n, b, good));
+  PetscCall(PetscArraycpy(h->border, h->next, n));
+  PetscCall(ComplianceChordColumns(c, n, h->border, good));
+  for (PetscInt b = 0; b < n && *good; b++) ChordBorderColumn(c, n, b);
   if (*good) PetscCall(ChordFactorBorder(n, h->S, h->small, good));
   if (!*good) h->n_border = -1;
   PetscFunctionReturn(0);
