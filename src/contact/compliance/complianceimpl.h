@@ -182,12 +182,13 @@ PETSC_INTERN PetscErrorCode ComplianceDestroySprings(ContactCompliance c);
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
 
 /* lu.c - LU factors of A [n][n] in its place: smallest pivot over the largest; x := A^-1 x; the same of columns [n],
-   bitwise alike; y += the columns of W times x, both [n], columns of N */
+   bitwise alike; y += the columns of W times x, both [n], columns of N; y += W x */
 PETSC_INTERN PetscReal ComplianceLUFactor(PetscInt n, PetscReal A[]);
 PETSC_INTERN void      ComplianceLUSolve(PetscInt n, const PetscReal LU[], PetscReal x[]);
 PETSC_INTERN void      ComplianceLUSolveColumns(PetscInt n, const PetscReal LU[], PetscInt columns, PetscReal X[]);
 PETSC_INTERN void      ComplianceAddColumns(PetscInt N, const PetscReal W[], PetscInt n, const PetscInt column[],
                                             const PetscReal x[], PetscReal y[]);
+PETSC_INTERN void      ComplianceAddSymmetric(PetscInt N, const PetscReal W[], const PetscReal x[], PetscReal y[]);
 
 /* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
 PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);
