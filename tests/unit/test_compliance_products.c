@@ -45,7 +45,7 @@ static PetscErrorCode TestSize(PetscInt n, int *failed)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc5(n * n, &A, n * n, &LU, n, &x, n, &y, columns * n, &X));
   MatrixFill(n, A);
-  for (PetscInt i = 0; i < n; i++) x[i] = Number(7 * i);
+  for (PetscInt i = 0; i < n; i++) x[i] = Number(7 * i + 1);
   PetscCall(PetscArrayzero(y, n));
   ComplianceAddSymmetric(n, A, x, y);
   *failed += CheckClose("symmetric product", MatrixMiss(n, A, x, y), 0, 1e-14 * (double)n);
