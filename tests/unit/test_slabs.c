@@ -57,8 +57,8 @@ static PetscErrorCode CountCells(Model model, PetscInt count[], PetscInt *n_disc
   PetscFunctionReturn(0);
 }
 
-/* Cost of pad and beam: of their cells, and of the pairs of the 100 cells of the pad at the contact, 60 each */
-#define COST_OTHERS (7 * 2000 + 60 * 100)
+/* Cost of pad and beam: of their cells, and of the pairs of the 100 cells of the pad at the contact, 56 each */
+#define COST_OTHERS (7 * 2000 + 56 * 100)
 
 /* Largest cost of a rank over the mean, less 1 */
 static PetscReal Imbalance(PetscReal cost, PetscMPIInt size)

@@ -175,8 +175,8 @@ void ComplianceAddColumns(PetscInt N, const PetscReal *restrict W, PetscInt n, c
 }
 
 /* Eight numbers in a row, of any alignment */
-typedef PetscReal LURow
-  __attribute__((vector_size(LU_BLOCK * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+typedef PetscReal LURow __attribute__((vector_size(64), aligned(8), may_alias));
+_Static_assert(sizeof(LURow) == LU_BLOCK * sizeof(PetscReal), "a row of a block");
 
 #define LU_READ(x) (*(const LURow *)(x))
 

@@ -22,7 +22,7 @@ enum { COST_TURNED = 4, COST_ALONG = 7, COST_GENERAL = 16 };
 
 /* Cost of a pair, about 190 ns, of which a cell at the contact has one or so: the rank that solves them all does that
    while the others go on (contact/projector/projector.c) */
-#define COST_CONTACT 60
+#define COST_CONTACT 56
 
 /* Bodies of the undistributed mesh */
 typedef struct {
