@@ -244,7 +244,7 @@ static PetscErrorCode FindAll(Modes modes, Window *window, PetscBool *none)
   if (window->known.rigid) PetscCall(TwinsDrop(modes, window));
   if (window->known.rigid) PetscCall(NullVectorsRefine(modes, &pencil, window));
   if (window->known.rigid) PetscCall(TwinsTrim(modes, window));
-  PetscCall(ShiftInvertDestroy(&modes->null));
+  PetscCall(NullForget(modes));
   PetscCall(WindowDescribe(modes, window));
   PetscCall(SavedByDamping(modes, &pencil, window));
   PetscFunctionReturn(0);

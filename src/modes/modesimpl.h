@@ -62,7 +62,6 @@ typedef enum { ABOUT_AUTO, ABOUT_ALL, ABOUT_STATIC } ModesAbout;
 
 /* What a choice saved, in words */
 enum { SAVED_FACTORS, SAVED_DAMPING, N_SAVED };
-
 #define SAVED_LENGTH 512
 
 /* components/ - which free modes of the bodies make up each mode */
@@ -111,7 +110,7 @@ struct _p_Modes {
   Spectrum        right, left_spectrum; /* in the unknowns of the pencil, later expanded to all unknowns */
   Mode           *mode;
   PetscReal      *residual; /* [n] |Q(lambda) x| in the norm of M^-1, at most, with x of M-norm one, (rad/s)^2 */
-  PetscInt        n;
+  PetscInt        n, n_null_left;
   double         *part_percent;  /* participation [n][parts and superelements], NULL for matrices without a mesh */
   double         *label_percent; /* of the shape what its name explains [n], NULL likewise */
   PetscInt       *label_part;    /* the part that a mode is named after, -1 for none [n], NULL likewise */
@@ -129,6 +128,7 @@ struct _p_Modes {
   ShiftInvert     factor;      /* of the solution where keep is set */
   EPS             left_solver; /* undamped, whose space has grown beside that of the right vectors; NULL: none has */
   ShiftInvert     null;        /* far below all elastic modes, for the null space of K */
+  Vec            *null_left;   /* [n_null_left] left null vectors of K that a projection has found, or none */
   ShiftInvert     counter;     /* of the last count by inertia, from which the solution takes its analysis */
   /* [n] or NULL: not asked for yet */
   ModeMechanism *mechanism;
@@ -389,8 +389,10 @@ PETSC_INTERN PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil
 PETSC_INTERN PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n,
                                         Vec x[], PetscReal error[]);
 
-/* rigid/decays.c - decays of rigid motions without the rounding of K. Collective */
+/* rigid/decays.c - decays of rigid motions without the rounding of K; whether eigenvalues may be some. Collective */
 PETSC_INTERN PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, const Window *window);
+PETSC_INTERN PetscBool      NullHasDecays(const Modes modes, const Window *window);
+PETSC_INTERN PetscErrorCode NullForget(Modes modes); /* factors and vectors of the null space */
 
 /* label.c - names of the shapes; the disc, NULL for none, and the masses of its nodes [local nodes] on this rank, kg
    (borrowed) */

@@ -14,7 +14,7 @@
 #include "projection.h"
 #include "solver/block/orthonormal.h"
 
-#define ABOUT_LEVELS 3    /* steps of a residual, before the next dense problem */
+#define ABOUT_LEVELS 2    /* steps of a residual, before the next dense problem; with 3 a sixth more time */
 #define ABOUT_DROP   0.1  /* of what may remain of a residual: directions of corrections that make less are left out */
 #define ABOUT_FINER  0.01 /* times that, where all are */
 #define ABOUT_RANDOM 4    /* vectors of a search, and its steps */

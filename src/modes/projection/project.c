@@ -185,6 +185,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   if (missing) *why = why_missing;
   if (lost) *why = why_edge;
   if (settled) PetscCall(ProjectionPut(p, &found));
+  if (settled && !*why && NullHasDecays(modes, window)) PetscCall(ProjectionFindNull(p));
   window->route.n_basis = found.size;
   if (!settled) *why = found.lambda_reach > p->reach ? why_guard : "corrections do not settle";
   PetscCall(ProjectionModesDestroy(&found));

@@ -124,6 +124,9 @@ PETSC_INTERN PetscErrorCode ProjectionSolveStrong(Projection *p, PetscInt n_unda
 PETSC_INTERN PetscErrorCode ProjectionIterate(Projection *p, ProjectionModes *found, PetscBool *settled);
 /* The modes of the window in place of the spectra of the solver */
 PETSC_INTERN PetscErrorCode ProjectionPut(Projection *p, const ProjectionModes *found);
+/* projection/null.c - the left null vectors of K, for decays of rigid motions, where they are found so. The basis
+   grows. */
+PETSC_INTERN PetscErrorCode ProjectionFindNull(Projection *p);
 /* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the
    limits to the basis: n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);

@@ -2,6 +2,7 @@
 #include "projection.h"
 
 #define SETTLE_ROUNDS   8
+#define SETTLE_ABOUT    12 /* rounds about a complex shift */
 #define SETTLE_ROUNDING 10 /* times the limits of errors, where corrections add nothing to the basis any more */
 
 /* The largest backward errors of right and left vectors */
@@ -56,11 +57,12 @@ static PetscErrorCode FindModes(const Projection *p, PetscBool anew, ProjectionM
 
 PetscErrorCode ProjectionIterate(Projection *p, ProjectionModes *found, PetscBool *settled)
 {
-  PetscInt n_columns = 1, size = 0;
+  const int most      = p->about ? SETTLE_ABOUT : SETTLE_ROUNDS;
+  PetscInt  n_columns = 1, size = 0;
 
   PetscFunctionBeginUser;
   *settled = PETSC_FALSE;
-  for (int round = 0; round < SETTLE_ROUNDS && n_columns; round++, size = found->size) {
+  for (int round = 0; round < most && n_columns; round++, size = found->size) {
     PetscCall(FindModes(p, round ? PETSC_FALSE : PETSC_TRUE, found));
     if (!p->about && found->lambda_reach > p->reach) break;
     PetscCall(ProjectionCorrect(p, found, &n_columns));

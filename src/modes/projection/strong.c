@@ -71,13 +71,16 @@ static PetscErrorCode StrongSolve(Projection *p, ProjectionModes *found, PetscBo
 
 PetscErrorCode ProjectionSolveStrong(Projection *p, PetscInt n_undamped, Window *window, const char **why)
 {
-  Modes          modes = p->modes;
-  const PetscInt n = StrongParts(window, n_undamped), n_modal = p->space.n;
+  Modes          modes    = p->modes;
+  const PetscInt n        = StrongParts(window, n_undamped);
   Spectrum       found[2] = {{0}, {0}};
+  PetscInt       n_modal;
   ComplexShift   about;
 
   PetscFunctionBeginUser;
+  PetscCall(ProjectionFindNull(p));                        /* while its factors are there */
   if (!modes->keep) PetscCall(ShiftInvertDestroy(&p->si)); /* its shift stays */
+  n_modal = p->space.n;
   PetscCall(ComplexShiftCreate(p->pencil, &modes->progress, &about));
   p->about = &about;
   p->alpha = p->beta = 0;

@@ -29,6 +29,15 @@ static PetscBool DecayIs(const Spectrum *s, PetscInt i, PetscReal scale)
   return s->sigma[i] != 0 && hypot(s->sigma[i], s->omega[i]) <= scale ? PETSC_TRUE : PETSC_FALSE;
 }
 
+PetscBool NullHasDecays(const Modes modes, const Window *window)
+{
+  const Spectrum *s   = &modes->right;
+  PetscBool       has = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < s->n && !has; i++) has = DecayIs(s, i, window->known.scale);
+  return has;
+}
+
 /* Whether K does no more than rounding to y; work [2] */
 static PetscErrorCode DecayIsNull(Mat K, Vec y, Vec work[], PetscBool *null)
 {
@@ -53,8 +62,14 @@ static PetscErrorCode DecaysFindNull(Modes modes, const PencilMatrices *pencil, 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(window->known.rigid, &error));
-  PetscCall(NullFactor(modes, pencil, window));
-  PetscCall(NullIterate(modes, pencil, pencil->symmetric ? PETSC_FALSE : PETSC_TRUE, window->known.rigid, d->y, error));
+  if (modes->n_null_left == window->known.rigid) {
+    for (PetscInt j = 0; j < modes->n_null_left; j++) PetscCall(VecCopy(modes->null_left[j], d->y[j]));
+  } else {
+    const PetscBool transposed = pencil->symmetric ? PETSC_FALSE : PETSC_TRUE;
+
+    PetscCall(NullFactor(modes, pencil, window));
+    PetscCall(NullIterate(modes, pencil, transposed, window->known.rigid, d->y, error));
+  }
   for (PetscInt j = 0; j < window->known.rigid; j++) {
     PetscCall(DecayIsNull(pencil->K, d->y[j], d->work, &null));
     if (null) PetscCall(VecSwap(d->y[j], d->y[d->n++]));
@@ -152,12 +167,11 @@ PetscErrorCode NullDecaysCorrect(Modes modes, const PencilMatrices *damped, cons
 {
   const PencilMatrices undamped = {.K = damped->K, .M = damped->M, .symmetric = damped->symmetric};
   Spectrum            *s        = &modes->right;
-  PetscInt             n        = 0;
   Decays               d        = {.pencil = damped};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; i++) n += DecayIs(s, i, window->known.scale);
-  if (!n || !damped->C || !window->known.rigid || window->route.mapped) PetscFunctionReturn(0);
+  if (!NullHasDecays(modes, window) || !damped->C || !window->known.rigid || window->route.mapped)
+    PetscFunctionReturn(0);
   PetscCall(MatCreateVecs(damped->K, &d.work[0], &d.work[1]));
   PetscCall(VecDuplicateVecs(d.work[0], window->known.rigid, &d.y));
   PetscCall(DecaysFindNull(modes, &undamped, window, &d));

@@ -65,6 +65,15 @@ PetscErrorCode NullFactor(Modes modes, const PencilMatrices *pencil, const Windo
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode NullForget(Modes modes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ShiftInvertDestroy(&modes->null));
+  PetscCall(VecDestroyVecs(modes->n_null_left, &modes->null_left));
+  modes->n_null_left = 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NullIterate(Modes modes, const PencilMatrices *pencil, PetscBool transposed, PetscInt n, Vec x[],
                            PetscReal error[])
 {
