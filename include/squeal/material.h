@@ -37,6 +37,17 @@ typedef struct {
   PetscInt  body;               /* of those parts that share nodes, the first; set up with the mesh */
 } Spin;
 
+/* Thickness of a flat layer, in place of that of its mesh: its cells are stretched across it by thickness / mesh, and
+   what lies on it moves with it as it is. With x = x_p + n x_n, d/dx_n -> (mesh / thickness) d/dx_n and dV ->
+   (thickness / mesh) dV, hence exactly, h the thickness,
+
+      K(h) = h K_pp + (K_pn + K_np) + K_nn / h,   M(h) = h M_1                                                        */
+typedef struct {
+  PetscBool given, has_axis; /* n is */
+  PetscReal thickness;       /* m, > 0 */
+  PetscReal mesh, normal[3]; /* that of the mesh, m; n, a unit vector; set up with the mesh */
+} Layer;
+
 /* Material of one body; SI units */
 typedef struct {
   char             *name, *volume; /* of the mesh, of which -parts names the part: the same name where none is given */
@@ -49,6 +60,7 @@ typedef struct {
   ElasticityAsked   asked;
   Anisotropy        anisotropy;
   Spin              spin;
+  Layer             layer;
   ViscoelasticAsked viscous;
   Viscoelastic      law; /* of the stiffness, at the values of the scene */
 } Part;

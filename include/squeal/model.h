@@ -205,6 +205,11 @@ PetscBool ModelMaterialIsSwept(Model model, PetscInt part, const ModelLines *lin
     (m). Not collective. @*/
 PetscErrorCode ModelGetCell(Model model, PetscInt c, const Element **element, PetscInt nodes[], PetscReal x[]);
 
+/*@ ModelGetCellAt - the same where its layer is `thickness` thick (m), stretched about the origin; of other parts, and
+    for 0, as in the mesh. Not collective. @*/
+PetscErrorCode ModelGetCellAt(Model model, PetscInt c, PetscReal thickness, const Element **element, PetscInt nodes[],
+                              PetscReal x[]);
+
 /*@
    ModelAddLoad - adds load i to a vector of ModelCreateNodal(), N, its force or pressure times factor[0], its moment
    times factor[1]; NULL for 1, 1. On a surface f_v = F int N_v dA / A, on a set of other nodes F / n. The sum over all

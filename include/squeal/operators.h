@@ -38,6 +38,7 @@ typedef struct {
 typedef struct {
   PetscReal young, density; /* Pa, kg/m^3 */
   PetscReal alpha, beta;    /* of Rayleigh, C = alpha M + beta K: 1/s, s */
+  PetscReal thickness;      /* of a layer whose thickness is given, m; else 0 */
 } OperatorsMaterial;
 
 /*@ OperatorsCreate - makes empty operators. Collective. @*/
@@ -145,7 +146,7 @@ PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
 
 /*@
    OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
-   density (kg/m^3), alpha (1/s), beta (s); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
+   density (kg/m^3), alpha (1/s), beta (s); of each layer whose thickness is given thickness (m); of each list of springs stiffness (N/m), of dashpots viscosity (N s/m), with
    _x, _y, _z appended where the components that are not zero differ; of each bushing and point stiffness (N/m),
    turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part
    that spins spin (rad/s), on which pencils alone depend; of each contact mu, kn (N/m, penalty) or, where the

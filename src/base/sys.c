@@ -270,6 +270,7 @@ int SquealFinalize(PetscErrorCode error)
     if (!together || rank == 0) PrintError(error_message);
     if (!together) (void)MPI_Abort(MPI_COMM_WORLD, 1);
     (void)PrintEnd();
+    (void)PetscInfoAllow(PETSC_FALSE); /* MPI frees PETSc's communicators, which would tell -info so through them */
     (void)MPI_Finalize();
     return 1;
   }

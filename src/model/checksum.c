@@ -81,6 +81,7 @@ static PetscErrorCode PartAddChecksum(const Part *p, Checksum c)
     PetscCall(ChecksumAddReals(c, 3, p->spin.axis));
     PetscCall(ChecksumAddReals(c, 3, p->spin.centre));
   }
+  if (p->layer.given) PetscCall(ChecksumAddReals(c, 1, &p->layer.thickness));
   PetscCall(ViscoelasticAddChecksum(&p->law, c));
   if (!p->anisotropy.n) PetscFunctionReturn(0);
   PetscCall(ChecksumAddReals(c, ELASTICITY_VOIGT * ELASTICITY_VOIGT, p->anisotropy.C[0]));

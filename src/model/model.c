@@ -129,6 +129,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscCall(MeshCheck(model));
   if (!model->from_file) PetscCall(RigSave(model));
   PetscCall(SpinsCheck(model));
+  PetscCall(LayersMeasure(model));
   PetscCall(PartitionMesh(model));
   PetscCall(MeshLayOut(model));
   PetscCall(PartsCheckUnits(model));

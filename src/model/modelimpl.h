@@ -55,6 +55,10 @@ struct _p_Model {
 PETSC_INTERN PetscErrorCode PartsCheckUnits(Model model);
 PETSC_INTERN PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer);
 
+/* layer.c - thickness and normal of the layers whose thickness is given, before the mesh is distributed; raises an
+   error for a part that is no flat layer of one thickness. Collective */
+PETSC_INTERN PetscErrorCode LayersMeasure(Model model);
+
 /* unit.c - what the units of a part probably are where they do not fit together; NULL where they do */
 PETSC_INTERN const char *PartDoubt(const Part *part, const PartExtent *extent);
 

@@ -110,6 +110,11 @@ static const Quantity part[] = {
   {"-loss_factor", "loss factor of the stiffness at every frequency; with -model_loss_frequency there, adds to beta",
    NULL, QUANTITY_REAL, PART(loss), QUANTITY_NOT_NEGATIVE, MOVING, VISCOELASTIC_VARIES},
   VISCOELASTIC_ROWS(Part, viscous, MOVING),
+  {"-thickness", "thickness of a flat layer in place of that of its mesh; what lies on it moves with it", "m",
+   QUANTITY_REAL, PART(layer.thickness), QUANTITY_POSITIVE, .given = offsetof(Part, layer.given),
+   .varies = VARIES_LINEAR},
+  {"-thickness_axis", "x,y,z across the layer, where it is not thin", NULL, QUANTITY_REALS, PART(layer.normal),
+   .given = offsetof(Part, layer.has_axis)},
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
    PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,
    .unread = "; it belongs to modes, sweep, frf, sample, quiet and design; in time a contact's -..._kinematics turning "

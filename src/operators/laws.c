@@ -7,7 +7,7 @@
 #define LAW_SAME 1e-9 /* relative: frequencies that are one */
 
 PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelastic *values,
-                               const Quantity *(*row)(const char option[]), PetscInt young, Mat A)
+                               const Quantity *(*row)(const char option[]), PetscInt young, OperatorsLaw **added)
 {
   OperatorsLaw *law;
   PetscReal     limit[2];
@@ -19,6 +19,7 @@ PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelast
   PetscCall(PetscNew(&law));
   o->law[o->n_laws++] = law;
   *law                = (OperatorsLaw){.law = *values, .young = young};
+  *added              = law;
   for (PetscInt i = 0; i < values->n; i++) {
     PetscCall(ViscoelasticName(values, i, &option, name));
     PetscCall(ParametersAdd(
@@ -31,11 +32,27 @@ PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelast
     o->parameters.list[law->parameter[i]].upper  = limit[1];
     o->parameters.list[law->parameter[i]].closed = PETSC_TRUE;
   }
-  for (int k = 0; k < 2 && A; k++) {
-    PetscCall(TermsAdd(&o->terms, k ? OPERATORS_DAMPING : OPERATORS_STIFFNESS, A, PETSC_TRUE, 0, NULL));
-    o->terms.term[o->terms.n - 1].law = law;
-    PetscCall(ViscoelasticName(values, -1, &option, name));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OperatorsAddLawTerms(Operators o, const char owner[], OperatorsLaw *law, const OperatorsTerm *like)
+{
+  const char *option;
+  char        name[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(ViscoelasticName(&law->law, -1, &option, name));
+  for (int k = 0; k < 2; k++) {
+    OperatorsTerm *term;
+
+    PetscCall(TermsAdd(&o->terms, k ? OPERATORS_DAMPING : OPERATORS_STIFFNESS, like->A, like->symmetric, 0, NULL));
     PetscCall(TermsSetCause(&o->terms, "material damping", owner, option));
+    term             = &o->terms.term[o->terms.n - 1];
+    term->law        = law;
+    term->scale      = like->scale;
+    term->n          = like->n;
+    term->frictional = like->frictional;
+    PetscCall(PetscArraycpy(term->factor, like->factor, like->n));
   }
   PetscFunctionReturn(0);
 }
@@ -119,56 +136,112 @@ PetscErrorCode PencilSetReference(Pencil pencil, PetscReal omega)
   PetscFunctionReturn(0);
 }
 
-/* The law of a term at a point, in place: who has got it before looks on at it */
-static PetscErrorCode LawTake(const PetscReal p[], const OperatorsTerm *term, PencilLaw *law)
-{
-  OperatorsTerm  rest = *term;
-  ViscoelasticAt at;
-
-  PetscFunctionBeginUser;
-  rest.law       = NULL;
-  law->symmetric = term->symmetric;
-  law->scale     = OperatorsTermCoefficient(&rest, p);
-  law->reference = term->reference;
-  law->law       = OperatorsLawValues(term->law, p);
-  law->at        = 0;
-  ViscoelasticEvaluate(&law->law, CMPLX(0, term->reference), &at);
-  if (term->reference > 0) law->at = at.modulus;
-  if (law->A) PetscFunctionReturn(0);
-  PetscCall(PetscObjectReference((PetscObject)term->A));
-  law->A = term->A;
-  PetscFunctionReturn(0);
-}
-
-/* Whether a term, one of two, stands for a law */
+/* Whether a term, one of two, stands for a law; whether two, of which one does, are of one law: those of a layer, whose
+   matrices have factors of their own */
 static PetscBool TermIsLaw(const OperatorsTerm *term)
 {
   return term->law && term->kind == OPERATORS_STIFFNESS ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool TermsAreOneLaw(const OperatorsTerm *a, const OperatorsTerm *b)
+{
+  return TermIsLaw(b) && a->law == b->law && a->constraint == b->constraint ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The first terms of all laws; first may be NULL */
+static PetscInt LawsFind(const Terms *list, PetscInt first[])
+{
+  PetscInt n = 0;
+
+  for (PetscInt t = 0; t < list->n; t++) {
+    PetscInt s = 0;
+
+    if (!TermIsLaw(&list->term[t])) continue;
+    while (!TermsAreOneLaw(&list->term[t], &list->term[s])) s++;
+    if (s < t) continue;
+    if (first) first[n] = t;
+    n++;
+  }
+  return n;
+}
+
+/* Its matrix: that of its only term, or the sum of all at the point, which is written anew in place */
+static PetscErrorCode LawTakeMatrix(const Terms *list, PetscInt first, const PetscReal p[], TermsSum *sum,
+                                    PencilLaw *law)
+{
+  PetscReal *c;
+  PetscInt   n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(list->n, &c));
+  for (PetscInt t = first; t < list->n; t++) {
+    OperatorsTerm rest = list->term[t];
+
+    if (!TermsAreOneLaw(&list->term[first], &rest)) continue;
+    rest.law = NULL;
+    c[t]     = OperatorsTermCoefficient(&rest, p);
+    n++;
+  }
+  law->scale = n > 1 ? 1 : c[first];
+  if (n > 1) PetscCall(TermsSumAdd(list, c, sum));
+  PetscCall(PetscFree(c));
+  if (law->A) PetscFunctionReturn(0);
+  law->A = n > 1 ? sum->A : list->term[first].A;
+  PetscCall(PetscObjectReference((PetscObject)law->A));
+  PetscFunctionReturn(0);
+}
+
+/* The law of a term at a point, in place: who has got it before looks on at it */
+static PetscErrorCode LawTake(const Terms *list, PetscInt first, const PetscReal p[], TermsSum *sum, PencilLaw *law)
+{
+  const OperatorsTerm *term = &list->term[first];
+  ViscoelasticAt       at;
+
+  PetscFunctionBeginUser;
+  law->symmetric = term->symmetric;
+  law->reference = term->reference;
+  law->law       = OperatorsLawValues(term->law, p);
+  law->at        = 0;
+  ViscoelasticEvaluate(&law->law, CMPLX(0, term->reference), &at);
+  if (term->reference > 0) law->at = at.modulus;
+  PetscCall(LawTakeMatrix(list, first, p, sum, law));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OperatorsGetLaws(Operators o, const PetscReal p[], PetscInt *n, PencilLaw **law)
 {
+  PetscInt *first;
+
   PetscFunctionBeginUser;
-  *n = 0;
   PetscCall(PetscCalloc1(o->n_laws, law));
-  for (PetscInt t = 0; t < o->terms.n; t++)
-    if (TermIsLaw(&o->terms.term[t])) PetscCall(LawTake(OperatorsPoint(o, p), &o->terms.term[t], &(*law)[(*n)++]));
+  PetscCall(PetscMalloc1(o->n_laws, &first));
+  *n = LawsFind(&o->terms, first);
+  for (PetscInt l = 0; l < *n; l++) {
+    TermsSum sum = {.A = NULL};
+
+    PetscCall(LawTake(&o->terms, first[l], OperatorsPoint(o, p), &sum, &(*law)[l]));
+    PetscCall(TermsSumDestroy(&sum));
+  }
+  PetscCall(PetscFree(first));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode PencilFormLaws(Pencil pencil)
 {
   const Terms *list = pencil->Zr ? &pencil->projected : &pencil->base;
-  PetscInt     n    = 0;
+  PetscInt    *first;
 
   PetscFunctionBeginUser;
   if (!PencilHasLaws(pencil) || pencil->released || pencil->has_laws) PetscFunctionReturn(0);
   PetscCall(PencilProjectTerms(pencil));
-  for (PetscInt t = 0; t < list->n; t++) n += TermIsLaw(&list->term[t]);
-  if (!pencil->law) PetscCall(PetscCalloc1(n, &pencil->law));
-  pencil->n_laws = n;
-  for (PetscInt t = 0, l = 0; t < list->n; t++)
-    if (TermIsLaw(&list->term[t])) PetscCall(LawTake(pencil->parameters.p, &list->term[t], &pencil->law[l++]));
+  pencil->n_laws = LawsFind(list, NULL);
+  PetscCall(PetscMalloc1(pencil->n_laws, &first));
+  (void)LawsFind(list, first);
+  if (!pencil->law) PetscCall(PetscCalloc1(pencil->n_laws, &pencil->law));
+  if (!pencil->law_sum) PetscCall(PetscCalloc1(pencil->n_laws, &pencil->law_sum));
+  for (PetscInt l = 0; l < pencil->n_laws; l++)
+    PetscCall(LawTake(list, first[l], pencil->parameters.p, &pencil->law_sum[l], &pencil->law[l]));
+  PetscCall(PetscFree(first));
   pencil->has_laws = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -200,8 +273,12 @@ PetscErrorCode PencilUnfoldLaws(Pencil pencil)
 PetscErrorCode PencilForgetLaws(Pencil pencil)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < pencil->n_laws; i++) PetscCall(MatDestroy(&pencil->law[i].A));
+  for (PetscInt i = 0; i < pencil->n_laws; i++) {
+    PetscCall(MatDestroy(&pencil->law[i].A));
+    PetscCall(TermsSumDestroy(&pencil->law_sum[i]));
+  }
   PetscCall(PetscFree(pencil->law));
+  PetscCall(PetscFree(pencil->law_sum));
   pencil->n_laws = 0;
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,8 @@
 /*
    Operators: life cycle, parameters, and the matrices of the bodies alone. A mesh makes terms (bodies/assemble.c,
    points/joint.c, bodies/spin.c), matrices from files are terms themselves (files/); K, M and C of any point p are
-   sums of them (terms/sum.c). Parameters stand in the order: those of the parts, N_PART_PARAMETERS each, springs and
-   dashpots, bushings and points, superelements, spins, contacts, loads; other files count on the first two
+   sums of them (terms/sum.c). Parameters stand in the order: those of the parts, N_PART_PARAMETERS each, layers,
+   springs and dashpots, bushings and points, superelements, spins, contacts, loads; other files count on the first two
    (bodies/force.c).
 */
 #include "operators/superelement/superelement.h"
@@ -189,6 +189,7 @@ PetscErrorCode OperatorsDestroy(Operators *operators)
   PetscCall(TermsDestroy(&o->spin));
   PetscCall(OperatorsDestroyLaws(o));
   PetscCall(PetscFree(o->spin_of_part));
+  PetscCall(PetscFree(o->thickness));
   PetscCall(OperatorsDestroyContactParameters(o));
   PetscCall(PetscFree(o->load_size));
   PetscCall(PetscFree(o->joint));

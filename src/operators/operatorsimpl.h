@@ -66,6 +66,7 @@ struct _p_Operators {
   LoadParameters      *load_size;      /* of each load */
   JointParameters     *joint;          /* of each bushing, then of each point */
   PetscInt             n_local;        /* the first parameters are those of parts, springs and dashpots */
+  PetscInt            *thickness;      /* [parts] parameter of a layer, -1 for others; NULL for loaded matrices */
   PetscInt            *spin_of_part;   /* [parts] parameter, -1 for parts without; NULL for loaded matrices */
   Terms                spin;           /* of spinning parts, for pencils; made when the first one asks */
   PetscInt             n_laws;         /* of materials whose stiffness depends on the eigenvalue */
@@ -138,10 +139,19 @@ PETSC_INTERN PetscErrorCode OperatorsGetSeen(Operators operators, const PetscRea
    weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
 
-/* laws.c - adds the values of a law to the parameters, with the rows of their options, and its terms G A, none
-   where A is NULL; frees the laws */
+/* layer.c - thicknesses of layers as parameters; terms of such a part. assemble.c - the lumped mass of an element in
+   place of the consistent one */
+PETSC_INTERN PetscErrorCode OperatorsAddThicknesses(Operators operators, PetscInt n, const Part parts[]);
+PETSC_INTERN PetscErrorCode OperatorsAddLayer(Operators operators, PetscInt part, const Part *p);
+PETSC_INTERN void           OperatorsLumpMass(const Element *element, PetscReal mass[]);
+
+/* laws.c - adds the values of a law to the parameters, with the rows of their options; its terms of K and C like one
+   with its matrix and other factors; frees the laws */
 PETSC_INTERN PetscErrorCode OperatorsAddLaw(Operators operators, const char owner[], const Viscoelastic *values,
-                                            const Quantity *(*row)(const char option[]), PetscInt young, Mat A);
+                                            const Quantity *(*row)(const char option[]), PetscInt young,
+                                            OperatorsLaw **law);
+PETSC_INTERN PetscErrorCode OperatorsAddLawTerms(Operators operators, const char owner[], OperatorsLaw *law,
+                                                 const OperatorsTerm *like);
 PETSC_INTERN PetscErrorCode OperatorsDestroyLaws(Operators operators);
 PETSC_INTERN PetscErrorCode OperatorsAddJointForces(Operators operators, const PetscReal p[], PetscBool viscous,
                                                     const PetscReal displacement[], PetscReal force[]);

@@ -48,6 +48,7 @@ struct _p_Pencil {
   PetscInt       n_laws, n_folded;
   OperatorsLaw **folded;        /* [n_folded] of causing */
   PencilLaw     *law;           /* [n_laws] at the present point */
+  TermsSum      *law_sum;       /* [n_laws] its matrix where that is one */
   PetscBool      keeps_apart;   /* joining was formed */
   TermsSum       joining;       /* what is added to K for that of the bodies apart, in all unknowns (apart.c) */
   PetscBool      mass_singular; /* loaded: there is no mass along some directions that are no unknowns */

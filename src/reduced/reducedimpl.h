@@ -304,6 +304,11 @@ PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *of
 PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
 
+/* branches.c - 2 m eigenvalues with branches of system [2 + parts] = K, C and the dampings of the parts [m][m], which are
+   overwritten */
+PETSC_INTERN PetscErrorCode ReducedBranchesEigen(const ReducedModel *model, PetscReal *const system[],
+                                                 PetscReal sigma[], PetscReal omega[]);
+
 /* warp.c - ReducedLinearise() as steps of length dt (s) see the model */
 PETSC_INTERN PetscErrorCode ReducedLineariseSteps(const ReducedModel *model, PetscReal dt, const PetscBool closed[],
                                                   const PetscReal lambda_n[], PetscReal sigma[], PetscReal omega[]);

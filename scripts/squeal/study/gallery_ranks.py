@@ -73,6 +73,7 @@ RUNS = {
     "fist_brake_transient": Run("fist_brake fist_brake_transient", "fist_brake", (24, 30), short="-ts_max_time 2e-3", why="24 mm for 12",
                                 nudge=IRON),
     "small_brake_cycle": Run("small_brake_cycle"),
+    "small_brake_shim": Run("small_brake_shim", "small_brake_shim", quick="-sweep_values 0.4e-3,0.8e-3", nudge=("strip_young", 110e9)),
     "small_brake_stop": Run("small_brake_stop", quick="-ts_max_time 0.05"),
     "small_brake_map": Run("small_brake_map", grows="impacts: transients with loss of contact are chaotic"),
 }

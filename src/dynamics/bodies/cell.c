@@ -23,10 +23,10 @@ PetscErrorCode BodiesGetCell(Bodies bodies, PetscInt c, BodiesCell *cell)
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(bodies->model, &scene));
-  PetscCall(ModelGetCell(bodies->model, c, &element, cell->vertex, x));
+  cell->part = bodies->mesh->cell_part[c];
+  part       = &scene->parts[cell->part];
+  PetscCall(ModelGetCellAt(bodies->model, c, part->layer.thickness, &element, cell->vertex, x));
   cell->n_nodes  = element->n_nodes;
-  cell->part     = bodies->mesh->cell_part[c];
-  part           = &scene->parts[cell->part];
   cell->alpha    = part->alpha;
   cell->beta     = part->beta;
   cell->branches = BranchesStiffness(part);

@@ -22,7 +22,7 @@ static PetscErrorCode ExtentsMeasure(Model model)
     PetscInt       nodes[ELEMENT_MAX_NODES];
     PetscReal      x[ELEMENT_MAX_DOFS], cell, jacobian;
 
-    PetscCall(ModelGetCell(model, c, &element, nodes, x));
+    PetscCall(ModelGetCellAt(model, c, model->scene.parts[part].layer.thickness, &element, nodes, x));
     element->measure(element->solid, x, &cell, &jacobian);
     volume[part] += cell;
     for (PetscInt k = 0; k < 3 * element->n_nodes; k++) {
@@ -112,6 +112,10 @@ PetscErrorCode PartView(Model model, PetscInt part, PetscViewer viewer)
                                    (double)p->alpha, (double)p->beta));
   if (p->anisotropy.n) PetscCall(AnisotropyView(model, &p->anisotropy, viewer));
   if (p->spin.given) PetscCall(SpinView(&p->spin, viewer));
+  if (p->layer.given)
+    PetscCall(PetscViewerASCIIPrintf(
+      viewer, "    layer: %.6g %s thick, %.6g in the mesh, along %.4g,%.4g,%.4g\n", (double)p->layer.thickness, metre,
+      (double)p->layer.mesh, (double)p->layer.normal[0], (double)p->layer.normal[1], (double)p->layer.normal[2]));
   if (p->law.kind) PetscCall(ViscoelasticDescribe(&p->law, sizeof(law), law));
   if (p->law.kind) PetscCall(PetscViewerASCIIPrintf(viewer, "    %s\n", law));
   if (p->loss > 0 && model->scene.loss_frequency > 0)

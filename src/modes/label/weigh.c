@@ -23,7 +23,7 @@ static PetscErrorCode CellMasses(const Element *element, const PetscReal x[], Pe
 }
 
 /* Nodal mass (kg) of one part, shape [local nodes]: only what this rank's cells give */
-static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, PetscReal **mass)
+static PetscErrorCode PartMasses(Model model, PetscInt part, const OperatorsMaterial *material, PetscReal **mass)
 {
   const Mesh *mesh;
 
@@ -36,8 +36,8 @@ static PetscErrorCode PartMasses(Model model, PetscInt part, PetscReal density, 
     PetscReal      x[ELEMENT_MAX_DOFS], share[ELEMENT_MAX_NODES];
 
     if (mesh->cell_part[c] != part) continue;
-    PetscCall(ModelGetCell(model, c, &element, nodes, x));
-    PetscCall(CellMasses(element, x, density, share));
+    PetscCall(ModelGetCellAt(model, c, material->thickness, &element, nodes, x));
+    PetscCall(CellMasses(element, x, material->density, share));
     for (PetscInt i = 0; i < element->n_nodes; i++) (*mass)[nodes[i]] += share[i];
   }
   PetscFunctionReturn(0);
@@ -91,7 +91,7 @@ PetscErrorCode LabelsWeigh(Modes modes, const Mesh *mesh, PetscReal *const **mas
     OperatorsMaterial material;
 
     PetscCall(OperatorsGetMaterial(operators, p, part, &material));
-    PetscCall(PartMasses(model, part, material.density, &modes->weights->mass[part]));
+    PetscCall(PartMasses(model, part, &material, &modes->weights->mass[part]));
   }
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,7 @@
 #include "operators/operatorsimpl.h"
 
 /* Replaces the consistent mass of an element by the lumped one */
-static void MassLump(const Element *element, PetscReal mass[])
+void OperatorsLumpMass(const Element *element, PetscReal mass[])
 {
   const PetscInt n = 3 * element->n_nodes;
   PetscReal      lumped[ELEMENT_MAX_NODES];
@@ -36,7 +36,7 @@ static PetscErrorCode OperatorsAddCell(Operators o, PetscInt c, Mat K, Mat M)
   n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) rows[i] = mesh->unknown[3 * vertices[i / 3] + i % 3];
   PetscCall(ElementMatrices(element, x, &unit, ke, me));
-  if (o->lump) MassLump(element, me);
+  if (o->lump) OperatorsLumpMass(element, me);
   PetscCall(MatSetValues(K, n, rows, n, rows, ke, ADD_VALUES));
   PetscCall(MatSetValues(M, n, rows, n, rows, me, ADD_VALUES));
   PetscFunctionReturn(0);
@@ -60,24 +60,32 @@ static PetscErrorCode OperatorsCreatePart(Operators o, PetscInt part, Mat *K, Ma
   PetscFunctionReturn(0);
 }
 
-/* Parameters and terms of one part: E K_p, rho M_p, alpha rho M_p and beta E K_p share two matrices. With `omit` the
-   parameters are made alone, in the same order. */
-static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
+/* Parameters of one part */
+static PetscErrorCode OperatorsAddPartParameters(Operators o, const Part *p)
 {
   const struct {
     const char *name;
     PetscReal   value;
   } what[N_PART_PARAMETERS] = {{"young", p->young}, {"density", p->density}, {"alpha", p->alpha}, {"beta", p->beta}};
-  PetscInt i[N_PART_PARAMETERS];
-  Mat      K, M;
+  PetscInt index;
 
   PetscFunctionBeginUser;
   for (int k = 0; k < N_PART_PARAMETERS; k++) {
     const OperatorsParameter q = {.row = ModelFindRow("-parts", what[k].name), .value = what[k].value};
 
-    PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &i[k]));
+    PetscCall(ParametersAdd(&o->parameters, p->name, what[k].name, &q, &index));
   }
-  if (o->omit) PetscFunctionReturn(0);
+  PetscFunctionReturn(0);
+}
+
+/* Terms of one part: E K_p, rho M_p, alpha rho M_p and beta E K_p share two matrices */
+static PetscErrorCode OperatorsAddPart(Operators o, PetscInt part, const Part *p)
+{
+  PetscInt i[N_PART_PARAMETERS];
+  Mat      K, M;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < N_PART_PARAMETERS; k++) i[k] = N_PART_PARAMETERS * part + k;
   PetscCall(OperatorsCreatePart(o, part, &K, &M));
   PetscCall(TermsAdd(&o->terms, OPERATORS_STIFFNESS, K, PETSC_TRUE, 1, &i[PART_YOUNG]));
   PetscCall(TermsAdd(&o->terms, OPERATORS_MASS, M, PETSC_TRUE, 1, &i[PART_DENSITY]));
@@ -95,19 +103,26 @@ static const Quantity *PartFindRow(const char option[])
   return ModelFindRow("-parts", option);
 }
 
-/* Parameters and terms of the parts whose stiffness depends on the eigenvalue */
+/* Parameters and terms of the parts whose stiffness depends on the eigenvalue: each term of E once more */
 static PetscErrorCode OperatorsAddLaws(Operators o, PetscInt n, const Part parts[])
 {
+  const PetscInt n_terms = o->terms.n;
+
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt young = N_PART_PARAMETERS * i + PART_YOUNG;
-    Mat            A     = NULL;
+    OperatorsLaw  *law;
 
     if (parts[i].law.kind == VISCOELASTIC_NONE) continue;
-    for (PetscInt t = 0; t < o->terms.n && !A; t++)
-      if (o->terms.term[t].kind == OPERATORS_STIFFNESS && o->terms.term[t].factor[0].parameter == young)
-        A = o->terms.term[t].A;
-    PetscCall(OperatorsAddLaw(o, parts[i].name, &parts[i].law, PartFindRow, young, A));
+    PetscCall(OperatorsAddLaw(o, parts[i].name, &parts[i].law, PartFindRow, young, &law));
+    for (PetscInt t = 0; t < n_terms; t++) {
+      OperatorsTerm term = o->terms.term[t];
+
+      if (term.kind != OPERATORS_STIFFNESS || !term.n || term.factor[0].parameter != young) continue;
+      term.n--;
+      PetscCall(PetscArraymove(term.factor, &term.factor[1], term.n));
+      PetscCall(OperatorsAddLawTerms(o, parts[i].name, law, &term));
+    }
   }
   PetscFunctionReturn(0);
 }
@@ -153,7 +168,7 @@ static PetscErrorCode OperatorsAddGrounded(Operators o, OperatorsTermKind kind, 
   PetscFunctionReturn(0);
 }
 
-/* Parameters in the order that operators.c promises: parts, springs, dashpots, bushings and points. */
+/* Parameters in the order that operators.c promises: parts, layers, springs, dashpots, bushings and points. */
 PetscErrorCode OperatorsAssemble(Operators o)
 {
   const ModelScene *scene;
@@ -163,7 +178,13 @@ PetscErrorCode OperatorsAssemble(Operators o)
   PetscCall(ModelGetScene(o->model, &scene));
   PetscCall(ModelGetMesh(o->model, &mesh));
   PetscCheck(mesh->n_unknowns, o->comm, PETSC_ERR_USER_INPUT, "the -supports hold every node: nothing can vibrate");
-  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsAddPart(o, i, &scene->parts[i]));
+  for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(OperatorsAddPartParameters(o, &scene->parts[i]));
+  PetscCall(OperatorsAddThicknesses(o, scene->n_parts, scene->parts));
+  for (PetscInt i = 0; i < scene->n_parts && !o->omit; i++) {
+    const Part *p = &scene->parts[i];
+
+    PetscCall(p->layer.given ? OperatorsAddLayer(o, i, p) : OperatorsAddPart(o, i, p));
+  }
   for (PetscInt i = 0; i < scene->n_springs; i++)
     PetscCall(OperatorsAddGrounded(o, OPERATORS_STIFFNESS, &scene->springs[i]));
   for (PetscInt i = 0; i < scene->n_dashpots; i++)

@@ -18,13 +18,15 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
                                     OperatorsMaterial *material)
 {
   /* parameters of the parts come first, N_PART_PARAMETERS of each (operators.c) */
-  const PetscReal *value = &OperatorsPoint(operators, p)[N_PART_PARAMETERS * part];
+  const PetscReal *value     = &OperatorsPoint(operators, p)[N_PART_PARAMETERS * part];
+  const PetscInt   thickness = operators->thickness[part];
 
   PetscFunctionBeginUser;
-  material->young   = value[PART_YOUNG];
-  material->density = value[PART_DENSITY];
-  material->alpha   = value[PART_ALPHA];
-  material->beta    = value[PART_BETA];
+  material->young     = value[PART_YOUNG];
+  material->density   = value[PART_DENSITY];
+  material->alpha     = value[PART_ALPHA];
+  material->beta      = value[PART_BETA];
+  material->thickness = thickness < 0 ? 0 : OperatorsPoint(operators, p)[thickness];
   PetscFunctionReturn(0);
 }
 

@@ -9,15 +9,15 @@
 /* Adds the forces of local cell c, f_i += sum_j K_ij (u_j - u_0), u_0 of its first node; u (m) and f (N) hold three
    values per local node. The rows of K_e sum to 0 over the nodes in each direction, so that u_0 takes nothing away
    but rounding. */
-static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, const Elasticity *material, const PetscScalar u[],
-                                            PetscScalar f[])
+static PetscErrorCode OperatorsAddCellForce(Operators o, PetscInt c, PetscReal thickness, const Elasticity *material,
+                                            const PetscScalar u[], PetscScalar f[])
 {
   const Element *element;
   PetscInt       n, vertices[ELEMENT_MAX_NODES], at[ELEMENT_MAX_DOFS];
   PetscReal      x[ELEMENT_MAX_DOFS], ke[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], me[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
+  PetscCall(ModelGetCellAt(o->model, c, thickness, &element, vertices, x));
   PetscCall(ElementMatrices(element, x, material, ke, me));
   n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) at[i] = 3 * vertices[i / 3] + i % 3;
@@ -34,11 +34,13 @@ PetscErrorCode OperatorsAddCellForces(Operators o, const PetscReal p[], PetscInt
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    Elasticity material;
+    OperatorsMaterial values;
+    Elasticity        material;
 
     if (part >= 0 && mesh->cell_part[c] != part) continue;
-    PetscCall(ModelGetElasticity(o->model, c, p[N_PART_PARAMETERS * mesh->cell_part[c] + PART_YOUNG], 1, &material));
-    PetscCall(OperatorsAddCellForce(o, c, &material, u, f));
+    PetscCall(OperatorsGetMaterial(o, p, mesh->cell_part[c], &values));
+    PetscCall(ModelGetElasticity(o->model, c, values.young, 1, &material));
+    PetscCall(OperatorsAddCellForce(o, c, values.thickness, &material, u, f));
   }
   PetscFunctionReturn(0);
 }
@@ -127,7 +129,8 @@ PetscErrorCode OperatorsPrescribedDrag(Operators o, const PetscReal p[], const P
 }
 
 /* Adds the weight of local cell c: sum_j m_ij g, the mass matrix times a uniform acceleration */
-static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, const Elasticity *material, PetscScalar f[])
+static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, PetscReal thickness, const Elasticity *material,
+                                             PetscScalar f[])
 {
   const ModelScene *scene;
   const Element    *element;
@@ -136,7 +139,7 @@ static PetscErrorCode OperatorsAddCellWeight(Operators o, PetscInt c, const Elas
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetScene(o->model, &scene));
-  PetscCall(ModelGetCell(o->model, c, &element, vertices, x));
+  PetscCall(ModelGetCellAt(o->model, c, thickness, &element, vertices, x));
   PetscCall(ElementMatrices(element, x, material, ke, me));
   n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++)
@@ -169,7 +172,7 @@ PetscErrorCode OperatorsAddWeight(Operators operators, const PetscReal p[], Vec 
 
     PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
     material = ElasticityFromEngineering(1, 0, values.density);
-    PetscCall(OperatorsAddCellWeight(operators, c, &material, force));
+    PetscCall(OperatorsAddCellWeight(operators, c, values.thickness, &material, force));
   }
   for (PetscInt i = 0; i < n; i++) total[i % 3] += PetscRealPart(force[i]);
   PetscCall(OperatorsAddJointWeight(operators, OperatorsPoint(operators, p), force, total));
@@ -217,7 +220,9 @@ static PetscErrorCode OperatorsAddSpringForces(Operators o, const PetscReal p[],
   for (PetscInt t = 0; t < o->terms.n; t++) {
     const OperatorsTerm *term = &o->terms.term[t];
 
-    if (term->kind != OPERATORS_STIFFNESS || term->factor[0].parameter < N_PART_PARAMETERS * scene->n_parts) continue;
+    if (term->law || term->kind != OPERATORS_STIFFNESS ||
+        term->factor[0].parameter < N_PART_PARAMETERS * scene->n_parts)
+      continue;
     if (term->factor[0].parameter >= o->n_local) continue; /* bushings and points are among the internal forces */
     PetscCall(MatMult(term->A, u, part));
     PetscCall(VecAXPY(f, OperatorsTermCoefficient(term, p), part));

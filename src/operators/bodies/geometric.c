@@ -5,7 +5,8 @@
 #include "operators/operatorsimpl.h"
 
 /* Adds local cell c with displacements u, three values per local node */
-static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity *material, const PetscReal u[], Mat K)
+static PetscErrorCode GeometricAddCell(Model model, PetscInt c, PetscReal thickness, const Elasticity *material,
+                                       const PetscReal u[], Mat K)
 {
   const Element *element;
   const Mesh    *mesh;
@@ -14,7 +15,7 @@ static PetscErrorCode GeometricAddCell(Model model, PetscInt c, const Elasticity
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(model, &mesh));
-  PetscCall(ModelGetCell(model, c, &element, vertices, x));
+  PetscCall(ModelGetCellAt(model, c, thickness, &element, vertices, x));
   n = 3 * element->n_nodes;
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt at = 3 * vertices[i / 3] + i % 3;
@@ -46,7 +47,8 @@ static PetscErrorCode GeometricAddCells(Operators operators, const PetscReal p[]
 
     PetscCall(OperatorsGetMaterial(operators, p, mesh->cell_part[c], &values));
     PetscCall(ModelGetElasticity(model, c, values.young, values.density, &material));
-    PetscCall(GeometricAddCell(model, c, &material, seen[mesh->cell_part[c]] ? seen[mesh->cell_part[c]] : u, K));
+    PetscCall(GeometricAddCell(model, c, values.thickness, &material,
+                               seen[mesh->cell_part[c]] ? seen[mesh->cell_part[c]] : u, K));
   }
   for (PetscInt i = 0; i < scene->n_parts; i++) PetscCall(PetscFree(seen[i]));
   PetscCall(PetscFree(seen));

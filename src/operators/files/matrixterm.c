@@ -101,21 +101,16 @@ static const Quantity *MatrixTermFindRow(const char option[])
   return QuantityFind(&operators_term, option);
 }
 
-/* One of the terms once more with the law as a factor, which OperatorsAddLaw() adds as the part of K and that of C */
+/* One of the terms once more with the law as a factor */
 static PetscErrorCode MatrixTermAddLaw(Operators o, const MatrixTerm *term, PetscInt at)
 {
   const OperatorsTerm plain = o->terms.term[at];
+  OperatorsLaw       *law;
 
   PetscFunctionBeginUser;
   if (!term->law.kind) PetscFunctionReturn(0);
-  PetscCall(OperatorsAddLaw(o, term->name, &term->law, MatrixTermFindRow, -1, plain.A));
-  for (PetscInt t = o->terms.n - 2; t < o->terms.n; t++) {
-    o->terms.term[t].scale      = plain.scale;
-    o->terms.term[t].n          = plain.n;
-    o->terms.term[t].symmetric  = plain.symmetric;
-    o->terms.term[t].frictional = plain.frictional;
-    PetscCall(PetscArraycpy(o->terms.term[t].factor, plain.factor, plain.n));
-  }
+  PetscCall(OperatorsAddLaw(o, term->name, &term->law, MatrixTermFindRow, -1, &law));
+  PetscCall(OperatorsAddLawTerms(o, term->name, law, &plain));
   PetscFunctionReturn(0);
 }
 

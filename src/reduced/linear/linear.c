@@ -7,8 +7,7 @@
       T = (N W E)^-1 N (Cm' - Cx E S),   lambda_n = -S eta + T eta',
       eta'' + (C - Cm E S - P'E T) eta' + (Omega^2 + P'E S) eta = 0.
 
-   Branches of parts add forces as a damping S does that is multiplied by E_j / (s + 1 / tau_j): their elongations z_j
-   on the modes are unknowns of the first-order system, z_j' = eta' - z_j / tau_j.
+   Branches of parts add forces as a damping S does that is multiplied by E_j / (s + 1 / tau_j) (branches.c).
 
    What the modes leave out has in e^(s t) the compliance sum phi phi' / (omega^2 + s^2), to first order W - s^2 Mx,
    exact in all modes above the cut-off but for (omega / their own frequency)^2 of itself:
@@ -255,55 +254,6 @@ static PetscErrorCode ClosedFill(ClosedPairs *c, const PetscReal lambda_n[], Pet
   PetscFunctionReturn(0);
 }
 
-/* Of n eigenvalues the 2 m that are handed out, by falling growth: what oscillates or grows, then real ones that decay,
-   most of them as branches do */
-static PetscErrorCode BranchesKeep(PetscInt n, const PetscReal w[], PetscInt m, PetscReal sigma[], PetscReal omega[])
-{
-  PetscInt kept = 0, *order;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &order));
-  for (PetscInt k = 0; k < n; k++) order[k] = k;
-  PetscCall(PetscSortRealWithPermutation(n, w, order));
-  for (int decays = 0; decays < 2; decays++)
-    for (PetscInt i = n - 1; i >= 0 && kept < 2 * m; i--) {
-      const PetscInt k = order[i];
-
-      if ((w[n + k] == 0 && w[k] <= 0) != decays) continue;
-      sigma[kept]   = w[k];
-      omega[kept++] = w[n + k];
-    }
-  PetscCall(PetscFree(order));
-  PetscFunctionReturn(0);
-}
-
-/* The same with branches: A = [0 1 0; -K -C -E_j B; 0 1 -1 / tau_j], B of each part behind K and C */
-static PetscErrorCode BranchesEigen(const ReducedModel *model, PetscReal *const system[], PetscReal sigma[],
-                                    PetscReal omega[])
-{
-  const PetscInt m = model->m, n = m * (2 + ReducedBranches(model));
-  PetscReal     *A, *w;
-  PetscInt       at = 2 * m;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n * n, &A, 2 * n, &w));
-  for (PetscInt k = 0; k < m; k++) A[k + n * (m + k)] = 1;
-  for (PetscInt k = 0; k < 2 * m; k++)
-    for (PetscInt l = 0; l < m; l++) A[m + l + n * k] = -system[k / m][l + m * (k % m)];
-  for (PetscInt i = 0; i < model->n_branches; i++)
-    for (PetscInt j = 0; j < model->branch[i].n; j++, at += m)
-      for (PetscInt k = 0; k < m; k++) {
-        A[at + k + n * (m + k)]  = 1;
-        A[at + k + n * (at + k)] = -1 / model->branch[i].time[j];
-        for (PetscInt l = 0; l < m; l++)
-          A[m + l + n * (at + k)] = -model->branch[i].stiff[j] * system[2 + i][l + m * k];
-      }
-  PetscCall(DenseEigen(n, A, w, w + n, NULL, NULL));
-  PetscCall(BranchesKeep(n, w, m, sigma, omega));
-  PetscCall(PetscFree2(A, w));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool closed[], const PetscReal lambda_n[],
                                 PetscBool inertia, PetscReal sigma[], PetscReal omega[])
 {
@@ -322,7 +272,7 @@ PetscErrorCode ReducedLinearise(const ReducedModel *model, const PetscBool close
   }
   if (inertia) PetscCall(ClosedDivideByMass(&c, n, system));
   if (n > 2)
-    PetscCall(BranchesEigen(model, system, sigma, omega));
+    PetscCall(ReducedBranchesEigen(model, system, sigma, omega));
   else
     PetscCall(QuadraticEigen(m, system, sigma, omega, NULL));
   PetscCall(PetscFree2(all, system));

@@ -24,8 +24,8 @@ PetscErrorCode GridValuesParse(MPI_Comm comm, const char option[], const char te
   PetscFunctionReturn(0);
 }
 
-/* What to do where the name is one of a law of stiffness that the scene does not have */
-static const char *LawHint(const char name[])
+/* What to do where the name is one of a law of stiffness, or of a layer, that the scene does not have */
+static const char *Hint(const char name[])
 {
   static const char *const of_laws[] = {"_loss_factor", "_prony_", "_zener_", "_table_temperature"};
 
@@ -33,6 +33,7 @@ static const char *LawHint(const char name[])
     if (strstr(name, of_laws[k]))
       return "; a law of the stiffness varies where the scene gives it, a loss factor above 0 without "
              "-model_loss_frequency";
+  if (strstr(name, "_thickness")) return "; the thickness of a part varies where the scene gives it, -..._thickness";
   return "";
 }
 
@@ -52,7 +53,7 @@ PetscErrorCode GridParameterFind(MPI_Comm comm, Operators operators, const char 
     PetscCall(WordsAdd(valid, parameters[i].name, sizeof(valid)));
   }
   PetscCheck(*index >= 0, comm, PETSC_ERR_USER_INPUT, "%s '%s' is no parameter that can be varied; valid are %s%s",
-             option, name, valid, LawHint(name));
+             option, name, valid, Hint(name));
   PetscFunctionReturn(0);
 }
 
