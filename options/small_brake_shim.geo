@@ -2,11 +2,11 @@
 //
 //   gmsh -3 -format msh41 options/small_brake_shim.geo
 //
-// shim: thickness of the shim in the mesh, 0.4 mm by default, set by -setnumber shim 0.0006; n: elements along the pad, 6. The bricks
+// shim: thickness of the shim in the mesh, 0.4 mm by default, set by -setnumber shim 0.0006; n: elements along the pad, 4. The bricks
 // share no nodes; they touch over faces with nodes at the same places, but for the strip.
 
 SetFactory("OpenCASCADE");
-DefineConstant[ shim = {0.0004, Name "shim"}, n = {6, Name "n"} ];
+DefineConstant[ shim = {0.0004, Name "shim"}, n = {4, Name "n"} ];
 
 Macro Brick // corner x, y, z; sizes lx, ly, lz; elements ex, ey, ez -> low[1] its face of least z, body[]: 0 that of largest, 1 itself
   p = newp; Point(p) = {x, y, z};

@@ -1,12 +1,12 @@
 /*
-   Layers whose thickness is given (material.h). A part is one where its outer faces across a direction n lie in pairs of
-   parallel planes, all pairs as far apart as its volume over half of the area of these faces says. Where it is not given
-   n is the direction in which most of its surface looks, the first eigenvector of
+   Layers whose thickness is given (material.h). A part is one where its outer faces across a direction n lie in pairs
+   of parallel planes, all pairs as far apart as its volume over half of the area of these faces says. Where it is not
+   given n is the direction in which most of its surface looks, the first eigenvector of
 
       sum over faces of a a' / |a|,   a the area vector.
 
-   Other faces are its edge, which may be joined to nothing: what lies on a layer moves as it is, what is beside it would
-   have to stretch.
+   Other faces are its edge, which may be joined to nothing: what lies on a layer moves as it is, what is beside it
+   would have to stretch.
 */
 #include "modelimpl.h"
 #include "base/algebra/vec3.h"

@@ -113,7 +113,7 @@ static const Quantity part[] = {
   {"-thickness", "thickness of a flat layer in place of that of its mesh; what lies on it moves with it", "m",
    QUANTITY_REAL, PART(layer.thickness), QUANTITY_POSITIVE, .given = offsetof(Part, layer.given),
    .varies = VARIES_LINEAR},
-  {"-thickness_axis", "x,y,z across the layer, where it is not thin", NULL, QUANTITY_REALS, PART(layer.normal),
+  {"-thickness_axis", "x,y,z, direction across the layer where that is not its thin one", NULL, QUANTITY_REALS, PART(layer.normal),
    .given = offsetof(Part, layer.has_axis)},
   {"-spin", "spin about -spin_axis, in modes: gyroscopic and centrifugal terms", "rad/s", QUANTITY_REAL,
    PART(spin.rate), .given = offsetof(Part, spin.given), .in = RUN_LINEAR,

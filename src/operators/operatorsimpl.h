@@ -139,7 +139,7 @@ PETSC_INTERN PetscErrorCode OperatorsGetSeen(Operators operators, const PetscRea
    weight of their masses, added to forces of the same shape, each at the rank that owns the node. Collective. */
 PETSC_INTERN PetscErrorCode OperatorsAddJoints(Operators operators);
 
-/* layer.c - thicknesses of layers as parameters; terms of such a part. assemble.c - the lumped mass of an element in
+/* layer.c - thicknesses of layers as parameters; terms of such a part. bodies.c - the lumped mass of an element in
    place of the consistent one */
 PETSC_INTERN PetscErrorCode OperatorsAddThicknesses(Operators operators, PetscInt n, const Part parts[]);
 PETSC_INTERN PetscErrorCode OperatorsAddLayer(Operators operators, PetscInt part, const Part *p);

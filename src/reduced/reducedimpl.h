@@ -304,8 +304,8 @@ PETSC_INTERN PetscErrorCode ReducedWeighGrowth(ReducedRun reduced, PetscReal *of
 PETSC_INTERN PetscErrorCode ReducedWarnGrowth(ReducedRun reduced);
 PETSC_INTERN PetscErrorCode ReducedGrowthView(ReducedRun reduced, PetscViewer viewer);
 
-/* branches.c - 2 m eigenvalues with branches of system [2 + parts] = K, C and the dampings of the parts [m][m], which are
-   overwritten */
+/* branches.c - 2 m eigenvalues with branches of system [2 + parts] = K, C and the dampings of the parts [m][m], which
+   are overwritten */
 PETSC_INTERN PetscErrorCode ReducedBranchesEigen(const ReducedModel *model, PetscReal *const system[],
                                                  PetscReal sigma[], PetscReal omega[]);
 

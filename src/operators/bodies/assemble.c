@@ -8,16 +8,6 @@
 */
 #include "operators/operatorsimpl.h"
 
-/* Replaces the consistent mass of an element by the lumped one */
-void OperatorsLumpMass(const Element *element, PetscReal mass[])
-{
-  const PetscInt n = 3 * element->n_nodes;
-  PetscReal      lumped[ELEMENT_MAX_NODES];
-
-  ElementLump(element, mass, lumped);
-  for (PetscInt i = 0; i < n * n; i++) mass[i] = i % n == i / n ? lumped[i / n / 3] : 0;
-}
-
 /* Adds local cell c to K_p and M_p, with E = 1 and rho = 1. Rows and columns of held directions are -1, which
    MatSetValues() leaves out. Cells live on one rank each: entries of nodes that other ranks own go there in the
    assembly. */

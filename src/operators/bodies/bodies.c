@@ -30,6 +30,16 @@ PetscErrorCode OperatorsGetMaterial(Operators operators, const PetscReal p[], Pe
   PetscFunctionReturn(0);
 }
 
+/* Replaces the consistent mass of an element by the lumped one */
+void OperatorsLumpMass(const Element *element, PetscReal mass[])
+{
+  const PetscInt n = 3 * element->n_nodes;
+  PetscReal      lumped[ELEMENT_MAX_NODES];
+
+  ElementLump(element, mass, lumped);
+  for (PetscInt i = 0; i < n * n; i++) mass[i] = i % n == i / n ? lumped[i / n / 3] : 0;
+}
+
 /* Borrowed until the next call with another p, or OperatorsReleaseBodies(). *C is NULL without damping at p. */
 PetscErrorCode OperatorsGetBodies(Operators operators, const PetscReal p[], Mat *K, Mat *M, Mat *C)
 {

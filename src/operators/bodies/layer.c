@@ -73,12 +73,17 @@ static PetscErrorCode LayerSplit(PetscInt n, PetscReal t, PetscReal *k[LAYER_TER
   PetscFunctionReturn(0);
 }
 
-/* Adds a cell to all matrices, M of one thickness; *over is that of the worst cell */
-static PetscErrorCode LayerAddCell(Operators o, PetscInt c, const Layer *layer, PetscReal *room, Mat K[LAYER_TERMS],
-                                   Mat M, PetscReal *over)
+/* Of a part, with room for those of a cell; over is what LayerSplit() leaves of the worst cell */
+typedef struct {
+  Mat        K[LAYER_TERMS], M; /* M of one thickness */
+  PetscReal *room, over;
+} LayerMatrices;
+
+/* Adds a cell */
+static PetscErrorCode LayerAddCell(Operators o, PetscInt c, const Layer *layer, LayerMatrices *m)
 {
-  PetscReal *const k[LAYER_TERMS] = {room, &room[LAYER_SIZE], &room[2 * LAYER_SIZE]}, *fourth = &room[3 * LAYER_SIZE];
-  PetscReal *const mass = &room[4 * LAYER_SIZE];
+  PetscReal *const k[LAYER_TERMS] = {m->room, &m->room[LAYER_SIZE], &m->room[2 * LAYER_SIZE]};
+  PetscReal *const fourth = &m->room[3 * LAYER_SIZE], *mass = &m->room[4 * LAYER_SIZE];
   const Element   *element;
   const Mesh      *mesh;
   Elasticity       unit;
@@ -97,32 +102,31 @@ static PetscErrorCode LayerAddCell(Operators o, PetscInt c, const Layer *layer, 
   PetscCall(LayerCellAt(o, c, 2 * t, &unit, k[2], mass));
   PetscCall(LayerCellAt(o, c, t, &unit, k[1], mass));
   PetscCall(LayerSplit(n, t, k, fourth, &left));
-  *over = PetscMax(*over, left);
+  m->over = PetscMax(m->over, left);
   if (o->lump) OperatorsLumpMass(element, mass);
   for (PetscInt i = 0; i < n * n; i++) mass[i] /= t;
-  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatSetValues(K[i], n, rows, n, rows, k[i], ADD_VALUES));
-  PetscCall(MatSetValues(M, n, rows, n, rows, mass, ADD_VALUES));
+  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatSetValues(m->K[i], n, rows, n, rows, k[i], ADD_VALUES));
+  PetscCall(MatSetValues(m->M, n, rows, n, rows, mass, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LayerAssemble(Operators o, PetscInt part, const Part *p, Mat K[LAYER_TERMS], Mat *M)
+static PetscErrorCode LayerAssemble(Operators o, PetscInt part, const Part *p, LayerMatrices *m)
 {
   const Mesh *mesh;
-  PetscReal  *room, over = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetMesh(o->model, &mesh));
-  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(PatternCreate(o->model, part, o->lump, &K[i], i ? NULL : M));
-  PetscCall(PetscMalloc1(5 * LAYER_SIZE, &room));
+  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(PatternCreate(o->model, part, o->lump, &m->K[i], i ? NULL : &m->M));
+  PetscCall(PetscMalloc1(5 * LAYER_SIZE, &m->room));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    if (mesh->cell_part[c] == part) PetscCall(LayerAddCell(o, c, &p->layer, room, K, *M, &over));
-  PetscCall(PetscFree(room));
-  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatAssemblyBegin(K[i], MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyBegin(*M, MAT_FINAL_ASSEMBLY));
-  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatAssemblyEnd(K[i], MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*M, MAT_FINAL_ASSEMBLY));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &over, 1, MPIU_REAL, MPI_MAX, o->comm));
-  PetscCheck(over <= LAYER_SAME, o->comm, PETSC_ERR_USER_INPUT,
+    if (mesh->cell_part[c] == part) PetscCall(LayerAddCell(o, c, &p->layer, m));
+  PetscCall(PetscFree(m->room));
+  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatAssemblyBegin(m->K[i], MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(m->M, MAT_FINAL_ASSEMBLY));
+  for (int i = 0; i < LAYER_TERMS; i++) PetscCall(MatAssemblyEnd(m->K[i], MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->M, MAT_FINAL_ASSEMBLY));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->over, 1, MPIU_REAL, MPI_MAX, o->comm));
+  PetscCheck(m->over <= LAYER_SAME, o->comm, PETSC_ERR_USER_INPUT,
              "-%s_thickness %.6g: cells of part %s are no prisms along %.4g,%.4g,%.4g, which those of incompatible "
              "modes must be; give -model_element full, or cells of second order",
              p->name, (double)p->layer.thickness, p->name, (double)p->layer.normal[0], (double)p->layer.normal[1],
@@ -130,44 +134,38 @@ static PetscErrorCode LayerAssemble(Operators o, PetscInt part, const Part *p, M
   PetscFunctionReturn(0);
 }
 
-/* A term c(p) h^power A */
+/* A term A p_1 .. p_n, each to its power; zero powers are left out */
 static PetscErrorCode LayerAddTerm(Operators o, OperatorsTermKind kind, Mat A, PetscInt n, const PetscInt parameter[],
-                                   PetscInt thickness, PetscInt power)
+                                   const PetscInt power[])
 {
-  PetscInt index[OPERATORS_MAX_FACTORS], powers[OPERATORS_MAX_FACTORS];
+  const PetscInt kept = power[n - 1] ? n : n - 1;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) {
-    index[i]  = parameter[i];
-    powers[i] = 1;
-  }
-  index[n]  = thickness;
-  powers[n] = power;
-  PetscCall(TermsAdd(&o->terms, kind, A, PETSC_TRUE, power ? n + 1 : n, index));
-  PetscCall(TermsSetPowers(&o->terms, powers));
+  PetscCall(TermsAdd(&o->terms, kind, A, PETSC_TRUE, kept, parameter));
+  PetscCall(TermsSetPowers(&o->terms, power));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode OperatorsAddLayer(Operators o, PetscInt part, const Part *p)
 {
   const PetscInt first = N_PART_PARAMETERS * part, h = o->thickness[part];
-  const PetscInt young = first + PART_YOUNG, density = first + PART_DENSITY;
-  const PetscInt alpha[2] = {first + PART_ALPHA, density}, beta[2] = {first + PART_BETA, young};
-  Mat            K[LAYER_TERMS], M;
+  const PetscInt young[2] = {first + PART_YOUNG, h}, beta[3] = {first + PART_BETA, first + PART_YOUNG, h};
+  const PetscInt density[2] = {first + PART_DENSITY, h}, alpha[3] = {first + PART_ALPHA, first + PART_DENSITY, h};
+  LayerMatrices  m = {.over = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(LayerAssemble(o, part, p, K, &M));
+  PetscCall(LayerAssemble(o, part, p, &m));
   for (int i = 0; i < LAYER_TERMS; i++)
-    PetscCall(LayerAddTerm(o, OPERATORS_STIFFNESS, K[i], 1, &young, h, layer_power[i]));
-  PetscCall(LayerAddTerm(o, OPERATORS_MASS, M, 1, &density, h, 1));
-  PetscCall(LayerAddTerm(o, OPERATORS_DAMPING, M, 2, alpha, h, 1));
+    PetscCall(LayerAddTerm(o, OPERATORS_STIFFNESS, m.K[i], 2, young, (PetscInt[]){1, layer_power[i]}));
+  PetscCall(LayerAddTerm(o, OPERATORS_MASS, m.M, 2, density, (PetscInt[]){1, 1}));
+  PetscCall(LayerAddTerm(o, OPERATORS_DAMPING, m.M, 3, alpha, (PetscInt[]){1, 1, 1}));
   PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "alpha"));
   for (int i = 0; i < LAYER_TERMS; i++) {
-    PetscCall(LayerAddTerm(o, OPERATORS_DAMPING, K[i], 2, beta, h, layer_power[i]));
+    PetscCall(LayerAddTerm(o, OPERATORS_DAMPING, m.K[i], 3, beta, (PetscInt[]){1, 1, layer_power[i]}));
     PetscCall(TermsSetCause(&o->terms, "material damping", p->name, "beta"));
-    PetscCall(MatDestroy(&K[i]));
+    PetscCall(MatDestroy(&m.K[i]));
   }
-  PetscCall(MatDestroy(&M));
+  PetscCall(MatDestroy(&m.M));
   PetscFunctionReturn(0);
 }
 

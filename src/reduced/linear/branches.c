@@ -1,6 +1,6 @@
 /*
-   Eigenvalues of the reduced model with Maxwell branches. A part whose damping S is multiplied by E_j / (s + 1 / tau_j)
-   moves in some of the modes alone, those of its own body and what contact adds: S = U V', V orthonormal, of rank r much
+   Eigenvalues of the reduced model with Maxwell branches. A part whose damping S is multiplied by E_j / (s + 1 /
+   tau_j) moves in some of the modes alone, those of its own body and what contact adds: S = U V', V orthonormal, of rank r much
    below m. Its branches have r unknowns each, z_j = V' times their elongations, in one first-order system,
 
       eta' = rate,   rate' = -K eta - C rate - sum_j E_j U z_j,   z_j' = V' rate - z_j / tau_j.
@@ -62,17 +62,19 @@ static PetscErrorCode BranchesKeep(PetscInt n, const PetscReal w[], PetscInt m, 
   PetscFunctionReturn(0);
 }
 
-/* The rows and columns of one branch from `at` on in A [n][n] */
-static void BranchFill(PetscInt m, PetscInt n, PetscInt at, const BranchFactors *f, PetscReal stiff, PetscReal time,
-                       PetscReal A[])
+/* The rows and columns of the branches of a part from `at` on in A [n][n], n columns apart; returns where they end */
+static PetscInt BranchesFill(PetscInt m, const ReducedBranch *branch, const BranchFactors *f, PetscInt n, PetscInt at,
+                             PetscReal A[])
 {
-  for (PetscInt k = 0; k < f->r; k++) {
-    A[at + k + n * (at + k)] = -1 / time;
-    for (PetscInt l = 0; l < m; l++) {
-      A[at + k + n * (m + l)] = f->V[k + m * l];
-      A[m + l + n * (at + k)] = -stiff * f->U[l + m * k];
+  for (PetscInt j = 0; j < branch->n; j++, at += f->r)
+    for (PetscInt k = 0; k < f->r; k++) {
+      A[at + k + n * (at + k)] = -1 / branch->time[j];
+      for (PetscInt l = 0; l < m; l++) {
+        A[at + k + n * (m + l)] = f->V[k + m * l];
+        A[m + l + n * (at + k)] = -branch->stiff[j] * f->U[l + m * k];
+      }
     }
-  }
+  return at;
 }
 
 PetscErrorCode ReducedBranchesEigen(const ReducedModel *model, PetscReal *const system[], PetscReal sigma[],
@@ -93,9 +95,7 @@ PetscErrorCode ReducedBranchesEigen(const ReducedModel *model, PetscReal *const 
   for (PetscInt k = 0; k < m; k++) A[k + n * (m + k)] = 1;
   for (PetscInt k = 0; k < 2 * m; k++)
     for (PetscInt l = 0; l < m; l++) A[m + l + n * k] = -system[k / m][l + m * (k % m)];
-  for (PetscInt i = 0; i < model->n_branches; i++)
-    for (PetscInt j = 0; j < model->branch[i].n; j++, at += f[i].r)
-      BranchFill(m, n, at, &f[i], model->branch[i].stiff[j], model->branch[i].time[j], A);
+  for (PetscInt i = 0; i < model->n_branches; i++) at = BranchesFill(m, &model->branch[i], &f[i], n, at, A);
   PetscCall(DenseEigen(n, A, w, w + n, NULL, NULL));
   PetscCall(BranchesKeep(n, w, m, sigma, omega));
   PetscCall(PetscFree2(A, w));
