@@ -145,18 +145,19 @@ PetscErrorCode OperatorsSetUp(Operators operators);
 PetscErrorCode OperatorsGetSave(Operators operators, const char **folder);
 
 /*@
-   OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young (Pa),
-   density (kg/m^3), alpha (1/s), beta (s); of each layer whose thickness is given thickness (m); of each list of
-   springs stiffness (N/m), of dashpots viscosity (N s/m), with _x, _y, _z appended where the components that are not
-   zero differ; of each bushing and point stiffness (N/m), turn_stiffness (N m/rad), viscosity (N s/m), turn_viscosity
-   (N m s/rad) alike, of a point mass (kg); of each part that spins spin (rad/s), on which pencils alone depend; of each
-   contact mu, kn (N/m, penalty) or, where the pressure is not linear, the parameters of its law (pressurelaw.h), kt (N/m, holding by friction), and with
-   friction damping force (N) and speed (m/s), or rotation (rad/s) where that is what was given, mu standing for the
-   parameters of its friction law (frictionlaw.h), of which those that decide mu' alone are there with friction
-   damping; where it wears wear_rate and wear_rate_master (1/Pa^a); contact_mu for loaded or dense matrices with H,
-   and what -terms name (borrowed). An interface of which nothing says along what it slides has a mu only where it
-   holds by friction. Where a contact wears, wear_time (s). Then of each load force (N, the length of the vector) or
-   pressure (Pa), and moment (N m, likewise). Not collective.
+   OperatorsGetParameters - the numbers that the matrices depend on, in the order of the scene: of each part young
+   (Pa), density (kg/m^3), alpha (1/s), beta (s); of each layer whose thickness is given thickness (m); of each list
+   of springs stiffness (N/m), of dashpots viscosity (N s/m), with _x, _y, _z appended where the components that are
+   not zero differ; of each bushing and point stiffness (N/m), turn_stiffness (N m/rad), viscosity (N s/m),
+   turn_viscosity (N m s/rad) alike, of a point mass (kg); of each part that spins spin (rad/s), on which pencils
+   alone depend; of each contact mu, kn (N/m, penalty) or, where the pressure is not linear, the parameters of its
+   law (pressurelaw.h), kt (N/m, holding by friction), and with friction damping force (N) and speed (m/s), or
+   rotation (rad/s) where that is what was given, mu standing for the parameters of its friction law (frictionlaw.h),
+   of which those that decide mu' alone are there with friction damping; where it wears wear_rate and
+   wear_rate_master (1/Pa^a); contact_mu for loaded or dense matrices with H, and what -terms name (borrowed). An
+   interface of which nothing says along what it slides has a mu only where it holds by friction. Where a contact
+   wears, wear_time (s). Then of each load force (N, the length of the vector) or pressure (Pa), and moment (N m,
+   likewise). Not collective.
 @*/
 PetscErrorCode OperatorsGetParameters(Operators operators, PetscInt *n, const OperatorsParameter **parameters);
 
