@@ -76,7 +76,7 @@ FAULTS = (
      "L->entry[k].value * a[", "(1 + 1e-6) * L->entry[k].value * a[", "shiftinvert-1 shiftinvert-2"),
     ("multipliers count as modes", "src/modes/window/window.c", "*n -= window->known.massless;", "*n -= 0 * window->known.massless;",
      "singular"),
-    ("lumped mass is 1 % more in the matrices than in the step", "src/operators/bodies/assemble.c", "? lumped[i / n / 3] : 0",
+    ("lumped mass is 1 % more in the matrices than in the step", "src/operators/bodies/bodies.c", "? lumped[i / n / 3] : 0",
      "? 1.01 * lumped[i / n / 3] : 0", "transient_growth"),
     ("lumped masses of second order are equal, not the scaled diagonal", "src/model/element.c",
      "mass[3 * a * (3 * n) + 3 * a] * all / trace", "all / n", "element-1"),

@@ -22,7 +22,8 @@ VARIED = ["-options_file", SOURCE / "options/massi2005_reduced.yaml", "-rig_disc
           "-rig_beam_elements", "3", "-contact_force", "10", "-contact_friction_damping"]
 # What could vary in that scene, were it given
 ABSENT = re.compile(r"(^|_)(spin|\w+_(total|per_area)|moment|tension|shortening|pressure|pressure_(c0|p0|k|m)|kn|kt|"
-                    r"rotation|thickness|wear_(rate|rate_master|time)|loss_factor|prony_(modulus|time)|zener_(modulus|time|order)|table_temperature|"
+                    r"rotation|thickness|wear_(rate|rate_master|time)|loss_factor|prony_(modulus|time)|zener_(modulus|time|order)|"
+                    r"table_temperature|"
                     r"mu_(static|kinetic|decay_speed|viscous|stribeck_speed|factor))$")
 
 

@@ -1,7 +1,7 @@
 /*
    Eigenvalues of the reduced model with Maxwell branches. A part whose damping S is multiplied by E_j / (s + 1 /
-   tau_j) moves in some of the modes alone, those of its own body and what contact adds: S = U V', V orthonormal, of rank r much
-   below m. Its branches have r unknowns each, z_j = V' times their elongations, in one first-order system,
+   tau_j) moves in some of the modes alone, those of its own body and what contact adds: S = U V', V orthonormal, of
+   rank r much below m. Its branches have r unknowns each, z_j = V' times their elongations, in one first-order system,
 
       eta' = rate,   rate' = -K eta - C rate - sum_j E_j U z_j,   z_j' = V' rate - z_j / tau_j.
 
