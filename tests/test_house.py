@@ -73,10 +73,9 @@ REFUSED = {"QuantitiesRefuse": "the rows themselves",
 REALS = ("QUANTITY_REAL", "QUANTITY_REALS", "QUANTITY_LIST", "QUANTITY_MANY")
 # Numbers without a unit, or with that of what they stand for
 UNITLESS = set("""mu_factor axis frf_rtol rig_disc_spread poisson axis_1 axis_2 axis_3 cylinder_axis loss_factor spin_axis at
-    thickness_axis
-    dynamics_step_fraction contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol dynamics_growth_rtol
-    cycle_rtol cycle_range cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k operators_dense_m
-    operators_dense_c operators_dense_h ts_central_b pressure_m wear_exponent wear_settled zener_order table_temperature
+    thickness_axis dynamics_step_fraction contact_mu dense scale modes_components sweep_rtol sweep_percent slip map_rtol
+    dynamics_growth_rtol cycle_rtol cycle_range cycle_amplitude superelement_rtol mu mu_static mu_kinetic operators_dense_k
+    operators_dense_m operators_dense_c operators_dense_h ts_central_b pressure_m wear_exponent wear_settled zener_order table_temperature
     table_loss_factor sample_rtol mean deviation lower upper peak quiet_rtol quiet_tolerance quiet_lower quiet_upper design_rtol
     design_probability design_mass design_margin design_lower design_upper design_uncertain_lower design_uncertain_upper""".split())
 OWN = re.compile(r"(?<![\w.>/}~-])/(work|home|root|Users|mnt)/|\b(this session|worktree|issue #?\d+|AI assistant)\b",
