@@ -33,9 +33,8 @@ static const Quantity rows[] = {
   {"-design_max", "most designs that are looked at", NULL, QUANTITY_INT, DESIGN_AT(max_designs), .initial = 40,
    QUANTITY_POSITIVE},
   {"-design_starts",
-   "where the cuts lead to no good design: designs spread over the box of the parameters that are looked at, of which "
-   "the "
-   "least bad ones begin anew",
+   "where the cuts lead to no good design: designs spread over the box of the parameters, of which the least bad ones "
+   "begin anew",
    NULL, QUANTITY_INT, DESIGN_AT(n_starts), .initial = 64, QUANTITY_NOT_NEGATIVE},
   {"-design_corners", "full solutions at corners of the uncertain box of a design that is found, then inside it", NULL,
    QUANTITY_INT, DESIGN_AT(n_corners), .initial = 20, QUANTITY_NOT_NEGATIVE,

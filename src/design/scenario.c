@@ -223,25 +223,35 @@ static int CompareScenarios(const void *a, const void *b)
   return x->index < y->index ? -1 : x->index > y->index;
 }
 
+/* s[i] := scenario index[i] of a design, each looked at by the rank that it falls to. Collective */
+static PetscErrorCode ScenariosLook(const Design d, const PetscReal z[], PetscInt n, const PetscInt index[],
+                                    Scenario s[])
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  for (PetscInt i = 0; i < n; i++) {
+    s[i] = (Scenario){.index = index ? index[i] : i};
+    if (PointGroupsOwner(&d->box.groups, i) == rank) PetscCall(ScenarioLook(d, z, &s[i]));
+  }
+  for (PetscInt i = 0; i < n; i++)
+    PetscCallMPI(MPI_Bcast(&s[i], (PetscMPIInt)sizeof(*s), MPI_BYTE, PointGroupsOwner(&d->box.groups, i), d->comm));
+  PetscFunctionReturn(0);
+}
+
 /* With a probability of growth the worst scenarios, that share of them, may stay as they are */
 PetscErrorCode DesignLook(Design d, PetscBool keep, DesignPoint *point)
 {
   const PetscInt n       = d->n_scenarios;
   const PetscInt allowed = (PetscInt)PetscFloorReal(d->probability * (PetscReal)n + 1e-9);
   Scenario      *s;
-  PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
   StatusesCount(d, point);
   point->n_unstable = point->n_scenarios = 0;
-  PetscCall(PetscCalloc1(n, &s));
-  for (PetscInt i = 0; i < n; i++) {
-    s[i].index = i;
-    if (PointGroupsOwner(&d->box.groups, i) == rank) PetscCall(ScenarioLook(d, point->z, &s[i]));
-  }
-  for (PetscInt i = 0; i < n; i++)
-    PetscCallMPI(MPI_Bcast(&s[i], (PetscMPIInt)sizeof(*s), MPI_BYTE, PointGroupsOwner(&d->box.groups, i), d->comm));
+  PetscCall(PetscMalloc1(n, &s));
+  PetscCall(ScenariosLook(d, point->z, n, NULL, s));
   qsort(s, (size_t)n, sizeof(*s), CompareScenarios);
   point->excess = s[allowed].excess;
   point->omega  = s[allowed].omega;
@@ -260,25 +270,25 @@ PetscErrorCode DesignGlance(Design d, const PetscReal z[], PetscReal bound, Pets
 {
   const PetscInt n = d->n_scenarios, step = d->box.groups.n_groups;
   PetscBool      enough = PETSC_FALSE;
-  PetscMPIInt    rank;
+  Scenario      *s;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(d->comm, &rank));
+  PetscCall(PetscMalloc1(step, &s));
   *excess = PETSC_NINFINITY;
   if (unstable) *unstable = PETSC_FALSE;
   for (PetscInt first = 0; first < n && !enough; first += step) {
-    for (PetscInt k = first; k < PetscMin(n, first + step); k++) {
-      Scenario s = {.index = order[k]};
+    const PetscInt n_looked = PetscMin(step, n - first);
 
-      if (PointGroupsOwner(&d->box.groups, k) == rank) PetscCall(ScenarioLook(d, z, &s));
-      PetscCallMPI(MPI_Bcast(&s, (PetscMPIInt)sizeof(s), MPI_BYTE, PointGroupsOwner(&d->box.groups, k), d->comm));
-      *excess = PetscMax(*excess, s.excess);
-      if (unstable && s.n_unstable) *unstable = PETSC_TRUE;
-      if (s.excess <= bound && !(unstable && s.n_unstable)) continue;
+    PetscCall(ScenariosLook(d, z, n_looked, &order[first], s));
+    for (PetscInt k = 0; k < n_looked; k++) {
+      *excess = PetscMax(*excess, s[k].excess);
+      if (unstable && s[k].n_unstable) *unstable = PETSC_TRUE;
+      if (s[k].excess <= bound && !(unstable && s[k].n_unstable)) continue;
       enough = PETSC_TRUE;
-      PetscCall(PetscArraymove(&order[1], order, k));
-      order[0] = s.index;
+      PetscCall(PetscArraymove(&order[1], order, first + k));
+      order[0] = s[k].index;
     }
   }
+  PetscCall(PetscFree(s));
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,8 @@
 /*
    The designs one after the other. First the cuts of those before lead to a good one; where they do not, designs spread
-   over the box are looked at, and the least bad ones begin anew. From the scene to that the limit
-   is crossed somewhere: there, found by halving, the cuts are sharp, and the next design from these is tried.
-   As long as that is good, and nearer to the scene, it goes on.
+   over the box are looked at, and the search begins anew from the least bad ones, each with its share of the designs
+   that may still be tried. From the scene to a good design the limit is crossed somewhere: there, found by halving, the
+   cuts are sharp, and the next design from these is tried. As long as that is good, and nearer to the scene, it goes on.
 */
 #include "designimpl.h"
 #include "base/process/progress.h"
@@ -77,8 +77,8 @@ static PetscBool StepMoves(const Design d, const PetscReal z[])
   return most > LEAST_RADIUS ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Until one is good: from the least bad one, and less far where a step has failed */
-static PetscErrorCode SearchGood(Design d)
+/* Until one is good, or there are `most`: from the least bad one, and less far where a step has failed */
+static PetscErrorCode SearchGood(Design d, PetscInt most)
 {
   PetscReal radius = RADIUS, z[CUBE_MAX_VARIABLES];
   PetscBool moves = PETSC_TRUE, first = PETSC_TRUE;
@@ -87,7 +87,7 @@ static PetscErrorCode SearchGood(Design d)
   PetscCall(PetscArraycpy(z, d->n_points ? d->point[d->best].z : d->cube.own, d->cube.n));
   if (d->n_points && !d->again) PetscCall(DesignStep(d, d->point[d->best].z, radius, z));
   PetscCallMPI(MPI_Bcast(z, (PetscMPIInt)d->cube.n, MPIU_REAL, 0, d->comm));
-  while (d->n_points < d->max_designs && !d->found && radius > LEAST_RADIUS && moves) {
+  while (d->n_points < most && !d->found && radius > LEAST_RADIUS && moves) {
     DesignPoint *point;
 
     PetscCall(DesignTry(d, z, &point));
@@ -110,17 +110,19 @@ static PetscErrorCode SearchElsewhere(Design d)
   DesignList starts;
 
   PetscFunctionBeginUser;
-  if (d->found || d->n_elsewhere || !d->n_starts) PetscFunctionReturn(0);
+  if (d->found || d->n_elsewhere || !d->n_starts || d->n_points == d->max_designs) PetscFunctionReturn(0);
   PetscCall(DesignStarts(d, &starts));
   for (PetscInt i = 0; i < starts.n && !d->found && d->n_points < d->max_designs; i++) {
-    DesignPoint *point;
+    const PetscInt left = d->max_designs - d->n_points, share = (left + starts.n - i - 1) / (starts.n - i);
+    const PetscInt most = d->n_points + share;
+    DesignPoint   *point;
 
     d->n_cuts = 0;
     d->again  = PETSC_FALSE;
     PetscCall(DesignTry(d, starts.z[i], &point));
     d->best  = d->n_points - 1;
     d->found = point->good;
-    if (!d->found) PetscCall(SearchGood(d));
+    if (!d->found) PetscCall(SearchGood(d, most));
   }
   PetscFunctionReturn(0);
 }
@@ -231,7 +233,7 @@ PetscErrorCode DesignSearch(Design d)
   PetscFunctionBeginUser;
   if (!d->point) PetscCall(PetscCalloc1(d->max_designs, &d->point));
   PetscCall(ProgressBegin(&progress, "designs", 2));
-  PetscCall(SearchGood(d));
+  PetscCall(SearchGood(d, d->max_designs));
   PetscCall(SearchElsewhere(d));
   PetscCall(ProgressStep(&progress));
   if (d->found) PetscCall(SearchBetter(d));

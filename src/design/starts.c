@@ -6,6 +6,8 @@
 #include "designimpl.h"
 #include "sample/draw/sequence.h"
 
+#define SEED 3 /* of the scrambling; any will do */
+
 /* Puts a design into the list, where it is one of the least bad ones */
 static PetscErrorCode StartsInsert(PetscInt size, const PetscReal z[], PetscReal excess, DesignList *list)
 {
@@ -25,7 +27,7 @@ static PetscErrorCode StartsInsert(PetscInt size, const PetscReal z[], PetscReal
 
 PetscErrorCode DesignStarts(Design d, DesignList *starts)
 {
-  Sequence  sequence = {SEQUENCE_SOBOL, 3, PetscMax(1, d->n_starts), d->cube.n, NULL};
+  Sequence  sequence = {SEQUENCE_SOBOL, SEED, d->n_starts, d->cube.n, NULL};
   PetscReal z[CUBE_MAX_VARIABLES], excess;
   PetscInt *order;
 
