@@ -1,8 +1,9 @@
 /*
    The designs one after the other. First the cuts of those before lead to a good one; where they do not, designs spread
    over the box are looked at, and the search begins anew from the least bad ones, each with its share of the designs
-   that may still be tried. From the scene to a good design the limit is crossed somewhere: there, found by halving, the
-   cuts are sharp, and the next design from these is tried. As long as that is good, and nearer to the scene, it goes on.
+   that may still be tried. From the scene to a good design the limit is crossed somewhere: there, found by halving,
+   the cuts are sharp, and the next design from these is tried. As long as that is good, and nearer to the scene, it
+   goes on.
 */
 #include "designimpl.h"
 #include "base/process/progress.h"
