@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """The page of a quiet box or of a design beside its tables: every number of quiet.csv, the changes of a design and its corners are in it,
-and the verdict has what the table says.
+and the verdict has what the table says; the button of the design sets its values.
 
     box_page.py quiet|design RESULTS"""
 
 import csv
 import html
+import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -48,6 +50,38 @@ def check_quiet(folder, page):
     assert all(f">{state}" in page for state in states) and page.count("the scene&#x27;s own values") + page.count("the scene's own values")
 
 
+def page_of(folder):
+    """Its text."""
+    with tempfile.TemporaryDirectory() as name:
+        page = Path(name, "page.html")
+        subprocess.run([SCRIPT, folder, "-o", page], check=True, stdout=subprocess.DEVNULL)
+        return page.read_text()
+
+
+def button_of(page, title):
+    """Values that a button of the sliders sets; None without it."""
+    found = [values for values, text in re.findall(r'<button[^>]* data-values="([^"]*)"[^>]*>([^<]*)</button>', page)
+             if html.unescape(text) == title]
+    return json.loads(html.unescape(found[0])) if found else None
+
+
+def check_button(folder, page, table, title, there):
+    """It sets the values of a table and the scene's own; there is none where the table names what no slider has, or a value is missing."""
+    with (folder / "reduced_model.bin").open("rb") as file:
+        entries = json.loads(file.readline())["parameters"]
+    assert there and button_of(page, title) == [float(there.get(entry["name"], entry["value"])) for entry in entries], title
+    name, text = next(iter(there)), (folder / table).read_text()
+    joined = re.sub(rf"(^|,){re.escape(name)}(,|$)", rf"\g<1>{name}+other\2", text, count=1, flags=re.MULTILINE)
+    with tempfile.TemporaryDirectory() as other:
+        copy = Path(other, "copy")
+        shutil.copytree(folder, copy)
+        for changed in (joined, text.replace(there[name], "")):
+            assert changed != text
+            (copy / table).write_text(changed)
+            without = page_of(copy)
+            assert button_of(without, "The scene's own values") and button_of(without, title) is None, (title, changed)
+
+
 def check_design(folder, page):
     """The design beside the scene, one row for each one tried, corners."""
     rows, corners = read(folder / "design.csv"), read(folder / "design_corners.csv")
@@ -61,13 +95,12 @@ def check_design(folder, page):
     lead = re.search(r'<p class="lead">(.*?)</p>', page)[1]
     assert f"unstable mode at {rows[0]['unstable_scenarios']} scenarios of {rows[0]['scenarios']}" in lead, lead
     assert f"0 of {len(corners)} full solutions" in lead, lead
+    names = list(found)[list(found).index("other_statuses") + 1:]
+    check_button(folder, page, "design.csv", "The design's values", {name: found[name] for name in names})
 
 
 def main(kind, folder):
-    with tempfile.TemporaryDirectory() as name:
-        page = Path(name, "page.html")
-        subprocess.run([SCRIPT, folder, "-o", page], check=True, stdout=subprocess.DEVNULL)
-        {"quiet": check_quiet, "design": check_design}[kind](folder, page.read_text())
+    {"quiet": check_quiet, "design": check_design}[kind](folder, page_of(folder))
     print("the page has what the tables have")
 
 

@@ -13,6 +13,7 @@ import numpy
 
 from ..mesh.bodies import Scene, opened, sound
 from ..tables import BadInput, header, optional, read_table
+from .boxes import DESIGN
 from .markup import Markup, Part, count, figures, missing, section, tag
 from .model_file import ReducedModel
 from .shapes import FULL, Bodies, Shape, data_script, packed, viewer
@@ -106,18 +107,20 @@ def known_places(folder):
     """Values of parameters by their names: of a design that was found, of a dangerous point."""
     design, quiet = folder.path / "design.csv", folder.path / "quiet.csv"
     if design.exists():
-        rows = read_table(design, dict.fromkeys(header(design), optional))
-        yield "The design's values", next((row for row in rows if row["found"] == 1), {})
+        names = header(design)[len(DESIGN):]
+        rows = read_table(design, dict.fromkeys(("found", *names), optional))
+        yield "The design's values", next(({name: row[name] for name in names} for row in rows if row["found"] == 1), {})
     if quiet.exists():
         rows = read_table(quiet, {"variable": str, "danger": optional})
         yield "The nearest dangerous point", {row["variable"]: row["danger"] for row in rows}
 
 
 def places(folder, entries):
-    """Buttons that set all sliders; what a place does not name is the scene's own."""
-    buttons = [("The scene's own values", [entry["value"] for entry in entries])]
+    """Buttons that set all sliders; what a place does not name is the scene's own. A place has none where it misses a value, or names what
+    is no slider, as options that move together but not in proportion, "a+b", have one each: the sliders would stand elsewhere."""
+    buttons, names = [("The scene's own values", [entry["value"] for entry in entries])], {entry["name"] for entry in entries}
     for title, there in known_places(folder):
-        if any(math.isfinite(there.get(entry["name"], math.nan)) for entry in entries):
+        if there and names.issuperset(there) and all(math.isfinite(value) for value in there.values()):
             buttons.append((title, [there.get(entry["name"], entry["value"]) for entry in entries]))
     return [tag("button", title, type="button", data_values=json.dumps(values)) for title, values in buttons]
 

@@ -196,7 +196,7 @@ class Sliders {
   showStatus({number, far, closed}, along) {
     const {pairs, statuses} = this.model.contact;
     this.contact.textContent = `Contact status ${number + 1} of ${statuses.length}: ${closed} of ${pairs} pairs closed, as at ` +
-      (far < 1e-9 ? "this point, which was solved." : `the nearest point that was solved, ${far.toPrecision(2)} of the ranges away.`);
+      (far < 1e-9 ? "this point, where it was found." : `the nearest point where one was found, ${far.toPrecision(2)} of the ranges away.`);
     this.inputs.forEach((input, i) => show_holds(input, along[i], number));
   }
 
