@@ -6,7 +6,8 @@ same eigenvalues as scipy's QZ at one point. With `page`, where there is a Chrom
 the same modes, it states how many values a second it computes, says where it extrapolates, and of which contact status it is. Without
 node it says so.
 
-    reduced_model.py RESULTS [page]"""
+    reduced_model.py RESULTS [page]
+    reduced_model.py RESULTS points    the points of a file of many samples whose contact status it has, beside samples.csv"""
 
 import csv
 import json
@@ -27,6 +28,7 @@ from squeal.report.model_file import ReducedModel
 
 SOURCE = Path(__file__).resolve().parents[2] / "scripts/squeal/report"
 MOST, SAMPLES = 60, 15  # cells, samples that are looked at
+MAP = 2000  # points of more that the file has
 NODE = """
 const fs = require("fs"), read = name => fs.readFileSync(`${process.argv[1]}/${name}.js`), file = fs.readFileSync(process.argv[2]);
 const {readModel, modesAt, statusAt, statusesAlong} = new Function("module",
@@ -114,8 +116,15 @@ def rows_of(path, key):
     with path.open(newline="") as table:
         for row in csv.DictReader(table):
             values.setdefault(float(row[key]), []).append(complex(float(row["growth_rad_s"]), 2 * numpy.pi * float(row["freq_hz"])))
-            closed[float(row[key])] = row.get("n_closed")
+            if row.get("n_closed"):
+                closed[float(row[key])] = row["n_closed"]
     return values, list(closed.values())
+
+
+def closed_of(path):
+    """Pairs closed at each sample."""
+    with path.open(newline="") as table:
+        return {float(row["sample"]): row["n_closed"] for row in csv.DictReader(table)}
 
 
 def compared(folder, model, node, points, values):
@@ -130,8 +139,12 @@ def compared(folder, model, node, points, values):
 
 
 def changes(answer, closed, least):
-    """Whether pairs closed are those of the tables, and the page says right where its statuses change."""
-    own, other = answer["closed"], sum(str(a) != b for a, b in zip(answer["closed"], closed) if b)
+    """Whether pairs closed are those of the table at each point, and the page says right where its statuses change."""
+    own = answer["closed"]
+    if len(own) != len(closed):
+        print(f"pairs closed: {len(closed)} in the table, {len(own)} points")
+        return False
+    other = sum(str(a) != b for a, b in zip(own, closed))
     print(f"pairs closed: {min(own)} to {max(own)}, {other} of {len(closed)} not those of the table; {answer['changes']} changes along the "
           f"sliders, {answer['wrong']} of {answer['looks']} looks disagree")
     return not other and not answer["wrong"] and answer["changes"] >= least and min(own) < max(own)
@@ -148,9 +161,30 @@ def sweep(folder, model, node):
 def samples(folder, model, node):
     """All modes of samples, which are the points of the map; then the page."""
     values, _ = rows_of(folder / "samples_modes.csv", "sample")
+    table = closed_of(folder / "samples.csv")
     first = model.contact.points[[int(sample) - 1 for sample in values]][:SAMPLES]
     worst, answer = compared(folder, model, node, first.tolist(), list(values.values())[:SAMPLES])
-    return 0 if worst <= 1e-9 * model.head["high"] and changes(answer, [], 1) and page_says(folder, None) else 1
+    closed = [table[sample] for sample in values][:SAMPLES]
+    return 0 if worst <= 1e-9 * model.head["high"] and changes(answer, closed, 1) and page_says(folder, None) else 1
+
+
+def known(folder, model):
+    """Points of the map beside samples.csv, whose variables are all the parameters: of more than MAP samples some MAP, with own statuses,
+    and the scene itself."""
+    with (folder / "samples.csv").open(newline="") as table:
+        rows = list(csv.DictReader(table))
+    values, contact = numpy.array([[float(text) for text in list(row.values())[7:]] for row in rows]), model.contact
+    own = (contact.points == [entry["value"] for entry in model.head["parameters"]]).all(1)
+    points, statuses = contact.points[~own], contact.status[~own]
+    nearest = [numpy.argmin(abs((values - point) / contact.wide).max(1)) for point in points]
+    apart = max(abs((values[i] - point) / contact.wide).max() for i, point in zip(nearest, points))
+    other = sum(str(contact.n_closed(status)) != rows[i]["n_closed"] for i, status in zip(nearest, statuses))
+    missing = {row["n_closed"] for row in rows} - {str(contact.n_closed(status)) for status in contact.status}
+    halves = numpy.mean(contact.places > 0.5, axis=0)
+    print(f"{len(contact.points)} points of {len(rows)} samples: {apart:.1e} of the ranges apart, {other} with other pairs closed; "
+          f"no point has {missing or 'none'} closed; above the middle {halves}")
+    return 0 if 0.98 * MAP < len(contact.points) < 1.02 * MAP < len(rows) and len(set(nearest)) == len(nearest) and apart < 1e-12 and \
+        own.sum() == 1 and not other and not missing and abs(halves - 0.5).max() < 0.05 else 1
 
 
 def follows(answer, least=0.8):
@@ -159,8 +193,10 @@ def follows(answer, least=0.8):
     return answer["followed"] >= least * answer["moved"] > 0 and answer["apart"] <= 1e-9
 
 
-def main(folder, page=False):
+def main(folder, page=False, points=False):
     node = shutil.which("node")
+    if points:
+        return known(folder, ReducedModel(folder / "reduced_model.bin"))
     if not node:
         print("no node: nothing is compared")
         return 0
@@ -188,4 +224,4 @@ def main(folder, page=False):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), "page" in sys.argv[2:]))
+    sys.exit(main(Path(sys.argv[1]), "page" in sys.argv[2:], "points" in sys.argv[2:]))

@@ -14,12 +14,14 @@
    "contact" is there where pairs are closed at some points and open at others. They are groups that open and close
    together; a status is which of them are closed. A term with "closed": [group of each row] has rows in place of a
    matrix, sum_r closed_r left_r' right_r: the right ones, or "rows": the term before that has the same; then the left
-   ones, or, "along", the weight of each right one. Behind all terms stand the points whose status is known, [points]
-   [parameters], and the status of each.
+   ones, or, "along", the weight of each right one. Behind all terms stand points whose status is known, [points]
+   [parameters], and the status of each: all, or some 2,000, evenly, the scene itself and
+   the first of each status.
 */
 #include "export.h"
 
-#define EXPORT_MOST 6000000 /* bytes: what a page can hold */
+#define EXPORT_MOST   6000000 /* bytes: what a page can hold */
+#define EXPORT_POINTS 2000    /* whose status is known */
 
 /* A text that grows */
 typedef struct {
@@ -111,29 +113,78 @@ static PetscErrorCode ExportHead(const Box *box, const Reduced *reduced, const B
 /* Points whose status is known: values of the variables, then statuses, which are numbered as they come */
 typedef struct {
   PetscInt   n, n_statuses;
+  PetscInt   room, room_statuses;
   PetscReal *value, *status, *closed; /* [n][variables], [n], [n_statuses][groups] */
 } ExportMap;
 
+/* Whether point i of n is one of the EXPORT_POINTS that are taken of more: the fractional parts of i/1.618... are even
+   over [0, 1) for any run of i, and in step with no power of two, as sequences of samples are */
+static PetscBool ExportTakes(PetscInt i, PetscInt n)
+{
+  const uint32_t part = (uint32_t)i * 2654435769u; /* of 2^32 */
+
+  return n <= EXPORT_POINTS || part < (uint32_t)(4294967296.0 * EXPORT_POINTS / (double)n) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Whether the point is the scene itself, at which sliders begin */
+static PetscBool ExportIsOwn(const Box *box, const BoxVaried *varied, const PetscReal p[])
+{
+  for (PetscInt k = 0; k < varied->n; k++)
+    if (p[varied->parameter[k]] != box->nominal[varied->parameter[k]]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* The number of a status; `new` where it comes for the first time */
+static PetscErrorCode ExportMapStatus(ExportMap *map, const PetscReal closed[], PetscInt n_groups, PetscInt *s,
+                                      PetscBool *new)
+{
+  PetscBool same = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (*s = 0; *s < map->n_statuses; (*s)++) {
+    PetscCall(PetscArraycmp(closed, &map->closed[*s * n_groups], n_groups, &same));
+    if (same) break;
+  }
+  *new = same ? PETSC_FALSE : PETSC_TRUE;
+  if (same) PetscFunctionReturn(0);
+  if (map->n_statuses == map->room_statuses) {
+    map->room_statuses = 2 * map->room_statuses + 16;
+    PetscCall(PetscRealloc((size_t)(map->room_statuses * n_groups) * sizeof(PetscReal), &map->closed));
+  }
+  PetscCall(PetscArraycpy(&map->closed[map->n_statuses++ * n_groups], closed, n_groups));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ExportMapAdd(ExportMap *map, const BoxVaried *varied, const ExportVariables *v,
+                                   const PetscReal p[], PetscInt s)
+{
+  PetscFunctionBeginUser;
+  if (map->n == map->room) {
+    map->room = 2 * map->room + 64;
+    PetscCall(PetscRealloc((size_t)(map->room * v->n) * sizeof(PetscReal), &map->value));
+    PetscCall(PetscRealloc((size_t)map->room * sizeof(PetscReal), &map->status));
+  }
+  for (PetscInt k = 0; k < v->n; k++) map->value[map->n * v->n + k] = p[varied->parameter[v->first[k]]];
+  map->status[map->n++] = (PetscReal)s;
+  PetscFunctionReturn(0);
+}
+
+/* Of many points some, the scene itself, and the first one of each status: what reads the file looks at each pair of points */
 static PetscErrorCode ExportMapCreate(const Box *box, const BoxVaried *varied, const ExportVariables *v, ExportMap *map)
 {
-  const PetscInt n_groups = box->groups_of.n_groups;
+  const PetscInt n_groups = box->groups_of.n_groups, n = n_groups ? varied->n_points : 0;
   PetscReal     *p;
 
   PetscFunctionBeginUser;
-  *map = (ExportMap){.n = n_groups ? varied->n_points : 0};
-  PetscCall(PetscMalloc3(map->n * v->n, &map->value, map->n, &map->status, map->n * n_groups, &map->closed));
+  *map = (ExportMap){.n = 0};
   PetscCall(PetscMalloc1(box->n_parameters, &p));
-  for (PetscInt i = 0; i < map->n; i++) {
-    const PetscReal *closed = &p[box->n_parameters - n_groups];
-    PetscBool        same   = PETSC_FALSE;
-    PetscInt         s      = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscInt s;
+    PetscBool new;
 
     PetscCall(varied->get(varied->ctx, i, p));
-    for (PetscInt k = 0; k < v->n; k++) map->value[i * v->n + k] = p[varied->parameter[v->first[k]]];
-    for (; s < map->n_statuses && !same; s++)
-      PetscCall(PetscArraycmp(closed, &map->closed[s * n_groups], n_groups, &same));
-    map->status[i] = same ? (PetscReal)(s - 1) : (PetscReal)map->n_statuses;
-    if (!same) PetscCall(PetscArraycpy(&map->closed[map->n_statuses++ * n_groups], closed, n_groups));
+    PetscCall(ExportMapStatus(map, &p[box->n_parameters - n_groups], n_groups, &s, &new));
+    if (new || ExportTakes(i, n) || ExportIsOwn(box, varied, p)) PetscCall(ExportMapAdd(map, varied, v, p, s));
   }
   PetscCall(PetscFree(p));
   PetscFunctionReturn(0);
@@ -142,7 +193,9 @@ static PetscErrorCode ExportMapCreate(const Box *box, const BoxVaried *varied, c
 static PetscErrorCode ExportMapDestroy(ExportMap *map)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(map->value, map->status, map->closed));
+  PetscCall(PetscFree(map->value));
+  PetscCall(PetscFree(map->status));
+  PetscCall(PetscFree(map->closed));
   PetscFunctionReturn(0);
 }
 
