@@ -134,8 +134,8 @@ def contact_text(contact):
     said = (f" Of these points {kept} have the status of the nearest other one, for {len(others)} it differs by up to "
             f"{count(int(others.max()), 'pair')} (median {figures(numpy.median(others), 3)}).") if len(others) else ""
     return tag("p", f"Which of {contact.pairs} contact pairs are closed differs over the box: {len(contact.closed)} statuses. The sliders "
-               f"take the status of the nearest of {len(contact.points)} points where one was found, each distance divided by the range of its "
-               f"slider; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark where "
+               f"take the status of the nearest of {len(contact.points)} points where one was found, each distance divided by the range "
+               f"of its slider; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark where "
                "the present one holds, with the other sliders as they are.")
 
 

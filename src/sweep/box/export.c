@@ -169,7 +169,8 @@ static PetscErrorCode ExportMapAdd(ExportMap *map, const BoxVaried *varied, cons
   PetscFunctionReturn(0);
 }
 
-/* Of many points some, the scene itself, and the first one of each status: what reads the file looks at each pair of points */
+/* Of many points some, the scene itself, and the first one of each status: what reads the file looks at each pair of
+   points */
 static PetscErrorCode ExportMapCreate(const Box *box, const BoxVaried *varied, const ExportVariables *v, ExportMap *map)
 {
   const PetscInt n_groups = box->groups_of.n_groups, n = n_groups ? varied->n_points : 0;
