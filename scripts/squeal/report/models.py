@@ -135,8 +135,8 @@ def contact_text(contact):
             f"{count(int(others.max()), 'pair')} (median {figures(numpy.median(others), 3)}).") if len(others) else ""
     return tag("p", f"Which of {contact.pairs} contact pairs are closed differs over the box: {len(contact.closed)} statuses. The sliders "
                f"take the status of the nearest of {len(contact.points)} points where one was found, each distance divided by the range "
-               f"of its slider; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark where "
-               "the present one holds, with the other sliders as they are.")
+               f"of its slider; between them that is a guess.{said} Values jump where the status changes: the bar below a slider is dark "
+               "where the present one holds, with the other sliders as they are.")
 
 
 def model_part(folder, room):
