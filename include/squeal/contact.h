@@ -19,7 +19,9 @@
    phi_p of the slave nodes (contact/mortar/mortar.c): area = int phi_p dA over the master, w_i = int phi_p N_i dA /
    area. A uniform pressure passes exactly between any meshes of flat surfaces, and the area is exact at borders, holes
    and slots. lambda_n over the area is the pressure at the node, on faces of second order too, of which it is that of
-   a linear pressure at corners, and with nine nodes everywhere (kernels/contact/segment.h).
+   a linear pressure at corners, and with nine nodes everywhere (kernels/contact/segment.h). A side between two faces
+   of eight nodes has the mean of those at one point within each, with which fields of pressure are linear there too
+   (contact/mortar/edges.c).
    Penalty (seed paper, eq. 1): internal forces k_n N'N u - mu k_n T'N u, that is along n on the master k_n (N u),
    along t on the master -mu k_n (N u), and the opposite on the slave: friction drags the master along t.
    where the pressure is no multiple of the closing, p = P(c) (pressurelaw.h), k_n is that of small motions about the

@@ -96,8 +96,8 @@ static PetscErrorCode TestRing(PetscMPIInt size, int *failed)
   *failed += CheckClose("ring: rows of slabs", (double)n_rows, size > 1, 0);
   *failed += CheckTrue("ring: pad and beam on one rank", n_others == 0 || n_others == 2000, (double)n_others);
   if (n_others)
-    *failed +=
-      CheckTrue("ring: slabs to both sides of the pad", (before || after) && PetscAbsInt(before - after) <= 1, after);
+    *failed += CheckTrue("ring: slabs about the pad, as many to either side but for one",
+                         (before || after) && PetscAbsInt(before - after) <= 1, after);
   *failed +=
     CheckClose("ring: imbalance of the cost", Imbalance((PetscReal)(4 * n_disc + (n_others ? COST_OTHERS : 0)), size),
                0, 4.0 * CELLS * size / (4 * N_SLABS * CELLS + COST_OTHERS));
