@@ -47,6 +47,17 @@ static PetscReal FaceAcross(const ModelFaces *faces, const Mesh *mesh, PetscInt 
   return PetscAbsReal(Vec3Dot(area, n)) / Vec3Length(area);
 }
 
+/* The largest component of n positive, the first of those alike: LAPACK leaves the sign open */
+static void LayerTurn(PetscReal n[3])
+{
+  int largest = 0;
+
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(n[d]) > PetscAbsReal(n[largest]) + LAYER_AXIS) largest = d;
+  if (n[largest] < 0)
+    for (int d = 0; d < 3; d++) n[d] = n[d] == 0 ? 0 : -n[d];
+}
+
 /* n; whether the part is thin along it */
 static PetscErrorCode LayerFindNormal(const ModelFaces *faces, const Mesh *mesh, PetscReal normal[3], PetscBool *thin)
 {
@@ -66,6 +77,7 @@ static PetscErrorCode LayerFindNormal(const ModelFaces *faces, const Mesh *mesh,
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev failed with %d", (int)info);
   for (int d = 0; d < 3; d++) normal[d] = PetscAbsReal(S[6 + d]) < LAYER_AXIS ? 0 : PetscRealPart(S[6 + d]);
   (void)Vec3Normalise(normal);
+  LayerTurn(normal);
   *thin = w[2] > LAYER_THIN * w[1] ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }

@@ -181,9 +181,9 @@ static PetscErrorCode SolveProjected(Modes modes, const PencilMatrices *pencil, 
   PetscCheck(
     window->route.project || window->route.middle > 0 || !pencil->n_laws, modes->comm, PETSC_ERR_NOT_CONVERGED,
     "modes of materials whose stiffness depends on the frequency are found by projection, which cannot be done: "
-    "%s; %s, or give less damping",
-    window->route.why,
-    modes->has_band ? "narrow -modes_band" : "give a -modes_band, or a -modes_target nearer to the modes");
+    "%s; give %sless damping, or damp fewer parts, or give a loss factor with -model_loss_frequency, which is viscous "
+    "damping, exact at that frequency",
+    window->route.why, modes->has_band ? "" : "a -modes_band, or a -modes_target nearer to the modes, or ");
   PetscCheck(window->route.project || modes->damping != DAMPING_PROJECT, modes->comm, PETSC_ERR_NOT_CONVERGED,
              "-modes_damping project cannot be done: %s; use auto or pep", window->route.why);
   PetscFunctionReturn(0);

@@ -73,11 +73,12 @@ static PetscErrorCode JsonList(MPI_Comm comm, const Quantity *row)
 /* What the option is where it is not given */
 static PetscErrorCode JsonDefault(MPI_Comm comm, const Quantity *row)
 {
-  PetscInt n_words = 0;
+  const PetscBool refused = row->bounded && row->open && !row->none && row->initial == row->least; /* stands for none */
+  PetscInt        n_words = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscPrintf(comm, ", \"default\": "));
-  if (row->required)
+  if (row->required || (row->kind <= QUANTITY_REAL && refused))
     PetscCall(JsonText(comm, NULL));
   else if (row->kind == QUANTITY_INT || row->kind == QUANTITY_REAL)
     PetscCall(PetscPrintf(comm, "%.15g", (double)row->initial));

@@ -22,6 +22,10 @@
 #define LAWS_RATE    1    /* rad that it may turn in one at the rates of both ends */
 #define LAWS_SPLITS  30   /* of a step of it */
 #define LAWS_SIDE    16   /* steps of a side */
+#define LAWS_POINTS  2000 /* at which the phase is found, and as many more of each mode: some hundreds do as a rule */
+#define LAWS_EACH    50
+#define LAWS_WORK    4e11 /* or points times size^3, half a minute: small problems may have more points */
+#define LAWS_SMALL   20   /* size below which that is no matter */
 #define LAWS_NEAR    0.01 /* of a step: over so much the rate of the phase is looked at */
 #define LAWS_ALIKE   1e-6 /* relative distance from a target of modes that are copies of each other */
 
@@ -186,6 +190,7 @@ typedef struct {
   PetscInt      n;      /* nu */
   PetscComplex *nu, *T; /* [n], [size * size] */
   PetscBLASInt *pivot;
+  PetscInt      points; /* that may still be looked at: strong damping turns the phase by hundreds of rad */
   PetscReal     turned; /* rad, until now */
   PetscBool     lost;   /* the phase could not be followed */
 } Contour;
@@ -235,6 +240,7 @@ static PetscErrorCode ContourPhase(Contour *c, PetscComplex lambda, PetscReal *p
   PetscBool      singular;
 
   PetscFunctionBeginUser;
+  c->points--;
   DensePencilEvaluate(&c->pencil, lambda, 0, n, c->T);
   PetscCall(DenseComplexFactor(n, c->T, c->pivot, &singular));
   *phase = 0;
@@ -301,6 +307,7 @@ static PetscErrorCode ContourStep(const Projection *p, PetscReal d, Contour *c, 
   PetscBool          good = PetscAbsReal(turn) <= LAWS_LARGEST && StepIsShort(c, lambda) ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
+  if (c->points <= 0) PetscFunctionReturn(0);
   if (good && splits) PetscCall(StepIsSlow(c, lambda, phase, &good));
   if (good || !splits) {
     c->turned += turn;
@@ -344,7 +351,7 @@ static PetscReal ContourRadius(const Projection *p, const ProjectionModes *found
 }
 
 PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
-                                   PetscBool *lost)
+                                   PetscBool *lost, PetscBool *endless)
 {
   const PetscReal d = ContourRadius(p, found);
   Contour         c = {.pencil = SubspacePencil(&p->space)};
@@ -353,22 +360,27 @@ PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *f
   PetscInt        inside = 0;
 
   PetscFunctionBeginUser;
+  c.points =
+    LAWS_EACH * found->n + (PetscInt)PetscMax(LAWS_POINTS, LAWS_WORK / PetscPowReal(PetscMax(n, LAWS_SMALL), 3));
   PetscCall(PetscMalloc3(2 * n, &c.nu, n * n, &c.T, n, &c.pivot));
   PetscCall(QuadraticEigenvalues(p, &c));
   PetscCall(ContourTake(&c, found));
   PetscCall(ContourPhase(&c, ContourPoint(p, d, 0), &phase[0]));
-  for (int i = 0; i < 4 * LAWS_SIDE; i++, phase[0] = phase[1]) {
+  for (int i = 0; i < 4 * LAWS_SIDE && c.points > 0; i++, phase[0] = phase[1]) {
     PetscCall(ContourPhase(&c, ContourPoint(p, d, i + 1), &phase[1]));
     PetscCall(ContourStep(p, d, &c, (PetscReal[2]){i, i + 1}, phase, LAWS_SPLITS));
   }
   for (PetscInt i = 0; i < c.n; i++) inside += ContourHolds(p, d, c.nu[i]);
   for (PetscInt i = 0; i < found->n; i++) inside -= ContourHolds(p, d, found->lambda[i]);
+  *endless = c.points > 0 ? PETSC_FALSE : PETSC_TRUE;
   *missing = (PetscInt)round(c.turned / (2 * PETSC_PI)) + inside;
   PetscCall(PetscFree3(c.nu, c.T, c.pivot));
   *lost = c.lost;
   PetscCallMPI(MPI_Bcast(missing, 1, MPIU_INT, 0, p->modes->comm));
   PetscCallMPI(MPI_Bcast(lost, 1, MPIU_BOOL, 0, p->modes->comm));
-  PetscCall(PetscInfo(p->space.V, "%" PetscInt_FMT " modes beside those found, turns %.6f\n", *missing,
-                      (double)(c.turned / (2 * PETSC_PI))));
+  PetscCallMPI(MPI_Bcast(endless, 1, MPIU_BOOL, 0, p->modes->comm));
+  PetscCall(PetscInfo(p->space.V,
+                      "%" PetscInt_FMT " modes beside those found, turns %.6f, %" PetscInt_FMT " points left\n",
+                      *missing, (double)(c.turned / (2 * PETSC_PI)), c.points));
   PetscFunctionReturn(0);
 }

@@ -34,6 +34,7 @@ static const char why_guard[]   = "damping moves modes by more than the guard";
 static const char why_strong[]  = "damping is strong"; /* of laws, which may be weak beyond more modes */
 static const char why_missing[] = "the search on the projected problem misses modes that its contour integral counts";
 static const char why_edge[]    = "a mode lies on the edge of the window, where none can be counted: move the band";
+static const char why_endless[] = "damping is strong: the contour integral that counts modes takes too many points";
 static const char why_far[]     = "modes lie far above the target"; /* said nowhere: it is done again */
 static const char why_differ[]  = "undamped right and left modes differ";
 
@@ -156,7 +157,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   Modes           modes = p->modes;
   const PetscReal most  = modes->damping == DAMPING_AUTO && !p->pencil->n_laws ? DAMPING_WEAK : 1;
   ProjectionModes found;
-  PetscBool       settled, lost = PETSC_FALSE;
+  PetscBool       settled, lost = PETSC_FALSE, endless = PETSC_FALSE;
   PetscInt        missing = 0, n_modal, n_undamped = CountInBand(window, &modes->right);
 
   PetscFunctionBeginUser;
@@ -181,9 +182,10 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
   PetscCall(ProjectionIterate(p, &found, &settled));
   window->route.laws = p->pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
-  if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing, &lost));
+  if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing, &lost, &endless));
   if (missing) *why = why_missing;
   if (lost) *why = why_edge;
+  if (endless) *why = why_endless;
   if (settled) PetscCall(ProjectionPut(p, &found));
   if (settled && !*why && NullHasDecays(modes, window)) PetscCall(ProjectionFindNull(p));
   window->route.n_basis = found.size;

@@ -134,9 +134,9 @@ PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *mo
    become them */
 PETSC_INTERN PetscErrorCode ProjectionLawsSolve(const Projection *p, ProjectionModes *modes);
 /* How many eigenvalues the window of the dense nonlinear problem holds beside these, by the argument principle; lost =
-   one lies on its edge, where that does not tell */
+   one lies on its edge, where that does not tell; endless = its phase takes too many points */
 PETSC_INTERN PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,
-                                                PetscBool *lost);
+                                                PetscBool *lost, PetscBool *endless);
 /* The vectors V x, or V y, as a spectrum */
 PETSC_INTERN PetscErrorCode ProjectionLift(const Projection *p, const ProjectionModes *modes, PetscBool left,
                                            Spectrum *s);

@@ -100,7 +100,7 @@ static PetscErrorCode LayerAddCell(Operators o, PetscInt c, const Layer *layer, 
   PetscCall(LayerCellAt(o, c, 3 * t, &unit, fourth, mass));
   PetscCall(LayerCellAt(o, c, t / 2, &unit, k[0], mass));
   PetscCall(LayerCellAt(o, c, 2 * t, &unit, k[2], mass));
-  PetscCall(LayerCellAt(o, c, t, &unit, k[1], mass));
+  PetscCall(LayerCellAt(o, c, t, &unit, k[1], mass)); /* last: the mass is that at t, which is divided by t below */
   PetscCall(LayerSplit(n, t, k, fourth, &left));
   m->over = PetscMax(m->over, left);
   if (o->lump) OperatorsLumpMass(element, mass);
