@@ -90,9 +90,10 @@ PetscErrorCode ContactProjectorGetWay(ContactProjector projector, PetscInt inter
 PetscErrorCode ContactProjectorGetFriction(ContactProjector projector, PetscInt interface, PetscReal t,
                                            PetscReal *factor, PetscBool *varies);
 
-/*@ ContactProjectorGetFactors - those of its sliding speed and its friction at time t (s). Not collective. @*/
+/*@ ContactProjectorGetFactors - those of its sliding speed and its friction at time t (s), and whether friction has its
+   own from a temperature. Not collective. @*/
 PetscErrorCode ContactProjectorGetFactors(ContactProjector projector, PetscInt interface, PetscReal t, PetscReal *speed,
-                                          PetscReal *friction);
+                                          PetscReal *friction, PetscBool *warms);
 
 /*@ ContactProjectorCheckSteps - that steps of dt (s) see the histories of sliding and friction: an error for swings of
    fewer than two steps a cycle, warnings. Collective. @*/

@@ -207,7 +207,7 @@ static PetscErrorCode BasinsLines(Map map, const PetscInt lines[2], MapBodies bo
 PetscErrorCode MapBasins(Map map, Results results)
 {
   const PetscInt n_lines = map->n_axes > 1 ? map->axis[1].n : 1, each = map->n_disturbances * map->axis[0].n;
-  PetscInt       batch, first                                         = 0;
+  PetscInt       first = 0, batch;
   PetscMPIInt    size;
   ResultsTable   table[2];
   MapBodies     *bodies;

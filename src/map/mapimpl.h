@@ -49,10 +49,9 @@ typedef struct {
   MapEnd    end;
   MapFault  fault;            /* of one that failed */
   PetscReal freq, freq_error; /* Hz, of the main line; NAN without */
-  PetscReal
-    second[2]; /* Hz, of a quasi-periodic motion, whose first basic line is the main one: the other, its error */
-  PetscReal mean, rms, peak; /* of the normal force */
-  PetscReal open, stick;     /* shares of the time */
+  PetscReal second[2];        /* Hz, of a quasi-periodic motion: the basic line beside the main one, its error */
+  PetscReal mean, rms, peak;  /* of the normal force */
+  PetscReal open, stick;      /* shares of the time */
   PetscReal growth, mode_freq,
     index;         /* 1/s, Hz, of the fastest mode; the largest growth over angular frequency of all */
   PetscReal whole; /* growth with the inertia of what the modes leave out, of bodies that have it */

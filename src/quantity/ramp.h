@@ -27,6 +27,7 @@ typedef struct {
   double     delay, length;
   double     frequency, phase;         /* of h, Hz, 0: none; degrees */
   char       file[PETSC_MAX_PATH_LEN]; /* of a table, "" for none */
+  PetscBool  warms;                    /* the table is g(T(t)), the file that of T */
   PetscInt   n;                        /* its rows */
   PetscReal *time, *factor, *area;     /* [n] s from the delay on; h there; integral of h until there, s */
 } Ramp;

@@ -48,12 +48,12 @@ static PetscErrorCode RowsCheck(MPI_Comm comm, const char name[], const Ramp *ra
     worst = PetscMax(worst, off);
   }
   if (worst > unseen * largest)
-    PetscCall(
-      PetscFPrintf(comm, stderr,
-                   "squeal: warning: -%s_history %s: its factor %.6g at %.6g s is between two steps of %.6g s, which "
-                   "make %.6g of it: take a smaller -ts_dt, or a table that they can follow\n",
-                   name, ramp->file, (double)ramp->factor[at], (double)ramp->time[at], (double)dt,
-                   (double)BetweenSteps(ramp, ramp->delay + ramp->time[at], dt)));
+    PetscCall(PetscFPrintf(
+      comm, stderr,
+      "squeal: warning: %s-%s_history %s has the factor %.6g at %.6g s, between two steps of %.6g s, which "
+      "make %.6g of it: take a smaller -ts_dt, or a table that they can follow\n",
+      ramp->warms ? "friction by " : "", name, ramp->file, (double)ramp->factor[at], (double)ramp->time[at], (double)dt,
+      (double)BetweenSteps(ramp, ramp->delay + ramp->time[at], dt)));
   PetscFunctionReturn(0);
 }
 

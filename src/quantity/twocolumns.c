@@ -172,6 +172,7 @@ PetscErrorCode RampReadTemperature(MPI_Comm comm, const char name[], const char 
     PetscCall(TwoColumnsAdd(&made, T.x[i + 1], TwoColumnsValue(&g, T.y[i + 1])));
   }
   PetscCall(PetscStrncpy(ramp->file, history, sizeof(ramp->file)));
+  ramp->warms = PETSC_TRUE;
   PetscCall(TwoColumnsGive(&made, ramp));
   PetscCall(TwoColumnsFree(&T));
   PetscCall(TwoColumnsFree(&g));

@@ -122,6 +122,42 @@ static PetscErrorCode Distances(const Small *s, PetscReal dt, PetscReal *formula
   PetscFunctionReturn(0);
 }
 
+/* How many modes a step takes as coupled, damped by beta K: the first is rigid, the noise that of its C on a mesh; link:
+   what couples the second and the third */
+static PetscErrorCode Coupled(PetscReal noise, PetscReal link, PetscInt *n)
+{
+  Small          s;
+  ReducedStepper stepper;
+
+  PetscFunctionBeginUser;
+  SmallCreate(0.01, &s);
+  for (int k = 0; k < M_MODES; k++)
+    for (int l = 0; l < M_MODES; l++) s.C[k + M_MODES * l] = k == l ? 0.01 * s.omega2[k] : noise * (k + l - 2.5);
+  for (int i = 0; i < 3 * PAIRS * M_MODES; i++) s.Cm[i] = 0;
+  s.C[0] = noise;
+  s.C[1 + M_MODES * 2] += link;
+  s.C[2 + M_MODES * 1] += link;
+  PetscCall(ReducedStepperCreate(&s.model, 0.15, 1e-13, &stepper));
+  *n = stepper->coupled.n;
+  PetscCall(ReducedStepperDestroy(&stepper));
+  PetscFunctionReturn(0);
+}
+
+/* Breaks when: rounding couples modes, of which rigid ones have no C_ii, or what couples them is taken for it */
+static PetscErrorCode TestCoupled(int *failed)
+{
+  PetscInt n[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(Coupled(1e-14, 0, &n[0]));
+  PetscCall(Coupled(-1e-14, 0, &n[1]));
+  PetscCall(Coupled(1e-14, 1e-8, &n[2]));
+  *failed += CheckTrue("rounding couples no mode", n[0] == 0, (double)n[0]);
+  *failed += CheckTrue("nor where a C_ii below zero is rounding", n[1] == 0, (double)n[1]);
+  *failed += CheckTrue("a damper between two modes couples both", n[2] == 2, (double)n[2]);
+  PetscFunctionReturn(0);
+}
+
 /* Breaks when: a mass, a damper or the way back to s is wrong */
 static PetscErrorCode Tests(PetscMPIInt size, int *failed)
 {
@@ -140,6 +176,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   *failed += CheckTrue("damped: steps of 0.15 s are seen", smooth > 1e-4, (double)smooth);
   *failed +=
     CheckTrue("damped: the formula leaves 2 % of it at most", formula < 0.02 * smooth, (double)(formula / smooth));
+  PetscCall(TestCoupled(failed));
   PetscCall(SlepcFinalize());
   PetscFunctionReturn(0);
 }

@@ -24,8 +24,9 @@ static const Quantity sliding[] = {
    "file of time_s,temperature, straight between its rows: friction changes with it by -..._mu_temperature", NULL,
    QUANTITY_PATH, QUANTITY_AT(ContactSliding, temperature), .path = "file", .in = RUN_HISTORY},
   {"-mu_temperature",
-   "file of temperature,factor: of the friction coefficient at a temperature of -..._temperature_history, in its unit; "
-   "straight between its rows",
+   "file of temperature,factor: factor of the friction coefficient over temperature, in the unit of the history; "
+   "straight "
+   "between its rows",
    NULL, QUANTITY_PATH, QUANTITY_AT(ContactSliding, factors), .path = "file", .in = RUN_HISTORY, .idle = FactorsIdle},
 };
 

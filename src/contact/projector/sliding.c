@@ -155,11 +155,14 @@ PetscErrorCode ContactProjectorGetFriction(ContactProjector p, PetscInt interfac
 }
 
 PetscErrorCode ContactProjectorGetFactors(ContactProjector p, PetscInt interface, PetscReal t, PetscReal *speed,
-                                          PetscReal *friction)
+                                          PetscReal *friction, PetscBool *warms)
 {
+  const ContactSliding *sliding = &p->sliding[interface];
+
   PetscFunctionBeginUser;
-  *speed    = RampValue(&p->sliding[interface].ramp, t);
-  *friction = RampValue(&p->sliding[interface].friction, t);
+  *speed    = RampValue(&sliding->ramp, t);
+  *friction = RampValue(&sliding->friction, t);
+  *warms    = sliding->temperature[0] ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

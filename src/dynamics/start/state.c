@@ -57,12 +57,9 @@ static PetscErrorCode StartCheckHistories(Dynamics d)
   for (PetscInt i = 0; i < d->n_interfaces && d->projector; i++) {
     PetscReal speed, friction;
     PetscBool warms;
-    char      option[160];
 
-    PetscCall(ContactProjectorGetFactors(d->projector, i, 0, &speed, &friction));
+    PetscCall(ContactProjectorGetFactors(d->projector, i, 0, &speed, &friction, &warms));
     PetscCall(StartCheckFactor(d, d->interfaces[i].name, "_frequency or _history", speed));
-    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_temperature_history", d->interfaces[i].name));
-    PetscCall(PetscOptionsHasName(NULL, NULL, option, &warms));
     PetscCall(StartCheckFactor(d, d->interfaces[i].name, warms ? "_mu_temperature" : "_mu_history", friction));
   }
   PetscFunctionReturn(0);

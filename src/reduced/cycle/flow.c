@@ -9,6 +9,25 @@
 
 #define FLOW_ROUNDING 1e-6 /* of friction */
 
+/* Raises the error for friction that goes on to change; the model has that of the last step */
+static PetscErrorCode FlowCheckFriction(ReducedRun r, const char when[], const char what[])
+{
+  const PetscReal now = r->motion.state.time;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < r->run.n_interfaces; i++) {
+    PetscReal factor[2];
+    PetscBool varies;
+
+    PetscCall(ContactProjectorGetFriction(r->run.projector, i, now, &factor[0], &varies));
+    PetscCall(ContactProjectorGetFriction(r->run.projector, i, now + CYCLE_FAR, &factor[1], &varies));
+    PetscCheck(factor[0] == factor[1], r->comm, PETSC_ERR_USER_INPUT,
+               CYCLE_BY ": the friction of %s still changes %s %.6g s: %s", r->run.interfaces[i].name, when,
+               (double)now, what);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Loads and sliding from the time of the run on; raises the error where they go on to change: the flow must be
    autonomous. share = way of the run in a step over speed times dt, so that the way follows the speed and the step. */
 static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
@@ -28,6 +47,7 @@ static PetscErrorCode FlowSetDrive(ReducedRun r, CycleFlow *f)
     PetscCheck(f->loads[i] == later[i], r->comm, PETSC_ERR_USER_INPUT, CYCLE_BY ": load %s still changes %s %.6g s: %s",
                scene->loads[i].name, when, (double)now, what);
   PetscCall(PetscFree(later));
+  PetscCall(FlowCheckFriction(r, when, what));
   for (PetscInt i = 0; i < r->reduction.model.n_pairs; i++) {
     PetscCall(ReducedGetWay(r, i, &way[0]));
     r->motion.state.time = now + CYCLE_FAR;
@@ -123,8 +143,8 @@ static PetscErrorCode FlowUnpack(CycleFlow *f, const PetscReal x[])
   if (f->family) PetscCall(CycleFamilyTurn(f->family, PETSC_FALSE, 1, m, s->rate));
   for (PetscInt i = 0; i < n; i++) {
     s->p[i] = s->begin[i] = x[2 * m + i];
-    s->q[i] = model->Cx ? x[2 * m + n + i] : s->p[i];
-    s->y[i] = 0;
+    s->q[i]               = model->Cx ? x[2 * m + n + i] : s->p[i];
+    s->y[i]               = 0;
   }
   for (PetscInt i = 0; i < model->n_loads; i++) s->p[n + i] = f->loads[i];
   for (PetscInt i = 0; i < N; i++) s->last[i] = s->p[i];

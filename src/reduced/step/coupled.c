@@ -4,12 +4,15 @@
 
       |C_ij| / sqrt(C_ii C_jj),   |Cm_ij| / sqrt(C_ii Cx_jj)
 
-   is rounding, and is left out of the step as a whole, so that its balance of energy holds without it. A mode alone
+   is rounding, and is left out of the step as a whole, so that its balance of energy holds without it. A C_ii below
+   1e-4 of the largest counts as that: of a rigid mode with beta K alone it is rounding itself, and C_ij is, too, by
+   eps beta times the square of the mesh's highest frequency, some 1e-13 of the largest C_ii. A mode alone
    needs six numbers of E and F and six of Q, those that are coupled blocks of their own.
 */
 #include "reduced/reducedimpl.h"
 
-#define COUPLED_RTOL 1e-10
+#define COUPLED_RTOL  1e-10
+#define COUPLED_FLOOR 1e-4
 
 /* C, Cm and Cx of the stepper's own, as those of the model */
 PetscErrorCode ReducedStepperOwnDamping(ReducedStepper s)
@@ -31,16 +34,25 @@ PetscErrorCode ReducedStepperOwnDamping(ReducedStepper s)
   PetscFunctionReturn(0);
 }
 
+/* The smallest C_ii that counts */
+static PetscReal CoupledLeast(const ReducedModel *model)
+{
+  PetscReal most = 0;
+
+  for (PetscInt i = 0; i < model->m; i++) most = PetscMax(most, model->C[i + model->m * i]);
+  return COUPLED_FLOOR * most;
+}
+
 /* Leaves rounding out of C and Cm; which modes are left coupled, [m] */
 static void CoupledFind(const ReducedModel *model, PetscBool coupled[])
 {
   const PetscInt  m = model->m, n = 3 * model->n_pairs;
-  const PetscReal square = PetscSqr(COUPLED_RTOL);
+  const PetscReal square = PetscSqr(COUPLED_RTOL), least = CoupledLeast(model);
   PetscReal      *C = model->C, *Cm = model->Cm;
 
   for (PetscInt j = 0; j < m; j++)
     for (PetscInt i = 0; i < j; i++) {
-      const PetscReal most = square * PetscMax(0, C[i + m * i]) * PetscMax(0, C[j + m * j]);
+      const PetscReal most = square * PetscMax(least, C[i + m * i]) * PetscMax(least, C[j + m * j]);
 
       if (PetscMax(PetscSqr(C[i + m * j]), PetscSqr(C[j + m * i])) > most)
         coupled[i] = coupled[j] = PETSC_TRUE;
@@ -51,7 +63,7 @@ static void CoupledFind(const ReducedModel *model, PetscBool coupled[])
     for (PetscInt i = 0; i < m; i++) {
       const PetscReal own = model->Cx ? PetscMax(0, model->Cx[j + n * j]) : 0;
 
-      if (PetscSqr(Cm[i + m * j]) > square * PetscMax(0, C[i + m * i]) * own)
+      if (PetscSqr(Cm[i + m * j]) > square * PetscMax(least, C[i + m * i]) * own)
         coupled[i] = PETSC_TRUE;
       else
         Cm[i + m * j] = 0;
