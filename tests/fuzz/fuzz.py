@@ -81,7 +81,7 @@ def finite(table):
     """Whether the eigenvalues and histories are numbers; what may be unknown is left out."""
     unknown = {"condition", "error_hz", "onset_distance", "error_estimate"}
     if "regime" in table:  # of a map: a point that does not vibrate has no frequency
-        unknown |= {"freq_hz", "freq_error_hz", "growth_freq_hz"}
+        unknown |= {"freq_hz", "freq_error_hz", "freq_2_hz", "freq_2_error_hz", "growth_freq_hz"}
     done = [status != "failed" for status in table.get("status", [])]  # a point of a map that failed says so, and has no numbers
     return all(math.isfinite(x) for key, column in table.items() if key not in unknown
                for i, x in enumerate(column) if isinstance(x, float) and (not done or done[i]))
