@@ -15,14 +15,13 @@
 #include "partition.h"
 #include "base/algebra/vec3.h"
 
-/* Cost of a cell relative to a quarter of one turned about an axis, whose kernel takes about 13 ns: lines along an axis
-   are shorter, hence vectorise less well (1.73 times the processor time of a step of the seed paper's brake), and
-   blocks of a sparse matrix take 50 to 60 ns (bound by memory) */
-enum { COST_TURNED = 4, COST_ALONG = 7, COST_GENERAL = 16 };
+/* Cost of a cell relative to half of one turned about an axis, whose kernel takes about 13 ns: lines along an axis are
+   shorter, hence vectorise less well, and blocks of a sparse matrix take 50 to 60 ns (bound by memory) */
+enum { COST_TURNED = 2, COST_ALONG = 3, COST_GENERAL = 8 };
 
 /* Cost of a pair, about 190 ns, of which a cell at the contact has one or so: the rank that solves them all does that
    while the others go on (contact/projector/projector.c) */
-#define COST_CONTACT 56
+#define COST_CONTACT 28
 
 /* Bodies of the undistributed mesh */
 typedef struct {
