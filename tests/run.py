@@ -34,16 +34,15 @@ A case is a TOML file. Only `run` is required.
     # then one reference or more of:
     equals = [1.0, 2.0]          # in row order; eigenvalues as [growth_rad_s, freq_hz] in any order
     equals = {"(0,4)" = 3918}    # by label: the nearest of the rows with that label
-    equals_run = "OTHER"         # the same rows of another run; `by = "label"` compares the nearest of the same label
+    equals_run = "OTHER"         # the same rows of another run
     across_ranks = true          # the same run on ranks[0]
     pairs = true                 # rows 1 and 2, 3 and 4, ... are equal
     min = 0                      # bounds of every value
     max = 1e-8
     count = 2                    # number of rows
-    # with tolerances |a - b| <= atol + rtol |b|, and optionally the root mean square of (a - b)/b:
+    # with tolerances |a - b| <= atol + rtol |b|:
     rtol = 1e-10
     atol = 0                     # or one for each value, in their order
-    rms = 0.01
 
     hard = "a scene in mm"       # a hard case that this check is the answer to, in a run: that it fails as it should;
     wrong = "a constant has a unit"    # what can go wrong in it: scripts/study/hard lists both, `why` and the margin
@@ -73,6 +72,7 @@ from pathlib import Path
 from check import Checker, Failure, Line, require
 from cores import CORES, MIXED, choose_core, mixed
 from forked import run_command
+from keys import fault_of_keys
 from processes import processes_naming
 from ranks import fault_of_ranks, ranks_of_runs, runs_of
 from served import own_words, served_program
@@ -307,7 +307,7 @@ def main():
     if reason:
         print(f"skipped: {reason}")
         return SKIPPED
-    fault = fault_of_ranks(case)
+    fault = fault_of_keys(case) or fault_of_ranks(case)
     if fault:
         parser.error(fault)
     arguments.served = None if arguments.core == MIXED else served_program(arguments.squeal, arguments.timeout)  # has its kernels already

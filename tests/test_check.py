@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from check import Checker, Failure, Line, measured_in, worst_of
+from keys import fault_of_keys
 from passed import Passed
 from ranks import fault_of_ranks, ranks_of_runs
 from served import own_words
@@ -54,7 +55,7 @@ def nights_fail():
     for path in sorted((tests / "cases").glob("*.toml")):
         case = tomllib.loads(path.read_text())
         chosen, nights = case.get("ranks", [1]), {name: run["night"] for name, run in case["run"].items() if "night" in run}
-        fault = fault_of_ranks(case)
+        fault = fault_of_keys(case) or fault_of_ranks(case)
         made = set(ranks_of_runs(case, chosen, True))
         lost = [name for name, ranks in nights.items() if not set(ranks) <= made & set(case["run"][name]["ranks"])]
         if bool(nights) != (path.stem in named) or fault or lost:
@@ -74,6 +75,16 @@ def empty_pass():
     wrong += [] if fault_of_ranks(nowhere) else [([1, 2], "a on 1, checked on 2")]
     for ranks, run in wrong:
         print(f"FAILED ranks {ranks}, run {run}")
+    return len(wrong)
+
+
+def misspelt_pass():
+    """How many names that nothing reads are not refused in a case, a run and a check."""
+    right = {"run": {"a": {"options": ""}}, "check": [{"max": 1}]}
+    cases = [{**right, "runs": [{}]}, {**right, "run": {"a": {"option": ""}}}, {**right, "check": [{"maxx": 1}]}]
+    wrong = [case for case in cases if not fault_of_keys(case)] + ([right] if fault_of_keys(right) else [])
+    for case in wrong:
+        print(f"FAILED names of {case}")
     return len(wrong)
 
 
@@ -97,7 +108,7 @@ def passed_of_others(folder):
 def main():
     rule = 60 * "-"
     remarks = ("", f"{rule}\nabort\n{rule}\n", f"{rule}\nabort\n{rule}\n\0", f"\0{rule}\nabort\n{rule}\n")
-    failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail() + empty_pass()
+    failed = [own(remark) for remark in remarks].count(False) + margins_fail() + nights_fail() + empty_pass() + misspelt_pass()
     with tempfile.TemporaryDirectory() as name:
         failed += passed_of_others(Path(name))
         for check in CHECKS:
@@ -105,7 +116,7 @@ def main():
                 if passes(Path(name), cell, check) != expected:
                     print(f"FAILED {check}: a table with {cell} {'fails' if expected else 'passes'}")
                     failed += 1
-    print(f"{failed} of {len(remarks) + 7 + len(EMPTY) + 4 * len(CHECKS)} failed")
+    print(f"{failed} of {len(remarks) + 11 + len(EMPTY) + 4 * len(CHECKS)} failed")
     return 1 if failed else 0
 
 

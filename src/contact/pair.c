@@ -206,11 +206,11 @@ static PetscErrorCode PairsCover(Contact contact, PetscInt interface, PetscInt f
 static PetscErrorCode SurfacesCheck(MPI_Comm comm, const ContactInterface *c, PairFailure *failure)
 {
   PetscFunctionBeginUser;
-  PetscCheck(
-    2 * failure->n_common <= failure->n, comm, PETSC_ERR_USER_INPUT,
-    "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
-    " nodes of -%s_surfaces %s,%s are nodes of both, and rub on nothing; give each body nodes of its own there",
-    c->name, failure->n_common, failure->n, c->name, c->slave, c->master);
+  PetscCheck(2 * failure->n_common <= failure->n, comm, PETSC_ERR_USER_INPUT,
+             "contact %s: %" PetscInt_FMT " of %" PetscInt_FMT
+             " nodes of -%s_surfaces %s,%s are nodes of both, and rub on nothing; give each body nodes of its own "
+             "there, each set faces of one body",
+             c->name, failure->n_common, failure->n, c->name, c->slave, c->master);
   PetscCheck(failure->n_towards || !failure->n_with, comm, PETSC_ERR_USER_INPUT,
              "contact %s: both of -%s_surfaces %s,%s look the same way; give two that face each other", c->name,
              c->name, c->slave, c->master);

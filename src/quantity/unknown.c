@@ -3,8 +3,9 @@
 
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are those of
    the rows, and the ones of PETSc and SLEPc that base/options/libraries.c lists. Nearest = smallest Damerau-Levenshtein
-   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, that of
-   another name (-contact_mu of a page, where the scene calls its contact brake) as two and a half.
+   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, last
+   words left out as two, the prefix of another name (-contact_mu of a page, where the scene calls its contact brake) as
+   two and a half.
 */
 #include "row.h"
 #include "base/options/help.h"
@@ -59,18 +60,60 @@ static int EditDistance(const char a[], const char b[])
   return d[la % 3][lb];
 }
 
+/* Last words of options under other names in the field, in capitals as in small letters */
+static const struct {
+  const char *word, *own;
+} customary[] = {
+  {"friction", "mu"},
+  {"cof", "mu"},
+  {"e", "young"},
+  {"modulus", "young"},
+  {"nu", "poisson"},
+  {"rho", "density"},
+  {"eta", "loss_factor"},
+  {"damping", "loss_factor"},
+  {"damping", "friction_damping"},
+  {"stiffness_damping", "beta"},
+  {"mass_damping", "alpha"},
+  {"nev", "count"},
+  {"number", "count"},
+  {"frequencies", "band"},
+  {"frequency_range", "band"},
+  {"range", "band"},
+  {"omega", "rotation"},
+};
+
 #define ONE_EDIT     2 /* distances are in halves of an edit */
 #define OTHER_PREFIX 5
 #define MAX_UNKNOWN  64 /* options that are looked at: of support: hub and hub_fix the first is the error */
 
-/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit */
+/* Whether the last words of an unknown option mean those of a valid one, after the same prefix or after none */
+static PetscBool NameMeans(const char unknown[], const char valid[])
+{
+  const size_t lu = strlen(unknown), lv = strlen(valid);
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(customary); i++) {
+    const size_t word = strlen(customary[i].word), own = strlen(customary[i].own);
+    const size_t before = lu - word, prefix = lv - own;
+
+    if (lu < word || lv <= own || strcasecmp(unknown + before, customary[i].word)) continue;
+    if (strcmp(valid + prefix, customary[i].own) || valid[prefix - 1] != '_') continue;
+    if (!before || (before == prefix && !strncmp(unknown, valid, prefix))) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit; last words
+   left out, as of -disc_loss_factor in -disc_loss, are two; another word of the field is none */
 static int NameDistance(const char unknown[], const char valid[], PetscBool is_librarys)
 {
   const size_t      lu = strlen(unknown), lv = strlen(valid);
   const char *const tail = strchr(unknown, '_'), *const other = strchr(valid, '_');
   const int distance = ONE_EDIT * EditDistance(unknown, valid);
 
+  if (!is_librarys && NameMeans(unknown, valid)) return 0;
   if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return ONE_EDIT;
+  if (lv > lu && valid[lu] == '_' && !strncmp(valid, unknown, lu)) return 2 * ONE_EDIT;
   return !is_librarys && tail && other && !strcmp(tail, other) ? PetscMin(distance, OTHER_PREFIX) : distance;
 }
 
