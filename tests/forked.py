@@ -14,6 +14,7 @@ import traceback
 from pathlib import Path
 
 PACKAGES = tuple({sysconfig.get_paths()["stdlib"], "/usr/lib/python3/dist-packages", *(path for path in sys.path if "-packages" in path)})
+REPOSITORY = Path(__file__).resolve().parents[1]
 ALONE = ("mpi4py", "petsc4py", "slepc4py")  # begin MPI as they are imported
 
 
@@ -61,6 +62,9 @@ def _be(script, words, folder, out, err, read):
         os.dup2(err.fileno(), 2)
         if folder:
             os.chdir(folder)
+        if not script.resolve().is_relative_to(REPOSITORY):  # it has its own package of this name
+            for name in [name for name in sys.modules if name.partition(".")[0] == "squeal"]:
+                del sys.modules[name]
         sys.argv = [str(script), *words]
         sys.path[0] = str(script.parent)
         runpy.run_path(str(script), run_name="__main__")

@@ -29,6 +29,7 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
+from forked import run_command
 from small_brake import SCENE as BRAKE
 from squeal.options import default_of, options_of
 
@@ -90,7 +91,8 @@ def check_scripts(top, bin_dir, faults):
         if not program.exists():
             faults.check(False, f"scripts: {program.name} is missing")
         elif name != "mpirun":
-            faults.check("usage" in run(program, "--help", cwd=top), f"scripts: {program.name} --help")
+            done = run_command([program, "--help"], top)
+            faults.check(os.access(program, os.X_OK) and not done.returncode and "usage" in done.stdout, f"scripts: {program.name} --help")
     for words in (["squeal-plot-modes", "-o", "modes.png", "out"], ["squeal-report", "out"]):
         file = top / run(bin_dir / words[0], *words[1:], cwd=top).strip()
         faults.check(file.stat().st_size > 10000, f"scripts: {' '.join(words)} writes {file.name}")

@@ -6,9 +6,10 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("agg")
-import matplotlib.image
 import matplotlib.pyplot  # for scripts that run in children of this process
 import numpy
+import PIL.Image
+from matplotlib.colors import to_rgb
 
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = TESTS.parent / "scripts"
@@ -38,9 +39,10 @@ def fails(name, folder, options, expected):
 def points_of(file, title, least=(1200, 600)):
     """The points [n][3] of a PNG, from 0 to 255: at least so many across and down, no colour on more than 98 % of
     them."""
-    points = numpy.rint(255 * matplotlib.image.imread(file)[:, :, :3]).astype(int)
+    with PIL.Image.open(file) as image:
+        points = numpy.asarray(image.convert("RGB"))
     colours = points.reshape(-1, 3)
-    share = numpy.unique(colours @ [1, 256, 65536], return_counts=True)[1].max() / len(colours)
+    share = numpy.bincount(colours.astype("u4") @ numpy.array([1, 256, 65536], "u4")).max() / len(colours)
     height, width = points.shape[:2]
     print(f"{title}: {width} x {height} points, most frequent colour on {share:.1%}")
     require(width >= least[0] and height >= least[1] and share < 0.98, f"{title} is not a picture")
@@ -52,3 +54,9 @@ def drawn(name, folder, *options):
     result = script(name, folder, "-o", folder / "picture.png", *options)
     require(result.returncode == 0, result.stderr)
     return points_of(folder / "picture.png", f"{folder.name} {' '.join(options)}".rstrip())
+
+
+def points_like(colours, colour):
+    """How many of the points are of a colour, to one level of each channel."""
+    wanted = numpy.rint(255 * numpy.array(to_rgb(colour))).astype(int)
+    return int(numpy.logical_and.reduce([(colours[:, i] >= level - 1) & (colours[:, i] <= level + 1) for i, level in enumerate(wanted)]).sum())

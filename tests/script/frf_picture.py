@@ -7,8 +7,7 @@ import tempfile
 from pathlib import Path
 
 import numpy
-from drawing import drawn, fails, require
-from matplotlib.colors import to_rgb
+from drawing import drawn, fails, points_like, require
 from squeal.response import frf_tables # found by drawing
 from squeal.picture import BLUE, GREEN, GREY, VERMILION
 
@@ -37,7 +36,7 @@ def write(folder, outputs=1, coherence=False, error=1e-9, peaks=True):
 def points(folder, colours, *options):
     """How many points have each of the colours."""
     found = drawn("plot/frf", folder, *options)
-    return [(abs(found - 255 * numpy.array(to_rgb(c))) < 1.5).all(axis=1).sum() for c in colours]
+    return [points_like(found, c) for c in colours]
 
 
 def test_lines(root):

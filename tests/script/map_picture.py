@@ -9,9 +9,7 @@ Breaks when a direction is not drawn, when a point that failed stops it, when hy
 import tempfile
 from pathlib import Path
 
-import numpy
-from drawing import drawn, fails, require
-from matplotlib.colors import to_rgb
+from drawing import drawn, fails, points_like, require
 from squeal.picture import BLUE, GREEN, INK, VERMILION
 
 NAMES = ("parameter,value,parameter_2,value_2,direction,regime,freq_hz,freq_error_hz,force_rms_n,force_mean_n,open_share,"
@@ -48,7 +46,7 @@ def add_errors(folder):
 
 
 def count(colours, colour):
-    return int((abs(colours - 255 * numpy.array(to_rgb(colour))) < 1.5).all(axis=1).sum())
+    return points_like(colours, colour)
 
 
 def main():

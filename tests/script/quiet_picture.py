@@ -6,9 +6,7 @@ is quiet, a quarter dangerous, a quarter open. Exit status: 0, or 1.
 import tempfile
 from pathlib import Path
 
-import numpy
-from drawing import drawn, fails, require
-from matplotlib.colors import to_rgb
+from drawing import drawn, fails, points_like, require
 from squeal.picture import GREEN, VERMILION
 
 
@@ -27,7 +25,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         found = drawn("plot/quiet", write(root / "made"))
-        count = [(abs(found - 255 * numpy.array(to_rgb(colour))) < 1.5).all(axis=1).sum() for colour in (GREEN, VERMILION)]
+        count = [points_like(found, colour) for colour in (GREEN, VERMILION)]
         require(count[1] > 1000 and count[0] > count[1], f"more is quiet than dangerous: {count} points")
         fails("plot/quiet", root / "nothing", [], "no such file")
         (root / "made/quiet.csv").write_text("variable,own,lower,upper,quiet_lower,quiet_upper,danger\na,0.5,0,1,0.4,0.5,0.6\n")

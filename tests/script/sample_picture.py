@@ -7,8 +7,7 @@ import tempfile
 from pathlib import Path
 
 import numpy
-from drawing import drawn, fails, require
-from matplotlib.colors import to_rgb
+from drawing import drawn, fails, points_like, require
 from squeal.picture import BLUE, VERMILION
 
 
@@ -33,7 +32,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         found = drawn("plot/sample", write(root / "made"))
-        count = [(abs(found - 255 * numpy.array(to_rgb(colour))) < 1.5).all(axis=1).sum() for colour in (VERMILION, BLUE)]
+        count = [points_like(found, colour) for colour in (VERMILION, BLUE)]
         require(count[0] > 1000 and count[1] < 100, f"the branch that grows, and no other: {count} points")
         fails("plot/sample", root / "nothing", [], "no such file")
         index = root / "made/indices.csv"

@@ -7,9 +7,8 @@ import tempfile
 from pathlib import Path
 
 import numpy
-from drawing import drawn, fails, require
+from drawing import drawn, fails, points_like, require
 from made_up_static import FORCE, MU, SIDE, State, write_rows
-from matplotlib.colors import to_rgb
 from squeal import provenance
 from squeal.static import pairs as static_pairs # found by drawing
 from squeal.picture import BLUE, GREEN
@@ -25,7 +24,7 @@ def close(found, expected, message, tolerance=1e-12):
 def picture(folder):
     """Draws; how many points have each of the two colours."""
     colours = drawn("plot/static", folder)
-    return [(abs(colours - 255 * numpy.array(to_rgb(c))) < 1.5).all(axis=1).sum() for c in (BLUE, GREEN)]
+    return [points_like(colours, c) for c in (BLUE, GREEN)]
 
 
 def surface_of(folder, rows, columns=None):

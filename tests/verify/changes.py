@@ -13,6 +13,7 @@ absorber: a mass of 1 kg on 1 N/m with an absorber of RATIO kg, k = RATIO / (1 +
 points the amplitude is sqrt(1 + 2 / RATIO) m, whatever the dashpot (J. P. Den Hartog, Mechanical Vibrations)."""
 
 import csv
+import functools
 import math
 import sys
 from pathlib import Path
@@ -89,6 +90,7 @@ class Brake:
                                          if key[-3:] in ("_re", "_im")) > 0)
         self.number = numpy.full(3 * len(self.places), -1)
         self.number[free] = numpy.arange(len(free))
+        self.changed = functools.cache(self.changed)
 
     def column(self, node, direction):
         """A direction at the unknowns of a node."""
@@ -168,7 +170,7 @@ class Brake:
         """Eigenvalues in the band with their vectors, of the linearised problem about the middle of it."""
         K, C, M = self.changed(name)
         n, shift = K.shape[0], 1j * math.hypot(*band) / math.sqrt(2)
-        factors = scipy.sparse.linalg.splu((K + shift * C + shift**2 * M).tocsc())
+        factors = scipy.sparse.linalg.splu((K + shift * C + shift**2 * M).tocsc(), permc_spec="MMD_AT_PLUS_A")
 
         def solve(b):
             """(A - shift B)^-1 of [0 I; -K -C] - shift [I 0; 0 M], b = [f; g]: (K + shift C + shift^2 M) x = -g - C f - shift M f."""
@@ -190,7 +192,7 @@ class Brake:
         K, C, M = self.changed(name)
         for _ in range(2):
             s = value * (1 + 1e-9)
-            factors = scipy.sparse.linalg.splu((K + s * C + s**2 * M).tocsc())
+            factors = scipy.sparse.linalg.splu((K + s * C + s**2 * M).tocsc(), permc_spec="MMD_AT_PLUS_A")
             slope = (2 * s * M + C).tocsc()
             x = numpy.random.default_rng(3).standard_normal(K.shape[0]) + 0j
             y = x
@@ -209,11 +211,11 @@ class Brake:
             found = found - Q[:n, k] @ Q[k, :n] / Q[k, k]
         return found
 
-    def overlap(self, x, u):
-        """|u^H M x|^2 / (u^H M u x^H M x)."""
+    def overlaps(self, x, shapes):
+        """|u^H M x|^2 / (u^H M u x^H M x) of each of the shapes u, in rows."""
         x = x[:self.M.shape[0]]
-        Mx, Mu = self.M @ x, self.M @ u
-        return abs(numpy.vdot(u, Mx))**2 / (numpy.vdot(u, Mu).real * numpy.vdot(x, Mx).real)
+        Mx, Mu = self.M @ x, (self.M @ shapes.T).T
+        return abs(shapes.conj() @ Mx)**2 / ((shapes.conj() * Mu).sum(axis=1).real * numpy.vdot(x, Mx).real)
 
 
 def full(results, folder, mu):
@@ -223,6 +225,7 @@ def full(results, folder, mu):
     edges = [2 * math.pi * float(edge) for edge in brake.scene.value("modes_band").split(",")]
     band = edges[0] + EDGE * edges[1], edges[1] * (1 - EDGE)
     old = sorted(brake.shapes("", band, 2 * max(map(len, table(results).values()))), key=lambda entry: entry[0].imag)
+    shapes = numpy.array([shape for _, shape in old])
     for name, rows in table(results).items():
         exact = brake.shapes(name, band, 2 * len(rows))
         inside = [row for row in rows if band[0] < row[0].imag < band[1]]
@@ -233,7 +236,7 @@ def full(results, folder, mu):
             other, vector = exact.pop(nearest)
             off = abs(other - value) / (error + LOOSE * abs(value))
             worst, largest = max(worst, off), max(largest, error / abs(value))
-            overlaps = [brake.overlap(vector, shape) for _, shape in old]
+            overlaps = brake.overlaps(vector, shapes)
             if before >= len(old) or abs(overlaps[before] - overlap) > OVERLAP or max(overlaps) > overlap + OVERLAP:
                 sys.exit(f"{name}: {value} is said to be mode {before + 1}, {overlap}; of the matrices {max(overlaps)}")
         print(f"{name}: {len(inside)} modes, largest growth {max(value.real for value, _, _ in inside):.6g} 1/s")

@@ -35,12 +35,13 @@ def read(folder, name):
 
 
 def bodies(stiffness, mass):
-    """Of each body its unknowns, frequencies (Hz), and vectors."""
+    """Of each body its unknowns, frequencies (Hz), and the products of its mass with its vectors."""
     n, of = connected_components(abs(stiffness) > CONTACT * abs(stiffness).max(), directed=False)
     for b in range(n):
         at = np.flatnonzero(of == b)
-        values, vectors = eigh(stiffness[np.ix_(at, at)], mass[np.ix_(at, at)], subset_by_index=[0, min(len(at), MOST) - 1])
-        yield at, np.sqrt(np.maximum(values, 0)) / (2 * np.pi), vectors
+        own = mass[np.ix_(at, at)]
+        values, vectors = eigh(stiffness[np.ix_(at, at)], own, subset_by_index=[0, min(len(at), MOST) - 1])
+        yield at, np.sqrt(np.maximum(values, 0)) / (2 * np.pi), own @ vectors
 
 
 def block_of(rows, blocks):
@@ -51,11 +52,11 @@ def block_of(rows, blocks):
 
 
 def vectors_of(stiffness, mass, kappa):
-    """Right and left vector of K x = kappa M x, y^T K = kappa y^T M, from a number next to kappa."""
+    """Right and left vector of K x = kappa M x, y^T K = kappa y^T M, both sparse, from a number next to kappa."""
     near = kappa * (1 + 1e-9) if kappa else -1.0
-    factors, found = splu(csc_matrix(stiffness - near * mass, dtype=complex)), []
+    factors, found = splu((stiffness - near * mass).astype(complex), permc_spec="MMD_AT_PLUS_A"), []
     for transposed in "NT":
-        x = np.random.default_rng(1).standard_normal(len(mass)) + 0j
+        x = np.random.default_rng(1).standard_normal(mass.shape[0]) + 0j
         for _ in range(4):
             x = factors.solve(mass @ (x / np.linalg.norm(x)), transposed)
         found.append(x / np.linalg.norm(x))
@@ -93,6 +94,7 @@ def main():
     folder, opened, mu = Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])
     mass, stiffness = matrix(folder / "M.bin"), matrix(folder / "K.bin") + mu * matrix(folder / "H.bin")
     blocks = list(bodies(matrix(opened / "K.bin"), mass))
+    mass, stiffness = csc_matrix(mass), csc_matrix(stiffness)
     table = read(folder, "modes_components.csv")
     names = sorted({row["body"] for row in table})
     block = {name: block_of([row for row in table if row["body"] == name and row["component"]], blocks) for name in names}
@@ -111,11 +113,10 @@ def main():
         for row in rows:
             if not row["component"]:
                 continue
-            at, _, vectors = block[row["body"]]
+            at, _, weighted = block[row["body"]]
             first = int(row["component"]) - 1
-            phi = vectors[:, first:first + int(row["modes"])]
-            inner = mass[np.ix_(at, at)]
-            on_x, on_y = phi.T @ inner @ x[at], phi.T @ inner @ y[at]
+            mass_phi = weighted[:, first:first + int(row["modes"])]
+            on_x, on_y = mass_phi.T @ x[at], mass_phi.T @ y[at]
             found = 100 * (on_y @ on_x / whole).real, 100 * (on_x.conj() @ on_x).real / energy
             off = max(abs(found[0] - float(row["share_percent"])), abs(found[1] - float(row["energy_percent"])))
             worst = max(worst, off)

@@ -123,7 +123,7 @@ def closed(omega, g):
 
 def nearest(matrix, mass, shift):
     """Eigenvalues of matrix x = lambda mass x next to a shift."""
-    factors = scipy.sparse.linalg.splu((matrix - shift * mass).tocsc())
+    factors = scipy.sparse.linalg.splu((matrix - shift * mass).tocsc(), permc_spec="MMD_AT_PLUS_A")
     inverse = scipy.sparse.linalg.LinearOperator(matrix.shape, matvec=lambda x: factors.solve(mass @ x), dtype=complex)
     rng = np.random.default_rng(1)
     start = rng.standard_normal(matrix.shape[0]) + 0j
@@ -170,7 +170,7 @@ def newton(k, a, m, law, value):
     rng = np.random.default_rng(2)
     x = rng.standard_normal(k.shape[0]) + 0j
     for step in range(NEWTON):
-        factors = scipy.sparse.linalg.splu((value**2 * m + k + g(value) * a).tocsc())
+        factors = scipy.sparse.linalg.splu((value**2 * m + k + g(value) * a).tocsc(), permc_spec="MMD_AT_PLUS_A")
         y = factors.solve((2 * value * m + slope(value) * a) @ x)
         if step > 1:
             value -= np.vdot(x, x) / np.vdot(x, y)

@@ -17,8 +17,8 @@ FAINT = 1e-3    # of the strongest line: fainter ones need no explanation
 ORDER = 8       # |k| + |l| at most; numbers of a ratio
 NEAR = 0.02     # over the time: lines that are nearer are one
 ROUNDS = 3
-GOLDEN = (5**0.5 - 1) / 2
-STEPS = 45      # of the golden section: to 4e-10 of two bins
+STEPS = 60      # of false position
+CLOSE = 1e-10   # of half a bin, to which a frequency is sought
 LEAST = 20      # periods of the strongest line
 
 
@@ -30,26 +30,30 @@ class Line(NamedTuple):
     sums: tuple | None
 
 
-def strength(weights, values, times, freq):
-    """Of a line at a frequency."""
-    return abs(numpy.sum(weights * values * numpy.exp(-2j * numpy.pi * freq * times)))
+def rise(mixed, times, freq):
+    """Of the squared strength |S|^2 of a line over its frequency, S = sum w x exp(-2 pi i f t), divided by 4 pi."""
+    wave = mixed * numpy.exp(-2j * numpy.pi * freq * times)
+    return (numpy.conj(wave.sum()) * (times @ wave)).imag
 
 
 def refine(weights, values, times, freq, width):
-    """The frequency of the largest strength within a width about another, by golden sections."""
-    low, high = freq - width, freq + width
-    inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
-    found = [strength(weights, values, times, f) for f in inner]
+    """The frequency of the largest strength within a width about another: where its rise is 0, by the method of false position (of
+    Illinois); the end towards which it rises where there is none."""
+    mixed, ends = weights * values, [freq - width, freq + width]
+    rises = [rise(mixed, times, end) for end in ends]
+    if rises[0] <= 0 or rises[1] >= 0:
+        return ends[0] if rises[0] + rises[1] < 0 else ends[1]
+    last = None
     for _ in range(STEPS):
-        if found[0] > found[1]:
-            high, inner[1], found[1] = inner[1], inner[0], found[0]
-            inner[0] = high - GOLDEN * (high - low)
-            found[0] = strength(weights, values, times, inner[0])
-        else:
-            low, inner[0], found[0] = inner[0], inner[1], found[1]
-            inner[1] = low + GOLDEN * (high - low)
-            found[1] = strength(weights, values, times, inner[1])
-    return 0.5 * (low + high)
+        found = (ends[0] * rises[1] - ends[1] * rises[0]) / (rises[1] - rises[0])
+        own = rise(mixed, times, found)
+        side = 0 if own > 0 else 1
+        if own == 0 or abs(found - ends[side]) <= CLOSE * width:
+            return found
+        if side == last:
+            rises[1 - side] *= 0.5
+        ends[side], rises[side], last = found, own, side
+    return found
 
 
 def waves(times, freqs):
