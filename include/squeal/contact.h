@@ -73,7 +73,10 @@ typedef struct {
   PetscReal              gap;              /* n . (x_s - x_m) of the mesh, or -contact_gap, m, positive open */
   PetscReal              force; /* normal force carried in the sliding state, N, compressive >= 0; 0 when not given */
   PetscBool              mean;  /* lambda_n over area is the pressure, on faces of second order too */
-  PetscReal              speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
+  /* kappa = sum_k v_k (n_k . n_s - 1), n_s the slave's unit normal at x and n_k those at the nodes of its mean, with
+     weights v_k: a distance of one along the normals is 1 + kappa in the mean. 0 on flat faces, and of one node */
+  PetscReal bend;
+  PetscReal speed; /* stated sliding speed, m/s; 0 where nothing slides as told */
 } ContactPair;
 
 /* u~ = sum_i v_i u_i of a node without a pair, that pairs take in; node[0] is that node. It lives on the rank that owns

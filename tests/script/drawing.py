@@ -59,4 +59,5 @@ def drawn(name, folder, *options):
 def points_like(colours, colour):
     """How many of the points are of a colour, to one level of each channel."""
     wanted = numpy.rint(255 * numpy.array(to_rgb(colour))).astype(int)
-    return int(numpy.logical_and.reduce([(colours[:, i] >= level - 1) & (colours[:, i] <= level + 1) for i, level in enumerate(wanted)]).sum())
+    near = [(colours[:, i] >= level - 1) & (colours[:, i] <= level + 1) for i, level in enumerate(wanted)]
+    return int(numpy.logical_and.reduce(near).sum())

@@ -174,6 +174,44 @@ static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
   PetscFunctionReturn(0);
 }
 
+/* The slave's unit normal at node k of one of its facets */
+static void NodeNormal(const ContactFacet *s, int k, PetscReal n[3])
+{
+  for (int d = 0; d < 3; d++) n[d] = s->across[k][d];
+  (void)Vec3Normalise(n);
+}
+
+/* sum_k v_k n_k . n_s of the mean of a node, v_k as in MortarMean() */
+static PetscReal MeanAlong(const MortarPairs *m, PetscInt node, const PetscReal along[3])
+{
+  const PetscInt      at = m->border.around[m->border.first[node]];
+  const ContactFacet *s  = &m->mortar.slave->facet[at / FACET_NODES];
+  PetscReal           v[FACET_NODES], sum = 0, n[3];
+
+  SegmentValue(s->n, m->mortar.alpha, (int)(at % FACET_NODES), v);
+  for (int k = 0; k < s->n; k++) {
+    if (v[k] == 0) continue;
+    NodeNormal(s, k, n);
+    sum += v[k] * Vec3Dot(n, along);
+  }
+  return sum;
+}
+
+/* kappa of a pair, of its own mean and of those that it takes, entry[n] */
+static void BendSet(const MortarPairs *m, PetscInt p, PetscInt n, const MortarEntry entry[])
+{
+  const PetscInt at    = m->border.around[m->border.first[m->node[p]]];
+  PetscReal      whole = m->own[p], sum, along[3];
+
+  NodeNormal(&m->mortar.slave->facet[at / FACET_NODES], (int)(at % FACET_NODES), along);
+  sum = m->own[p] * (MeanAlong(m, m->node[p], along) - 1);
+  for (PetscInt i = 0; i < n; i++) {
+    whole += entry[i].node.weight;
+    sum += entry[i].node.weight * (MeanAlong(m, entry[i].node.number, along) - 1);
+  }
+  m->pair[p].bend = sum / whole;
+}
+
 /* The others keep an area of 0 and no sides */
 PetscErrorCode MortarSetSides(MortarPairs *m)
 {
@@ -195,6 +233,7 @@ PetscErrorCode MortarSetSides(MortarPairs *m)
     m->end = SlaveSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]], m->end);
     m->end = MasterSet(m, p, first[p + 1] - first[p], &m->under.entry[first[p]], m->end);
     PetscCall(GapSet(m, p));
+    BendSet(m, p, taken[p + 1] - taken[p], &m->taken.entry[taken[p]]);
     m->pair[p].mean = PETSC_TRUE; /* int N~_p p dA over D_p is a pressure; at no D_p = 0 */
   }
   PetscCall(PetscFree2(first, taken));

@@ -1,7 +1,8 @@
 /*
    What prescribed displacements d do to the pairs: with u = d on held directions contact displacements are w = G u + m,
    m = e . (d_m - d_s) along each row's direction e, so that the gap is g = g0 - m_n - (G u)_n, and slip counts from
-   m of the load step before. An interference (m) of the surfaces adds to m_n: they approach by it before bodies yield.
+   m of the load step before. An interference e (m) of the surfaces adds e (1 + kappa) to m_n: they approach by it along
+   their normals before bodies yield, which is so much in the mean of a pair on curved faces (squeal/contact.h).
 */
 #include "statics/staticsimpl.h"
 #include "contact/bodies/moved.h"
@@ -31,7 +32,7 @@ static PetscErrorCode MovedCreate(Model model, const Stage *stage, const PairRow
 
     MovedApart(n, all, q, d);
     for (PetscInt i = 0; i < rows->law[p].d; i++) (*moved)[rows->first[p] + i] = Vec3Dot(e[i], d);
-    (*moved)[rows->first[p]] += stage->interference[q->interface];
+    (*moved)[rows->first[p]] += stage->interference[q->interface] * (1 + q->bend);
   }
   PetscCall(PetscFree(all));
   PetscCall(PetscFree(nodal));
