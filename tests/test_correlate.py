@@ -27,6 +27,7 @@ import numpy as np
 import scipy.stats
 import universal
 from forked import run_command, run_script
+from served import sooner
 from small_brake import SCENE
 
 SOURCE = Path(__file__).resolve().parents[1]
@@ -382,5 +383,6 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.argv[1:] = [str(Path(word).resolve()) for word in sys.argv[1:]]
-    sys.exit(main())
+    with sooner(sys.argv[1]) as quick:
+        sys.argv[1:] = [str(quick), str(Path(sys.argv[2]).resolve())]
+        sys.exit(main())

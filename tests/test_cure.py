@@ -15,6 +15,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "tests/verify"))
 from changes import Brake, surfaces  # noqa: E402
+from served import sooner  # noqa: E402
 from squeal.provenance import Provenance  # noqa: E402
 from test_report import Page  # noqa: E402
 
@@ -158,4 +159,5 @@ def main(squeal):
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]).resolve()))
+    with sooner(sys.argv[1]) as quick:
+        sys.exit(main(quick))

@@ -24,6 +24,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 from forked import run_command
+from served import sooner
 from small_brake import SCENE
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOHDF import vtkHDFReader
@@ -269,4 +270,6 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with sooner(sys.argv[1]) as quick:
+        sys.argv[1] = quick
+        sys.exit(main())

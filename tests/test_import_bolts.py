@@ -23,6 +23,7 @@ except ImportError as error:
     sys.exit(77)
 
 from bolted import REFERENCE, deck, forces, mesh
+from served import sooner
 from squeal.decks.convert import convert
 
 NEAR = 2e-6  # m, farther apart than any two nodes that are no twins
@@ -149,5 +150,6 @@ if __name__ == "__main__":
     if not shutil.which("ccx"):
         print("skipped: there is no ccx")
         sys.exit(77)
-    main(Path(sys.argv[1]).resolve())
+    with sooner(sys.argv[1]) as quick:
+        main(quick)
     sys.exit(1 if FAILED else 0)

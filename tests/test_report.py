@@ -20,6 +20,7 @@ from fuzz.damage import BYTES, LINES
 from report_checks import (check_cost, check_frf, check_map, check_modes, check_shapes, check_static, check_sweep,
                            check_together, check_transient, check_turned, check_words)
 from report_vibrations import check_vibrations
+from served import sooner
 
 LARGEST = 10e6  # bytes
 
@@ -196,10 +197,9 @@ def check_damages(t, names, n=15):
 
 
 def main():
-    squeal, mpirun = (Path(word).resolve() for word in sys.argv[1:3])
-    with tempfile.TemporaryDirectory(prefix="squeal-") as name:
+    with tempfile.TemporaryDirectory(prefix="squeal-") as name, sooner(sys.argv[1]) as squeal:
         t = Test(Path(name))
-        make_results(squeal, mpirun, t.folder)
+        make_results(squeal, Path(sys.argv[2]).resolve(), t.folder)
         names = ("modes", "modes_quiet", "static", "sweep", "transient", "frf", "map", "vibration", "cycle")
         page = t.page(*names)
         check_alone(t, page)

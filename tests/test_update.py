@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 import scipy.optimize
 from forked import run_command
+from served import sooner
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
@@ -177,21 +178,21 @@ def check_onset(brake):
     check(len(found) > 0 and worst < 4, f"onset: {len(found)} lock-ins, {worst:.1f} stated deviations off at most")
 
 
-def main():
+def main(program):
     check_solve()
     check_draws()
     with tempfile.TemporaryDirectory() as folder:
-        bar = Bar(Path(folder) / "row", sys.argv[1], run_command, row, 19)
-        check_eight(Bar(Path(folder) / "samples", sys.argv[1], run_command, samples, 23, 8e9), "samples", 0.3)
+        bar = Bar(Path(folder) / "row", program, run_command, row, 19)
+        check_eight(Bar(Path(folder) / "samples", program, run_command, samples, 23, 8e9), "samples", 0.3)
         check_eight(bar, "a row", 4)
         for part in (check_held, check_damping):
             part(bar)
-        brake = Brake(Path(folder) / "brake", sys.argv[1], run_command)
+        brake = Brake(Path(folder) / "brake", program, run_command)
         check_stages(brake)
         check_onset(brake)
     return 1 if FAULTS else 0
 
 
 if __name__ == "__main__":
-    sys.argv[1:] = [str(Path(sys.argv[1]).resolve())]
-    sys.exit(main())
+    with sooner(sys.argv[1]) as quick:
+        sys.exit(main(quick))
