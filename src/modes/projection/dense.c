@@ -118,7 +118,7 @@ PetscReal ProjectionEdge(const Projection *p, PetscReal d)
   PetscReal     largest = 0;
 
   if (!w->count) return EdgeLargest(p, LambdaFar);
-  if (p->beta * d >= 1) return PETSC_MAX_REAL;
+  if (d == PETSC_MAX_REAL || p->beta * d >= 1) return PETSC_MAX_REAL;
   for (int i = 0; i <= EDGE_POINTS; i++) {
     const PetscReal angle = 2 * PETSC_PI * i / EDGE_POINTS;
 
@@ -137,12 +137,17 @@ PetscReal ProjectionLargestRatio(const Projection *p)
   return EdgeLargest(p, LambdaRatio);
 }
 
-/* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
-void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscComplex lambda[], PetscInt list[],
+/* Of the chosen eigenvalues, list [n], those nearest to the target come first. Those asked for are left, the second of
+   each double zero besides (rigid/twins.c), and `more`; *d = distance of the farthest, or PETSC_MAX_REAL where there
+   are too few: the others lie farther than all of them */
+void ProjectionKeepNearest(const Window *window, PetscInt more, const PetscComplex lambda[], PetscInt list[],
                            PetscInt *n, PetscReal *d)
 {
   const PetscComplex target = CMPLX(0, window->target);
+  PetscInt           zeros  = 0, second;
 
+  for (PetscInt i = 0; i < *n; i++) zeros += cabs(lambda[list[i]]) <= window->known.scale;
+  second = PetscMin(window->known.rigid, PetscMax(0, zeros - window->known.rigid));
   for (PetscInt i = 1; i < *n; i++)
     for (PetscInt j = i; j > 0 && cabs(lambda[list[j]] - target) < cabs(lambda[list[j - 1]] - target); j--) {
       const PetscInt swap = list[j];
@@ -150,8 +155,8 @@ void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscCompl
       list[j]     = list[j - 1];
       list[j - 1] = swap;
     }
-  *n = PetscMin(*n, most);
-  *d = *n ? cabs(lambda[list[*n - 1]] - target) : 0;
+  *n = PetscMin(*n, window->count + second + more);
+  *d = *n < window->count + second ? PETSC_MAX_REAL : cabs(lambda[list[*n - 1]] - target);
 }
 
 /* Scales a vector to length one and turns a complex one so that x^T x is real and positive */
@@ -276,8 +281,7 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   PetscCall(PetscMalloc2(w.N, &lambda, w.N, &list));
   for (PetscInt i = 0; i < w.N; i++)
     if (DenseShiftedLambda(&w, i, &lambda[i]) && LambdaMayBe(p, lambda[i])) list[m++] = i;
-  if (p->window->count)
-    ProjectionKeepNearest(p->window, p->window->count + (p->pencil->n_laws ? LAWS_MORE : 0), lambda, list, &m, &d);
+  if (p->window->count) ProjectionKeepNearest(p->window, p->pencil->n_laws ? LAWS_MORE : 0, lambda, list, &m, &d);
   PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
     modes->lambda[i] = lambda[list[i]];

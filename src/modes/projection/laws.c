@@ -148,7 +148,7 @@ static PetscErrorCode LawsKeepNearest(const Projection *p, ProjectionModes *mode
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &list));
   for (PetscInt i = 0; i < n; i++) list[i] = i;
-  ProjectionKeepNearest(p->window, p->window->count, from.lambda, list, &n, d);
+  ProjectionKeepNearest(p->window, 0, from.lambda, list, &n, d);
   PetscCall(ProjectionModesCreate(p, n, modes));
   for (PetscInt i = 0; i < n; i++) {
     modes->lambda[i] = from.lambda[list[i]];

@@ -115,8 +115,9 @@ static PetscErrorCode SpectraDestroy(Modes modes)
 /* Where damping leaves the vectors as they are */
 static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
 {
-  Modes    modes = p->modes;
-  Spectrum right, left = {.n = 0};
+  Modes     modes = p->modes;
+  Spectrum  right, left = {.n = 0};
+  PetscReal d;
 
   PetscFunctionBeginUser;
   window->route.beyond       = 0;
@@ -130,7 +131,9 @@ static PetscErrorCode MapModes(Projection *p, Window *window, const char **why)
   modes->left_spectrum = left;
   PetscCall(WindowSelect(window, &modes->right));
   PetscCall(WindowSelect(window, &modes->left_spectrum));
-  if (ProjectionEdge(p, window->count ? WindowNearest(window, &modes->right) : 0) > p->reach) *why = why_guard;
+  d = window->count ? WindowNearest(window, &modes->right) : 0;
+  if (modes->right.n < window->count) d = PETSC_MAX_REAL;
+  if (ProjectionEdge(p, d) > p->reach) *why = why_guard;
   PetscFunctionReturn(0);
 }
 

@@ -91,7 +91,7 @@ PETSC_INTERN PetscReal ProjectionPole(const Projection *p);
 /* The largest |lambda / (1 + beta lambda)| of the window, 1/s */
 PETSC_INTERN PetscReal ProjectionLargestRatio(const Projection *p);
 /* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
-PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt most, const PetscComplex lambda[],
+PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt more, const PetscComplex lambda[],
                                         PetscInt list[], PetscInt *n, PetscReal *d);
 /* Eigenvalues of the dense model in the window; with laws those of its quadratic part that may come into it */
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
