@@ -21,7 +21,7 @@ from served import own_words
 OPTIONS = Path(__file__).resolve().parents[1] / "options"
 COARSE = "-rig_disc_elements 6,12,1 -rig_pad_elements 3,3,2 -rig_beam_elements 4 -modes_band 1000,8000".split()
 MEDIUM = "-rig_disc_elements 24,96,3 -rig_pad_elements 10,10,10 -modes_band 0,20000".split()  # some seconds
-FINE = "-rig_disc_elements 36,144,4 -rig_pad_elements 12,12,12 -modes_band 0,20000".split()  # some ten seconds of solutions
+MANY = [*MEDIUM[:-1], "0,60000"]  # some ten seconds of solutions
 SCENE = ["-options_file", OPTIONS / "massi2005.yaml"]
 PATIENCE = 240  # seconds
 
@@ -96,7 +96,7 @@ def check_stages(r):
 
 def check_left_and_interrupt(r):
     """The time left within a loop of the eigensolver, then ^C."""
-    process = subprocess.Popen([r.squeal, *SCENE, *FINE, "-squeal_progress", "1", "-output_dir", "long"],
+    process = subprocess.Popen([r.squeal, *SCENE, *MANY, "-squeal_progress", "1", "-output_dir", "long"],
                                cwd=r.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     lines, begun = [], time.time()
     while time.time() - begun < PATIENCE and not (lines and "left" in lines[-1]):
