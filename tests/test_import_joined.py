@@ -141,7 +141,7 @@ def ansys(folder, program, solid):
             terms = [term for term in terms if term[2]]
             rows.append(f"CE,R5.0,DEFI,{len(terms):8d},       1,  0.00000000    ")
             for at in range(0, len(terms), 2):
-                rows.append("CE,R5.0,NODE," + ",".join(f"{n:10d},{label:4s},{value!r}" for n, label, value in terms[at:at + 2]))
+                rows.append("CE,R5.0,NODE," + ",".join(f"{n:10d},{label:4s},{float(value)!r}" for n, label, value in terms[at:at + 2]))
     same(folder, program, "MASS21 on CE of a rigid region", ("cdb", decks_joined.ansys(solid, [heavy], [*real, *rows], types)), rigid)
     a, b, c = right[:3]
     spring = [1, 12, 6, 1, 0, 0, 0, 0, 2, 0, 90050, a, b]

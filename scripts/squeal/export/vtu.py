@@ -42,7 +42,7 @@ def text_array(name, texts):
 def field_data(state):
     """XML of what belongs to the whole state."""
     facts = {"TimeValue": state.value, **state.facts}
-    numbers = "".join(f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" format="ascii">{value!r}</DataArray>\n'
+    numbers = "".join(f'<DataArray type="Float64" Name={quoteattr(name)} NumberOfTuples="1" format="ascii">{float(value)!r}</DataArray>\n'
                       for name, value in facts.items())
     return "<FieldData>\n" + numbers + text_array("title", [state.title]) + text_array("part_names", state.grid.names) + "</FieldData>\n"
 
@@ -119,7 +119,7 @@ def write_state(folder, state, n_pieces):
 
 def write_series(folder, series, files):
     """The PVD of a series: (value, file) of each state."""
-    rows = "".join(f'<DataSet timestep="{value!r}" group="" part="0" file={quoteattr(name)}/>\n' for value, name in files)
+    rows = "".join(f'<DataSet timestep="{float(value)!r}" group="" part="0" file={quoteattr(name)}/>\n' for value, name in files)
     write_text(folder / f"{series}.pvd", f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n{rows}'
                                          "</Collection>\n</VTKFile>\n")
 
