@@ -15,6 +15,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "tests/verify"))
 from changes import Brake, surfaces  # noqa: E402
+from forked import run_script  # noqa: E402
 from served import sooner  # noqa: E402
 from squeal.provenance import Provenance  # noqa: E402
 from test_report import Page  # noqa: E402
@@ -35,8 +36,7 @@ OPTION = {"mass": "mass", "spring": "stiffness", "dashpot": "viscosity", "relati
 
 
 def call(folder, *words):
-    return subprocess.run([sys.executable, SOURCE / "scripts/cure", *map(str, words)], capture_output=True, text=True, cwd=folder,
-                          check=False)
+    return run_script(SOURCE / "scripts/cure", words, folder)
 
 
 def moved(squeal, folder, rows, scene):
@@ -103,7 +103,7 @@ def check_parameters(folder, said):
 def check_page(folder, sets):
     """The sets that leave none unstable on the page of scripts/report, in g and N s/m; none where modes.csv is newer; faults."""
     def table():
-        subprocess.run([sys.executable, SOURCE / "scripts/report", "out"], cwd=folder, check=True, capture_output=True)
+        run_script(SOURCE / "scripts/report", ["out"], folder)
         page = Page(folder / "out/report.html")
         found = [e["id"] for e in page.elements if e.get("id", "").endswith("-cures-table")]
         return page.table(found[0]) if found else []

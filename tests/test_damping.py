@@ -15,6 +15,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy
+from forked import run_script
+from served import sooner
 
 SOURCE = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(SOURCE / "scripts"))
@@ -44,8 +46,7 @@ def squeal(program, folder, *words):
 
 
 def response(folder, *words):
-    return subprocess.run([sys.executable, SOURCE / "scripts/response", *map(str, words)], cwd=folder, capture_output=True, text=True,
-                          check=False)
+    return run_script(SOURCE / "scripts/response", words, folder)
 
 
 def check(folder):
@@ -119,9 +120,8 @@ def check_told():
 
 
 def main():
-    program = Path(sys.argv[1]).resolve()
     losses = [word for part, loss in LOSS.items() for word in (f"-{part}_loss_factor", loss)]
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, sooner(sys.argv[1]) as program:
         folder = Path(name)
         (folder / "small.yaml").write_text(SCENE)
         squeal(program, folder, *losses, "-analysis", "frf", "-frf_force", "tip,0,0,1", "-frf_frequencies", "1600:10000:4201",

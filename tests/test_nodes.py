@@ -20,7 +20,7 @@ except ImportError as error:
     print(f"skipped: no Python module {error.name}")
     sys.exit(77)
 
-from served import own_words
+from served import own_words, sooner
 
 SOURCE = Path(__file__).resolve().parents[1]
 INNER = 0.06  # m, where the disc is clamped
@@ -160,8 +160,8 @@ def test_bad(runs):
 
 
 def main():
-    with tempfile.TemporaryDirectory() as folder:
-        runs = Runs(Path(folder), *sys.argv[1:3])
+    with tempfile.TemporaryDirectory() as folder, sooner(sys.argv[1]) as squeal:
+        runs = Runs(Path(folder), squeal, sys.argv[2])
         test_disc(runs)
         test_bad(runs)
     return 1 if failed else 0

@@ -20,6 +20,8 @@ except ImportError as error:
     print(f"skipped: no Python module {error.name}")
     sys.exit(77)
 
+from served import sooner
+
 SOURCE = Path(__file__).resolve().parents[1]
 SCENE = SOURCE / "options/massi2005_transient.yaml"
 OPTIONS = ["-rows_stiffness", "8e6,8e6,8e6", "-press_ramp", "2e-5", "-contact_speed", "20",
@@ -140,4 +142,5 @@ def main(squeal, launcher):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    with sooner(sys.argv[1]) as quick:
+        main(quick, sys.argv[2])

@@ -5,7 +5,6 @@ import contextlib
 import csv
 import io
 import re
-import subprocess
 import sys
 import tempfile
 import wave
@@ -13,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from drawing import script
 
 # IEC 61672-1:2013, table 3: A-weighting, dB, at 1000 * 10^(n / 10) Hz
 TABLE = {-16: -44.7, -15: -39.4, -12: -26.2, -9: -16.1, -6: -8.6, -3: -3.2, 0: 0.0, 1: 0.6, 2: 1.0, 3: 1.2, 4: 1.3, 5: 1.2, 6: 1.0, 7: 0.5,
@@ -43,9 +43,9 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def sound(root, *words):
+def sound(_, *words):
     """scripts/sound with words."""
-    return subprocess.run([sys.executable, root / "scripts/sound", *map(str, words)], capture_output=True, text=True, check=False)
+    return script("sound", *words)
 
 
 def near(value, expected, allowed, what):
