@@ -119,6 +119,14 @@ static inline PetscBool ComplianceIsMap(const ContactCompliance c)
   return c->krylov.map.move ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Compliance of a pair alone along its tangents, times kappa: the mean of both */
+static inline PetscReal ComplianceTangent(const ContactCompliance c, PetscInt p)
+{
+  const PetscInt N = 3 * c->n;
+
+  return 0.5 * c->kappa[p] * (c->W[(3 * p + 1) * (N + 1)] + c->W[(3 * p + 2) * (N + 1)]);
+}
+
 /* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v;
    statuses that l, v ask for */
 PETSC_INTERN PetscErrorCode ComplianceMove(ContactCompliance c);

@@ -1,6 +1,7 @@
 /* Displacements at the ports, and the energy of a state, of dense models and of those without columns of the pairs */
 #include "reduced/sparse/sparse.h"
-#include <petscblaslapack.h>
+
+#define FORM_COLUMNS 32
 
 /* Column of W of a port, which must be none of a pair where these have no columns */
 const PetscReal *ReducedColumn(const ReducedModel *model, PetscInt port)
@@ -59,17 +60,19 @@ PetscErrorCode ReducedPairDisplacements(const ReducedModel *model, const PetscRe
   PetscFunctionReturn(0);
 }
 
-/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read */
+/* x'A x of a symmetric A [n][n], columns stride apart: half of it is read, FORM_COLUMNS columns at a time */
 PetscReal ReducedForm(PetscInt n, PetscInt stride, const PetscReal A[], const PetscReal x[])
 {
-  const PetscBLASInt one = 1;
-  PetscReal          sum = 0;
+  PetscReal sum = 0, y[FORM_COLUMNS];
 
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscBLASInt rows = (PetscBLASInt)j;
-    const PetscReal   *a    = &A[stride * j];
+  for (PetscInt j = 0, columns; j < n; j += columns) {
+    const PetscReal *a = &A[stride * j];
 
-    if (x[j] != 0) sum += x[j] * (2 * BLASdot_(&rows, a, &one, x, &one) + a[j] * x[j]);
+    columns = PetscMin(FORM_COLUMNS, n - j);
+    for (PetscInt k = 0; k < columns; k++) y[k] = 0;
+    ReducedBlockTimes(&(DenseBlock){a, j, columns, stride}, PETSC_TRUE, 2, x, y);
+    ReducedBlockTimes(&(DenseBlock){a + j, columns, columns, stride}, PETSC_TRUE, 1, &x[j], y);
+    for (PetscInt k = 0; k < columns; k++) sum += x[j + k] * y[k];
   }
   return sum;
 }

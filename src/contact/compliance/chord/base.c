@@ -310,24 +310,41 @@ PetscErrorCode ComplianceChordBorder(ContactCompliance c, PetscBool *good)
   PetscFunctionReturn(0);
 }
 
+/* c of a pair at the present l, v; 0 without friction */
+static PetscReal ChordPresent(const ContactCompliance c, PetscInt p)
+{
+  const PetscReal *v = &c->v[3 * p], *l = &c->l[3 * p];
+  const PetscReal  friction = PetscSqrtReal(l[1] * l[1] + l[2] * l[2]);
+
+  return friction > 0 ? PetscSqrtReal(v[1] * v[1] + v[2] * v[2]) / friction : 0;
+}
+
 /* What index i has to make 0, m, at the present l, v: v_n, v_x, v_e, or v_x + c l_x with the present c = |v_T| /
    |l_T|, while the matrix has the c of the frame */
 static PetscReal ChordMiss(const ContactCompliance c, PetscInt i)
 {
   const PetscReal *v = &c->v[3 * (i / 4)], *l = &c->l[3 * (i / 4)];
-  PetscReal        r[3], slip, friction;
+  PetscReal        r[3], slip;
 
   if (i % 4 == 0) return v[0];
   ChordRow(c, i, r);
   if (i % 4 > 1) return r[1] * v[1] + r[2] * v[2];
-  slip     = PetscSqrtReal(v[1] * v[1] + v[2] * v[2]);
-  friction = PetscSqrtReal(l[1] * l[1] + l[2] * l[2]);
-  slip     = friction > 0 ? slip / friction : 0;
+  slip = ChordPresent(c, i / 4);
   return r[1] * (v[1] + slip * l[1]) + r[2] * (v[2] + slip * l[2]);
 }
 
+/* dz across the slip of pair p for the present c in place of the one held, over that for the one held, by its own row
+   alone, (w + c) dz = what v_x has without dz and l_x, w = x'(W kappa) x: where c is large, others hardly feel dz */
+static PetscReal ChordOwn(const ContactCompliance c, PetscInt p)
+{
+  const PetscReal held = c->chord.frame[p].c, present = ChordPresent(c, p), own = ComplianceTangent(c, p);
+
+  return own + present > 0 ? (own + held) / (own + present) : 1;
+}
+
 /* A dz of the present set against what its rows miss; dz [4 n], m, zero elsewhere. b = A0^-1 b0, then S s = b_B -
-   [A_B0; E_D'] b, then x0 = b - V s. Indices that left have dz = 0 to rounding by the border, and exactly 0 here. */
+   [A_B0; E_D'] b, then x0 = b - V s. Indices that left have dz = 0 to rounding by the border, and exactly 0 here.
+   Those across slip then answer to their present c. */
 PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[])
 {
   ComplianceChord *h = &c->chord;
@@ -351,5 +368,7 @@ PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[])
   PetscCall(PetscArrayzero(dz, 4 * c->n));
   for (PetscInt j = 0; j < h->m; j++) dz[h->index[j]] = b[j];
   for (PetscInt k = 0; k < h->n_border; k++) dz[h->border[k]] = h->place[h->border[k]] < 0 ? s[k] : 0;
+  for (PetscInt p = 0; p < c->n; p++)
+    if (dz[4 * p + 1] != 0) dz[4 * p + 1] *= ChordOwn(c, p);
   PetscFunctionReturn(0);
 }

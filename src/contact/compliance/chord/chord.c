@@ -18,9 +18,10 @@
    (P. E. Gill, W. Murray, M. A. Saunders, M. H. Wright, Math. Program. 45, 1989, 437). An iteration solves A dz = -v,
    the present c in place of the one held; then friction of sliding pairs is put on their cones. A pair whose c is
    beyond COMPLIANCE_WEAK carries next to nothing and has no index 1: its friction is turned to where it slides at the
-   present v. What c, e and mu have changed since makes an iteration contract less; mix.c makes up for some of it, and
-   factors are renewed where they cost more iterations than new ones take time. Where that does not converge, newton.c
-   follows.
+   present v. What c, e and mu have changed since makes an iteration contract less, most at pairs that open, whose c
+   grows to infinity: dz across is scaled to their present c, and their friction turned once more at the v that follows.
+   mix.c makes up for some of the rest, and factors are renewed where they cost more iterations than new ones take time.
+   Where that does not converge, newton.c follows.
 */
 #include "contact/compliance/complianceimpl.h"
 
@@ -30,6 +31,8 @@
 #define CHORD_RENEWALS 8   /* of the factors in a step */
 #define CHORD_SLOW     0.5 /* residual over the one before, of an iteration without change of status */
 #define CHORD_PATIENCE 4   /* slow iterations */
+#define CHORD_LONG     3.  /* slip over friction, from which that is turned by the pair alone */
+#define CHORD_GROUP    4   /* pairs that are turned at once: a pass over v takes eight columns */
 #define CHORD_WORTH    16. /* new factors of m indices take the time of m / CHORD_WORTH iterations */
 
 /* A pair has the force l (m) from now on, and v follows by three columns of W instead of the whole product */
@@ -109,6 +112,35 @@ static void ChordTake(ContactCompliance c, const PetscReal dz[])
   }
 }
 
+/* Friction of pairs whose slip is long beside it, turned to where it is along the slip that it leaves, v_T + c l_T = 0
+   by the pair's own compliance alone: one group of pairs after the other, at the v that those before have left. Turned
+   at the v before the iteration they contract only as the largest eigenvalue of W kappa over c, some 50 over 300 */
+static void ChordTurn(ContactCompliance c)
+{
+  PetscReal more[2 * CHORD_GROUP];
+  PetscInt  column[2 * CHORD_GROUP], n = 0;
+
+  for (PetscInt p = 0; p < c->n; p++) {
+    const PetscReal *v = &c->v[3 * p], own = ComplianceTangent(c, p);
+    PetscReal       *l        = &c->l[3 * p], q[2], length;
+    const PetscReal  friction = PetscSqrtReal(l[1] * l[1] + l[2] * l[2]);
+
+    if (c->status[p] != CONTACT_SLIP || !(friction > 0)) continue;
+    if (!(v[1] * v[1] + v[2] * v[2] > PetscSqr(CHORD_LONG * friction))) continue;
+    for (int i = 0; i < 2; i++) q[i] = own * l[1 + i] - v[1 + i];
+    length = PetscSqrtReal(q[0] * q[0] + q[1] * q[1]);
+    for (int i = 0; i < 2 && length > 0; i++) {
+      const PetscReal turned = friction * q[i] / length;
+
+      column[n] = 3 * p + 1 + i;
+      more[n++] = c->kappa[p] * (turned - l[1 + i]);
+      l[1 + i]  = turned;
+    }
+    if (n == 2 * CHORD_GROUP) ComplianceAddColumns(3 * c->n, c->W, n, column, more, c->v), n = 0;
+  }
+  ComplianceAddColumns(3 * c->n, c->W, n, column, more, c->v);
+}
+
 /* Whether new factors, after which one or two iterations are enough, take less time than the iterations that are left
    at the rate of the last one, log(goal / now) / log(now / last); a residual that does not fall has no end, and asks
    for new ones */
@@ -183,6 +215,7 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
     ChordTake(c, c->chord.z);
     ComplianceMix(c, c->v0);
     PetscCall(ComplianceMove(c));
+    ChordTurn(c);
     ComplianceMeasure(c, miss);
     c->report.iterations++;
     slow += !(miss->norm < CHORD_SLOW * last.norm);
