@@ -4,9 +4,10 @@
       [ K - omega^2 M    -omega C        ] [v]   [ f]
       [ -omega C         omega^2 M - K   ] [w] = [-g],
 
-   of which the transpose is the same of K', C', M'. This is K2 + omega C2 + omega^2 M2 of a real pencil, K2 = diag(K,
-   -K), M2 = diag(-M, M) and C2 with -C off the diagonal. Where C is of one part, the copies of the others meet in that
-   part alone, and factors have little more than twice the entries of the real ones.
+   of which the transpose is the same of K', C', M': with these symmetric it is symmetric, too, and LDL' will do. This
+   is K2 + omega C2 + omega^2 M2 of a real pencil, K2 = diag(K, -K), M2 = diag(-M, M) and C2 with -C off the diagonal.
+   Where C is of one part, the copies of the others meet in that part alone, and factors have little more than twice the
+   entries of the real ones.
 */
 #include "complexshift.h"
 
@@ -32,11 +33,12 @@ static PetscErrorCode StackCreate(Mat A, PetscBool across, Mat *stack)
 PetscErrorCode ComplexShiftCreate(const PencilMatrices *pencil, Progress *progress, ComplexShift *c)
 {
   PetscFunctionBeginUser;
-  *c = (ComplexShift){.factor = {.progress = progress}};
+  *c = (ComplexShift){.factor = {.progress = progress, .even_damped = pencil->symmetric}};
   PetscCall(StackCreate(pencil->K, PETSC_FALSE, &c->matrices.K));
   PetscCall(StackCreate(pencil->C, PETSC_TRUE, &c->matrices.C));
   PetscCall(StackCreate(pencil->M, PETSC_FALSE, &c->matrices.M));
   PetscCall(MatScale(c->matrices.M, -1));
+  c->matrices.symmetric = pencil->symmetric;
   PetscFunctionReturn(0);
 }
 

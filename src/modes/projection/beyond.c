@@ -249,6 +249,23 @@ static PetscErrorCode BeyondBalance(Projection *p, PetscReal *rho)
   PetscFunctionReturn(0);
 }
 
+/* Whether what the first block took in left the radius as large as it was, seen by a few vectors: then it is not of few
+   eigenvalues, and a larger block would cost as much as a factorisation to no end. rho is the radius then. */
+static PetscErrorCode EnlargeIsHopeless(const Projection *p, int round, PetscReal before, PetscReal *rho,
+                                        PetscBool *hopeless)
+{
+  BeyondSpace space;
+
+  PetscFunctionBeginUser;
+  *hopeless = PETSC_FALSE;
+  if (round != 2 || before <= ENLARGE_HOPELESS) PetscFunctionReturn(0);
+  PetscCall(BeyondCreate(p, BEYOND_BLOCK, round, &space));
+  PetscCall(BeyondGrow(p, &space, rho));
+  PetscCall(BeyondDestroy(p, &space));
+  *hopeless = *rho > PetscMax(ENLARGE_STAYS * before, ENLARGE_HOPELESS) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ProjectionEnlarge(Projection *p, PetscReal *rho)
 {
   const PetscInt first = p->space.n;
@@ -261,9 +278,11 @@ PetscErrorCode ProjectionEnlarge(Projection *p, PetscReal *rho)
                       (double)p->misfit));
   if (p->misfit > ENLARGE_MISFIT) p->alpha = p->beta = 0;
   for (int round = 1; round <= ENLARGE_ROUNDS && added && p->space.n < first + ENLARGE_MOST; round++) {
-    PetscBool   stays;
+    PetscBool   stays, hopeless;
     BeyondSpace space;
 
+    PetscCall(EnlargeIsHopeless(p, round, before, rho, &hopeless));
+    if (hopeless) break;
     PetscCall(BeyondCreate(p, block, round, &space));
     PetscCall(BeyondGrow(p, &space, rho));
     stays = *rho > ENLARGE_STAYS * before ? PETSC_TRUE : PETSC_FALSE;

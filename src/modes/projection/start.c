@@ -11,6 +11,7 @@
 #include "base/algebra/dense.h"
 #include "solver/block/orthonormal.h"
 
+#define START_KEEP 1e-4 /* of what damping leaves of a residual, which the basis does not know yet: less of it stays */
 #define START_SAME 1e-9 /* relative difference of eigenvalues that come from one kappa */
 
 /* Whether the two eigenvalues of a complex pair of kappa, lambda and -conj(lambda), are there, and this is the one that
@@ -137,7 +138,7 @@ static PetscErrorCode RestChoose(const Projection *p, PetscBool left, const Spec
     PetscCall(BVNormColumn(b->x, j, NORM_2, &norm));
     PetscCall(BVNormColumn(b->Cx, n, NORM_2, &size));
     tolerance[n] = omega > 0 ? p->limit[left] * (omega * p->norms[2] + p->norms[1] + p->norms[0] / omega) * norm : size;
-    tolerance[n] = PetscMax(tolerance[n], PROJECTION_KEEP * size);
+    tolerance[n] = PetscMax(tolerance[n], START_KEEP * size);
     if (tolerance[n] > 0) n++;
   }
   PetscCall(BVSetActiveColumns(b->Cx, 0, n));

@@ -13,7 +13,7 @@
 #include "projection.h"
 #include "solver/block/orthonormal.h"
 
-#define STRONG_EACH   12   /* modes without damping in a part of a band, about */
+#define STRONG_EACH   24   /* modes without damping in a part of a band, about */
 #define STRONG_MOST   16   /* parts */
 #define STRONG_STRIP  1e-3 /* by so much two parts overlap, relative */
 #define STRONG_SAME   1e-6 /* relative distance of eigenvalues that are one */

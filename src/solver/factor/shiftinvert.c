@@ -100,7 +100,7 @@ static PetscErrorCode ShiftInvertChoose(const PencilMatrices *pencil, ShiftInver
   PetscFunctionBeginUser;
   *store   = PETSC_FALSE;
   si->why  = NULL;
-  si->even = !pencil->C && (pencil->symmetric || pencil->left) ? PETSC_TRUE : PETSC_FALSE;
+  si->even = (!pencil->C || si->even_damped) && (pencil->symmetric || pencil->left) ? PETSC_TRUE : PETSC_FALSE;
   if (!si->even || pencil->symmetric) PetscFunctionReturn(0);
   PetscCall(UpdateIsStiff(pencil, &stiff));
   if (stiff) si->why = "pairs too stiff for an update";

@@ -39,8 +39,9 @@ typedef struct ShiftInvert {
   PetscBool   regain;          /* K and K_even were released: to be got again for another shift */
   /* what makes products with K then, where the half that is factored is left alone; else NULL */
   Mat       product;
-  PetscBool even;   /* the matrix that is factored is symmetric: LDL' */
-  PetscBool halves; /* its upper half will do, on one rank */
+  PetscBool even;        /* the matrix that is factored is symmetric: LDL' */
+  PetscBool halves;      /* its upper half will do, on one rank */
+  PetscBool even_damped; /* LDL' with damping too, where K, C and M are symmetric */
   /* K itself is factored, at shift 0 and without a copy; by MUMPS whatever st_ksp_ and st_pc_ say; with null pivots and
      the sign of the determinant found */
   PetscBool bare;
