@@ -193,6 +193,7 @@ PetscErrorCode ContactComplianceDestroy(ContactCompliance *compliance)
   PetscCall(PetscFree2(c->chord.x, c->chord.f));
   PetscCall(PetscFree2(c->chord.basis, c->chord.step));
   PetscCall(PetscFree6(c->chord.LU, c->chord.V, c->chord.S, c->chord.row, c->chord.at, c->chord.small));
+  PetscCall(ComplianceNearDestroy(c));
   PetscCall(ComplianceDualDestroy(c));
   PetscCall(ComplianceDestroySprings(c));
   PetscCall(PetscFree4(c->krylov.held, c->krylov.released, c->krylov.motion, c->krylov.force));

@@ -31,7 +31,8 @@ typedef struct {
   PetscBool        exists;
   PetscInt         m, *index, room;   /* of the base, ascending, [m]; that there is room for */
   ComplianceFrame *frame;             /* [n] */
-  PetscReal       *LU;                /* [m][m] */
+  PetscReal       *LU;                /* [m][m]; */
+  PetscBool        single;            /* or float [m][m] in its place, and work behind them (chord/single.c) */
   PetscReal       *row;               /* [m][3] directions of the rows of the base, */
   PetscInt        *at;                /* [m] and where the displacements of their pairs begin */
   PetscBLASInt    *small;             /* pivots of S */
@@ -45,6 +46,19 @@ typedef struct {
   PetscReal       *x, *f;             /* iterate before, and how G changes it, [3 n] */
   PetscReal       *basis, *step;      /* differences of f, orthonormal, and of x + f, [COMPLIANCE_MIXED][3 n] */
 } ComplianceChord;
+
+/* W in 16 bits (chord/near.c) */
+typedef struct {
+  PetscInt   n;            /* of tiles in a row */
+  int16_t   *tile;         /* NULL before it is asked for */
+  float     *scale;        /* m/N, of each tile */
+  PetscBool *moves;        /* work: rows of tiles that change, [n] */
+  float     *x, *y;        /* work: change of the forces, what it moves */
+  PetscReal  spread;       /* m/N: what an entry is off by in the mean */
+  PetscBool  stands;       /* there is a whole product: */
+  PetscReal *from, *moved; /* forces, N, and what they move, m, [3 n] */
+  PetscReal *diagonal;     /* of W then, [3 n] */
+} ComplianceNear;
 
 /* Newton's method on motions (dual.c); rows are of the motions that are free */
 typedef struct {
@@ -109,6 +123,7 @@ struct _p_ContactCompliance {
   PetscInt          n_room;    /* rows that there is room for */
   ComplianceSprings springs;
   ComplianceChord   chord;
+  ComplianceNear    near;
   ComplianceDual    dual;
   ComplianceKrylov  krylov;
   ComplianceReport  report, totals;
@@ -127,9 +142,10 @@ static inline PetscReal ComplianceTangent(const ContactCompliance c, PetscInt p)
   return 0.5 * c->kappa[p] * (c->W[(3 * p + 1) * (N + 1)] + c->W[(3 * p + 2) * (N + 1)]);
 }
 
-/* law.c - v at l; its natural map; the pair with its coefficient of friction at the present slip, w = -weight v;
-   statuses that l, v ask for */
+/* law.c - v at l; y += W times the forces at l; its natural map; the pair with its coefficient of friction at the
+   present slip, w = -weight v; statuses that l, v ask for */
 PETSC_INTERN PetscErrorCode ComplianceMove(ContactCompliance c);
+PETSC_INTERN void           ComplianceAddMotion(ContactCompliance c, PetscReal y[]);
 PETSC_INTERN void           ComplianceMeasure(const ContactCompliance c, ComplianceMiss *miss);
 PETSC_INTERN PetscBool      ComplianceIsSolved(const ContactCompliance c, const ComplianceMiss *miss);
 PETSC_INTERN void           ComplianceChoose(ContactCompliance c);
@@ -186,6 +202,13 @@ PETSC_INTERN void           ComplianceSetTangents(ContactCompliance c, PetscBool
 PETSC_INTERN PetscErrorCode ComplianceLayAt(ContactCompliance c, const PetscReal at[]);
 PETSC_INTERN PetscErrorCode ComplianceDestroySprings(ContactCompliance c);
 
+/* chord/near.c - whether W is so large that its iterations have v by changes of the forces and few bytes of it; v at l
+   and its natural map in that way; a whole product that was kept, of the diagonal that W has */
+PETSC_INTERN PetscBool      ComplianceNearServes(const ContactCompliance c);
+PETSC_INTERN PetscErrorCode ComplianceNearMove(ContactCompliance c, ComplianceMiss *miss);
+PETSC_INTERN PetscErrorCode ComplianceNearTake(ContactCompliance c, const PetscReal from[], const PetscReal moved[]);
+PETSC_INTERN PetscErrorCode ComplianceNearDestroy(ContactCompliance c);
+
 /* chord.c - Newton's method with factors of the steps before */
 PETSC_INTERN PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss);
 
@@ -197,6 +220,10 @@ PETSC_INTERN void      ComplianceLUSolveColumns(PetscInt n, const PetscReal LU[]
 PETSC_INTERN void      ComplianceAddColumns(PetscInt N, const PetscReal W[], PetscInt n, const PetscInt column[],
                                             const PetscReal x[], PetscReal y[]);
 PETSC_INTERN void      ComplianceAddSymmetric(PetscInt N, const PetscReal W[], const PetscReal x[], PetscReal y[]);
+
+/* chord/single.c - factors in single precision; X := A0^-1 X of columns of the base, at most `most`, in either one */
+PETSC_INTERN PetscReal ComplianceSingleFactor(PetscInt n, float A[]);
+PETSC_INTERN void      ComplianceChordBaseSolve(const ContactCompliance c, PetscInt columns, PetscReal X[]);
 
 /* mix.c - l = G(x) becomes a combination of it and what the iterations before made of theirs */
 PETSC_INTERN void ComplianceMix(ContactCompliance c, PetscReal x[]);

@@ -35,28 +35,18 @@ CoulombPair ComplianceGetPair(const ContactCompliance c, PetscInt p, PetscReal w
   return pair;
 }
 
-/* v = free + [(1 - t) W kappa + t I] l; columns of pairs without force are left out, most of them when few are
-   closed. Where most carry and W is larger than the cache of a core, half of it is read instead. */
-PetscErrorCode ComplianceMove(ContactCompliance c)
+/* Columns of pairs without force are left out, most of them when few are closed. Where most carry and W is larger than
+   the cache of a core, half of it is read instead. */
+void ComplianceAddMotion(ContactCompliance c, PetscReal y[])
 {
   const PetscInt N = 3 * c->n;
   PetscInt       n = 0;
 
-  PetscFunctionBeginUser;
-  if (ComplianceIsMap(c)) {
-    for (PetscInt i = 0; i < N; i++) c->force[i] = c->kappa[i / 3] * c->l[i];
-    PetscCall(c->krylov.map.move(c->krylov.map.ctx, c->force, c->v));
-    for (PetscInt i = 0; i < N; i++) c->v[i] += c->free[i];
-    PetscFunctionReturn(0);
-  }
-  for (PetscInt i = 0; i < N; i++) {
-    c->v[i] = c->free[i] + c->blend * c->l[i];
-    n += c->l[i] != 0;
-  }
+  for (PetscInt i = 0; i < N; i++) n += c->l[i] != 0;
   if (N >= MOTION_LARGE && (PetscReal)n > MOTION_MOST * (PetscReal)N) {
     for (PetscInt i = 0; i < N; i++) c->force[i] = (1 - c->blend) * c->kappa[i / 3] * c->l[i];
-    ComplianceAddSymmetric(N, c->W, c->force, c->v);
-    PetscFunctionReturn(0);
+    ComplianceAddSymmetric(N, c->W, c->force, y);
+    return;
   }
   n = 0;
   for (PetscInt i = 0; i < N; i++) {
@@ -66,7 +56,23 @@ PetscErrorCode ComplianceMove(ContactCompliance c)
     c->force[n]     = force;
     c->carries[n++] = i;
   }
-  ComplianceAddColumns(N, c->W, n, c->carries, c->force, c->v);
+  ComplianceAddColumns(N, c->W, n, c->carries, c->force, y);
+}
+
+/* v = free + [(1 - t) W kappa + t I] l */
+PetscErrorCode ComplianceMove(ContactCompliance c)
+{
+  const PetscInt N = 3 * c->n;
+
+  PetscFunctionBeginUser;
+  if (ComplianceIsMap(c)) {
+    for (PetscInt i = 0; i < N; i++) c->force[i] = c->kappa[i / 3] * c->l[i];
+    PetscCall(c->krylov.map.move(c->krylov.map.ctx, c->force, c->v));
+    for (PetscInt i = 0; i < N; i++) c->v[i] += c->free[i];
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 0; i < N; i++) c->v[i] = c->free[i] + c->blend * c->l[i];
+  ComplianceAddMotion(c, c->v);
   PetscFunctionReturn(0);
 }
 

@@ -30,7 +30,7 @@ static PetscErrorCode SpringsSetDiagonal(ContactCompliance c)
   }
   PetscCall(ComplianceDualDestroy(c));
   PetscCall(ComplianceSetScales(c));
-  c->chord.exists = PETSC_FALSE;
+  c->chord.exists = c->near.stands = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,8 @@
 
 #define FORM_COLUMNS 32
 
+#define RESIDUAL_WIDE 6 /* pairs' directions over modes, beyond which products with P are cheaper than with W */
+
 /* Column of W of a port, which must be none of a pair where these have no columns */
 const PetscReal *ReducedColumn(const ReducedModel *model, PetscInt port)
 {
@@ -77,13 +79,14 @@ PetscReal ReducedForm(PetscInt n, PetscInt stride, const PetscReal A[], const Pe
   return sum;
 }
 
-/* q'W q: with the numbers of W, or from the displacements of the pairs that it makes */
+/* q'W q: with the numbers of W, or from the displacements of the pairs that it makes where there are none, or so many
+   that P has far fewer */
 static PetscReal ResidualForm(const ReducedModel *model, const ReducedState *s)
 {
   const PetscInt m = model->m, n = 3 * model->n_pairs;
   PetscReal      sum = 0;
 
-  if (!model->sparse) return ReducedForm(n, model->n_ports, model->W, s->q);
+  if (!model->sparse && n <= RESIDUAL_WIDE * m) return ReducedForm(n, model->n_ports, model->W, s->q);
   for (PetscInt i = 0; i < n; i++) {
     PetscReal y = s->y[i] - ReducedMotionWay(model, &s->p[n], i);
 

@@ -15,8 +15,11 @@
 /* a base of m indices is bordered by m / CHORD_SHARE at most: a column of V costs a solution, 2 m^2 operations, so
    that these many cost m^3 / 4 beside the 2 m^3 / 3 of new factors */
 #define CHORD_SHARE 8
-#define CHORD_LEAST 8     /* or by this */
-#define CHORD_PIVOT 1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
+#define CHORD_LEAST 8 /* or by this */
+/* a base of so many indices has factors in single precision, where pivots of this ratio leave these two figures */
+#define CHORD_SINGLE       400
+#define CHORD_SINGLE_PIVOT 1e-6
+#define CHORD_PIVOT        1e-10 /* smallest pivot beside the largest, below which newton.c shifts the matrix */
 
 /* Row of an index at its pair */
 static inline void ChordRow(const ContactCompliance c, PetscInt i, PetscReal r[3])
@@ -120,7 +123,7 @@ static PetscErrorCode ChordReserve(ContactCompliance c)
 static void ChordSetColumn(ContactCompliance c, PetscInt j)
 {
   ComplianceChord *h = &c->chord;
-  PetscReal       *A = &h->LU[j * h->m];
+  PetscReal       *A = h->single ? h->b : &h->LU[j * h->m];
 
   ChordImage(c, h->index[j], c->force);
   for (PetscInt i = 0; i < h->m; i++) {
@@ -129,6 +132,18 @@ static void ChordSetColumn(ContactCompliance c, PetscInt j)
     A[i] = r[0] * y[0] + r[1] * y[1] + r[2] * y[2];
   }
   if (h->index[j] % 4 == 1) A[j] += h->frame[h->index[j] / 4].c;
+  for (PetscInt i = 0; i < h->m && h->single; i++) ((float *)h->LU)[j * h->m + i] = (float)A[i];
+}
+
+/* Factors of the base; not good = singular */
+static PetscBool ChordFactor(ContactCompliance c)
+{
+  ComplianceChord *h = &c->chord;
+
+  for (PetscInt j = 0; j < h->m; j++) ChordSetColumn(c, j);
+  c->report.factors++;
+  if (h->single) return ComplianceSingleFactor(h->m, (float *)h->LU) > CHORD_SINGLE_PIVOT ? PETSC_TRUE : PETSC_FALSE;
+  return ComplianceLUFactor(h->m, h->LU) > CHORD_PIVOT ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* The base becomes the indices c->chord.index [m], in the frames there are; not good = singular, no base then */
@@ -144,11 +159,13 @@ PetscErrorCode ComplianceChordSetBase(ContactCompliance c)
     h->at[j]              = 3 * (h->index[j] / 4);
     ChordRow(c, h->index[j], &h->row[3 * j]);
   }
-  for (PetscInt j = 0; j < h->m; j++) ChordSetColumn(c, j);
   h->n_columns = 0;
   h->n_border  = -1;
-  c->report.factors++;
-  h->exists = ComplianceLUFactor(h->m, h->LU) > CHORD_PIVOT ? PETSC_TRUE : PETSC_FALSE;
+  h->single    = h->m >= CHORD_SINGLE ? PETSC_TRUE : PETSC_FALSE;
+  h->exists    = ChordFactor(c);
+  if (h->exists || !h->single) PetscFunctionReturn(0);
+  h->single = PETSC_FALSE;
+  h->exists = ChordFactor(c);
   PetscFunctionReturn(0);
 }
 
@@ -221,7 +238,7 @@ PetscErrorCode ComplianceChordColumns(ContactCompliance c, PetscInt n, const Pet
     for (PetscInt i = 0; i < h->m; i++) x[i] = h->place[j] < 0 ? ChordEntry(c, h->index[i], j, c->force) : 0;
     if (h->place[j] >= 0) x[h->place[j]] = 1;
   }
-  ComplianceLUSolveColumns(h->m, h->LU, h->n_columns - first, &h->V[first * h->m]);
+  ComplianceChordBaseSolve(c, h->n_columns - first, &h->V[first * h->m]);
   PetscFunctionReturn(0);
 }
 
@@ -343,8 +360,9 @@ static PetscReal ChordOwn(const ContactCompliance c, PetscInt p)
 }
 
 /* A dz of the present set against what its rows miss; dz [4 n], m, zero elsewhere. b = A0^-1 b0, then S s = b_B -
-   [A_B0; E_D'] b, then x0 = b - V s. Indices that left have dz = 0 to rounding by the border, and exactly 0 here.
-   Those across slip then answer to their present c. */
+   [A_B0; E_D'] b, then x0 = b - V s. b0 of a row that left is any, since y takes it up: 0, for a gap that has opened is
+   large beside what the others miss, and would leave its rounding. Indices that left have dz = 0 to rounding by the
+   border, and exactly 0 here. Those across slip then answer to their present c. */
 PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[])
 {
   ComplianceChord *h = &c->chord;
@@ -352,7 +370,9 @@ PetscErrorCode ComplianceChordSolve(ContactCompliance c, PetscReal dz[])
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < h->m; j++) b[j] = -ChordMiss(c, h->index[j]);
-  ComplianceLUSolve(h->m, h->LU, b);
+  for (PetscInt k = 0; k < h->n_border; k++)
+    if (h->place[h->border[k]] >= 0) b[h->place[h->border[k]]] = 0;
+  ComplianceChordBaseSolve(c, 1, b);
   if (h->n_border) ChordForce(c, b, c->force);
   for (PetscInt k = 0; k < h->n_border; k++) {
     const PetscInt i = h->border[k];

@@ -192,6 +192,34 @@ static PetscErrorCode ChordKeep(ContactCompliance c, const ComplianceMiss *miss,
   PetscFunctionReturn(0);
 }
 
+/* v at l and its natural map */
+static PetscErrorCode ChordMove(ContactCompliance c, ComplianceMiss *miss)
+{
+  PetscFunctionBeginUser;
+  if (ComplianceNearServes(c)) {
+    PetscCall(ComplianceNearMove(c, miss));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ComplianceMove(c));
+  ComplianceMeasure(c, miss);
+  PetscFunctionReturn(0);
+}
+
+/* The same after an iteration. Friction is turned at that v where W stays in the cache of a core: that takes two
+   columns of a pair, of many pairs as long as a whole product, and more than an iteration on few bytes of W */
+static PetscErrorCode ChordMoveOn(ContactCompliance c, ComplianceMiss *miss)
+{
+  PetscFunctionBeginUser;
+  if (ComplianceNearServes(c)) {
+    PetscCall(ComplianceNearMove(c, miss));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ComplianceMove(c));
+  ChordTurn(c);
+  ComplianceMeasure(c, miss);
+  PetscFunctionReturn(0);
+}
+
 /* Ends with the iterate of least miss, which need not be the last. */
 PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
 {
@@ -200,8 +228,7 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
   ComplianceMiss best = {.worst = CHORD_NONE};
 
   PetscFunctionBeginUser;
-  PetscCall(ComplianceMove(c));
-  ComplianceMeasure(c, miss);
+  PetscCall(ChordMove(c, miss));
   PetscCall(ChordKeep(c, miss, PETSC_MAX_REAL, &best, &done));
   c->chord.n_mixed = -1;
   for (PetscInt it = 0; it < CHORD_MAX_IT && slow <= CHORD_PATIENCE && !done; it++) {
@@ -214,17 +241,15 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
     PetscCall(ComplianceChordSolve(c, c->chord.z));
     ChordTake(c, c->chord.z);
     ComplianceMix(c, c->v0);
-    PetscCall(ComplianceMove(c));
-    ChordTurn(c);
-    ComplianceMeasure(c, miss);
+    PetscCall(ChordMoveOn(c, miss));
     c->report.iterations++;
     slow += !(miss->norm < CHORD_SLOW * last.norm);
     worth = ChordIsWorth(c, miss, last.largest);
     PetscCall(ChordKeep(c, miss, last.norm, &best, &done));
   }
   if (best.worst == CHORD_NONE || miss->largest <= best.largest) PetscFunctionReturn(0);
-  *miss = best;
   PetscCall(PetscArraycpy(c->l, c->best, 3 * c->n));
-  PetscCall(ComplianceMove(c));
+  PetscCall(ChordMove(c, miss));
+  *miss = best;
   PetscFunctionReturn(0);
 }

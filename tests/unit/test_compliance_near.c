@@ -1,0 +1,153 @@
+/*
+   Steps of so many pairs that chord.c has motions by changes of the forces on W in 16 bits (near.c), and factors in
+   single precision: a block of 256 pairs on a half-space that is pressed, tilted and slid
+
+      beside the laws written out, with W as it is                       not a step that 16 bits change
+      each step from what the one before left, or from its memory        bitwise
+      v of a small change beside the whole product                       within its stated size, and not to rounding
+
+   Breaks where a residual is judged by the short product alone, where memory has not what changes count from, or a gap
+   that opens leaves its rounding in the border of single factors.
+*/
+#include "compliancescene.h"
+#include "contact/compliance/complianceimpl.h"
+
+#include "check.h"
+#include "petscmain.h"
+
+#define PAIRS 256
+#define ROWS  (3 * PAIRS)
+#define STEPS 12
+
+/* What the bodies would do in step k without forces: pressed and tilted, so that pairs open from one side */
+static void Drive(ComplianceScene *s, PetscInt k)
+{
+  for (PetscInt p = 0; p < PAIRS; p++) {
+    const PetscReal x = (PetscReal)(p % 16) / 15 - 0.5, y = (PetscReal)(p / 16) / 15 - 0.5;
+    const PetscReal tilt = 1.5 * (1 - cos(0.5 * (PetscReal)k));
+
+    s->mu[p]            = 0.4;
+    s->q[3 * p]         = -1 + tilt * (x + 0.3 * y);
+    s->q[3 * p + 1]     = 0.3 * y;
+    s->q[3 * p + 2]     = -0.1 * tilt * x;
+    s->slip0[2 * p]     = -1;
+    s->slip0[2 * p + 1] = 0;
+  }
+}
+
+/* Closed pairs of the last step */
+static PetscErrorCode CountClosed(ContactCompliance c, PetscInt *closed)
+{
+  const ContactStatus *status;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceGetStatus(c, &status));
+  *closed = 0;
+  for (PetscInt p = 0; p < PAIRS; p++) *closed += status[p] != CONTACT_OPEN;
+  PetscFunctionReturn(0);
+}
+
+/* A step with another solver that has the memory of c; the same bits */
+static PetscErrorCode StepFromMemory(const ComplianceScene *s, const PetscReal guess[], const PetscReal lambda[],
+                                     PetscInt n, const PetscReal memory[], PetscBool *same)
+{
+  ContactCompliance other;
+  PetscReal         l[ROWS];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceCreate(PAIRS, s->W, &other));
+  PetscCall(SceneSetFriction(other, PAIRS, s->mu, NULL, NULL, 0));
+  PetscCall(ContactComplianceSetMemory(other, n, memory));
+  PetscCall(PetscArraycpy(l, guess, ROWS));
+  PetscCall(ContactComplianceSolve(other, s->q, s->slip0, l, NULL, NULL));
+  PetscCall(PetscArraycmp(l, lambda, ROWS, same));
+  PetscCall(ContactComplianceDestroy(&other));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TestSteps(ComplianceScene *s, ContactCompliance c, int *failed)
+{
+  PetscReal        lambda[ROWS] = {0}, guess[ROWS], worst = 0;
+  PetscInt         least = PAIRS, most = 0;
+  PetscBool        all = PETSC_TRUE, single = PETSC_FALSE;
+  ComplianceReport totals;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < STEPS; k++) {
+    PetscReal *memory;
+    PetscInt   n, closed;
+    PetscBool  same;
+
+    Drive(s, k);
+    PetscCall(PetscArraycpy(guess, lambda, ROWS));
+    PetscCall(ContactComplianceGetMemory(c, &n, &memory));
+    PetscCall(ContactComplianceSolve(c, s->q, s->slip0, lambda, NULL, NULL));
+    PetscCall(StepFromMemory(s, guess, lambda, n, memory, &same));
+    PetscCall(PetscFree(memory));
+    PetscCall(CountClosed(c, &closed));
+    worst = fmax(worst, SceneViolation(s, lambda));
+    all   = same && all ? PETSC_TRUE : PETSC_FALSE;
+    if (c->chord.single) single = PETSC_TRUE;
+    least = PetscMin(least, closed);
+    most  = PetscMax(most, closed);
+  }
+  PetscCall(ContactComplianceGetTotals(c, &totals));
+  *failed += CheckClose("laws", worst, 0, 1e-11);
+  *failed += CheckTrue("steps from memory, bitwise", all, 0);
+  *failed += CheckTrue("all by factors of steps before", totals.routes[COMPLIANCE_CHORD] == STEPS, totals.iterations);
+  *failed += CheckTrue("pairs open and close", least < PAIRS * 3 / 4 && most > PAIRS * 9 / 10, (double)least);
+  *failed += CheckTrue("some factors are in single precision", single, (double)totals.factors);
+  PetscFunctionReturn(0);
+}
+
+/* v after a change of the forces by a thousandth beside that of a whole product */
+static PetscErrorCode TestProduct(ContactCompliance c, int *failed)
+{
+  PetscReal      near[ROWS], off = 0, change = 0;
+  ComplianceMiss miss;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceSetMemory(c, 0, NULL));
+  for (PetscInt i = 0; i < ROWS; i++) {
+    c->free[i] = 0.1 * sin(1.3 * (double)i) - 10;
+    c->l[i]    = i % 3 ? 0.1 : 1 + 0.2 * cos((double)i);
+  }
+  PetscCall(ComplianceNearMove(c, &miss));
+  *failed += CheckTrue("begins with a whole product", c->near.stands, 0);
+  PetscCall(PetscArraycpy(c->v0, c->v, ROWS));
+  for (PetscInt i = 0; i < ROWS; i++) c->l[i] += 1e-3 * sin(0.7 * (double)i * (double)i);
+  PetscCall(ComplianceNearMove(c, &miss));
+  PetscCall(PetscArraycpy(near, c->v, ROWS));
+  PetscCall(ComplianceMove(c));
+  for (PetscInt i = 0; i < ROWS; i++) {
+    off    = fmax(off, fabs(near[i] - c->v[i]));
+    change = fmax(change, fabs(c->v[i] - c->v0[i]));
+  }
+  *failed += CheckClose("16 bits of what changes", off / change, 0, 1e-4);
+  *failed += CheckTrue("which are not all", off / change > 1e-9, off / change);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Tests(PetscMPIInt size, int *failed)
+{
+  ComplianceScene   s;
+  ContactCompliance c;
+
+  PetscFunctionBeginUser;
+  (void)size;
+  PetscCall(SceneCreate(PAIRS, 3, &s));
+  SceneAddHalfSpace(&s, 1, 0.5);
+  Drive(&s, 0);
+  PetscCall(ContactComplianceCreate(PAIRS, s.W, &c));
+  PetscCall(SceneSetFriction(c, PAIRS, s.mu, NULL, NULL, 0));
+  PetscCall(TestSteps(&s, c, failed));
+  PetscCall(TestProduct(c, failed));
+  PetscCall(ContactComplianceDestroy(&c));
+  PetscCall(SceneDestroy(&s));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  return PetscMain(argc, argv, Tests);
+}
