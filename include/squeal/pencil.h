@@ -67,9 +67,10 @@ typedef struct {
     PetscBool                slope;    /* mu' of it, else mu */
   } factor[OPERATORS_MAX_FACTORS];
   /* borrowed from the operators, NULL for none: of K and C, one more factor Re G(i reference), Im G(i reference) /
-     reference; 0 without a reference */
+     reference; 0 without a reference; stiffened: |E + G|^2 / Re (E + G) - E in place of Re G */
   const OperatorsLaw *law;
-  PetscReal           reference;  /* rad/s */
+  PetscReal           reference; /* rad/s */
+  PetscBool           stiffened;
   PetscInt            constraint; /* of the friction of an exact contact: which of its left null spaces; else -1 */
   const char         *cause_kind; /* what the term is, in words, where it may make modes grow or decay */
   char                cause[OPERATORS_MAX_CAUSE]; /* the contact, option or matrix that it comes from */
@@ -89,9 +90,9 @@ typedef struct {
   Mat          A; /* reference */
   PetscBool    symmetric;
   PetscReal    scale, reference; /* of A; rad/s, 0 for none */
-  PetscReal    detour;           /* 0; h times 1 + i detour, on the way of an eigenvalue past a double one */
+  PetscComplex held; /* 0; share of G that is held at the reference, on the way of an eigenvalue from a problem there */
   Viscoelastic law;
-  PetscComplex at; /* G(i reference), Pa */
+  PetscComplex at; /* what K and i reference C have of G, Pa */
 } PencilLaw;
 
 /* Matrices of (lambda^2 M + lambda C + K) x = 0, friction included in K; borrowed. Where only friction makes K

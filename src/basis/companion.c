@@ -15,10 +15,19 @@
    on M^-1 K leave errors of eps times the largest. Here they are eps (kappa + s^2)^2 / (kappa_min + s^2), whatever the
    largest; s^2 between the ends of the window makes that small for all of it. What remains is what rounding in the
    given K does, which callers estimate.
+
+   With laws of materials each is held at its reference frequency w, where its complex stiffness is known exactly,
+
+      (lambda^2 M + lambda C_0 + K_0) x = 0,   K_0 = K + sum_j (G_j(i w) - Re at_j) A_j,
+
+   at_j what K and C have of G_j, in complex arithmetic about the same shifts. C_0, which is C - sum_j Im at_j / w A_j,
+   is what else damps; where nothing does the problem is linear in lambda^2, of size n. With hysteretic damping alone
+   this is the problem itself for Im lambda > 0. Below the real axis its eigenvalues are those of no material.
 */
 #include "pencil.h"
 
-#define ON_SHIFT 1e3 /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
+#define FROZEN_NONE 1e-12 /* of the entries of C: less of C_0 is rounding */
+#define ON_SHIFT    1e3   /* an eigenvalue nearer to the shift than 1 / this of it spoils the others: another shift */
 
 static PetscErrorCode DenseShiftedCreate(const DensePencil *pencil, PetscReal shift, DenseShifted *w)
 {
@@ -182,5 +191,107 @@ PetscErrorCode DenseShiftedDestroy(DenseShifted *w)
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(w->P, w->pivot));
   PetscCall(DenseSchurDestroy(&w->schur));
+  PetscFunctionReturn(0);
+}
+
+/* K_0 and C_0; damped = C_0 is not zero */
+static void FrozenForm(const DensePencil *q, PetscReal C[], PetscComplex K[], PetscBool *damped)
+{
+  const PetscInt square  = q->n * q->n;
+  PetscReal      largest = 0, rest = 0;
+
+  for (PetscInt i = 0; i < square; i++) {
+    K[i]    = q->K[i];
+    C[i]    = q->damped ? q->C[i] : 0;
+    largest = PetscMax(largest, PetscAbsReal(C[i]));
+  }
+  for (PetscInt l = 0; l < q->n_laws; l++) {
+    PencilLaw    held = *q->law[l].law;
+    PetscComplex h, slope;
+
+    held.held = 1;
+    h         = PencilLawAt(&held, CMPLX(0, held.reference), &slope); /* h_0 = h + (lambda - i w) slope */
+    h -= CMPLX(0, held.reference) * slope;
+    for (PetscInt i = 0; i < square; i++) {
+      K[i] += h * q->law[l].A[i];
+      C[i] += creal(slope) * q->law[l].A[i];
+    }
+  }
+  for (PetscInt i = 0; i < square; i++) rest = PetscMax(rest, PetscAbsReal(C[i]));
+  *damped = rest > FROZEN_NONE * largest ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The companion matrix about the shift in B [N * N], factors of P */
+static PetscErrorCode FrozenCompanion(DenseFrozen *f, const DensePencil *q, const PetscReal C[], PetscComplex B[])
+{
+  const PetscInt  n = f->n, N = f->N, first = N - n;
+  const PetscReal s = f->shift;
+  PetscComplex   *row; /* [N][n] */
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n * n; i++) f->P[i] += s * s * q->M[i] + (f->damped ? s * C[i] : 0);
+  PetscCall(DenseComplexFactor(n, f->P, f->pivot, NULL));
+  PetscCall(PetscMalloc1(n * N, &row));
+  for (PetscInt i = 0; i < n * n; i++) row[i] = f->damped ? -s * s * q->M[i] : q->M[i];
+  for (PetscInt i = 0; i < n * n && f->damped; i++) row[n * n + i] = -(2 * s * s * q->M[i] + s * C[i]);
+  PetscCall(DenseComplexSolve(n, f->P, f->pivot, PETSC_FALSE, N, row));
+  PetscCall(PetscArrayzero(B, N * N));
+  for (PetscInt i = 0; i < first; i++) B[(n + i) * N + i] = 1;
+  for (PetscInt j = 0; j < N; j++) PetscCall(PetscArraycpy(B + j * N + first, row + j * n, n));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseFrozenSolve(const DensePencil *pencil, PetscReal shift, PetscBool vectors, DenseFrozen *f)
+{
+  const PetscInt n = pencil->n;
+  PetscReal     *C;
+  PetscComplex  *B;
+
+  PetscFunctionBeginUser;
+  *f = (DenseFrozen){.n = n, .N = n, .shift = shift};
+  PetscCall(PetscMalloc1(n * n, &C));
+  PetscCall(PetscMalloc2(n * n, &f->P, n, &f->pivot));
+  FrozenForm(pencil, C, f->P, &f->damped);
+  if (f->damped) f->N = 2 * n;
+  PetscCall(PetscMalloc1(f->N * f->N, &B));
+  PetscCall(PetscMalloc1(f->N, &f->theta));
+  PetscCall(FrozenCompanion(f, pencil, C, B));
+  if (vectors) PetscCall(PetscMalloc2(f->N * f->N, &f->left, f->N * f->N, &f->right));
+  PetscCall(DenseComplexEigen(f->N, B, f->theta, f->left, f->right));
+  PetscCall(PetscFree(B));
+  PetscCall(PetscFree(C));
+  PetscFunctionReturn(0);
+}
+
+PetscBool DenseFrozenLambda(const DenseFrozen *f, PetscInt i, PetscComplex *lambda)
+{
+  const PetscComplex theta = f->theta[i];
+
+  if (theta == 0) return PETSC_FALSE;
+  *lambda = f->damped ? f->shift * (1 + 1 / theta) : csqrt(f->shift * f->shift - 1 / theta);
+  if (!f->damped && cimag(*lambda) < 0) *lambda = -*lambda;
+  return PETSC_TRUE;
+}
+
+void DenseFrozenRight(const DenseFrozen *f, PetscInt i, PetscComplex x[])
+{
+  for (PetscInt k = 0; k < f->n; k++) x[k] = f->right[i * f->N + k];
+}
+
+PetscErrorCode DenseFrozenLeft(const DenseFrozen *f, PetscInt i, PetscComplex y[])
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < f->n; k++) y[k] = conj(f->left[i * f->N + f->N - f->n + k]);
+  PetscCall(DenseComplexSolve(f->n, f->P, f->pivot, PETSC_TRUE, 1, y));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseFrozenDestroy(DenseFrozen *f)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(f->P, f->pivot));
+  PetscCall(PetscFree(f->theta));
+  PetscCall(PetscFree2(f->left, f->right));
   PetscFunctionReturn(0);
 }

@@ -11,8 +11,8 @@ typedef struct {
   PetscReal       *A;
 } DenseLaw;
 
-/* T(lambda) = lambda^2 M + lambda C + K + sum_j h_j(lambda) A_j, [n * n] each; what solves for all eigenvalues leaves
-   out h */
+/* T(lambda) = lambda^2 M + lambda C + K + sum_j h_j(lambda) A_j, [n * n] each; DenseShiftedSolve() leaves out h,
+   DenseFrozenSolve() has what it is at the reference */
 typedef struct {
   PetscInt        n;
   PetscBool       damped;    /* C is not zero */
@@ -51,6 +51,25 @@ PetscBool DenseShiftedLambda(const DenseShifted *w, PetscInt i, PetscComplex *la
 PetscErrorCode DenseShiftedRight(const DenseShifted *w, PetscInt i, PetscComplex x[]);
 PetscErrorCode DenseShiftedLeft(const DenseShifted *w, PetscInt i, PetscComplex y[]);
 PetscErrorCode DenseShiftedDestroy(DenseShifted *w);
+
+/* All eigenvalues of a dense problem whose laws are held at their reference, theta about a real shift, with
+   vectors [N][N] or without */
+typedef struct {
+  PetscInt      n, N;   /* N = 2 n where C_0 is not zero */
+  PetscBool     damped; /* it is not */
+  PetscReal     shift;
+  PetscComplex *P; /* [n * n] factors at the shift */
+  PetscBLASInt *pivot;
+  PetscComplex *theta, *left, *right;
+} DenseFrozen;
+
+PetscErrorCode DenseFrozenSolve(const DensePencil *pencil, PetscReal shift, PetscBool vectors, DenseFrozen *frozen);
+/* lambda of entry i of N, without C_0 that of +- lambda with Im lambda >= 0; false for infinite ones */
+PetscBool DenseFrozenLambda(const DenseFrozen *frozen, PetscInt i, PetscComplex *lambda);
+/* Its vectors [n], of any length */
+void           DenseFrozenRight(const DenseFrozen *frozen, PetscInt i, PetscComplex x[]);
+PetscErrorCode DenseFrozenLeft(const DenseFrozen *frozen, PetscInt i, PetscComplex y[]);
+PetscErrorCode DenseFrozenDestroy(DenseFrozen *frozen);
 
 /* follow.c - from a guess lambda, x, y [n] the eigenvalue with vectors of any length that Newton's method finds; found
    = false where it does not settle or Q(lambda) stays singular */

@@ -158,17 +158,17 @@ typedef struct {
 
 /* How its modes were found */
 typedef struct {
-  PetscBool project;                   /* damped: by projection (project.c) */
-  PetscBool laws;                      /* there: of a nonlinear problem, counted by a contour integral */
-  PetscBool counted;                   /* there: inertia counts the undamped modes */
-  PetscInt  n_basis;                   /* vectors of a projection */
-  PetscReal beyond;                    /* measure of damping there, or negative */
-  PetscInt  n_enlarged;                /* further vectors there, since damping is strong */
-  PetscInt  n_about;                   /* complex shifts there, since it is stronger than that; or 0 */
-  PetscReal pole;                      /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
-  char      why[128];                  /* why not by projection; empty where it was not tried */
-  PetscReal middle;                    /* or 0: of undamped modes far above a target, a better reference, rad/s */
-  PetscBool mapped;                    /* damping left the vectors as they were: C = alpha M + beta K */
+  PetscBool project;    /* damped: by projection (project.c) */
+  PetscBool laws, held; /* there: of a nonlinear problem; hysteretic, held at the reference it is itself */
+  PetscBool counted;    /* there: inertia counts the undamped modes */
+  PetscInt  n_basis;    /* vectors of a projection */
+  PetscReal beyond;     /* measure of damping there, or negative */
+  PetscInt  n_enlarged; /* further vectors there, since damping is strong */
+  PetscInt  n_about;    /* complex shifts there, since it is stronger than that; or 0 */
+  PetscReal pole;       /* or 0: about -pole, 1/s, to half of it, nothing is sought there */
+  char      why[128];   /* why not by projection; empty where it was not tried */
+  PetscReal middle;     /* or 0: of undamped modes far above a target, a better reference, rad/s */
+  PetscBool mapped;     /* damping left the vectors as they were: C = alpha M + beta K */
   PetscReal mapped_alpha, mapped_beta; /* 1/s, s */
   PetscBool proven;                    /* inertia counts what was found */
   PetscReal worst;                     /* largest relative difference of right and left eigenvalues */

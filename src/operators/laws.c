@@ -67,13 +67,17 @@ PetscErrorCode OperatorsDestroyLaws(Operators o)
 
 PetscComplex PencilLawAt(const PencilLaw *law, PetscComplex lambda, PetscComplex *slope)
 {
-  const PetscReal    w = law->reference, viscous = w > 0 ? cimag(law->at) / w : 0;
-  const PetscComplex scale = law->scale * CMPLX(1, law->detour);
-  ViscoelasticAt     at;
+  const PetscReal w = law->reference, viscous = w > 0 ? cimag(law->at) / w : 0;
+  ViscoelasticAt  at, held;
 
   ViscoelasticEvaluate(&law->law, lambda, &at);
-  if (slope) *slope = scale * (at.slope - viscous);
-  return scale * (at.modulus - creal(law->at) - lambda * viscous);
+  if (law->held != 0) {
+    ViscoelasticEvaluate(&law->law, CMPLX(0, w), &held);
+    at.modulus += law->held * (held.modulus - at.modulus);
+    at.slope *= 1 - law->held;
+  }
+  if (slope) *slope = law->scale * (at.slope - viscous);
+  return law->scale * (at.modulus - creal(law->at) - lambda * viscous);
 }
 
 PetscBool OperatorsHaveLaws(Operators o)
@@ -128,7 +132,10 @@ PetscErrorCode PencilSetReference(Pencil pencil, PetscReal omega)
   PetscCheck(!pencil->released, pencil->comm, PETSC_ERR_ARG_WRONGSTATE, "the terms of this pencil were released");
   PetscCall(PencilProjectTerms(pencil));
   for (int k = 0; k < 2; k++)
-    for (PetscInt t = 0; t < list[k]->n; t++) list[k]->term[t].reference = omega;
+    for (PetscInt t = 0; t < list[k]->n; t++) {
+      list[k]->term[t].reference = omega;
+      list[k]->term[t].stiffened = pencil->real ? PETSC_FALSE : PETSC_TRUE;
+    }
   pencil->reference = omega;
   for (int i = 0; i < N_PENCIL_SUMS; i++) pencil->sum[i].current = PETSC_FALSE;
   pencil->has_factors = PETSC_FALSE;
@@ -195,15 +202,12 @@ static PetscErrorCode LawTakeMatrix(const Terms *list, PetscInt first, const Pet
 static PetscErrorCode LawTake(const Terms *list, PetscInt first, const PetscReal p[], TermsSum *sum, PencilLaw *law)
 {
   const OperatorsTerm *term = &list->term[first];
-  ViscoelasticAt       at;
 
   PetscFunctionBeginUser;
   law->symmetric = term->symmetric;
   law->reference = term->reference;
   law->law       = OperatorsLawValues(term->law, p);
-  law->at        = 0;
-  ViscoelasticEvaluate(&law->law, CMPLX(0, term->reference), &at);
-  if (term->reference > 0) law->at = at.modulus;
+  law->at        = TermLawModulus(term, p);
   PetscCall(LawTakeMatrix(list, first, p, sum, law));
   PetscFunctionReturn(0);
 }

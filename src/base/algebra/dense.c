@@ -8,6 +8,7 @@
 #define LAPACKzgetrf_ PETSCBLASCOMPLEX(getrf, GETRF)
 #define LAPACKzgetrs_ PETSCBLASCOMPLEX(getrs, GETRS)
 #define LAPACKzggev_  PETSCBLASCOMPLEX(ggev, GGEV)
+#define LAPACKzgeev_  PETSCBLASCOMPLEX(geev, GEEV)
 #define LAPACKpstrf_  PETSCBLAS(pstrf, PSTRF)
 #define BLASzgemm_    PETSCBLASCOMPLEX(gemm, GEMM)
 
@@ -20,6 +21,9 @@ BLAS_EXTERN void LAPACKzggev_(const char *, const char *, const PetscBLASInt *, 
                               PetscComplex *, const PetscBLASInt *, PetscComplex *, PetscComplex *, PetscComplex *,
                               const PetscBLASInt *, PetscComplex *, const PetscBLASInt *, PetscComplex *,
                               const PetscBLASInt *, PetscReal *, PetscBLASInt *);
+BLAS_EXTERN void LAPACKzgeev_(const char *, const char *, const PetscBLASInt *, PetscComplex *, const PetscBLASInt *,
+                              PetscComplex *, PetscComplex *, const PetscBLASInt *, PetscComplex *,
+                              const PetscBLASInt *, PetscComplex *, const PetscBLASInt *, PetscReal *, PetscBLASInt *);
 BLAS_EXTERN void BLASzgemm_(const char *, const char *, const PetscBLASInt *, const PetscBLASInt *,
                             const PetscBLASInt *, const PetscComplex *, const PetscComplex *, const PetscBLASInt *,
                             const PetscComplex *, const PetscBLASInt *, const PetscComplex *, PetscComplex *,
@@ -152,6 +156,23 @@ PetscErrorCode DenseEigen(PetscInt size, PetscReal A[], PetscReal wr[], PetscRea
                 LAPACKgeev_(L ? "V" : "N", R ? "V" : "N", &n, A, &n, wr, wi, L, &n, R, &n, work, &work_size, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK geev: info %d", (int)info);
   PetscCall(PetscFree(work));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DenseComplexEigen(PetscInt size, PetscComplex A[], PetscComplex w[], PetscComplex L[], PetscComplex R[])
+{
+  PetscBLASInt  n, work_size, info;
+  PetscComplex *work;
+  PetscReal    *work_real;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBLASIntCast(size, &n));
+  PetscCall(PetscBLASIntCast(66 * size + 64, &work_size)); /* blocks of 64 columns */
+  PetscCall(PetscMalloc2(work_size, &work, 2 * size, &work_real));
+  PetscCallBLAS("LAPACKzgeev", LAPACKzgeev_(L ? "V" : "N", R ? "V" : "N", &n, A, &n, w, L, &n, R, &n, work, &work_size,
+                                            work_real, &info));
+  PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_NOT_CONVERGED, "LAPACK geev: info %d", (int)info);
+  PetscCall(PetscFree2(work, work_real));
   PetscFunctionReturn(0);
 }
 

@@ -26,6 +26,8 @@ PetscErrorCode DenseComplexSolve(PetscInt n, const PetscComplex LU[], const Pets
 /* Eigenvalues wr + i wi of A (overwritten), right vectors R and left ones L in LAPACK's real storage, u^H A = w u^H;
    NULL for not */
 PetscErrorCode DenseEigen(PetscInt n, PetscReal A[], PetscReal wr[], PetscReal wi[], PetscReal L[], PetscReal R[]);
+/* The same of a complex matrix, both vectors or none */
+PetscErrorCode DenseComplexEigen(PetscInt n, PetscComplex A[], PetscComplex w[], PetscComplex L[], PetscComplex R[]);
 /* A x = w B x, A symmetric, B positive definite (else *definite is false) or NULL for the identity: w ascending,
    vectors in place of A */
 PetscErrorCode DenseSymmetricEigen(PetscInt n, PetscReal A[], PetscReal B[], PetscReal w[], PetscBool *definite);
@@ -45,7 +47,7 @@ PetscErrorCode DenseTimes(const DenseBlock *block, PetscBool transposed, PetscIn
 /* Y [m][rows] -= op(A) X, X [m][columns] */
 PetscErrorCode DenseSubtract(DenseBlock A, PetscBool transposed, PetscInt m, const PetscReal X[], PetscReal Y[]);
 /* The entries of a block, or of its transpose, side by side */
-void           DenseBlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[]);
+void DenseBlockGet(DenseBlock block, PetscBool transposed, PetscReal entries[]);
 /* x^H E x of m vectors X [m][n], E real and symmetric */
 PetscErrorCode DenseEnergies(PetscInt n, const PetscReal E[], PetscInt m, const PetscComplex X[], PetscReal energy[]);
 /* Real parts, then imaginary parts [2 n] of x [n], and back */

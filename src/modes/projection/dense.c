@@ -1,5 +1,5 @@
 /*
-   The modes of a projection from its dense quadratic problem, all of them about the upper end of the window, or
+   The modes of a projection from its dense problem, all of them about the upper end of the window, or
    followed from what they were.
 */
 #include "projection.h"
@@ -59,7 +59,7 @@ PetscBool ProjectionHas(const Projection *p, PetscComplex lambda)
   return creal(kappa) >= PetscSqr(w->edge[0]) && creal(kappa) <= PetscSqr(w->edge[1]) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The same of eigenvalues of the quadratic part of a nonlinear problem, which laws may move into the window: what
+/* The same of eigenvalues of a nonlinear problem with its laws held, which these may move into the window: what
    oscillates, and rigid modes */
 static PetscBool LambdaMayBe(const Projection *p, PetscComplex lambda)
 {
@@ -253,17 +253,67 @@ static PetscErrorCode FollowMode(const Projection *p, const DensePencil *dense, 
   PetscFunctionReturn(0);
 }
 
-/* All eigenvalues about the upper end of the window, those of rank 0 on all */
-static PetscErrorCode DenseSolveAll(const Projection *p, const DensePencil *dense, DenseShifted *w)
+/* All eigenvalues of the dense problem, those of real matrices behind those with laws held at the reference: what
+   oscillates of a nonlinear problem is of the latter, rigid motions, which no law knows, of the former */
+typedef struct {
+  PetscInt     n_frozen, n;
+  DenseFrozen  frozen;
+  DenseShifted shifted;
+} DenseAll;
+
+/* About the upper end of the window, those of rank 0 on all */
+static PetscErrorCode DenseAllSolve(const Projection *p, const DensePencil *dense, DenseAll *w)
 {
   const PetscReal high     = PetscMax(p->window->high, p->window->target);
-  PetscReal      *values[] = {&w->shift, NULL, NULL};
+  const PetscReal shift    = PetscMax(high, PetscSqrtReal(PetscAbsReal(p->si.shift)));
+  PetscReal      *values[] = {&w->shifted.shift, NULL, NULL};
 
   PetscFunctionBeginUser;
-  PetscCall(DenseShiftedSolve(dense, PetscMax(high, PetscSqrtReal(PetscAbsReal(p->si.shift))), w));
-  values[1] = w->schur.wr, values[2] = w->schur.wi;
+  *w = (DenseAll){.n = 0};
+  if (dense->n_laws) {
+    PetscCall(DenseFrozenSolve(dense, shift, PETSC_TRUE, &w->frozen));
+    w->n = w->n_frozen = w->frozen.N;
+    PetscCallMPI(MPI_Bcast(w->frozen.theta, (PetscMPIInt)(2 * w->n), MPIU_REAL, 0, p->modes->comm));
+  }
+  if (dense->n_laws && !p->window->known.rigid) PetscFunctionReturn(0);
+  PetscCall(DenseShiftedSolve(dense, shift, &w->shifted));
+  w->n += w->shifted.N;
+  values[1] = w->shifted.schur.wr, values[2] = w->shifted.schur.wi;
   for (int i = 0; i < 3; i++)
-    PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->N : 1), MPIU_REAL, 0, p->modes->comm));
+    PetscCallMPI(MPI_Bcast(values[i], (PetscMPIInt)(i ? w->shifted.N : 1), MPIU_REAL, 0, p->modes->comm));
+  PetscFunctionReturn(0);
+}
+
+/* lambda of entry i, false for what is not listed */
+static PetscBool DenseAllLambda(const Projection *p, const DenseAll *w, PetscInt i, PetscComplex *lambda)
+{
+  const PetscBool frozen = i < w->n_frozen ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       rigid;
+
+  if (!(frozen ? DenseFrozenLambda(&w->frozen, i, lambda) : DenseShiftedLambda(&w->shifted, i - w->n_frozen, lambda)))
+    return PETSC_FALSE;
+  rigid = p->window->known.rigid && cabs(*lambda) <= p->window->known.scale ? PETSC_TRUE : PETSC_FALSE;
+  return !w->n_frozen || frozen != rigid ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode DenseAllVectors(const DenseAll *w, PetscInt i, PetscComplex x[], PetscComplex y[])
+{
+  PetscFunctionBeginUser;
+  if (i < w->n_frozen) {
+    DenseFrozenRight(&w->frozen, i, x);
+    PetscCall(DenseFrozenLeft(&w->frozen, i, y));
+  } else {
+    PetscCall(DenseShiftedRight(&w->shifted, i - w->n_frozen, x));
+    PetscCall(DenseShiftedLeft(&w->shifted, i - w->n_frozen, y));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DenseAllDestroy(DenseAll *w)
+{
+  PetscFunctionBeginUser;
+  if (w->n_frozen) PetscCall(DenseFrozenDestroy(&w->frozen));
+  if (w->n > w->n_frozen) PetscCall(DenseShiftedDestroy(&w->shifted));
   PetscFunctionReturn(0);
 }
 
@@ -274,26 +324,25 @@ PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes)
   PetscComplex     *lambda;
   PetscReal         d = 0;
   PetscInt         *list, m = 0;
-  DenseShifted      w;
+  DenseAll          w;
 
   PetscFunctionBeginUser;
-  PetscCall(DenseSolveAll(p, &dense, &w));
-  PetscCall(PetscMalloc2(w.N, &lambda, w.N, &list));
-  for (PetscInt i = 0; i < w.N; i++)
-    if (DenseShiftedLambda(&w, i, &lambda[i]) && LambdaMayBe(p, lambda[i])) list[m++] = i;
-  if (p->window->count) ProjectionKeepNearest(p->window, p->pencil->n_laws ? LAWS_MORE : 0, lambda, list, &m, &d);
+  PetscCall(DenseAllSolve(p, &dense, &w));
+  PetscCall(PetscMalloc2(w.n, &lambda, w.n, &list));
+  for (PetscInt i = 0; i < w.n; i++)
+    if (DenseAllLambda(p, &w, i, &lambda[i]) && LambdaMayBe(p, lambda[i])) list[m++] = i;
+  if (p->window->count) ProjectionKeepNearest(p->window, w.n_frozen ? LAWS_MORE : 0, lambda, list, &m, &d);
   PetscCall(ProjectionModesCreate(p, m, modes));
   for (PetscInt i = 0; i < m; i++) {
     modes->lambda[i] = lambda[list[i]];
-    PetscCall(DenseShiftedRight(&w, list[i], &modes->vectors[0][i * k]));
-    PetscCall(DenseShiftedLeft(&w, list[i], &modes->vectors[1][i * k]));
+    PetscCall(DenseAllVectors(&w, list[i], &modes->vectors[0][i * k], &modes->vectors[1][i * k]));
     for (int side = 0; side < 2; side++)
       VectorTurn(k, cimag(modes->lambda[i]) == 0 ? PETSC_TRUE : PETSC_FALSE, &modes->vectors[side][i * k]);
   }
   PetscCall(ProjectionModesShare(p->modes->comm, modes));
   modes->lambda_reach = ProjectionEdge(p, d);
   PetscCall(PetscFree2(lambda, list));
-  PetscCall(DenseShiftedDestroy(&w));
+  PetscCall(DenseAllDestroy(&w));
   PetscFunctionReturn(0);
 }
 

@@ -185,6 +185,7 @@ static PetscErrorCode Project(Projection *p, ModalBlock modal[2], Window *window
   PetscCall(ModalBlocksDestroy(modal)); /* room for what follows */
   PetscCall(ProjectionIterate(p, &found, &settled));
   window->route.laws = p->pencil->n_laws ? PETSC_TRUE : PETSC_FALSE;
+  window->route.held = ProjectionLawsAreHeld(p);
   if (settled && p->pencil->n_laws) PetscCall(ProjectionLawsCount(p, &found, &missing, &lost, &endless));
   if (missing) *why = why_missing;
   if (lost) *why = why_edge;

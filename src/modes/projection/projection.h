@@ -93,7 +93,7 @@ PETSC_INTERN PetscReal ProjectionLargestRatio(const Projection *p);
 /* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
 PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt more, const PetscComplex lambda[],
                                         PetscInt list[], PetscInt *n, PetscReal *d);
-/* Eigenvalues of the dense model in the window; with laws those of its quadratic part that may come into it */
+/* Eigenvalues of the dense model in the window; with laws those of the problem that holds them that may come into it */
 PETSC_INTERN PetscErrorCode ProjectionEigen(const Projection *p, ProjectionModes *modes);
 PETSC_INTERN PetscErrorCode ProjectionModesDestroy(ProjectionModes *modes);
 /* Room for n modes of the present basis; whether two of the modes are one and the same; those of rank 0 on all */
@@ -130,9 +130,11 @@ PETSC_INTERN PetscErrorCode ProjectionFindNull(Projection *p);
 /* projection/correct.c - backward errors of the modes that had not settled; adds P^-1 r, P^-T s of those above the
    limits to the basis: n_columns of them, 0 where all have settled */
 PETSC_INTERN PetscErrorCode ProjectionCorrect(Projection *p, ProjectionModes *modes, PetscInt *n_columns);
-/* projection/laws.c - the modes of the window of the nonlinear problem in place of those of its quadratic part that may
+/* projection/laws.c - the modes of the window of the nonlinear problem in place of those with its laws held that may
    become them */
 PETSC_INTERN PetscErrorCode ProjectionLawsSolve(const Projection *p, ProjectionModes *modes);
+/* projection/count.c - whether laws are the same at all lambda above the real axis */
+PETSC_INTERN PetscBool ProjectionLawsAreHeld(const Projection *p);
 /* How many eigenvalues the window of the dense nonlinear problem holds beside these, by the argument principle; lost =
    one lies on its edge, where that does not tell; endless = its phase takes too many points */
 PETSC_INTERN PetscErrorCode ProjectionLawsCount(const Projection *p, const ProjectionModes *found, PetscInt *missing,

@@ -8,8 +8,10 @@
 #include "modes/modesimpl.h"
 #include "base/text.h"
 
-/* Of materials whose stiffness depends on the frequency */
+/* Of materials whose stiffness depends on the frequency, and where it is hysteretic alone */
 static const char laws_text[] = "; a contour integral counts the same, without modes that do not oscillate";
+static const char held_text[] = "; LAPACK has no others of the complex stiffness on the basis, but for what does not "
+                                "oscillate";
 
 #define MODES_DOUBTED 100 /* in a band where the units of a part are in doubt */
 
@@ -162,7 +164,7 @@ PetscErrorCode WindowDescribe(Modes modes, const Window *window)
                             region, frictionless));
   else
     PetscCall(PetscSNPrintf(text, size, "not checked, since -modes_left is off%s", frictionless));
-  if (window->route.laws) PetscCall(WordsAdd(text, laws_text, size));
+  if (window->route.laws) PetscCall(WordsAdd(text, window->route.held ? held_text : laws_text, size));
   PetscCall(WordsAdd(text, route, size));
   PetscCall(WordsAdd(text, massless, size));
   PetscFunctionReturn(0);

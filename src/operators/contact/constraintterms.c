@@ -48,6 +48,7 @@ static PetscErrorCode ImagesAdd(Pencil pencil, const OperatorsTerm *base, const 
     term->constraint = i - 1;
     term->law        = base->law;
     term->reference  = base->reference;
+    term->stiffened  = base->stiffened;
     PetscCheck(term->n <= OPERATORS_MAX_FACTORS, pencil->comm, PETSC_ERR_PLIB, "a term of %" PetscInt_FMT " factors",
                term->n);
     PetscCall(PetscArraycpy(term->factor, base->factor, n));

@@ -5,6 +5,13 @@
       h(lambda) = G(lambda) - Re G(i w) - lambda Im G(i w) / w.
 
    The part's K is at E, which is G's static limit. The two terms share their matrix with that of E.
+
+   Factors of a real K stand for those of the complex stiffness E* = E + G(i w) in corrections of modes. What a real
+   modulus r leaves of it is |E* - r| / r of the former at most, least at
+
+      r = |E*|^2 / Re E*,   |E* - r| / r = eta / sqrt(1 + eta^2) < 1,   eta = Im E* / Re E*,
+
+   so that these converge whatever the loss factor is: with stiffened terms K has r - E in place of Re G, h the rest.
 */
 #include "operators/operatorsimpl.h"
 
@@ -34,29 +41,41 @@ PetscComplex OperatorsLawDerivative(const OperatorsLaw *law, const ViscoelasticA
   return sum;
 }
 
-/* What a complex modulus at the reference is in a term of its kind */
-static PetscReal TermPart(const OperatorsTerm *term, PetscComplex modulus)
+PetscComplex TermLawModulus(const OperatorsTerm *term, const PetscReal p[])
 {
-  return term->kind == OPERATORS_STIFFNESS ? creal(modulus) : cimag(modulus) / term->reference;
+  const Viscoelastic values = OperatorsLawValues(term->law, p);
+  ViscoelasticAt     at;
+
+  if (term->reference == 0) return 0;
+  ViscoelasticEvaluate(&values, CMPLX(0, term->reference), &at);
+  return term->stiffened ? at.modulus + PetscSqr(cimag(at.modulus)) / (values.young + creal(at.modulus)) : at.modulus;
 }
 
 PetscReal TermLaw(const OperatorsTerm *term, const PetscReal p[])
 {
-  ViscoelasticAt at;
+  PetscComplex modulus;
 
   if (!term->law) return 1;
   if (term->reference == 0) return 0;
-  OperatorsLawAt(term->law, p, CMPLX(0, term->reference), &at);
-  return TermPart(term, at.modulus);
+  modulus = TermLawModulus(term, p);
+  return term->kind == OPERATORS_STIFFNESS ? creal(modulus) : cimag(modulus) / term->reference;
 }
 
 PetscReal TermLawDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter)
 {
+  PetscComplex   slope, modulus;
+  PetscReal      tangent;
   ViscoelasticAt at;
 
   if (term->reference == 0) return 0;
   OperatorsLawAt(term->law, p, CMPLX(0, term->reference), &at);
-  return TermPart(term, OperatorsLawDerivative(term->law, &at, parameter));
+  slope = OperatorsLawDerivative(term->law, &at, parameter);
+  if (term->kind != OPERATORS_STIFFNESS) return cimag(slope) / term->reference;
+  if (!term->stiffened) return creal(slope);
+  modulus = OperatorsLawValues(term->law, p).young + at.modulus;
+  tangent = cimag(modulus) / creal(modulus);
+  if (term->law->young == parameter) slope += 1;
+  return creal(slope) * (1 - tangent * tangent) + 2 * tangent * cimag(slope) - (term->law->young == parameter);
 }
 
 PetscBool TermLawDepends(const OperatorsTerm *term, PetscInt parameter)

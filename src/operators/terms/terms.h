@@ -57,9 +57,11 @@ PETSC_INTERN PetscReal FrictionFactorDerivative(const OperatorsFriction *frictio
 PETSC_INTERN PetscBool FrictionFactorDepends(const OperatorsFriction *friction, PetscInt parameter);
 
 /* law.c - the factor of a law in a term of K or C, 1 without one; its derivative by a parameter; whether it depends */
-PETSC_INTERN PetscReal TermLaw(const OperatorsTerm *term, const PetscReal p[]);
-PETSC_INTERN PetscReal TermLawDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
-PETSC_INTERN PetscBool TermLawDepends(const OperatorsTerm *term, PetscInt parameter);
+/* What K and i w C have of G at the reference w, Pa */
+PETSC_INTERN PetscComplex TermLawModulus(const OperatorsTerm *term, const PetscReal p[]);
+PETSC_INTERN PetscReal    TermLaw(const OperatorsTerm *term, const PetscReal p[]);
+PETSC_INTERN PetscReal    TermLawDerivative(const OperatorsTerm *term, const PetscReal p[], PetscInt parameter);
+PETSC_INTERN PetscBool    TermLawDepends(const OperatorsTerm *term, PetscInt parameter);
 /* A law at the values of p; G and its derivatives at lambda, and of these by one parameter */
 PETSC_INTERN void OperatorsLawAt(const OperatorsLaw *law, const PetscReal p[], PetscComplex lambda, ViscoelasticAt *at);
 PETSC_INTERN Viscoelastic OperatorsLawValues(const OperatorsLaw *law, const PetscReal p[]);

@@ -23,7 +23,8 @@ static PetscBool TermsAgree(const Reduced *reduced, const OperatorsTerm *a, cons
 {
   PetscInt i = 0, j = 0;
 
-  if (a->kind != b->kind || a->scale != b->scale || a->law != b->law || a->reference != b->reference)
+  if (a->kind != b->kind || a->scale != b->scale || a->law != b->law || a->reference != b->reference ||
+      a->stiffened != b->stiffened)
     return PETSC_FALSE;
   for (;; i++, j++) {
     while (i < a->n && FactorIsInternal(reduced, a, i)) i++;
