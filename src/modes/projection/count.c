@@ -23,6 +23,7 @@
 #define COUNT_WORK    4e11 /* or points times size^3, half a minute: small problems may have more points */
 #define COUNT_SMALL   20   /* size below which that is no matter */
 #define COUNT_NEAR    0.01 /* of a step: over so much the rate of the phase is looked at */
+#define COUNT_FLAT    0.1  /* omega over decay below which nothing is counted: a damping ratio of 0.995 */
 #define COUNT_ALIKE   1e-6 /* relative distance from a target of modes that are copies of each other */
 
 /* det T over the product of distances from the nu, on a contour */
@@ -123,24 +124,32 @@ static PetscErrorCode StepIsSlow(Contour *c, const PetscComplex lambda[2], const
   PetscFunctionReturn(0);
 }
 
-/* Point i of 4 COUNT_SIDE, or between two, of the edge of the window, above the real axis: of a rectangle, or of a
-   circle about the target with radius d */
+/* Least omega of what is counted beside sigma: real eigenvalues gather where a law relaxes, and friction and rounding
+   make pairs of them, which hardly oscillate */
+static PetscReal ContourFloor(const Projection *p, PetscReal sigma)
+{
+  return PetscMax(PetscMax(p->window->count ? 0 : p->window->edge[0], p->window->known.scale), -COUNT_FLAT * sigma);
+}
+
+/* Point i of 4 COUNT_SIDE, or between two, of the edge of the window, above its floor: of a rectangle, or of a circle
+   about the target with radius d */
 static PetscComplex ContourPoint(const Projection *p, PetscReal d, PetscReal i)
 {
   const Window   *w = p->window;
-  const PetscReal t = fmod(i, COUNT_SIDE) / COUNT_SIDE, low = PetscMax(w->edge[0], w->known.scale), g = w->growth;
-  const PetscReal angle = 2 * PETSC_PI * i / (4 * COUNT_SIDE);
+  const PetscReal t = fmod(i, COUNT_SIDE) / COUNT_SIDE, g = w->growth, high = w->edge[1];
+  const PetscReal angle = 2 * PETSC_PI * i / (4 * COUNT_SIDE), sigma = (2 * t - 1) * g;
+  const PetscReal low[] = {PetscMin(high, ContourFloor(p, -g)), PetscMin(high, ContourFloor(p, g))};
 
-  if (w->count) return CMPLX(d * cos(angle), PetscMax(low, w->target + d * sin(angle)));
+  if (w->count) return CMPLX(d * cos(angle), PetscMax(ContourFloor(p, d * cos(angle)), w->target + d * sin(angle)));
   switch ((int)(i / COUNT_SIDE) % 4) {
   case 0:
-    return CMPLX(-g + 2 * g * t, low);
+    return CMPLX(sigma, PetscMin(high, ContourFloor(p, sigma)));
   case 1:
-    return CMPLX(g, low + t * (w->edge[1] - low));
+    return CMPLX(g, low[1] + t * (high - low[1]));
   case 2:
-    return CMPLX(g - 2 * g * t, w->edge[1]);
+    return CMPLX(-sigma, high);
   default:
-    return CMPLX(-g, w->edge[1] - t * (w->edge[1] - low));
+    return CMPLX(-g, high - t * (high - low[0]));
   }
 }
 
@@ -171,10 +180,9 @@ static PetscErrorCode ContourStep(const Projection *p, PetscReal d, Contour *c, 
 /* Whether the contour is about lambda */
 static PetscBool ContourHolds(const Projection *p, PetscReal d, PetscComplex lambda)
 {
-  const Window   *w   = p->window;
-  const PetscReal low = PetscMax(w->edge[0], w->known.scale);
+  const Window *w = p->window;
 
-  if (cimag(lambda) <= (w->count ? w->known.scale : low)) return PETSC_FALSE;
+  if (cimag(lambda) <= ContourFloor(p, creal(lambda))) return PETSC_FALSE;
   if (w->count) return cabs(lambda - CMPLX(0, w->target)) < d ? PETSC_TRUE : PETSC_FALSE;
   return cimag(lambda) < w->edge[1] && PetscAbsReal(creal(lambda)) < w->growth ? PETSC_TRUE : PETSC_FALSE;
 }

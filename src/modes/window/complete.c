@@ -9,7 +9,7 @@
 #include "base/text.h"
 
 /* Of materials whose stiffness depends on the frequency, and where it is hysteretic alone */
-static const char laws_text[] = "; a contour integral counts the same, without modes that do not oscillate";
+static const char laws_text[] = "; a contour integral counts the same, without modes damped by more than 0.995 of critical damping";
 static const char held_text[] = "; LAPACK has no others of the complex stiffness on the basis, but for what does not "
                                 "oscillate";
 
