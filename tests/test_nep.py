@@ -24,11 +24,12 @@ from viscoelastic import farthest, listed  # noqa: E402
 SCENE = """rig: {disc: {elements: "6,20,1"}, pad: {elements: "2,2,2"}, beam: {elements: 6}}
 modes: {band: "1000,8000"}
 """
-YOUNG, MU, LOW, HIGH = 25.1e9, 0.5, 1000, 8000
+YOUNG, ETA, MU, LOW, HIGH = 25.1e9, 1.5, 0.5, 1000, 8000
 GROWTH = 0.1  # of the upper end, as the run's
 TOLERANCE = 1e-9
 SOLVER = {"ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"}
 LAWS = {"prony": ["-pad_prony_modulus", 0.2 * YOUNG, "-pad_prony_time", 2e-4],
+        "hysteretic": ["-pad_loss_factor", ETA],
         "zener": ["-pad_zener_modulus", YOUNG, "-pad_zener_time", 2e-5, "-pad_zener_order", 0.5]}
 
 
@@ -47,6 +48,10 @@ def functions(kind, unit):
         law.setType(SLEPc.FN.Type.RATIONAL)
         law.setRationalNumerator([0.2 * 2e-4 * unit, 0])
         law.setRationalDenominator([2e-4 * unit, 1])
+        return [square, one, law]
+    if kind == "hysteretic":
+        law.setType(SLEPc.FN.Type.RATIONAL)
+        law.setRationalNumerator([1j * ETA])
         return [square, one, law]
     root, share = SLEPc.FN().create(), SLEPc.FN().create()
     root.setType(SLEPc.FN.Type.SQRT)
