@@ -3,9 +3,9 @@
 
    An option that nobody read is an error unless its prefix is one of PETSc's or SLEPc's. The valid names are those of
    the rows, and the ones of PETSc and SLEPc that base/options/libraries.c lists. Nearest = smallest Damerau-Levenshtein
-   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; a prefix left out counts as one edit, last
-   words left out as two, the prefix of another name (-contact_mu of a page, where the scene calls its contact brake) as
-   two and a half.
+   distance (adjacent swaps count once): F. J. Damerau, Comm. ACM 7, 1964; last words left out count as one edit, a
+   prefix left out as one and a half, that of another name (-contact_mu of a page, where the scene calls its contact
+   brake) as two and a half.
 */
 #include "row.h"
 #include "base/options/help.h"
@@ -73,6 +73,7 @@ static const struct {
   {"eta", "loss_factor"},
   {"damping", "loss_factor"},
   {"damping", "friction_damping"},
+  {"stiffness", "kn"},
   {"stiffness_damping", "beta"},
   {"mass_damping", "alpha"},
   {"nev", "count"},
@@ -103,8 +104,9 @@ static PetscBool NameMeans(const char unknown[], const char valid[])
   return PETSC_FALSE;
 }
 
-/* How far a valid name is from an unknown one: a prefix left out, as of -contact_mu in -mu, is one edit; last words
-   left out, as of -disc_loss_factor in -disc_loss, are two; another word of the field is none */
+/* How far a valid name is from an unknown one: last words left out, as of -disc_loss_factor in
+   -disc_loss, are one edit; a prefix left out, as of -contact_mu in -mu, is one and a half; another word of the field
+   is none */
 static int NameDistance(const char unknown[], const char valid[], PetscBool is_librarys)
 {
   const size_t      lu = strlen(unknown), lv = strlen(valid);
@@ -112,8 +114,8 @@ static int NameDistance(const char unknown[], const char valid[], PetscBool is_l
   const int distance = ONE_EDIT * EditDistance(unknown, valid);
 
   if (!is_librarys && NameMeans(unknown, valid)) return 0;
-  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return ONE_EDIT;
-  if (lv > lu && valid[lu] == '_' && !strncmp(valid, unknown, lu)) return 2 * ONE_EDIT;
+  if (lv > lu && valid[lv - lu - 1] == '_' && !strcmp(valid + lv - lu, unknown)) return ONE_EDIT + 1;
+  if (lv > lu && valid[lu] == '_' && !strncmp(valid, unknown, lu)) return ONE_EDIT;
   return !is_librarys && tail && other && !strcmp(tail, other) ? PetscMin(distance, OTHER_PREFIX) : distance;
 }
 
@@ -190,6 +192,9 @@ static PetscErrorCode UnknownComplain(MPI_Comm comm, const UnknownOption *u)
   PetscFunctionBeginUser;
   PetscCheck(!FormerInstead(u->name), comm, PETSC_ERR_USER_INPUT, "-%s is no more: %s", u->name,
              FormerInstead(u->name));
+  PetscCheck(strchr(u->name, '_') || strncmp(u->nearest, u->name, length) || u->nearest[length] != '_', comm,
+             PETSC_ERR_USER_INPUT, "unknown option -%s; valid ones begin with -%s_, as -%s; -help lists them", u->name,
+             u->name, u->nearest);
   PetscCall(UnknownFindList(u, sizeof(missing), missing));
   PetscCheck(u->distance > near, comm, PETSC_ERR_USER_INPUT, "unknown option -%s; the nearest valid one is -%s%s",
              u->name, u->nearest, missing);
