@@ -5,6 +5,7 @@
       beside the laws written out, with W as it is                       not a step that 16 bits change
       each step from what the one before left, or from its memory        bitwise
       v of a small change beside the whole product                       within its stated size, and not to rounding
+      a memory with a number that is none of its kind                    refused
 
    Breaks where a residual is judged by the short product alone, where memory has not what changes count from, or a gap
    that opens leaves its rounding in the border of single factors.
@@ -14,6 +15,9 @@
 
 #include "check.h"
 #include "petscmain.h"
+#include "scratch.h"
+
+#include <string.h>
 
 #define PAIRS 256
 #define ROWS  (3 * PAIRS)
@@ -100,6 +104,51 @@ static PetscErrorCode TestSteps(ComplianceScene *s, ContactCompliance c, int *fa
   PetscFunctionReturn(0);
 }
 
+/* Whether a memory whose number k is x instead is refused, in a line that has these words */
+static PetscErrorCode CheckRefused(ContactCompliance c, PetscInt n, PetscReal memory[], PetscInt k, PetscReal x,
+                                   const char words[], int *failed)
+{
+  const PetscReal kept   = memory[k];
+  Scratch         errors = {.code = 0};
+  PetscErrorCode  code;
+
+  PetscFunctionBeginUser;
+  memory[k] = x;
+  PetscCall(PetscPushErrorHandler(ScratchKeepError, &errors));
+  code = ContactComplianceSetMemory(c, n, memory);
+  PetscCall(PetscPopErrorHandler());
+  memory[k] = kept;
+  *failed += CheckTrue(words, code == PETSC_ERR_FILE_UNEXPECTED && strstr(errors.message, words), (double)x);
+  PetscFunctionReturn(0);
+}
+
+/* Breaks where a number of a file becomes an index as it is, or numbers left over are counted in place of those that
+   came */
+static PetscErrorCode TestDamaged(ContactCompliance c, int *failed)
+{
+  const PetscInt base = 2 * ROWS + 1;
+  PetscReal     *memory, *more;
+  PetscInt       n;
+  char           length[80];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceGetMemory(c, &n, &memory));
+  PetscCall(CheckRefused(c, n, memory, base, -1, "size of a base -1. is not a whole number of 0 to 768", failed));
+  PetscCall(CheckRefused(c, n, memory, base, NAN, "size of a base", failed));
+  PetscCall(CheckRefused(c, n, memory, base + 1, -1, "index -1. is not a whole number of 0 to 1023", failed));
+  PetscCall(CheckRefused(c, n, memory, base + 2, 4 * PAIRS, "index 1024. is not a whole number", failed));
+  PetscCall(CheckRefused(c, n, memory, base + 2, 0.5, "index 0.5 is not a whole number", failed));
+  PetscCall(PetscCalloc1(n + 1, &more));
+  PetscCall(PetscArraycpy(more, memory, n));
+  PetscCall(CheckRefused(c, n + 1, more, n, 1e300, "column 1e+300 is not a whole number", failed));
+  snprintf(length, sizeof(length), ": %d numbers are not those of %d pairs", (int)base + 7, PAIRS);
+  PetscCall(CheckRefused(c, base + 7, memory, base, 0, length, failed));
+  PetscCall(ContactComplianceSetMemory(c, n, memory));
+  PetscCall(PetscFree(more));
+  PetscCall(PetscFree(memory));
+  PetscFunctionReturn(0);
+}
+
 /* v after a change of the forces by a thousandth beside that of a whole product */
 static PetscErrorCode TestProduct(ContactCompliance c, int *failed)
 {
@@ -141,6 +190,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscCall(ContactComplianceCreate(PAIRS, s.W, &c));
   PetscCall(SceneSetFriction(c, PAIRS, s.mu, NULL, NULL, 0));
   PetscCall(TestSteps(&s, c, failed));
+  PetscCall(TestDamaged(c, failed));
   PetscCall(TestProduct(c, failed));
   PetscCall(ContactComplianceDestroy(&c));
   PetscCall(SceneDestroy(&s));

@@ -178,13 +178,15 @@ static int RefusedWord(Test *t, int word, uint64_t value, PetscErrorCode code, c
 /* Breaks when: a file of other ranks, version, real numbers or machine is taken for a damaged one, or for a good one */
 static int TestForeign(Test *t)
 {
-  char ranks[80], version[80];
+  char ranks[80], version[80], before[80];
   int  failed = 0;
 
   snprintf(ranks, sizeof(ranks), "was written by 7 ranks, this run has %d", t->size);
-  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 6");
+  snprintf(version, sizeof(version), "has version 9 of the format, this program reads version 7");
+  snprintf(before, sizeof(before), "has version 6 of the format, this program reads version 7");
   failed += CheckTrue("other ranks", RefusedWord(t, RANKS, 7, PETSC_ERR_FILE_UNEXPECTED, ranks), 7);
   failed += CheckTrue("other version", RefusedWord(t, VERSION, 9, PETSC_ERR_FILE_UNEXPECTED, version), 9);
+  failed += CheckTrue("version before", RefusedWord(t, VERSION, 6, PETSC_ERR_FILE_UNEXPECTED, before), 6);
   failed +=
     CheckTrue("other real numbers", RefusedWord(t, REAL, 4, PETSC_ERR_FILE_UNEXPECTED, "real numbers of 4 bytes"), 4);
   failed +=

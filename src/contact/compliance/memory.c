@@ -7,6 +7,28 @@
    directions that have springs [3 n], the iterations that tell when these are set anew, and the statuses [n]. */
 #include "complianceimpl.h"
 
+/* A whole number of least to below - 1 */
+static PetscErrorCode MemoryWhole(const char what[], PetscReal value, PetscInt least, PetscInt below, PetscInt *whole)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(value >= (PetscReal)least && value < (PetscReal)below && value == PetscFloorReal(value), PETSC_COMM_SELF,
+             PETSC_ERR_FILE_UNEXPECTED,
+             "Memory of contact on a compliance: %s %g is not a whole number of %" PetscInt_FMT " to %" PetscInt_FMT,
+             what, (double)value, least, below - 1);
+  *whole = (PetscInt)value;
+  PetscFunctionReturn(0);
+}
+
+/* n numbers, as they came */
+static PetscErrorCode MemoryCheckLength(const ContactCompliance c, PetscInt n, PetscBool good)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
+             "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
+             c->n);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MapGetMemory(const ContactCompliance c, PetscInt *n, PetscReal **values)
 {
   PetscReal *to;
@@ -30,15 +52,18 @@ static PetscErrorCode MapSetMemory(ContactCompliance c, PetscInt n, const PetscR
   PetscFunctionBeginUser;
   c->krylov.stands = PETSC_FALSE;
   if (!n) PetscFunctionReturn(0);
-  PetscCheck(n == 4 * c->n + 2, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-             "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
-             c->n);
+  PetscCall(MemoryCheckLength(c, n, n == 4 * c->n + 2 ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(PetscMalloc1(3 * c->n, &held));
   for (PetscInt i = 0; i < 3 * c->n; i++) held[i] = values[i] != 0 ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ComplianceKrylovHold(c, held));
   c->krylov.n_more  = (PetscInt)values[3 * c->n];
   c->krylov.n_first = (PetscInt)values[3 * c->n + 1];
-  for (PetscInt p = 0; p < c->n; p++) c->status[p] = (ContactStatus)values[3 * c->n + 2 + p];
+  for (PetscInt p = 0; p < c->n; p++) {
+    PetscInt status;
+
+    PetscCall(MemoryWhole("status", values[3 * c->n + 2 + p], 0, CONTACT_N_STATUS, &status));
+    c->status[p] = (ContactStatus)status;
+  }
   PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
 }
@@ -85,49 +110,51 @@ PetscErrorCode ContactComplianceGetMemory(ContactCompliance c, PetscInt *n, Pets
   PetscFunctionReturn(0);
 }
 
-/* Indices are whole numbers below 4 n, which a PetscReal holds exactly */
-PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const PetscReal values[])
+/* Base, frames and columns, n numbers of the n_all that came. Indices are whole numbers below 4 n, which a PetscReal
+   holds exactly, and ascend in the base */
+static PetscErrorCode ChordSetMemory(ContactCompliance c, PetscInt n_all, PetscInt n, const PetscReal values[])
 {
   ComplianceChord *h = &c->chord;
-  PetscInt         n_columns;
+  PetscInt         m, n_columns;
   PetscBool        room;
+
+  PetscFunctionBeginUser;
+  PetscCall(MemoryWhole("size of a base", *values++, 0, 3 * c->n + 1, &m));
+  n_columns = n - 1 - m - 4 * c->n;
+  PetscCall(MemoryCheckLength(c, n_all, n_columns >= 0 && n_columns <= 4 * c->n ? PETSC_TRUE : PETSC_FALSE));
+  for (PetscInt i = 0; i < m; i++)
+    PetscCall(MemoryWhole("index", *values++, i ? h->index[i - 1] + 1 : 0, 4 * c->n, &h->index[i]));
+  h->m = m;
+  PetscCall(PetscArraycpy((PetscReal *)h->frame, values, 4 * c->n));
+  values += 4 * c->n;
+  for (PetscInt k = 0; k < n_columns; k++) PetscCall(MemoryWhole("column", values[k], 0, 4 * c->n, &h->next[k]));
+  PetscCall(ComplianceChordSetBase(c));
+  if (h->exists) PetscCall(ComplianceChordColumns(c, n_columns, h->next, &room));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactComplianceSetMemory(ContactCompliance c, PetscInt n, const PetscReal values[])
+{
+  PetscInt left = n;
 
   PetscFunctionBeginUser;
   if (ComplianceIsMap(c)) {
     PetscCall(MapSetMemory(c, n, values));
     PetscFunctionReturn(0);
   }
-  h->exists       = PETSC_FALSE;
-  c->springs.laid = c->near.stands = PETSC_FALSE;
-  if (n && c->springs.curved) {
-    PetscCheck(n >= c->n, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-               "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs",
-               n, c->n);
+  c->chord.exists = c->springs.laid = c->near.stands = PETSC_FALSE;
+  if (left && c->springs.curved) {
+    PetscCall(MemoryCheckLength(c, n, left >= c->n ? PETSC_TRUE : PETSC_FALSE));
     PetscCall(ComplianceLayAt(c, values));
     values += c->n;
-    n -= c->n;
+    left -= c->n;
   }
-  if (n && ComplianceNearServes(c)) {
-    PetscCheck(n > 6 * c->n, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-               "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs",
-               n, c->n);
+  if (left && ComplianceNearServes(c)) {
+    PetscCall(MemoryCheckLength(c, n, left > 6 * c->n ? PETSC_TRUE : PETSC_FALSE));
     if (values[6 * c->n] != 0) PetscCall(ComplianceNearTake(c, values, &values[3 * c->n]));
     values += 6 * c->n + 1;
-    n -= 6 * c->n + 1;
+    left -= 6 * c->n + 1;
   }
-  if (!n) PetscFunctionReturn(0);
-  h->m      = (PetscInt)values[0];
-  n_columns = n - 1 - h->m - 4 * c->n;
-  PetscCheck(h->m >= 0 && h->m <= 3 * c->n && n_columns >= 0 && n_columns <= 4 * c->n, PETSC_COMM_SELF,
-             PETSC_ERR_FILE_UNEXPECTED,
-             "Memory of contact on a compliance: %" PetscInt_FMT " numbers are not those of %" PetscInt_FMT " pairs", n,
-             c->n);
-  values++;
-  for (PetscInt i = 0; i < h->m; i++) h->index[i] = (PetscInt)*values++;
-  PetscCall(PetscArraycpy((PetscReal *)h->frame, values, 4 * c->n));
-  values += 4 * c->n;
-  PetscCall(ComplianceChordSetBase(c));
-  for (PetscInt k = 0; k < n_columns; k++) h->next[k] = (PetscInt)values[k];
-  if (h->exists) PetscCall(ComplianceChordColumns(c, n_columns, h->next, &room));
+  if (left) PetscCall(ChordSetMemory(c, n, left, values));
   PetscFunctionReturn(0);
 }

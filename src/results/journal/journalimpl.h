@@ -6,7 +6,7 @@
 
 #define JOURNAL_MAGIC   "squealCP"
 #define JOURNAL_ORDER   UINT64_C(0x0102030405060708)
-#define JOURNAL_VERSION 6
+#define JOURNAL_VERSION 7
 #define JOURNAL_NAME    32
 
 /* The first five members keep their places in every version */

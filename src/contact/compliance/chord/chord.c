@@ -136,7 +136,9 @@ static void ChordTurn(ContactCompliance c)
       more[n++] = c->kappa[p] * (turned - l[1 + i]);
       l[1 + i]  = turned;
     }
-    if (n == 2 * CHORD_GROUP) ComplianceAddColumns(3 * c->n, c->W, n, column, more, c->v), n = 0;
+    if (n < 2 * CHORD_GROUP) continue;
+    ComplianceAddColumns(3 * c->n, c->W, n, column, more, c->v);
+    n = 0;
   }
   ComplianceAddColumns(3 * c->n, c->W, n, column, more, c->v);
 }
@@ -192,8 +194,10 @@ static PetscErrorCode ChordKeep(ContactCompliance c, const ComplianceMiss *miss,
   PetscFunctionReturn(0);
 }
 
-/* v at l and its natural map */
-static PetscErrorCode ChordMove(ContactCompliance c, ComplianceMiss *miss)
+/* v at l and its natural map. After an iteration friction is turned at that v where W stays in the cache of a core:
+   that takes two columns of a pair, of many pairs as long as a whole product, and more than an iteration on few bytes
+   of W */
+static PetscErrorCode ChordMove(ContactCompliance c, PetscBool turns, ComplianceMiss *miss)
 {
   PetscFunctionBeginUser;
   if (ComplianceNearServes(c)) {
@@ -201,21 +205,7 @@ static PetscErrorCode ChordMove(ContactCompliance c, ComplianceMiss *miss)
     PetscFunctionReturn(0);
   }
   PetscCall(ComplianceMove(c));
-  ComplianceMeasure(c, miss);
-  PetscFunctionReturn(0);
-}
-
-/* The same after an iteration. Friction is turned at that v where W stays in the cache of a core: that takes two
-   columns of a pair, of many pairs as long as a whole product, and more than an iteration on few bytes of W */
-static PetscErrorCode ChordMoveOn(ContactCompliance c, ComplianceMiss *miss)
-{
-  PetscFunctionBeginUser;
-  if (ComplianceNearServes(c)) {
-    PetscCall(ComplianceNearMove(c, miss));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(ComplianceMove(c));
-  ChordTurn(c);
+  if (turns) ChordTurn(c);
   ComplianceMeasure(c, miss);
   PetscFunctionReturn(0);
 }
@@ -228,7 +218,7 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
   ComplianceMiss best = {.worst = CHORD_NONE};
 
   PetscFunctionBeginUser;
-  PetscCall(ChordMove(c, miss));
+  PetscCall(ChordMove(c, PETSC_FALSE, miss));
   PetscCall(ChordKeep(c, miss, PETSC_MAX_REAL, &best, &done));
   c->chord.n_mixed = -1;
   for (PetscInt it = 0; it < CHORD_MAX_IT && slow <= CHORD_PATIENCE && !done; it++) {
@@ -241,7 +231,7 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
     PetscCall(ComplianceChordSolve(c, c->chord.z));
     ChordTake(c, c->chord.z);
     ComplianceMix(c, c->v0);
-    PetscCall(ChordMoveOn(c, miss));
+    PetscCall(ChordMove(c, PETSC_TRUE, miss));
     c->report.iterations++;
     slow += !(miss->norm < CHORD_SLOW * last.norm);
     worth = ChordIsWorth(c, miss, last.largest);
@@ -249,7 +239,7 @@ PetscErrorCode ComplianceChordIterate(ContactCompliance c, ComplianceMiss *miss)
   }
   if (best.worst == CHORD_NONE || miss->largest <= best.largest) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(c->l, c->best, 3 * c->n));
-  PetscCall(ChordMove(c, miss));
+  PetscCall(ChordMove(c, PETSC_FALSE, miss));
   *miss = best;
   PetscFunctionReturn(0);
 }
