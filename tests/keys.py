@@ -7,7 +7,9 @@ CHECK = {"run", "ranks", "table", "column", "where", "equals", "equals_run", "ac
 
 
 def fault_of_keys(case):
-    """The first name of a case, a run or a check that nothing reads; None where there is none."""
+    """That a case runs nothing, or the first name of a case, a run or a check that nothing reads; None where all is right."""
+    if not case.get("run"):
+        return "the case has no run"
     tables = [("case", CASE, case), *((f"run {name}", RUN, run) for name, run in case["run"].items()),
               *(("a check", CHECK, check) for check in case.get("check", []))]
     return next((f"{each} has '{key}', which nothing reads" for each, known, table in tables for key in table if key not in known), None)

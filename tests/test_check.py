@@ -79,9 +79,10 @@ def empty_pass():
 
 
 def misspelt_pass():
-    """How many names that nothing reads are not refused in a case, a run and a check."""
+    """How many cases without runs, and names that nothing reads in a case, a run and a check, are not refused."""
     right = {"run": {"a": {"options": ""}}, "check": [{"max": 1}]}
-    cases = [{**right, "runs": [{}]}, {**right, "run": {"a": {"option": ""}}}, {**right, "check": [{"maxx": 1}]}]
+    cases = [{"check": [{"max": 1}]}, {**right, "run": {}},
+             {**right, "runs": [{}]}, {**right, "run": {"a": {"option": ""}}}, {**right, "check": [{"maxx": 1}]}]
     wrong = [case for case in cases if not fault_of_keys(case)] + ([right] if fault_of_keys(right) else [])
     for case in wrong:
         print(f"FAILED names of {case}")

@@ -35,6 +35,7 @@ from squeal.options import default_of, options_of
 
 FOR_SOURCES = {"margins", "run", "test", "test_sanitized", "test_debian", "coverage", "lint", "setup.sh", "paper", "manual", "packages.txt",
                "completion.bash", "README.md", "python.md", "correlate.md", "import.md", "site"}
+FIRST_LINES = ("#!/usr/bin/python3", "#!/usr/bin/env bash")
 SCENE = BRAKE + """modes: {band: "500,9000", contact: all}
 """
 
@@ -86,13 +87,22 @@ def check_scripts(top, bin_dir, faults):
     """All are there and begin; pictures and exports of a run."""
     on_top = {path.name for path in (SOURCE / "scripts").iterdir() if path.is_file()} - FOR_SOURCES
     plots = {f"plot-{path.name}" for path in (SOURCE / "scripts/plot").iterdir() if path.is_file()}
+    started = set()
     for name in sorted(on_top | plots):
         program = bin_dir / f"squeal-{name.replace('_', '-')}"
         if not program.exists():
             faults.check(False, f"scripts: {program.name} is missing")
-        elif name != "mpirun":
-            done = run_command([program, "--help"], top)
-            faults.check(os.access(program, os.X_OK) and not done.returncode and "usage" in done.stdout, f"scripts: {program.name} --help")
+            continue
+        begins = program.open("rb").readline().decode().strip()
+        faults.check(os.access(program, os.X_OK) and begins in FIRST_LINES, f"scripts: {program.name} can be started, by {begins}")
+        if name == "mpirun":  # which main() starts, a script of bash
+            continue
+        done = run_command([program, "--help"], top) if begins in started else \
+            subprocess.run([program, "--help"], capture_output=True, text=True, cwd=top, check=False)
+        faults.check(not done.returncode and "usage" in done.stdout,
+                     f"scripts: {program.name} --help{'' if begins in started else ', by its first line'}")
+        started.add(begins)
+    faults.check(FIRST_LINES[0] in started, f"scripts: by their first lines {', '.join(sorted(started))}")
     for words in (["squeal-plot-modes", "-o", "modes.png", "out"], ["squeal-report", "out"]):
         file = top / run(bin_dir / words[0], *words[1:], cwd=top).strip()
         faults.check(file.stat().st_size > 10000, f"scripts: {' '.join(words)} writes {file.name}")

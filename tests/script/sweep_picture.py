@@ -31,13 +31,28 @@ def flutters(pair, mu):
     return inside
 
 
-def lines(folder, band=None, labels="auto", render=False):
+def lines(folder, band=None, labels="auto", render=False, at=None):
     """The axes of the picture of one parameter, where asked for after it was rendered."""
     with plt.rc_context(sweep_tables.FONTS):
-        figure = sweep_lines.draw_lines(sweep_tables.Study(folder, band, None), ["frequency", "growth"], labels)
+        figure = sweep_lines.draw_lines(sweep_tables.Study(folder, band, at), ["frequency", "growth"], labels)
         if render:
             figure.canvas.draw()
     return figure.axes
+
+
+def red_lines(axes):
+    """The lines of what is unstable."""
+    return [line for line in axes.lines if to_hex(line.get_color()) == VERMILION.lower() and line.get_lw() == 3]
+
+
+def marked(line):
+    """Which points of a red line have a marker."""
+    return line.get_markevery() & ~numpy.isnan(line.get_xdata())
+
+
+def reds(folder, **options):
+    """How many points are marked in the panels of frequency and growth."""
+    return [sum(marked(line).sum() for line in red_lines(axes)) for axes in lines(folder, **options)]
 
 
 def test_colours(root):
@@ -49,6 +64,9 @@ def test_colours(root):
     require(red_points(drawn("plot/sweep", root / "quiet", "--growth-only")) == 0, "a mode is marked although there is no friction")
     quiet = drawn("plot/sweep", root / "flutter", "--band", "6000,13000", "--growth-only")
     require(red_points(quiet) == 0, "a mode is marked outside its band")
+    for name, band, some in (("flutter", [2500, 6000], True), ("quiet", None, False), ("flutter", [6000, 13000], False)):
+        found = reds(root / name, band=band)
+        require(found[0] == found[1] and (found[0] > 0) == some, f"{found} points of {name} are marked in the two panels in band {band}")
 
 
 def test_marks(root):
@@ -58,9 +76,8 @@ def test_marks(root):
     expected = numpy.sort(numpy.concatenate([VALUES[flutters(pair, 0.5)] / 1e9 for pair in PAIRS[:2]]))
     critical = numpy.sort([value / 1e9 for pair in PAIRS[:2] for value, _ in onsets(0.5, pair)])
     for axes in lines(root / "numerical"):
-        red = [line for line in axes.lines if to_hex(line.get_color()) == VERMILION.lower() and line.get_lw() == 3]
-        given = [line.get_markevery() & ~numpy.isnan(line.get_xdata()) for line in red]
-        x = numpy.concatenate([line.get_xdata()[marked] for line, marked in zip(red, given)])
+        red = red_lines(axes)
+        x = numpy.concatenate([line.get_xdata()[marked(line)] for line in red])
         ends = numpy.concatenate([line.get_xdata()[~line.get_markevery() & ~numpy.isnan(line.get_xdata())] for line in red])
         unsure = numpy.concatenate([line.get_xdata() for line in axes.lines if line.get_mfc() == "white"
                                     and line.get_mec() == VERMILION])
@@ -126,6 +143,9 @@ def test_map(root):
     red = [red_points(drawn("plot/sweep", root / "map", "--growth-only", "--at", at)) for at in ("0.61", "0")]
     require(red[0] > 500, "nothing is marked on a line of the map")
     require(red[1] == 0, "a mode is marked although there is no friction")
+    for at, some in ((0.61, True), (0, False)):
+        found = reds(root / "map", at=at)
+        require(found[0] == found[1] and (found[0] > 0) == some, f"{found} points are marked in the two panels at {at}")
     drawn("plot/sweep", root / "map")
     grid = sweep_map.Grid(sweep_tables.Study(root / "map", None, None))
     for pair in PAIRS:

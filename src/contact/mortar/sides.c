@@ -55,20 +55,43 @@ static void EntriesMerge(MortarEntries *list, PetscInt n_pairs, PetscInt first[]
   list->n = n;
 }
 
+/* A facet of the slave around a node, which is its j */
+static const ContactFacet *NodeFacet(const MortarPairs *m, PetscInt node, int *j)
+{
+  const PetscInt at = m->border.around[m->border.first[node]];
+
+  *j = (int)(at % FACET_NODES);
+  return &m->mortar.slave->facet[at / FACET_NODES];
+}
+
+/* u~ of a node as sum_i v_i u_k(i) over n nodes of a facet, itself first; the facet */
+static const ContactFacet *MeanTerms(const MortarPairs *m, PetscInt node, int *n, int k[FACET_NODES],
+                                     PetscReal v[FACET_NODES])
+{
+  int                 j;
+  const ContactFacet *s = NodeFacet(m, node, &j);
+  PetscReal           all[FACET_NODES];
+
+  SegmentValue(s->n, m->mortar.alpha, j, all);
+  *n = 0;
+  for (int i = 0; i < s->n; i++) { /* the node itself, then the others */
+    const int l = i == 0 ? j : i <= j ? i - 1 : i;
+
+    if (all[l] != 0) k[*n] = l, v[(*n)++] = all[l];
+  }
+  return s;
+}
+
 int MortarMean(const MortarPairs *m, PetscInt node, ContactPairNode mean[FACET_NODES])
 {
-  const PetscInt      at = m->border.around[m->border.first[node]];
-  const ContactFacet *s  = &m->mortar.slave->facet[at / FACET_NODES];
-  const int           j  = (int)(at % FACET_NODES);
+  int                 n, k[FACET_NODES];
   PetscReal           v[FACET_NODES];
-  int                 n = 0;
+  const ContactFacet *s = MeanTerms(m, node, &n, k, v);
 
-  SegmentValue(s->n, m->mortar.alpha, j, v);
-  for (int i = 0; i < s->n; i++) { /* the node itself, then the others */
-    const int       k = i == 0 ? j : i <= j ? i - 1 : i;
-    const PetscInt *u = s->unknowns[k];
+  for (int i = 0; i < n; i++) {
+    const PetscInt *u = s->unknowns[k[i]];
 
-    if (v[k] != 0) mean[n++] = (ContactPairNode){m->mortar.slave->vertex[s->node[k]], {u[0], u[1], u[2]}, v[k]};
+    mean[i] = (ContactPairNode){m->mortar.slave->vertex[s->node[k[i]]], {u[0], u[1], u[2]}, v[i]};
   }
   return n;
 }
@@ -162,10 +185,10 @@ PetscErrorCode MortarOffset(const MortarPairs *m, PetscInt p, PetscReal offset[3
 /* n . offset, m; what is 1e-9 of the facet's size is rounding of the coordinates, and 0 */
 static PetscErrorCode GapSet(const MortarPairs *m, PetscInt p)
 {
-  const ContactSurface *slave = m->mortar.slave;
-  ContactPair          *pair  = &m->pair[p];
-  const PetscReal       size  = slave->facet[m->border.around[m->border.first[m->node[p]]] / FACET_NODES].size;
-  PetscReal             offset[3];
+  ContactPair    *pair = &m->pair[p];
+  int             j;
+  const PetscReal size = NodeFacet(m, m->node[p], &j)->size;
+  PetscReal       offset[3];
 
   PetscFunctionBeginUser;
   PetscCall(MortarOffset(m, p, offset));
@@ -181,18 +204,16 @@ static void NodeNormal(const ContactFacet *s, int k, PetscReal n[3])
   (void)Vec3Normalise(n);
 }
 
-/* sum_k v_k n_k . n_s of the mean of a node, v_k as in MortarMean() */
+/* sum_k v_k n_k . n_s of the mean of a node */
 static PetscReal MeanAlong(const MortarPairs *m, PetscInt node, const PetscReal along[3])
 {
-  const PetscInt      at = m->border.around[m->border.first[node]];
-  const ContactFacet *s  = &m->mortar.slave->facet[at / FACET_NODES];
+  int                 count, k[FACET_NODES];
   PetscReal           v[FACET_NODES], sum = 0, n[3];
+  const ContactFacet *s = MeanTerms(m, node, &count, k, v);
 
-  SegmentValue(s->n, m->mortar.alpha, (int)(at % FACET_NODES), v);
-  for (int k = 0; k < s->n; k++) {
-    if (v[k] == 0) continue;
-    NodeNormal(s, k, n);
-    sum += v[k] * Vec3Dot(n, along);
+  for (int i = 0; i < count; i++) {
+    NodeNormal(s, k[i], n);
+    sum += v[i] * Vec3Dot(n, along);
   }
   return sum;
 }
@@ -200,10 +221,11 @@ static PetscReal MeanAlong(const MortarPairs *m, PetscInt node, const PetscReal 
 /* kappa of a pair, of its own mean and of those that it takes, entry[n] */
 static void BendSet(const MortarPairs *m, PetscInt p, PetscInt n, const MortarEntry entry[])
 {
-  const PetscInt at    = m->border.around[m->border.first[m->node[p]]];
-  PetscReal      whole = m->own[p], sum, along[3];
+  int                 j;
+  const ContactFacet *s     = NodeFacet(m, m->node[p], &j);
+  PetscReal           whole = m->own[p], sum, along[3];
 
-  NodeNormal(&m->mortar.slave->facet[at / FACET_NODES], (int)(at % FACET_NODES), along);
+  NodeNormal(s, j, along);
   sum = m->own[p] * (MeanAlong(m, m->node[p], along) - 1);
   for (PetscInt i = 0; i < n; i++) {
     whole += entry[i].node.weight;
