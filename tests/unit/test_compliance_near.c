@@ -6,6 +6,7 @@
       each step from what the one before left, or from its memory        bitwise
       v of a small change beside the whole product                       within its stated size, and not to rounding
       a memory with a number that is none of its kind                    refused
+      factors of pivots below what single precision carries              in double precision
 
    Breaks where a residual is judged by the short product alone, where memory has not what changes count from, or a gap
    that opens leaves its rounding in the border of single factors.
@@ -166,6 +167,7 @@ static PetscErrorCode TestProduct(ContactCompliance c, int *failed)
   PetscCall(PetscArraycpy(c->v0, c->v, ROWS));
   for (PetscInt i = 0; i < ROWS; i++) c->l[i] += 1e-3 * sin(0.7 * (double)i * (double)i);
   PetscCall(ComplianceNearMove(c, &miss));
+  *failed += CheckTrue("no whole product", c->near.error > 0, c->near.error);
   PetscCall(PetscArraycpy(near, c->v, ROWS));
   PetscCall(ComplianceMove(c));
   for (PetscInt i = 0; i < ROWS; i++) {
@@ -174,6 +176,80 @@ static PetscErrorCode TestProduct(ContactCompliance c, int *failed)
   }
   *failed += CheckClose("16 bits of what changes", off / change, 0, 1e-4);
   *failed += CheckTrue("which are not all", off / change > 1e-9, off / change);
+  *failed += CheckTrue("off by at most its stated size", off <= c->near.error, off / c->near.error);
+  *failed += CheckTrue("and by a fifth of it at least", off >= 0.2 * c->near.error, off / c->near.error);
+  PetscFunctionReturn(0);
+}
+
+/* y := A x of a base in which all pairs stick along e = (1, 0), rows and columns n, across, along of each pair:
+   l = (x_0, x_2 - mu x_0, x_1), y = (v_0, v_2, v_1), v = W kappa l */
+static void StickingTimes(const ComplianceScene *s, const ContactCompliance c, const PetscReal x[], PetscReal y[])
+{
+  PetscReal f[ROWS];
+
+  for (PetscInt p = 0; p < PAIRS; p++) {
+    f[3 * p]     = c->kappa[p] * x[3 * p];
+    f[3 * p + 1] = c->kappa[p] * (x[3 * p + 2] - s->mu[p] * x[3 * p]);
+    f[3 * p + 2] = c->kappa[p] * x[3 * p + 1];
+  }
+  for (PetscInt i = 0; i < ROWS; i++) {
+    const PetscInt row = i % 3 ? 3 * (i / 3) + 3 - i % 3 : i;
+
+    y[i] = 0;
+    for (PetscInt j = 0; j < ROWS; j++) y[i] += s->W[row * ROWS + j] * f[j];
+  }
+}
+
+/* That base by the memory of a solver, and how far from x the solution of A x is */
+static PetscErrorCode SolveSticking(const ComplianceScene *s, ContactCompliance c, PetscReal *off)
+{
+  const PetscInt n = 3 * ROWS + 2 + 4 * PAIRS;
+  PetscReal     *memory, *base, y[ROWS], x[ROWS];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &memory));
+  base    = &memory[2 * ROWS + 1];
+  *base++ = ROWS;
+  for (PetscInt i = 0; i < ROWS; i++) *base++ = (PetscReal)(4 * (i / 3) + (i % 3 ? i % 3 + 1 : 0));
+  for (PetscInt p = 0; p < PAIRS; p++) {
+    *base++ = 1;
+    *base++ = 0;
+    *base++ = s->mu[p];
+    *base++ = 0;
+  }
+  PetscCall(ContactComplianceSetMemory(c, n, memory));
+  for (PetscInt i = 0; i < ROWS; i++) x[i] = 1 + 0.5 * sin((double)i);
+  StickingTimes(s, c, x, y);
+  ComplianceChordBaseSolve(c, 1, y);
+  *off = 0;
+  for (PetscInt i = 0; i < ROWS; i++) *off = fmax(*off, fabs(y[i] - x[i]));
+  PetscCall(PetscFree(memory));
+  PetscFunctionReturn(0);
+}
+
+/* Bodies that a long and soft holder lets rise together, so that what pairs do to each other is 1e-7 of what all do to
+   one: pivots that single precision does not carry. Breaks where its factors are taken nevertheless, or none are */
+static PetscErrorCode TestPivots(ComplianceScene *s, int *failed)
+{
+  ContactCompliance stiff, soft;
+  PetscReal         off;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactComplianceCreate(PAIRS, s->W, &stiff));
+  PetscCall(SceneSetFriction(stiff, PAIRS, s->mu, NULL, NULL, 0));
+  PetscCall(SolveSticking(s, stiff, &off));
+  *failed += CheckTrue("good pivots: factors in single precision", stiff->chord.exists && stiff->chord.single, off);
+  *failed += CheckClose("solve to its rounding", off, 0, 1e-3);
+  *failed += CheckTrue("and not to more", off > 1e-9, off);
+  PetscCall(ContactComplianceDestroy(&stiff));
+  for (PetscInt i = 0; i < ROWS; i += 3)
+    for (PetscInt j = 0; j < ROWS; j += 3) s->W[i * ROWS + j] += 1e7;
+  PetscCall(ContactComplianceCreate(PAIRS, s->W, &soft));
+  PetscCall(SceneSetFriction(soft, PAIRS, s->mu, NULL, NULL, 0));
+  PetscCall(SolveSticking(s, soft, &off));
+  *failed += CheckTrue("small pivots: factors in double precision", soft->chord.exists && !soft->chord.single, off);
+  *failed += CheckClose("solve to the rounding of pivots of 1e-7", off, 0, 1e-3);
+  PetscCall(ContactComplianceDestroy(&soft));
   PetscFunctionReturn(0);
 }
 
@@ -193,6 +269,7 @@ static PetscErrorCode Tests(PetscMPIInt size, int *failed)
   PetscCall(TestDamaged(c, failed));
   PetscCall(TestProduct(c, failed));
   PetscCall(ContactComplianceDestroy(&c));
+  PetscCall(TestPivots(&s, failed));
   PetscCall(SceneDestroy(&s));
   PetscFunctionReturn(0);
 }

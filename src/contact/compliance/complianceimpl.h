@@ -55,6 +55,7 @@ typedef struct {
   PetscBool *moves;        /* work: rows of tiles that change, [n] */
   float     *x, *y;        /* work: change of the forces, what it moves */
   PetscReal  spread;       /* m/N: what an entry is off by in the mean */
+  PetscReal  error;        /* m: what v is off by at most, 0 after a whole product */
   PetscBool  stands;       /* there is a whole product: */
   PetscReal *from, *moved; /* forces, N, and what they move, m, [3 n] */
   PetscReal *diagonal;     /* of W then, [3 n] */

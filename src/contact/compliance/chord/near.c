@@ -7,7 +7,7 @@
    T whole numbers of 16 bits, S a scale of each tile of 16 x 16; the diagonal of W has all its figures. W f_a is exact.
    Roundings of the entries do not add up: their sum over a row is sqrt(sum S^2 df^2 / 12) in the mean, which is known,
    and a residual that is not far above it is found anew by a whole product, from which the next changes count. A step
-   converges as it does with W; one or two whole products of ten are left of it, and a change that has become short
+   converges as it does with W; two whole products of ten are left of it, and a change that has become short
    is multiplied to rounding of W f. In single precision: half of 9.4 M numbers of 1024 pairs is 9.4 MB instead of
    37.7 MB, and a product takes a fifth of the time.
 */
@@ -19,8 +19,8 @@
 #define NEAR_UNIT  65536 /* of a number in its word of 32 bits */
 #define NEAR_AHEAD 64    /* rows of words: what is read by then is on its way */
 #define NEAR_LARGE 600   /* rows of W from which it leaves the cache of a core */
-#define NEAR_SIGMA 2     /* times what an entry of v is off by in the mean: about the largest of some thousand */
-#define NEAR_TRUST 5     /* errors of v: a smaller residual is found anew */
+#define NEAR_SIGMA 4     /* times what an entry of v is off by in the mean: above the largest of some thousand, 3.5 */
+#define NEAR_TRUST 2.5   /* errors of v: a smaller residual is found anew */
 
 typedef float   NearRow __attribute__((vector_size(64), aligned(4), may_alias));
 typedef int32_t NearWord __attribute__((vector_size(64), aligned(2), may_alias));
@@ -208,11 +208,12 @@ static PetscErrorCode NearBegin(ContactCompliance c)
       c->v[i]        = c->free[i] + s->moved[i];
     }
   s->stands = PETSC_TRUE;
+  s->error  = 0;
   PetscFunctionReturn(0);
 }
 
-/* v at the present l, and the size of what it is off by, m */
-static void NearMove(ContactCompliance c, PetscReal *error)
+/* v at the present l, and what it is off by at most, m */
+static void NearMove(ContactCompliance c)
 {
   ComplianceNear *s    = &c->near;
   const PetscInt  N    = 3 * c->n;
@@ -230,22 +231,22 @@ static void NearMove(ContactCompliance c, PetscReal *error)
   if (unit > 0) NearTimes(s, s->x, s->y);
   for (PetscInt i = 0; i < N; i++)
     c->v[i] = c->free[i] + (s->moved[i] + (unit > 0 ? unit * (PetscReal)s->y[i] + s->diagonal[i] * more[i] : 0));
-  *error = NEAR_SIGMA * s->spread * unit * PetscSqrtReal(square);
+  s->error = NEAR_SIGMA * s->spread * unit * PetscSqrtReal(square);
 }
 
-/* What is judged to be solved must be so to rounding; before that a residual may be off by half of it. */
+/* What is judged to be solved must be so to rounding; before that a residual may be off by 0.4 of it. */
 PetscErrorCode ComplianceNearMove(ContactCompliance c, ComplianceMiss *miss)
 {
-  PetscReal error = 0;
+  const PetscReal *error = &c->near.error;
 
   PetscFunctionBeginUser;
   if (!c->near.tile) PetscCall(NearCreate(c));
   if (c->near.stands)
-    NearMove(c, &error);
+    NearMove(c);
   else
     PetscCall(NearBegin(c));
   ComplianceMeasure(c, miss);
-  if (error <= miss->noise || (miss->largest >= NEAR_TRUST * error && !ComplianceIsSolved(c, miss)))
+  if (*error <= miss->noise || (miss->largest >= NEAR_TRUST * *error && !ComplianceIsSolved(c, miss)))
     PetscFunctionReturn(0);
   PetscCall(NearBegin(c));
   ComplianceMeasure(c, miss);
