@@ -32,6 +32,8 @@
 #define VISCOELASTIC_BRANCHES   8
 #define VISCOELASTIC_PARAMETERS (2 * VISCOELASTIC_BRANCHES)
 #define VISCOELASTIC_LISTED     64 /* rows of a table that is given by lists */
+#define VISCOELASTIC_LOSS_MOST                                                                                         \
+  100 /* largest loss factor: beyond, modes would end with errors (operators/terms/law.c) */
 
 typedef enum {
   VISCOELASTIC_NONE,
@@ -171,7 +173,8 @@ typedef struct {
 
 /*@ ViscoelasticSet - the law of a part or matrix of that name, from its options and its hysteretic loss factor, 0 for
     none; E in Pa, 1 of a matrix, whose moduli are beside it. Collective; ViscoelasticFree() frees it.
-    Errors: PETSC_ERR_USER_INPUT for what does not go together, and for a table that is none. @*/
+    Errors: PETSC_ERR_USER_INPUT for what does not go together, for a table that is none, and for loss factors above
+    VISCOELASTIC_LOSS_MOST. @*/
 PetscErrorCode ViscoelasticSet(MPI_Comm comm, const char name[], const ViscoelasticAsked *asked, PetscReal young,
                                PetscReal loss, Viscoelastic *law);
 
@@ -191,7 +194,8 @@ PetscInt ViscoelasticBranches(const Viscoelastic *law);
 /*@ ViscoelasticRange - the frequencies, rad/s, for which a law tells something: all but of a table. Not collective. @*/
 void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2]);
 
-/*@ ViscoelasticLimits - the least and the largest temperature of a table, infinite of other laws. Not collective. @*/
+/*@ ViscoelasticLimits - the least and the largest value of a law's first parameter, the temperature of a table or a
+    hysteretic loss factor; infinite of other laws. Not collective. @*/
 void ViscoelasticLimits(const Viscoelastic *law, PetscReal limit[2]);
 
 /*@ ViscoelasticName - the option of value i of a law, or of the law itself, i < 0, without dash and name, and with

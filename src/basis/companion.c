@@ -242,7 +242,8 @@ static PetscErrorCode FrozenCompanion(DenseFrozen *f, const DensePencil *q, cons
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DenseFrozenSolve(const DensePencil *pencil, PetscReal shift, PetscBool vectors, DenseFrozen *f)
+PetscErrorCode DenseFrozenSolve(MPI_Comm comm, const DensePencil *pencil, PetscReal shift, PetscBool vectors,
+                                DenseFrozen *f)
 {
   const PetscInt n = pencil->n;
   PetscReal     *C;
@@ -253,6 +254,7 @@ PetscErrorCode DenseFrozenSolve(const DensePencil *pencil, PetscReal shift, Pets
   PetscCall(PetscMalloc1(n * n, &C));
   PetscCall(PetscMalloc2(n * n, &f->P, n, &f->pivot));
   FrozenForm(pencil, C, f->P, &f->damped);
+  PetscCallMPI(MPI_Bcast(&f->damped, 1, MPIU_BOOL, 0, comm));
   if (f->damped) f->N = 2 * n;
   PetscCall(PetscMalloc1(f->N * f->N, &B));
   PetscCall(PetscMalloc1(f->N, &f->theta));

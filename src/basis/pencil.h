@@ -63,7 +63,9 @@ typedef struct {
   PetscComplex *theta, *left, *right;
 } DenseFrozen;
 
-PetscErrorCode DenseFrozenSolve(const DensePencil *pencil, PetscReal shift, PetscBool vectors, DenseFrozen *frozen);
+/* Collective: whether C_0 is zero within rounding, hence N, is what rank 0 finds */
+PetscErrorCode DenseFrozenSolve(MPI_Comm comm, const DensePencil *pencil, PetscReal shift, PetscBool vectors,
+                                DenseFrozen *frozen);
 /* lambda of entry i of N, without C_0 that of +- lambda with Im lambda >= 0; false for infinite ones */
 PetscBool DenseFrozenLambda(const DenseFrozen *frozen, PetscInt i, PetscComplex *lambda);
 /* Its vectors [n], of any length */

@@ -26,8 +26,8 @@ PetscErrorCode OperatorsAddLaw(Operators o, const char owner[], const Viscoelast
       &o->parameters, owner, name,
       &(OperatorsParameter){.row = row(option), .value = values->value[i], .damps = PETSC_TRUE, .law = PETSC_TRUE},
       &law->parameter[i]));
-    if (values->kind != VISCOELASTIC_TABLE) continue;
     ViscoelasticLimits(values, limit);
+    if (PetscIsInfReal(limit[1])) continue;
     o->parameters.list[law->parameter[i]].lower  = limit[0];
     o->parameters.list[law->parameter[i]].upper  = limit[1];
     o->parameters.list[law->parameter[i]].closed = PETSC_TRUE;

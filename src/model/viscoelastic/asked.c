@@ -55,6 +55,9 @@ PetscErrorCode ViscoelasticSet(MPI_Comm comm, const char name[], const Viscoelas
   PetscCall(AskedCheck(comm, name, v));
   PetscCall(AskedCount(comm, name, v, loss, &none));
   if (none) PetscFunctionReturn(0);
+  PetscCheck(loss <= VISCOELASTIC_LOSS_MOST, comm, PETSC_ERR_USER_INPUT,
+             "-%s_loss_factor %.6g must be at most %d where it is hysteretic: no material has more", name, (double)loss,
+             VISCOELASTIC_LOSS_MOST);
   if (loss > 0) law->kind = VISCOELASTIC_HYSTERETIC, law->n = 1, law->value[0] = loss;
   if (v->n_modulus) law->kind = VISCOELASTIC_PRONY, law->n = 2 * v->n_modulus;
   if (v->has_zener[0]) law->kind = VISCOELASTIC_ZENER, law->n = 3;

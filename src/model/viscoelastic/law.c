@@ -129,10 +129,11 @@ void ViscoelasticRange(const Viscoelastic *law, PetscReal range[2])
 
 void ViscoelasticLimits(const Viscoelastic *law, PetscReal limit[2])
 {
-  const PetscBool table = law->kind == VISCOELASTIC_TABLE ? PETSC_TRUE : PETSC_FALSE;
-
-  limit[0] = table ? law->table[0].temperature : -INFINITY;
-  limit[1] = table ? law->table[law->n_tables - 1].temperature : INFINITY;
+  limit[0] = -INFINITY, limit[1] = INFINITY;
+  if (law->kind == VISCOELASTIC_HYSTERETIC) limit[0] = 0, limit[1] = VISCOELASTIC_LOSS_MOST;
+  if (law->kind != VISCOELASTIC_TABLE) return;
+  limit[0] = law->table[0].temperature;
+  limit[1] = law->table[law->n_tables - 1].temperature;
 }
 
 PetscErrorCode ViscoelasticName(const Viscoelastic *law, PetscInt i, const char **option, char name[32])

@@ -92,6 +92,9 @@ static PetscErrorCode ValuesCheck(MPI_Comm comm, const char name[], const TableV
                "-%s_table: at %.6g Hz the modulus is %.6g and the loss factor %.6g: frequency and modulus must be "
                "positive, the loss factor not negative",
                name, (double)v[0], (double)v[1], (double)v[2]);
+    PetscCheck(v[2] <= VISCOELASTIC_LOSS_MOST, comm, PETSC_ERR_USER_INPUT,
+               "-%s_table: at %.6g Hz the loss factor is %.6g: it must be at most %d, no material has more", name,
+               (double)v[0], (double)v[2], VISCOELASTIC_LOSS_MOST);
   }
   PetscFunctionReturn(0);
 }

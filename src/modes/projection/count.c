@@ -44,7 +44,7 @@ static PetscErrorCode HeldEigenvalues(const Projection *p, Contour *c)
   PetscComplex lambda;
 
   PetscFunctionBeginUser;
-  PetscCall(DenseFrozenSolve(&c->pencil, PetscSqrtReal(PetscAbsReal(p->si.shift)), PETSC_FALSE, &held));
+  PetscCall(DenseFrozenSolve(p->modes->comm, &c->pencil, PetscSqrtReal(PetscAbsReal(p->si.shift)), PETSC_FALSE, &held));
   for (PetscInt i = 0; i < held.N; i++) {
     if (!DenseFrozenLambda(&held, i, &lambda)) continue;
     c->nu[c->n++] = lambda;
@@ -109,8 +109,9 @@ static PetscBool StepIsShort(const Contour *c, const PetscComplex lambda[2])
   return PETSC_TRUE;
 }
 
-/* Whether the rates of the phase at both ends of a step turn it by no more: eigenvalues of T next to the edge, a pair
-   or a cluster, turn it by whole turns between points that are far from them */
+/* Whether the rates of the phase at both ends of a step turn it by no more: an eigenvalue of T next to the edge, or a
+   pair, turns it by whole turns between points that are far from it. Groups of real eigenvalues just beside the edge
+   would stay unseen: ContourFloor() keeps the edge away from them */
 static PetscErrorCode StepIsSlow(Contour *c, const PetscComplex lambda[2], const PetscReal phase[2], PetscBool *slow)
 {
   PetscReal near;

@@ -271,7 +271,7 @@ static PetscErrorCode DenseAllSolve(const Projection *p, const DensePencil *dens
   PetscFunctionBeginUser;
   *w = (DenseAll){.n = 0};
   if (dense->n_laws) {
-    PetscCall(DenseFrozenSolve(dense, shift, PETSC_TRUE, &w->frozen));
+    PetscCall(DenseFrozenSolve(p->modes->comm, dense, shift, PETSC_TRUE, &w->frozen));
     w->n = w->n_frozen = w->frozen.N;
     PetscCallMPI(MPI_Bcast(w->frozen.theta, (PetscMPIInt)(2 * w->n), MPIU_REAL, 0, p->modes->comm));
   }

@@ -90,7 +90,8 @@ PETSC_INTERN PetscReal ProjectionEdge(const Projection *p, PetscReal d);
 PETSC_INTERN PetscReal ProjectionPole(const Projection *p);
 /* The largest |lambda / (1 + beta lambda)| of the window, 1/s */
 PETSC_INTERN PetscReal ProjectionLargestRatio(const Projection *p);
-/* Leaves of the chosen eigenvalues, list [n], the `most` nearest to the target; *d = distance of the farthest */
+/* Leaves of the chosen eigenvalues, list [n], those asked for, which are nearest to the target, and `more`; *d =
+   distance of the farthest left, PETSC_MAX_REAL where there are fewer than asked for */
 PETSC_INTERN void ProjectionKeepNearest(const Window *window, PetscInt more, const PetscComplex lambda[],
                                         PetscInt list[], PetscInt *n, PetscReal *d);
 /* Eigenvalues of the dense model in the window; with laws those of the problem that holds them that may come into it */

@@ -9,7 +9,8 @@
 #include "base/text.h"
 
 /* Of materials whose stiffness depends on the frequency, and where it is hysteretic alone */
-static const char laws_text[] = "; a contour integral counts the same, without modes damped by more than 0.995 of critical damping";
+static const char laws_text[] = "; a contour integral counts the same of modes damped by less than 0.995 of critical "
+                                "damping";
 static const char held_text[] = "; LAPACK has no others of the complex stiffness on the basis, but for what does not "
                                 "oscillate";
 
@@ -71,11 +72,25 @@ static PetscErrorCode DescribeFrictionless(Modes modes, const Window *window, ch
   PetscFunctionReturn(0);
 }
 
+/* A strength below 1; near 1 with two digits of what it is short of it */
+static PetscErrorCode StrengthPrint(PetscReal strength, char text[], size_t size)
+{
+  const PetscReal left   = PetscMax(1 - strength, 1e-12);
+  const int       digits = 1 + (int)ceil(-PetscLog10Real(left));
+
+  PetscFunctionBeginUser;
+  if (strength < 0.99)
+    PetscCall(PetscSNPrintf(text, size, "%.2g", (double)strength));
+  else
+    PetscCall(PetscSNPrintf(text, size, "%.*f", digits, (double)strength));
+  PetscFunctionReturn(0);
+}
+
 /* How the undamped modes of a projection are known to be complete, and what damping does to that */
 static PetscErrorCode DescribeProjection(const Window *window, const char region[], const char rest[], char text[],
                                          size_t size)
 {
-  char undamped[192], more[64] = "", pole[160] = "";
+  char undamped[192], more[64] = "", pole[160] = "", strength[32];
 
   PetscFunctionBeginUser;
   if (window->route.counted)
@@ -92,9 +107,9 @@ static PetscErrorCode DescribeProjection(const Window *window, const char region
     PetscCall(PetscSNPrintf(pole, sizeof(pole),
                             "; modes within %.4g of %.4g 1/s, where overdamped ones gather, are not sought",
                             (double)(window->route.pole / 2), (double)-window->route.pole));
-  PetscCall(PetscSNPrintf(text, size,
-                          "%s; damping brings no others%s (its strength beyond them%s is %.2g, below 1)%s%s", undamped,
-                          region, more, (double)window->route.beyond, rest, pole));
+  PetscCall(StrengthPrint(window->route.beyond, strength, sizeof(strength)));
+  PetscCall(PetscSNPrintf(text, size, "%s; damping brings no others%s (its strength beyond them%s is %s, below 1)%s%s",
+                          undamped, region, more, strength, rest, pole));
   PetscFunctionReturn(0);
 }
 

@@ -11,7 +11,9 @@
 
       r = |E*|^2 / Re E*,   |E* - r| / r = eta / sqrt(1 + eta^2) < 1,   eta = Im E* / Re E*,
 
-   so that these converge whatever the loss factor is: with stiffened terms K has r - E in place of Re G, h the rest.
+   so that these converge whatever the loss factor is, up to VISCOELASTIC_LOSS_MOST (residuals are judged beside
+   r, which is eta^2 times Re E*: beyond some 1,000 they settle too early): with stiffened terms K has r - E in
+   place of Re G, h the rest.
 */
 #include "operators/operatorsimpl.h"
 
